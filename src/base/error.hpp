@@ -1,0 +1,27 @@
+// The two kinds of wrong (and a failing disk): each is an exception with its own exit code.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace scree {
+
+// Exit codes of the program; listed in --help and in the README.
+enum class ExitCode : int { done = 0, bad_input = 2, simulation_failed = 3, io_failed = 4, stopped_by_signal = 5 };
+
+// The user's: bad usage or deck. The message names file, line, key, value and what is allowed.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Ours, or a simulation that cannot go on. The message names stage, rank and global id or joint.
+struct SimulationError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// A file that cannot be read or written. The message names the file and the system's reason.
+struct IoError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace scree

@@ -1,0 +1,41 @@
+#include "base/log.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace scree {
+
+void Log::end_progress_line() {
+  if (progress_line_open_) std::fputc('\n', stdout);
+  progress_line_open_ = false;
+}
+
+void Log::info(const std::string& message) {
+  if (quiet_) return;
+  end_progress_line();
+  std::fprintf(stdout, "%s\n", message.c_str());
+  std::fflush(stdout);
+}
+
+void Log::warning(const std::string& message) {
+  warnings_.push_back(message);
+  if (quiet_) return;
+  end_progress_line();
+  std::fflush(stdout);
+  std::fprintf(stderr, "warning: %s\n", message.c_str());
+}
+
+void Log::progress(const std::string& line, bool force) {
+  if (quiet_) return;
+  static const bool terminal = isatty(STDOUT_FILENO) != 0;
+  if (terminal) {
+    std::fprintf(stdout, "\r%s\033[K", line.c_str());
+    progress_line_open_ = true;
+  } else if (force) {
+    std::fprintf(stdout, "%s\n", line.c_str());
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace scree

@@ -1,0 +1,28 @@
+// Messages to the user: warnings are kept for the run record, information goes to the terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace scree {
+
+class Log {
+ public:
+  // quiet: nothing goes to the terminal (ranks other than 0, tests).
+  explicit Log(bool quiet = false) : quiet_(quiet) {}
+
+  void info(const std::string& message);     // to standard output
+  void warning(const std::string& message);  // to standard error, and kept
+  // Rewrites the progress line in place on a terminal; prints nothing elsewhere unless `force`.
+  void progress(const std::string& line, bool force = false);
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  void end_progress_line();
+
+  bool quiet_ = false;
+  bool progress_line_open_ = false;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace scree

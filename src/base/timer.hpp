@@ -1,0 +1,52 @@
+// Wall time per stage of the step. The stage names are the timer names and the columns of the run record.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+enum class Stage {
+  predict, migrate, sort_cells, exchange_halo, neighbors, update_halo, broadcast_motion, contact_force,
+  reduce_wrench, mbs_correct, particle_correct, accept, output, count
+};
+
+inline constexpr std::array<const char*, static_cast<int>(Stage::count)> kStageNames = {
+    "predict",       "migrate",       "sort_cells",  "exchange_halo",    "neighbors", "update_halo", "broadcast_motion",
+    "contact_force", "reduce_wrench", "mbs_correct", "particle_correct", "accept",    "output"};
+
+class StageTimers {
+ public:
+  struct Entry {
+    double seconds = 0;
+    std::int64_t calls = 0;
+  };
+
+  // Adds the lifetime of the returned object to the stage.
+  class Scope {
+   public:
+    Scope(Entry& entry) : entry_(entry), start_(Clock::now()) {}
+    ~Scope() {
+      entry_.seconds += std::chrono::duration<double>(Clock::now() - start_).count();
+      ++entry_.calls;
+    }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    using Clock = std::chrono::steady_clock;
+    Entry& entry_;
+    Clock::time_point start_;
+  };
+
+  Scope time(Stage stage) { return Scope(entries_[static_cast<int>(stage)]); }
+  const Entry& operator[](Stage stage) const { return entries_[static_cast<int>(stage)]; }
+
+ private:
+  std::array<Entry, static_cast<int>(Stage::count)> entries_{};
+};
+
+}  // namespace scree

@@ -1,0 +1,82 @@
+// The multibody subsystem of rank 0: HHT-I3 for constrained rigid bodies, one Newton iteration at a time.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// All that changes in time on the multibody side; a checkpoint stores exactly this.
+struct MultibodyState {
+  std::vector<Real> position;      // generalized coordinates q [m, m, rad per planar body]
+  std::vector<Real> velocity;      // q'
+  std::vector<Real> acceleration;  // q''
+  std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
+  std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
+  std::vector<Real> applied;       // Q alone, for the energy ledger
+  Real dissipated = 0;             // in force elements since t = 0 [J]
+  Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
+  Real driver_work = 0;            // done by drivers, actuators and applied forces since t = 0 [J]
+};
+
+// Size of one Newton iteration, scaled and dimensionless.
+struct IterationNorms {
+  Real residual = 0;    // at the iterate the iteration started from
+  Real correction = 0;  // of the position, over the length scale
+};
+
+struct MultibodyEnergies {
+  Real kinetic = 0, gravitational = 0, elastic = 0;  // [J]
+};
+
+// Reaction of a joint or driver on body[1], at body[1]'s joint point, global frame.
+struct Reaction {
+  std::string joint;
+  Vec3 force;       // [N]
+  Real torque = 0;  // about that point [N m]
+};
+
+class Multibody {
+ public:
+  // Throws InputError where joints do not meet, start velocities contradict the joints, or constraints are
+  // redundant (all by joint name).
+  explicit Multibody(const Model& model);
+  ~Multibody();
+
+  // Consistent start: q, q' of the model; q'' and lambda from the acceleration-level system with these wrenches.
+  MultibodyState initial_state(const std::vector<BodyWrench>& wrench);
+
+  // Opens a step from `state` at time t of length h: Newmark prediction with q''_{n+1} = q''_n.
+  void predict(const MultibodyState& state, Real t, Real h);
+  // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError
+  // naming the joint or body on a singular matrix or a non-finite residual.
+  IterationNorms correct(const std::vector<BodyWrench>& wrench);
+  // Scaled local position error of the open step: HHT's estimate over the length scale.
+  Real error() const;
+  // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched.
+  void accept(MultibodyState& state);
+
+  // One entry per body, at the current iterate of the open step.
+  const std::vector<BodyMotion>& motion() const;
+  // The same for a state; for an instant tau [s] after it along q + tau q' + tau^2/2 q''.
+  std::vector<BodyMotion> motion(const MultibodyState& state, Real tau = 0) const;
+
+  MultibodyEnergies energies(const MultibodyState& state, Real t) const;
+  std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
+
+  int coordinates() const;
+  int constraints() const;
+  // e.g. "petsc 3.18.5, preonly + lu (klu)"
+  std::string solver_description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace scree

@@ -1,0 +1,45 @@
+// What crosses between the multibody side and the particle side.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+
+namespace scree {
+
+// Motion of one body at one instant, global frame.
+struct BodyMotion {
+  Vec3 position;               // of the centre of mass [m]
+  Vec3 velocity;               // [m/s]
+  Real angle = 0;              // about z [rad]
+  Real angular_velocity = 0;   // about z [rad/s]
+};
+
+// Position [m] and velocity [m/s] of a point fixed to a body.
+struct PointMotion {
+  Vec3 position, velocity;
+};
+
+inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
+  const Real c = std::cos(body.angle), s = std::sin(body.angle);
+  const Vec3 arm{c * offset.x - s * offset.y, s * offset.x + c * offset.y, offset.z};
+  const Vec3 spin{-body.angular_velocity * arm.y, body.angular_velocity * arm.x, 0};
+  return {body.position + arm, body.velocity + spin};
+}
+
+// Contact wrench on one body and minus its derivatives with respect to the body's own motion.
+struct BodyWrench {
+  Vec3 force;   // [N]
+  Vec3 torque;  // about the centre of mass [N m]
+  // Symmetric 6x6 blocks, rows and columns (x, y, z, rx, ry, rz), upper triangle row by row:
+  // -d(force, torque)/d(position, rotation) and -d(force, torque)/d(velocity, angular velocity).
+  std::array<Real, 21> stiffness{};  // [N/m, N/rad, N m/rad]
+  std::array<Real, 21> damping{};    // the same times [s]
+};
+
+// Slot of (row, column), row <= column, in the packed upper triangle of a 6x6 block.
+constexpr int packed6(int row, int column) { return row * 6 - row * (row - 1) / 2 + (column - row); }
+
+}  // namespace scree

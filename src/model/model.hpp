@@ -1,0 +1,103 @@
+// What is simulated: constant after it was built from the deck. SI units.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "model/bodies.hpp"
+#include "model/particles.hpp"
+#include "physics/contact_law.hpp"
+
+namespace scree {
+
+enum class Boundary { open, wall, periodic };
+
+// What happens to a particle whose centre leaves through an open side.
+enum class Leaving {
+  error,   // the simulation fails and names it
+  remove,  // taken out of the simulation, counted, its energy booked as carried out
+  drift    // counted; goes on under gravity alone, kept out of the pair search
+};
+
+enum Side { kXMin, kXMax, kYMin, kYMax, kZMin, kZMax, kSides };
+
+struct Space {
+  int dimension = 3;  // 2: every z stays 0 and the z sides do not exist
+  Vec3 min, max;      // [m]; in 2D min.z = max.z = 0
+  std::array<Boundary, kSides> boundary{};  // periodic comes in pairs
+  int wall_material = 0;                    // of the sides that are walls
+  Leaving leaving = Leaving::error;
+};
+
+// Half space: solid behind the plane.
+struct Wall {
+  std::string name;
+  Vec3 point;   // [m]
+  Vec3 normal;  // unit, into the free side
+  int material = 0;
+};
+
+// One law per unordered pair of materials.
+struct Contact {
+  std::vector<std::string> material_names;
+  std::vector<KelvinVoigt> laws;  // [i * materials + j], symmetric
+  Real skin = 0;                  // neighbour list reaches this far past touching [m]
+  bool connected_bodies_touch = false;
+
+  int materials() const { return static_cast<int>(material_names.size()); }
+  const KelvinVoigt& law(int i, int j) const { return laws[static_cast<std::size_t>(i * materials() + j)]; }
+};
+
+enum class StepControl { fixed, adaptive };
+enum class ParticleIntegrator { hht, velocity_verlet };
+
+struct TimeControl {
+  Real end = 0;                             // [s]
+  Real step = 0;                            // h, fixed or first [s]
+  StepControl control = StepControl::fixed;
+  Real min_step = 0, max_step = 0;          // [s]; min_step also bounds the retries of a fixed step
+  Real tolerance = 0;                       // adaptive: local position error per step over the particle's radius
+};
+
+struct Integrator {
+  Real hht_alpha = 0;
+  ParticleIntegrator particles = ParticleIntegrator::hht;
+  int substeps = 1;                 // of velocity-verlet per multibody step
+  Real residual_tolerance = 1e-8;   // scaled, both sides
+  Real correction_tolerance = 1e-8; // scaled by radius (particles) or length scale (bodies)
+  int max_iterations = 50;          // of the Newton-like loop
+};
+
+struct Output {
+  std::string directory;
+  Real snapshot_interval = 0;    // [s]; 0: none but the first and last state
+  Real history_interval = 0;     // [s]; 0: every step
+  Real checkpoint_interval = 0;  // [s] of simulated time; 0: only on failure and signal
+  bool history_csv = false;
+  std::vector<int> history_bodies;          // indices into Model::bodies
+  std::vector<GlobalId> history_particles;  // global ids
+};
+
+struct Model {
+  std::string title;
+  Space space;
+  Vec3 gravity;  // [m/s^2]
+  Contact contact;
+  std::vector<Wall> walls;  // the deck's planes, then the sides of the space that are walls
+  ParticleSet particles;    // start state
+  std::vector<Body> bodies;
+  std::vector<Joint> joints;
+  std::vector<Driver> drivers;
+  std::vector<SpringDamper> spring_dampers;
+  std::vector<TorsionalSpringDamper> torsional_spring_dampers;
+  std::vector<AppliedForce> applied_forces;
+  TimeControl time;
+  Integrator integrator;
+  Output output;
+};
+
+}  // namespace scree

@@ -1,0 +1,33 @@
+// Run record: what was run, with what, and what it cost.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/timer.hpp"
+#include "base/types.hpp"
+
+namespace scree {
+
+struct RunRecord {
+  std::string deck_path, resolved_deck;  // the deck with defaults filled in, as TOML
+  std::string command_line;
+  std::string status;  // "running", "done", "failed: ...", "stopped by signal ..."
+  int exit_code = 0;
+  std::string started, ended;  // ISO 8601, UTC
+  std::string backend, solver;
+  std::string restarted_from;
+  int ranks = 1;
+  double wall_seconds = 0, cpu_seconds = 0;
+  StageTimers timers;
+  std::vector<std::pair<std::string, std::int64_t>> counts;  // steps, iterations, rejections, list builds, ...
+  std::vector<std::pair<std::string, double>> measures;      // simulated time, energy balance, ...
+  std::vector<std::string> warnings;
+};
+
+// Writes DIRECTORY/run_record.json (beside and renamed): the fields above, versions, commit, host. Throws IoError.
+void write_run_record(const std::string& directory, const RunRecord& record);
+
+}  // namespace scree
