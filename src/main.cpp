@@ -1,1 +1,169 @@
-int main() { return 0; }
+// The command line: scree run | check | keys | --version.
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+#include "deck/deck.hpp"
+#include "mbs/multibody.hpp"
+#include "mbs/petsc_session.hpp"
+#include "model/build.hpp"
+#include "output/library_versions.hpp"
+#include "run/check.hpp"
+#include "run/simulation.hpp"
+
+namespace scree {
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 2 bad usage or deck, 3 the simulation failed, 4 a file could not be read or written,\n"
+    "5 stopped by a signal (SIGTERM, SIGINT, SIGUSR1) after writing a checkpoint.\n"
+    "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
+
+struct CommandLine {
+  std::vector<std::string> words, petsc_words;
+  std::string text;
+};
+
+CommandLine split(int count, char** values) {
+  CommandLine line;
+  bool petsc = false;
+  for (int i = 0; i < count; ++i) {
+    const std::string word = values[i];
+    line.text += (i > 0 ? " " : "") + word;
+    if (i == 0) continue;
+    if (!petsc && word == "--")
+      petsc = true;
+    else
+      (petsc ? line.petsc_words : line.words).push_back(word);
+  }
+  return line;
+}
+
+struct Arguments {
+  std::string deck, output, backend = "auto", restart;
+  std::vector<std::string> overrides;
+};
+
+int mpi_value(int (*query)(MPI_Comm, int*)) {
+  int value = 0;
+  query(MPI_COMM_WORLD, &value);
+  return value;
+}
+
+std::string version_text() {
+  std::string text = fmt::format("scree {} (commit {})\ncompiler {}\nflags {}\n", version(), commit(), compiler(),
+                                 compile_flags());
+  for (const auto& [library, number] : library_versions()) text += fmt::format("{} {}\n", library, number);
+  return text + fmt::format("PETSc {}\n", petsc_version());
+}
+
+std::string output_directory(const Arguments& arguments, const Model& model) {
+  if (!arguments.output.empty()) return arguments.output;
+  if (!model.output.directory.empty()) return model.output.directory;
+  return "results/" + std::filesystem::path(arguments.deck).stem().string();
+}
+
+ExitCode run(const Arguments& arguments, const CommandLine& line) {
+  Log log(mpi_value(MPI_Comm_rank) != 0);
+  const Deck deck = load_deck(arguments.deck, arguments.overrides);
+  const Model model = build_model(deck, log);
+  if (mpi_value(MPI_Comm_size) > 1)
+    throw InputError(fmt::format("mpirun -n {}: this version runs on one rank; start it with -n 1",
+                                 mpi_value(MPI_Comm_size)));
+  const PetscSession petsc("scree", line.petsc_words);
+  RunOptions options{arguments.backend,    output_directory(arguments, model), arguments.restart, arguments.deck,
+                     deck.resolved_text(), deck.fingerprint(),                 line.text};
+  const ExitCode code = run_simulation(model, options, log);
+  for (const std::string& option : petsc.unused_options()) log.warning("PETSc option " + option + " was not used");
+  return code;
+}
+
+// Everything short of running, the constraints' rank included.
+ExitCode check(const Arguments& arguments) {
+  Log log;
+  const Model model = build_model(load_deck(arguments.deck, arguments.overrides), log);
+  std::string constraints = "";
+  if (!model.bodies.empty()) {
+    const PetscSession petsc("scree", {});
+    const Multibody bodies(model);
+    constraints = "multibody solver     " + bodies.solver_description();
+  }
+  log.info(check_report(model) + constraints);
+  return ExitCode::done;
+}
+
+void declare_deck(CLI::App& command, Arguments& arguments) {
+  command.add_option("deck", arguments.deck, "input deck (TOML)")->required();
+  command.add_option("--set", arguments.overrides, "replace a value of the deck: --set time.step=1e-4")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+ExitCode dispatch(const CommandLine& line) {
+  CLI::App app("Scree: collisions between a constrained multibody system and very many particles", "scree");
+  app.footer(kExitCodes);
+  app.set_version_flag("--version", version_text);
+  app.require_subcommand(1);
+  Arguments arguments;
+
+  CLI::App* run_command = app.add_subcommand("run", "run a deck; results go to HDF5 files");
+  declare_deck(*run_command, arguments);
+  run_command->add_option("--output", arguments.output, "folder for the results (default: results/DECK's name)")
+      ->type_name("DIR");
+  run_command->add_option("--backend", arguments.backend, "auto, cpu or cuda")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")->type_name("FILE");
+  run_command->footer(kExitCodes);
+  CLI::App* check_command = app.add_subcommand("check", "build and check a deck's model; run nothing");
+  declare_deck(*check_command, arguments);
+  CLI::App* keys_command = app.add_subcommand("keys", "print every deck key: the manual");
+
+  try {
+    std::vector<std::string> reversed(line.words.rbegin(), line.words.rend());
+    app.parse(reversed);
+  } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == 0;
+    if (mpi_value(MPI_Comm_rank) == 0) app.exit(error);
+    return asked ? ExitCode::done : ExitCode::bad_input;
+  }
+  if (*run_command) return run(arguments, line);
+  if (*check_command) return check(arguments);
+  if (*keys_command && mpi_value(MPI_Comm_rank) == 0) std::cout << keys_text();
+  return ExitCode::done;
+}
+
+ExitCode guarded(const std::function<ExitCode()>& body) {
+  const auto report = [](const char* what, ExitCode code) {
+    if (mpi_value(MPI_Comm_rank) == 0) std::cerr << "error: " << what << '\n';
+    return code;
+  };
+  try {
+    return body();
+  } catch (const InputError& error) {
+    return report(error.what(), ExitCode::bad_input);
+  } catch (const IoError& error) {
+    return report(error.what(), ExitCode::io_failed);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return report(error.what(), ExitCode::io_failed);
+  } catch (const std::exception& error) {
+    return report(error.what(), ExitCode::simulation_failed);
+  }
+}
+
+}  // namespace
+}  // namespace scree
+
+int main(int count, char** values) {
+  MPI_Init(&count, &values);
+  const scree::CommandLine line = scree::split(count, values);
+  const scree::ExitCode code = scree::guarded([&] { return scree::dispatch(line); });
+  MPI_Finalize();
+  return static_cast<int>(code);
+}

@@ -1,6 +1,8 @@
 // The loop over items. The CUDA room has a function of the same name that launches a kernel.
 #pragma once
 
+#include <limits>
+
 #include "base/types.hpp"
 
 namespace scree {
@@ -11,6 +13,19 @@ struct Serial {};
 template <class Item>
 void for_each(Serial, Index n, const Item& item) {
   for (Index i = 0; i < n; ++i) item(i);
+}
+
+// The same for items that return a number: the largest of them, at least 0. A NaN makes the result a NaN.
+template <class Item>
+Real max_over(Serial, Index n, const Item& item) {
+  Real largest = 0;
+  bool finite = true;
+  for (Index i = 0; i < n; ++i) {
+    const Real value = item(i);
+    largest = value > largest ? value : largest;
+    finite = finite && value == value;
+  }
+  return finite ? largest : std::numeric_limits<Real>::quiet_NaN();
 }
 
 }  // namespace scree

@@ -10,7 +10,9 @@
 
 namespace scree {
 
-// What the step loop packs and unpacks; this room gives no meaning to it. Names may hold '/' for groups.
+// What the step loop packs and unpacks; this room gives no meaning to it. Values return bit for bit. Names
+// may hold
+// '/' for groups.
 struct Checkpoint {
   std::map<std::string, std::vector<Real>> reals;
   std::map<std::string, std::vector<std::int64_t>> integers;

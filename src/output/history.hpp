@@ -6,31 +6,41 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "output/twin_file.hpp"
 
 namespace scree {
 
-// One scalar time series. group/name is the dataset's path in the file, e.g. "energy" / "kinetic".
+// One scalar time series. group/name is the dataset's path in the file, e.g. "energy" / "kinetic"; the group
+// may be empty.
 struct HistoryColumn {
   std::string group, name, unit, description;
 };
 
-// Writes DIRECTORY/history.h5 (one extensible dataset per column, attributes unit and description) and
-// history.csv. Rows are buffered and written by flush(), which leaves the file complete and closed.
+// Writes DIRECTORY/history.h5 (one extensible dataset per column, attributes unit and description) and, on
+// request, history.csv with a header "time [s],energy/kinetic [J],...". Rows are buffered and written by
+// flush(), which leaves the files complete, closed and on disk. history.h5 is readable at every instant, a
+// kill in the middle included; history.csv may then end in half a line.
 class HistoryWriter {
  public:
-  // keep: number of rows to keep when a restarted run continues an existing file (later ones are cut off).
-  HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv, std::int64_t keep);
-  // One value per column.
+  // keep: number of rows to keep when a restarted run continues an existing file (later ones are cut off); 0
+  // starts new files and removes old ones. Throws IoError where the file holds fewer rows or other columns.
+  HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv,
+                std::int64_t keep);
+  // One value per column. Throws SimulationError on another number of values.
   void append(const std::vector<Real>& row);
-  void flush();  // throws IoError
+  void flush();  // throws IoError; the rows then stay in the buffer
   std::int64_t rows() const { return rows_; }
 
  private:
-  std::string directory_;
+  void cut(std::int64_t keep);
+  void write_rows(Hdf5File& file, std::int64_t rows_before) const;
+  void rewrite_csv() const;
+
   std::vector<HistoryColumn> columns_;
-  std::vector<std::vector<Real>> buffer_;  // [row][column]
-  bool csv_ = false;
-  std::int64_t rows_ = 0;  // appended in all, kept ones included
+  TwinFile file_;
+  std::string csv_path_;                   // empty where no CSV is wanted
+  std::vector<std::vector<Real>> buffer_;  // [column][row]
+  std::int64_t rows_ = 0;                  // appended in all, kept ones included
 };
 
 }  // namespace scree

@@ -22,12 +22,14 @@ struct RunRecord {
   int ranks = 1;
   double wall_seconds = 0, cpu_seconds = 0;
   StageTimers timers;
-  std::vector<std::pair<std::string, std::int64_t>> counts;  // steps, iterations, rejections, list builds, ...
-  std::vector<std::pair<std::string, double>> measures;      // simulated time, energy balance, ...
+  std::vector<std::pair<std::string, std::int64_t>>
+      counts;                                            // steps, iterations, rejections, list builds, ...
+  std::vector<std::pair<std::string, double>> measures;  // simulated time, energy balance, ...
   std::vector<std::string> warnings;
 };
 
-// Writes DIRECTORY/run_record.json (beside and renamed): the fields above, versions, commit, host. Throws IoError.
+// Writes DIRECTORY/run_record.json (beside and renamed): the fields above, versions, commit, host. Throws
+// IoError.
 void write_run_record(const std::string& directory, const RunRecord& record);
 
 }  // namespace scree

@@ -1,6 +1,7 @@
 // Snapshots: one VTKHDF time series per kind (particles, bodies) and an .xdmf that refers to the same data.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 
@@ -12,37 +13,42 @@ namespace scree {
 // Views of what one snapshot stores; one entry per particle, ordered by global id.
 struct ParticleSnapshot {
   std::span<const GlobalId> global_id;
-  std::span<const Real> radius;         // [m]
-  std::span<const Vec3> position;       // [m]
-  std::span<const Vec3> velocity;       // [m/s]
-  std::span<const Vec3> force;          // total contact force [N]
-  std::span<const int> contacts;        // number of touching neighbours and walls
+  std::span<const Real> radius;    // [m]
+  std::span<const Vec3> position;  // [m]
+  std::span<const Vec3> velocity;  // [m/s]
+  std::span<const Vec3> force;     // total contact force [N]
+  std::span<const int> contacts;   // number of touching neighbours and walls
 };
 
 // One entry per shape (disc or sphere) of every body.
 struct BodySnapshot {
-  std::span<const int> body;            // index into the model's bodies
-  std::span<const Real> radius;         // [m]
-  std::span<const Vec3> position;       // of the shape's centre [m]
-  std::span<const Vec3> velocity;       // of the shape's centre [m/s]
-  std::span<const Real> angle;          // of the body [rad]
+  std::span<const int> body;               // index into the model's bodies
+  std::span<const Real> radius;            // [m]
+  std::span<const Vec3> position;          // of the shape's centre [m]
+  std::span<const Vec3> velocity;          // of the shape's centre [m/s]
+  std::span<const Real> angle;             // of the body [rad]
   std::span<const Real> angular_velocity;  // of the body [rad/s]
-  std::span<const Vec3> force;          // contact force on the shape [N]
+  std::span<const Vec3> force;             // contact force on the shape [N]
   std::span<const int> contacts;
 };
 
-// Writes DIRECTORY/particles.vtkhdf + particles.xdmf and bodies.vtkhdf + bodies.xdmf. The files are complete and
-// closed after every append: a killed run leaves every snapshot written so far readable.
+class VtkHdfSeries;
+
+// Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
+// bodies.xdmf. The files are complete, closed and on disk after every append, and readable at every instant,
+// a kill in the middle of an append included.
 class SnapshotWriter {
  public:
-  // first_step: number of snapshots to keep when a restarted run continues existing files (later ones are cut
-  // off); 0 starts new files. Throws IoError.
+  // keep: number of snapshots to keep when a restarted run continues existing files (later ones are cut off);
+  // 0 starts new files and removes old ones. Throws IoError where the files hold fewer.
   SnapshotWriter(const std::string& directory, const std::string& title, int keep);
+  ~SnapshotWriter();
+  // Throws IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies);
   int snapshots() const { return snapshots_; }
 
  private:
-  std::string directory_, title_;
+  std::unique_ptr<VtkHdfSeries> particles_, bodies_;
   int snapshots_ = 0;
 };
 

@@ -55,13 +55,24 @@ struct PowerElastic {
   }
 };
 
+// How the jump of the damping force at first touch is treated. In an implicit step it can make neither the open
+// nor the closed contact consistent with the overlap at the step's end; what is consistent is a force between the
+// two at zero overlap. A ramp finds it: damping of an approaching contact grows over this overlap.
+struct DampingRamp {
+  Real overlap = 0;  // [m]; 0: none, the law as it stands
+};
+
 // Force of a closed contact: overlap d > 0 [m], overlap rate d_dot [m/s], positive when approaching.
 template <class Elastic>
-SCREE_HD ContactForce contact_force(const KelvinVoigt& law, Real d, Real d_dot) {
+SCREE_HD ContactForce contact_force(const KelvinVoigt& law, Real d, Real d_dot, DampingRamp ramp = {}) {
+  const bool ramped = d < ramp.overlap && d_dot > 0;
+  const Real damping = ramped ? law.normal_damping * (d / ramp.overlap) : law.normal_damping;
   const Real elastic = Elastic::force(law, d);
-  const Real force = elastic + law.normal_damping * d_dot;
+  const Real force = elastic + damping * d_dot;
   if (force < 0 && !law.tension) return {0, 0, 0, -elastic * d_dot};
-  return {force, Elastic::stiffness(law, d), law.normal_damping, law.normal_damping * d_dot * d_dot};
+  Real stiffness = Elastic::stiffness(law, d);
+  if (ramped) stiffness += law.normal_damping * d_dot / ramp.overlap;
+  return {force, stiffness, damping, damping * d_dot * d_dot};
 }
 
 }  // namespace scree

@@ -3,6 +3,8 @@
 // J. Comput. Nonlinear Dyn. 2 (2007); Jung, Jun, Sohn (2013), Eqs. 1-3, 13.
 #pragma once
 
+#include <cmath>
+
 #include "base/hd.hpp"
 #include "base/vec3.hpp"
 
@@ -23,13 +25,15 @@ SCREE_HD HhtCoefficients hht_coefficients(Real hht_alpha) {
   return {hht_alpha, (1 - 2 * hht_alpha) / 2, beta, beta + hht_alpha / 2 - Real(1) / 6};
 }
 
-// Position at the end of a step of length h from the accelerations at both ends (Eq. 1).
-SCREE_HD Vec3 newmark_position(const HhtCoefficients& c, Real h, Vec3 x, Vec3 v, Vec3 a0, Vec3 a1) {
-  return x + h * v + (h * h / 2) * ((1 - 2 * c.newmark_beta) * a0 + (2 * c.newmark_beta) * a1);
+// Displacement over a step of length h from the accelerations at both ends (Eq. 1). Vector: Vec3 or Real.
+template <class Vector>
+SCREE_HD Vector newmark_displacement(const HhtCoefficients& c, Real h, Vector v, Vector a0, Vector a1) {
+  return h * v + (h * h / 2) * ((1 - 2 * c.newmark_beta) * a0 + (2 * c.newmark_beta) * a1);
 }
 
 // Velocity at the end of a step (Eq. 2).
-SCREE_HD Vec3 newmark_velocity(const HhtCoefficients& c, Real h, Vec3 v, Vec3 a0, Vec3 a1) {
+template <class Vector>
+SCREE_HD Vector newmark_velocity(const HhtCoefficients& c, Real h, Vector v, Vector a0, Vector a1) {
   return v + h * ((1 - c.newmark_gamma) * a0 + c.newmark_gamma * a1);
 }
 
@@ -43,6 +47,27 @@ SCREE_HD Vec3 hht_residual(const HhtCoefficients& c, Real mass, Vec3 a1, Vec3 f1
 // energy. Zero for hht_alpha = 0.
 SCREE_HD Real integrator_loss(Real mass, Vec3 dx, Vec3 v0, Vec3 v1, Vec3 f0, Vec3 f1) {
   return Real(0.5) * (dot(f0 + f1, dx) - mass * dot(v0 + v1, v1 - v0));
+}
+
+// Velocity Verlet (Swope, Andersen, Berens, Wilson, J. Chem. Phys. 76, 1982): displacement over the step.
+SCREE_HD Vec3 verlet_displacement(Real h, Vec3 v, Vec3 a0) { return h * v + (h * h / 2) * a0; }
+
+// Velocity at the end of the step to second order in h before the force there is known.
+SCREE_HD Vec3 verlet_predicted_velocity(Real h, Vec3 v, Vec3 a0) { return v + h * a0; }
+
+// The displacement that led to a predicted velocity.
+SCREE_HD Vec3 verlet_last_displacement(Real h, Vec3 predicted, Vec3 a0) { return h * predicted - (h * h / 2) * a0; }
+
+// Velocity at the end of the step from the predicted one.
+SCREE_HD Vec3 verlet_velocity(Real h, Vec3 predicted, Vec3 a0, Vec3 a1) { return predicted + (h / 2) * (a1 - a0); }
+
+// Verlet's energy error is the difference of a function of state: this function [J].
+SCREE_HD Real verlet_energy_shift(Real h, Real mass, Vec3 a) { return mass * h * h / 8 * dot(a, a); }
+
+// Local error of the position of a step, relative to `length` (Negrut et al. 2007).
+SCREE_HD Real hht_position_error(const HhtCoefficients& c, Real h, Vec3 a0, Vec3 a1, Real length) {
+  const Vec3 da = a1 - a0;
+  return c.error_constant * h * h * std::sqrt(dot(da, da)) / length;
 }
 
 }  // namespace scree

@@ -1,0 +1,45 @@
+#include "coupling/body_link.hpp"
+
+#include <mpi.h>
+
+#include <type_traits>
+
+namespace scree {
+namespace {
+
+bool is_root() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank == 0;
+}
+
+}  // namespace
+
+BodyLink::BodyLink(const Model& model) : motion_(model.bodies.size()), wrench_(model.bodies.size()) {
+  if (!model.bodies.empty() && is_root()) multibody_ = std::make_unique<Multibody>(model);
+}
+
+void BodyLink::broadcast(Backend& backend) {
+  static_assert(std::is_trivially_copyable_v<BodyMotion>);
+  MPI_Bcast(motion_.data(), static_cast<int>(motion_.size() * sizeof(BodyMotion)), MPI_BYTE, 0, MPI_COMM_WORLD);
+  backend.place_bodies(motion_);
+}
+
+void BodyLink::broadcast_motion(Backend& backend) {
+  if (!has_bodies()) return;
+  if (multibody_) motion_ = multibody_->motion();
+  broadcast(backend);
+}
+
+void BodyLink::broadcast_motion(Backend& backend, const MultibodyState& state, Real tau) {
+  if (!has_bodies()) return;
+  if (multibody_) motion_ = multibody_->motion(state, tau);
+  broadcast(backend);
+}
+
+const std::vector<BodyWrench>& BodyLink::reduce_wrench(Backend& backend) {
+  if (has_bodies()) backend.reduce_wrench(wrench_);
+  return wrench_;
+}
+
+}  // namespace scree

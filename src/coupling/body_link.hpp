@@ -1,0 +1,38 @@
+// Rank 0's multibody subsystem as every rank sees it: motion comes down, wrenches go up.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dem/backend.hpp"
+#include "mbs/multibody.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+class BodyLink {
+ public:
+  // The Multibody object is made on rank 0 alone, and only if the model has bodies.
+  explicit BodyLink(const Model& model);
+
+  bool has_bodies() const { return !motion_.empty(); }
+  Multibody* multibody() { return multibody_.get(); }  // null on ranks other than 0
+  const Multibody* multibody() const { return multibody_.get(); }
+
+  // Rank 0 -> all: motion at the current iterate of the open step, handed to the backend's shapes.
+  void broadcast_motion(Backend& backend);
+  // The same for an instant tau [s] after `state`, along rank 0's prediction.
+  void broadcast_motion(Backend& backend, const MultibodyState& state, Real tau);
+  // All -> rank 0: contact wrench and contact stiffness per body.
+  const std::vector<BodyWrench>& reduce_wrench(Backend& backend);
+  const std::vector<BodyMotion>& motion() const { return motion_; }
+
+ private:
+  void broadcast(Backend& backend);
+
+  std::unique_ptr<Multibody> multibody_;
+  std::vector<BodyMotion> motion_;
+  std::vector<BodyWrench> wrench_;
+};
+
+}  // namespace scree

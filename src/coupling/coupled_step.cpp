@@ -1,0 +1,215 @@
+#include "coupling/coupled_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace scree {
+namespace {
+
+// The jump of the damping force at first touch can leave a pair for which neither open nor closed is consistent
+// with the end of the step. From kRampAfter iterations on it is spread over a small overlap, a share of the smallest
+// radius that grows tenfold every kRampAfter iterations.
+constexpr int kRampAfter = 8;
+constexpr Real kRampShare = 1e-5, kMostRampShare = 1e-2;
+
+Real ramp_share(int iteration) {
+  return iteration < kRampAfter ? 0 : std::min(kMostRampShare, kRampShare * std::pow(Real(10), iteration / kRampAfter - 1));
+}
+
+// A list that was too short for the step is built again this many times before the step counts as failed.
+constexpr int kMostListBuilds = 4;
+
+}  // namespace
+
+struct CoupledStep::Iteration {
+  Real correction = 1;  // of the particles
+  bool ramped = false;
+};
+
+CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
+    : model_(model), backend_(backend), link_(link), timers_(timers) {
+  for (const Real radius : model.particles.radius) smallest_radius_ = std::min(smallest_radius_, radius);
+}
+
+void CoupledStep::rebuild_list(Real skin) {
+  backend_.build_list(skin, timers_);
+  ++counts_.list_builds;
+}
+
+void CoupledStep::start(MultibodyState& bodies) {
+  if (link_.multibody()) bodies = link_.multibody()->initial_state({model_.bodies.size(), BodyWrench{}});
+  resume(bodies);
+  backend_.initial_forces();
+  // Only now are the contact wrenches at the start known.
+  if (link_.multibody()) bodies = link_.multibody()->initial_state(link_.reduce_wrench(backend_));
+}
+
+void CoupledStep::resume(const MultibodyState& bodies) {
+  link_.broadcast_motion(backend_, bodies, 0);
+  rebuild_list(model_.contact.skin);
+}
+
+void CoupledStep::open_step(const MultibodyState& bodies, Real t, Real h) {
+  {
+    const auto scope = timers_.time(Stage::predict);
+    if (link_.multibody()) link_.multibody()->predict(bodies, t, h);
+    backend_.begin_step(h);
+  }
+  const auto scope = timers_.time(Stage::broadcast_motion);
+  link_.broadcast_motion(backend_);
+}
+
+void CoupledStep::undo_step(const MultibodyState& bodies) {
+  backend_.rollback();
+  link_.broadcast_motion(backend_, bodies, 0);
+}
+
+// Whether the neighbour list sees every pair that the iterate can bring to touch. If not, the step is undone and
+// the list built with a skin that covers it: the step is then repeated with the same h, so that what the list
+// happens to cover never changes the result.
+bool CoupledStep::covered(const MultibodyState& bodies) {
+  if (backend_.list_displacement() <= 1) return true;
+  const Real moved = backend_.step_displacement();
+  undo_step(bodies);
+  rebuild_list(std::max(model_.contact.skin, 3 * moved));
+  return false;
+}
+
+StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
+  StepOutcome outcome;
+  try {
+    bool done = false;
+    for (int builds = 0; !done; ++builds) {
+      if (builds > kMostListBuilds) throw SimulationError("stage neighbors: no skin covers the step's motion");
+      open_step(bodies, t, h);
+      if (!covered(bodies)) continue;
+      if (!iterate()) throw SimulationError("stage particle_correct: no convergence in " +
+                                            std::to_string(model_.integrator.max_iterations) + " iterations");
+      done = covered(bodies);
+    }
+  } catch (const SimulationError& error) {
+    undo_step(bodies);
+    ++counts_.rejected_newton;
+    return {Verdict::not_converged, 0, error.what()};
+  }
+  const auto scope = timers_.time(Stage::accept);
+  if (model_.time.control == StepControl::adaptive) {
+    outcome.error = backend_.error();
+    if (link_.multibody()) outcome.error = std::max(outcome.error, link_.multibody()->error());
+    outcome.error /= model_.time.tolerance;
+    if (!(outcome.error <= 1)) {
+      undo_step(bodies);
+      ++counts_.rejected_error;
+      outcome.verdict = Verdict::inaccurate;
+      return outcome;
+    }
+  }
+  backend_.accept();
+  if (link_.multibody()) link_.multibody()->accept(bodies);
+  ++counts_.steps;
+  return outcome;
+}
+
+bool CoupledStep::iterate() {
+  Iteration last;
+  for (int iteration = 0; iteration < model_.integrator.max_iterations; ++iteration) {
+    ++counts_.newton_iterations;
+    if (iterate_once(iteration, last)) {
+      counts_.ramped_contacts += last.ramped;
+      return true;
+    }
+  }
+  return false;
+}
+
+// One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
+// correction: block Gauss-Seidel on the coupled Newton system.
+bool CoupledStep::iterate_once(int iteration, Iteration& last) {
+  const Integrator& limits = model_.integrator;
+  ParticleNorms particles;
+  {
+    const auto scope = timers_.time(Stage::contact_force);
+    last.ramped = iteration >= kRampAfter;
+    particles = backend_.contact_force({ramp_share(iteration) * smallest_radius_});
+    if (particles.overshoot) {
+      backend_.shorten_correction();
+      return false;
+    }
+  }
+  bool bodies_done = true;
+  if (link_.has_bodies()) {
+    const std::vector<BodyWrench>* wrench = nullptr;
+    {
+      const auto scope = timers_.time(Stage::reduce_wrench);
+      wrench = &link_.reduce_wrench(backend_);
+    }
+    {
+      const auto scope = timers_.time(Stage::mbs_correct);
+      const IterationNorms bodies = link_.multibody()->correct(*wrench);
+      bodies_done = bodies.residual <= limits.residual_tolerance && bodies.correction <= limits.correction_tolerance;
+    }
+    const auto scope = timers_.time(Stage::broadcast_motion);
+    link_.broadcast_motion(backend_);
+  }
+  const bool particles_done =
+      particles.residual <= limits.residual_tolerance &&
+      std::min(last.correction, particles.correction_bound) <= limits.correction_tolerance;
+  if (bodies_done && particles_done) return true;
+
+  const auto scope = timers_.time(Stage::particle_correct);
+  const ParticleCorrection correction = backend_.particle_correct();
+  last.correction = correction.correction;
+  counts_.linear_iterations += correction.iterations;
+  return false;
+}
+
+void CoupledStep::explicit_step(MultibodyState& bodies, Real t, Real h) {
+  const int substeps = model_.integrator.substeps;
+  const Real substep = h / substeps;
+  {
+    const auto scope = timers_.time(Stage::predict);
+    backend_.verlet_start(substep);
+  }
+  for (int s = 1; s <= substeps; ++s) {
+    {
+      const auto scope = timers_.time(Stage::broadcast_motion);
+      link_.broadcast_motion(backend_, bodies, h * s / substeps);
+    }
+    if (backend_.list_displacement() > 1) rebuild_list(model_.contact.skin);
+    const auto scope = timers_.time(Stage::contact_force);
+    if (s < substeps)
+      backend_.verlet_advance(substep);
+    else
+      backend_.verlet_finish(substep);
+  }
+  if (link_.multibody()) {
+    link_.multibody()->predict(bodies, t, h);
+    solve_bodies();
+    link_.multibody()->accept(bodies);
+  }
+  link_.broadcast_motion(backend_, bodies, 0);
+  ++counts_.steps;
+}
+
+// The bodies' own Newton loop with the contact wrenches at the end of the particles' substeps.
+void CoupledStep::solve_bodies() {
+  std::vector<BodyWrench> wrench;
+  {
+    const auto scope = timers_.time(Stage::reduce_wrench);
+    wrench = link_.reduce_wrench(backend_);
+    for (BodyWrench& w : wrench) w.stiffness = {}, w.damping = {};
+  }
+  const auto scope = timers_.time(Stage::mbs_correct);
+  const Integrator& limits = model_.integrator;
+  for (int iteration = 0; iteration < limits.max_iterations; ++iteration) {
+    ++counts_.newton_iterations;
+    const IterationNorms norms = link_.multibody()->correct(wrench);
+    if (norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance) return;
+  }
+  throw SimulationError("stage mbs_correct: the bodies' motion did not converge in " +
+                        std::to_string(limits.max_iterations) + " iterations");
+}
+
+}  // namespace scree

@@ -1,0 +1,66 @@
+// One step of both sides: the paper's Fig. 5, and its explicit sibling.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/timer.hpp"
+#include "coupling/body_link.hpp"
+#include "dem/backend.hpp"
+#include "mbs/multibody.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+enum class Verdict { accepted, not_converged, inaccurate };
+
+struct StepOutcome {
+  Verdict verdict = Verdict::accepted;
+  Real error = 0;        // local error over the tolerance, both sides
+  std::string trouble;   // why the step did not converge: stage, id
+};
+
+// Counted over the run; part of the state.
+struct StepCounts {
+  std::int64_t steps = 0, newton_iterations = 0, linear_iterations = 0;
+  std::int64_t rejected_error = 0, rejected_newton = 0;
+  std::int64_t ramped_contacts = 0;      // steps that converged with the damping force's jump spread out
+  std::int64_t list_builds = 0;          // neighbour list; not part of the state
+};
+
+class CoupledStep {
+ public:
+  CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers);
+
+  // Forces, accelerations and multipliers at the start.
+  void start(MultibodyState& bodies);
+  // After a restart: the same without recomputing what the state holds.
+  void resume(const MultibodyState& bodies);
+  // Advances both sides from t by h, or leaves both as they were.
+  StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
+  // Advances both sides by h, the particles in substeps.
+  void explicit_step(MultibodyState& bodies, Real t, Real h);
+  // Brings the neighbour list up to date with the particles and bodies as they are.
+  void rebuild_list(Real skin);
+
+  StepCounts& counts() { return counts_; }
+  const StepCounts& counts() const { return counts_; }
+
+ private:
+  struct Iteration;
+  void open_step(const MultibodyState& bodies, Real t, Real h);
+  void undo_step(const MultibodyState& bodies);
+  bool covered(const MultibodyState& bodies);
+  bool iterate();
+  bool iterate_once(int iteration, Iteration& last);
+  void solve_bodies();
+
+  const Model& model_;
+  Backend& backend_;
+  BodyLink& link_;
+  StageTimers& timers_;
+  Real smallest_radius_ = 1;  // of the particles, at most [m]
+  StepCounts counts_;
+};
+
+}  // namespace scree

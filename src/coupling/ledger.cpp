@@ -1,0 +1,45 @@
+#include "coupling/ledger.hpp"
+
+#include <cmath>
+
+namespace scree {
+
+void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out) {
+  carried_out.left += static_cast<std::int64_t>(leavers.size());
+  if (policy != Leaving::remove) return;
+  carried_out.removed += static_cast<std::int64_t>(leavers.size());
+  for (const Leaver& leaver : leavers) {
+    carried_out.energy += leaver.energy;
+    carried_out.contact_loss += leaver.contact_loss;
+    carried_out.integrator_loss += leaver.integrator_loss;
+  }
+}
+
+Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
+                   const MultibodyState& state, Real t) {
+  Ledger out;
+  out.kinetic = particles.kinetic;
+  out.gravitational = particles.gravitational;
+  out.elastic_contacts = particles.contact_elastic;
+  out.dissipated_contacts = particles.contact_loss + carried_out.contact_loss;
+  out.dissipated_integrator = particles.integrator_loss + carried_out.integrator_loss;
+  out.carried_out = carried_out.energy;
+  if (bodies == nullptr) return out;
+  const MultibodyEnergies energies = bodies->energies(state, t);
+  out.kinetic += energies.kinetic;
+  out.gravitational += energies.gravitational;
+  out.elastic_force_elements = energies.elastic;
+  out.dissipated_force_elements = state.dissipated;
+  out.dissipated_integrator += state.integrator_loss;
+  out.driver_work = state.driver_work;
+  return out;
+}
+
+Real energy_exchanged(const Ledger& before, const Ledger& after) {
+  const auto a = before.entries(), b = after.entries();
+  Real sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += std::abs(b[k] - a[k]);
+  return sum / 2;
+}
+
+}  // namespace scree

@@ -1,0 +1,47 @@
+// Energy ledger of both sides: where the mechanical energy is and where it went.
+#pragma once
+
+#include <array>
+
+#include "dem/backend.hpp"
+#include "mbs/multibody.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// Energies [J] at one instant; what is dissipated, worked or carried out counts from t = 0.
+struct Ledger {
+  Real kinetic = 0, gravitational = 0;
+  Real elastic_force_elements = 0, elastic_contacts = 0;
+  Real dissipated_force_elements = 0, dissipated_contacts = 0, dissipated_integrator = 0;
+  Real driver_work = 0;  // of drivers, actuators and applied forces
+  Real carried_out = 0;  // kinetic and gravitational energy of removed particles
+
+  Real mechanical() const { return kinetic + gravitational + elastic_force_elements + elastic_contacts; }
+  Real accounted() const {
+    return mechanical() + dissipated_force_elements + dissipated_contacts + dissipated_integrator + carried_out -
+           driver_work;
+  }
+  std::array<Real, 9> entries() const {
+    return {kinetic, gravitational, elastic_force_elements, elastic_contacts, dissipated_force_elements,
+            dissipated_contacts, dissipated_integrator, driver_work, carried_out};
+  }
+};
+
+// What removed particles took along, booked when they left; part of the state.
+struct CarriedOut {
+  std::int64_t left = 0;     // particles that have left, drifting or removed
+  std::int64_t removed = 0;
+  Real energy = 0, contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
+};
+
+void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out);
+
+// bodies: null on ranks other than 0 and without bodies.
+Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
+                   const MultibodyState& state, Real t);
+
+// Energy that changed its place between two samples: half the sum of all entries' changes [J].
+Real energy_exchanged(const Ledger& before, const Ledger& after);
+
+}  // namespace scree

@@ -1,0 +1,49 @@
+#include "deck/deck.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "deck/overrides.hpp"
+#include "deck/reader.hpp"
+
+namespace scree {
+
+const DeckValue& DeckTable::value(const std::string& key) const {
+  const auto found = values_.find(key);
+  if (found == values_.end()) throw std::logic_error("deck: no value for " + path_ + "." + key);
+  return found->second;
+}
+
+void DeckTable::fail(const std::string& key, const std::string& problem) const {
+  const std::string full = path_.empty() ? key : path_ + "." + key;
+  const auto found = values_.find(key);
+  if (found == values_.end()) throw InputError(fmt::format("{}: {}: {}", place_, full, problem));
+  const DeckValue& given = found->second;
+  if (given.place.starts_with("--set ")) throw InputError(fmt::format("{}: {}", given.place, problem));
+  throw InputError(fmt::format("{}: {} = {}: {}", given.place, full, given.shown, problem));
+}
+
+Deck parse_deck(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  try {
+    toml::table source = toml::parse(text, std::string_view(path));
+    for (const std::string& override_text : overrides) apply_override(source, override_text);
+    return {path, read_deck(source, path)};
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw InputError(fmt::format("{}:{}:{}: not TOML: {}", path, at.line, at.column, error.description()));
+  }
+}
+
+Deck load_deck(const std::string& path, const std::vector<std::string>& overrides) {
+  std::ifstream file(path);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf())) throw IoError("deck " + path + ": cannot be read, or is empty");
+  return parse_deck(text.str(), path, overrides);
+}
+
+}  // namespace scree

@@ -1,0 +1,97 @@
+// The deck: checked values of one input file, and where each of them stands.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "deck/keys.hpp"
+
+namespace scree {
+
+class DeckTable;
+
+// One value with its source. A table is a vector of one; a list of tables a vector of any length.
+struct DeckValue {
+  std::variant<bool, std::int64_t, Real, std::string, Vec3, std::vector<Real>, std::vector<std::int64_t>,
+               std::vector<std::string>, std::vector<Vec3>, std::vector<DeckTable>>
+      data;
+  std::string place;  // "deck.toml:12:8", or "--set key=value"
+  std::string shown;  // the value as TOML text, shortened, for messages
+};
+
+// A table of the deck after its keys were checked against their declarations. The accessors throw
+// std::logic_error where the key is not declared with that type.
+class DeckTable {
+ public:
+  // path: "bodies.net", empty for the whole deck. place: as in DeckValue.
+  DeckTable(const TableKeys& keys, std::string path, std::string place)
+      : keys_(&keys), path_(std::move(path)), place_(std::move(place)) {}
+
+  // Whether the key was given or has a default value.
+  bool has(const std::string& key) const { return values_.count(key) > 0; }
+  bool boolean(const std::string& key) const { return get<bool>(key); }
+  std::int64_t integer(const std::string& key) const { return get<std::int64_t>(key); }
+  Real real(const std::string& key) const { return get<Real>(key); }
+  const std::string& text(const std::string& key) const { return get<std::string>(key); }
+  Vec3 vector(const std::string& key) const { return get<Vec3>(key); }
+  const std::vector<Real>& reals(const std::string& key) const { return get<std::vector<Real>>(key); }
+  const std::vector<std::int64_t>& integers(const std::string& key) const {
+    return get<std::vector<std::int64_t>>(key);
+  }
+  const std::vector<std::string>& texts(const std::string& key) const {
+    return get<std::vector<std::string>>(key);
+  }
+  const std::vector<Vec3>& vectors(const std::string& key) const { return get<std::vector<Vec3>>(key); }
+  // A table or a quantity; a list of tables, empty if the deck has none.
+  const DeckTable& table(const std::string& key) const { return get<std::vector<DeckTable>>(key).front(); }
+  const std::vector<DeckTable>& tables(const std::string& key) const {
+    return get<std::vector<DeckTable>>(key);
+  }
+
+  // "bodies.net"; with the place in front: "deck.toml:12:1: bodies.net".
+  const std::string& path() const { return path_; }
+  const std::string& place() const { return place_; }
+  std::string label() const { return place_ + ": " + path_; }
+  // Throws InputError "place: path.key = value: problem"; without a value "place: path.key: problem".
+  [[noreturn]] void fail(const std::string& key, const std::string& problem) const;
+
+  const TableKeys& keys() const { return *keys_; }
+  const std::map<std::string, DeckValue>& values() const { return values_; }
+  void set(const std::string& key, DeckValue value) { values_.insert_or_assign(key, std::move(value)); }
+
+ private:
+  const DeckValue& value(const std::string& key) const;
+  template <class T>
+  const T& get(const std::string& key) const {
+    return std::get<T>(value(key).data);
+  }
+
+  const TableKeys* keys_;
+  std::string path_, place_;
+  std::map<std::string, DeckValue> values_;
+};
+
+struct Deck {
+  std::string path;
+  DeckTable root;
+
+  // The deck with all defaults filled in and overrides applied, as TOML that loads to the same deck.
+  std::string resolved_text() const;
+  // 16 hexadecimal digits that change with anything a restarted run must share: all values but output.* and
+  // time.end, and the contents of the files that the deck names. Throws IoError on such a file.
+  std::string fingerprint() const;
+};
+
+// Reads and checks a deck. overrides: "key.path=value" in TOML's syntax; what is no TOML value is a text.
+// Elements of a list of tables go by name or number: particles.block.count=5, bodies.0.mass=2. Throws
+// InputError, with file, line, column, key, value and what is allowed; IoError where the file cannot be read.
+Deck load_deck(const std::string& path, const std::vector<std::string>& overrides);
+// The same for text; path: for messages and for the folder of the files that it names.
+Deck parse_deck(const std::string& text, const std::string& path, const std::vector<std::string>& overrides);
+
+}  // namespace scree

@@ -1,0 +1,148 @@
+#include "deck/keys.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace scree {
+
+Key& Key::above(Real limit) {
+  min = limit;
+  min_excluded = true;
+  return *this;
+}
+
+Key& Key::at_least(Real limit) {
+  min = limit;
+  return *this;
+}
+
+Key& Key::within(Real low, Real high) {
+  min = low;
+  max = high;
+  return *this;
+}
+
+Key& Key::entries(std::size_t count) {
+  length = count;
+  return *this;
+}
+
+Key& Key::one_of(std::vector<std::string> texts) {
+  choices = std::move(texts);
+  return *this;
+}
+
+Key& Key::required() {
+  is_required = true;
+  return *this;
+}
+
+Key& Key::otherwise(const std::string& toml_text) {
+  default_value = toml_text;
+  return *this;
+}
+
+Key& Key::left_out(const std::string& meaning) {
+  default_note = meaning;
+  return *this;
+}
+
+Key& Key::only_for(std::vector<std::string> selector_values) {
+  kinds = std::move(selector_values);
+  return *this;
+}
+
+Key& Key::about(const std::string& text) {
+  sentence = text;
+  return *this;
+}
+
+namespace {
+
+Key make_key(const std::string& name, ValueType type, const std::string& unit = "",
+             const TableKeys* table = nullptr) {
+  Key key;
+  key.name = name;
+  key.type = type;
+  key.unit = unit;
+  key.table = table;
+  return key;
+}
+
+std::string range_text(const Key& key) {
+  if (std::isfinite(key.min) && std::isfinite(key.max))
+    return fmt::format(" from {} to {}", key.min, key.max);
+  if (std::isfinite(key.min))
+    return fmt::format("{}{}", key.min_excluded ? " above " : " of at least ", key.min);
+  if (std::isfinite(key.max)) return fmt::format(" of at most {}", key.max);
+  return "";
+}
+
+std::string list_text(const Key& key, const std::string& entries) {
+  const std::string count = key.length > 0 ? fmt::format("{} ", key.length) : "";
+  return fmt::format("a list of {}{}{}", count, entries, range_text(key));
+}
+
+}  // namespace
+
+Key boolean(const std::string& name) { return make_key(name, ValueType::boolean); }
+Key integer(const std::string& name) { return make_key(name, ValueType::integer); }
+Key real(const std::string& name, const std::string& unit) { return make_key(name, ValueType::real, unit); }
+Key text(const std::string& name) { return make_key(name, ValueType::text); }
+Key file(const std::string& name) { return make_key(name, ValueType::file); }
+Key vector(const std::string& name, const std::string& unit) {
+  return make_key(name, ValueType::vector, unit);
+}
+Key reals(const std::string& name, const std::string& unit) { return make_key(name, ValueType::reals, unit); }
+Key integers(const std::string& name) { return make_key(name, ValueType::integers); }
+Key texts(const std::string& name) { return make_key(name, ValueType::texts); }
+Key vectors(const std::string& name, const std::string& unit) {
+  return make_key(name, ValueType::vectors, unit);
+}
+Key quantity(const std::string& name, const std::string& unit, const TableKeys& keys) {
+  return make_key(name, ValueType::quantity, unit, &keys);
+}
+Key table(const std::string& name, const TableKeys& keys) {
+  return make_key(name, ValueType::table, "", &keys);
+}
+Key tables(const std::string& name, const TableKeys& keys) {
+  return make_key(name, ValueType::tables, "", &keys);
+}
+
+std::string allowed_values(const Key& key, int dimension) {
+  const std::string numbers = dimension > 0 ? fmt::format("{} numbers", dimension) : "2 or 3 numbers";
+  const std::string unit = key.unit.empty() ? "" : fmt::format(" [{}]", key.unit);
+  switch (key.type) {
+    case ValueType::boolean:
+      return "true or false";
+    case ValueType::integer:
+      return "an integer" + range_text(key);
+    case ValueType::real:
+      return "a number" + range_text(key) + unit;
+    case ValueType::text:
+      return key.choices.empty() ? "a text" : fmt::format("one of \"{}\"", fmt::join(key.choices, "\", \""));
+    case ValueType::file:
+      return "the path of a file, relative to the deck's folder";
+    case ValueType::vector:
+      return fmt::format("{}{} in brackets", numbers, unit);
+    case ValueType::reals:
+      return list_text(key, "numbers") + unit;
+    case ValueType::integers:
+      return list_text(key, "integers");
+    case ValueType::texts:
+      return list_text(key, "texts");
+    case ValueType::vectors:
+      return list_text(key, fmt::format("points of {}", numbers)) + unit;
+    case ValueType::quantity:
+      return fmt::format("a number{} or a table with a kind", unit);
+    case ValueType::table:
+      return "a table";
+    case ValueType::tables:
+      return "a list of tables";
+  }
+  return "";
+}
+
+}  // namespace scree

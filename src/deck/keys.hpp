@@ -1,0 +1,105 @@
+// Declaration of the deck's keys. The reader and the manual (`scree keys`) both work from these declarations.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+enum class ValueType {
+  boolean,
+  integer,
+  real,
+  text,
+  file,      // path, relative to the deck's folder
+  vector,    // as many numbers as space.dimension
+  reals,     // list of numbers
+  integers,  // list of integers
+  texts,     // list of texts
+  vectors,   // list of vectors
+  quantity,  // a number, or a table with its own keys; the number x stands for { kind = "constant", value = x
+             // }
+  table,     // [name]
+  tables     // [[name]], any number of them
+};
+
+struct TableKeys;
+
+// One key. The functions below start a declaration, the members complete it:
+//   real("step", "s").above(0).required().about("Step size.")
+struct Key {
+  std::string name;
+  ValueType type = ValueType::real;
+  std::string unit;  // empty: dimensionless or not a number
+  Real min = -std::numeric_limits<Real>::infinity(), max = std::numeric_limits<Real>::infinity();
+  bool min_excluded = false;
+  std::size_t length = 0;            // number of entries of a list; 0: any
+  std::vector<std::string> choices;  // of a text; empty: any
+  bool is_required = false;
+  std::string default_value;       // TOML text, "zero" for a vector of zeros; empty: none
+  std::string default_note;        // what holds when the key is left out and default_value is empty
+  std::vector<std::string> kinds;  // values of the table's selector for which the key exists; empty: all
+  std::string sentence;
+  const TableKeys* table = nullptr;  // keys of a table, of tables, or of a quantity
+
+  Key& above(Real limit);     // numbers > limit
+  Key& at_least(Real limit);  // numbers >= limit
+  Key& within(Real low, Real high);
+  Key& entries(std::size_t count);
+  Key& one_of(std::vector<std::string> texts);
+  Key& required();
+  Key& otherwise(const std::string& toml_text);
+  Key& left_out(const std::string& meaning);
+  Key& only_for(std::vector<std::string> selector_values);
+  Key& about(const std::string& text);
+};
+
+struct TableKeys {
+  std::string sentence;
+  std::vector<Key> keys;
+  std::string selector;  // key whose value decides which of the others exist; empty: none
+};
+
+Key boolean(const std::string& name);
+Key integer(const std::string& name);
+Key real(const std::string& name, const std::string& unit);
+Key text(const std::string& name);
+Key file(const std::string& name);
+Key vector(const std::string& name, const std::string& unit);
+Key reals(const std::string& name, const std::string& unit);
+Key integers(const std::string& name);
+Key texts(const std::string& name);
+Key vectors(const std::string& name, const std::string& unit);
+Key quantity(const std::string& name, const std::string& unit, const TableKeys& keys);
+Key table(const std::string& name, const TableKeys& keys);
+Key tables(const std::string& name, const TableKeys& keys);
+
+// The whole deck, and its parts by subject.
+const TableKeys& deck_keys();
+const TableKeys& space_keys();
+const TableKeys& time_keys();
+const TableKeys& integrator_keys();
+const TableKeys& contact_keys();
+const TableKeys& material_keys();
+const TableKeys& wall_keys();
+const TableKeys& output_keys();
+const TableKeys& body_keys();
+const TableKeys& joint_keys();
+const TableKeys& driver_keys();
+const TableKeys& spring_damper_keys();
+const TableKeys& torsional_spring_damper_keys();
+const TableKeys& applied_force_keys();
+const TableKeys& particle_keys();
+const TableKeys& time_function_keys();
+const TableKeys& distribution_keys();
+
+// What values a key takes, for messages and the manual: "a number above 0 [s]". dimension: of the space, or 0
+// where it is not known.
+std::string allowed_values(const Key& key, int dimension);
+// The manual, 110 columns wide.
+std::string keys_text();
+
+}  // namespace scree

@@ -1,0 +1,186 @@
+// Keys of bodies, joints, drivers and force elements.
+#include "deck/keys.hpp"
+
+namespace scree {
+
+namespace {
+
+// Which two bodies a joint or a force element connects. Exactly one of the three is given.
+std::vector<Key> connection_keys() {
+  return {
+      texts("bodies")
+          .entries(2)
+          .left_out("chain or each is given")
+          .about("The two bodies; one of them may be \"ground\"."),
+      text("chain").left_out("none").about(
+          "Name of a row of bodies: one element between each body and the next, named NAME.0, NAME.1, ..."),
+      text("each").left_out("none").about(
+          "Name of a row of bodies: one element between the ground and each body, named NAME.0, ...")};
+}
+
+TableKeys with_connection(const std::string& sentence, std::vector<Key> own,
+                          const std::string& selector = "") {
+  std::vector<Key> keys{text("name").required().about("Name for references, messages and results.")};
+  for (const Key& key : connection_keys()) keys.push_back(key);
+  for (const Key& key : own) keys.push_back(key);
+  return {sentence, keys, selector};
+}
+
+Key local_points() {
+  return vectors("local_points", "m")
+      .entries(2)
+      .left_out("none")
+      .about("The two points, each in its body's frame, in place of global ones.");
+}
+
+}  // namespace
+
+const TableKeys& body_keys() {
+  static const TableKeys shapes{
+      "Circles (2D) or spheres (3D) fixed to the body, for contact and for pictures.",
+      {real("radius", "m").above(0).required().about("Radius."),
+       vector("offset", "m").otherwise("zero").about("Centre in the body's frame."),
+       text("material").left_out("the only material").about("Material.")},
+      ""};
+  static const TableKeys keys{
+      "Rigid bodies that move in the x-y plane, one or a row of equal ones.",
+      {text("name").required().about("Name; the bodies of a row are NAME.0, NAME.1, ..."),
+       integer("count").within(1, 10000000).left_out("a single body").about("Number of bodies of a row."),
+       vector("spacing", "m").otherwise("zero").about("From each body of a row to the next."),
+       real("mass", "kg").above(0).required().about("Mass."),
+       real("inertia", "kg m^2")
+           .above(0)
+           .required()
+           .about("Moment of inertia about the centre of mass, z axis."),
+       vector("position", "m").required().about("Centre of mass at t = 0; of a row, the first body's."),
+       real("angle", "rad").otherwise("0.0").about("Angle of the body's frame at t = 0."),
+       vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0."),
+       real("angular_velocity", "rad/s").otherwise("0.0").about("Angular velocity at t = 0."),
+       tables("shapes", shapes)},
+      ""};
+  return keys;
+}
+
+const TableKeys& joint_keys() {
+  static const std::vector<std::string> pointed = {"revolute", "translational", "fixed"};
+  static const TableKeys keys = with_connection(
+      "Joints between two bodies, or a body and the ground.",
+      {text("type")
+           .one_of({"revolute", "translational", "fixed", "distance"})
+           .required()
+           .about(
+               "Revolute: the two points coincide. Translational: the second body's point stays on the first "
+               "body's axis, no relative rotation. Fixed: no relative motion. Distance: the two points keep "
+               "their distance."),
+       vector("point", "m")
+           .only_for(pointed)
+           .left_out("the body's centre (with the ground), or midway between the two centres")
+           .about("The joint's point at t = 0 in the global frame."),
+       vectors("points", "m")
+           .only_for({"distance"})
+           .entries(2)
+           .left_out("the two bodies' centres")
+           .about("The two end points at t = 0 in the global frame."),
+       local_points(),
+       vector("axis", "")
+           .only_for({"translational"})
+           .left_out("[1, 0] or [1, 0, 0]")
+           .about("Direction of the axis at t = 0 in the global frame, of any length but 0."),
+       real("distance", "m")
+           .only_for({"distance"})
+           .above(0)
+           .left_out("the distance at t = 0")
+           .about("Distance that is kept.")},
+      "type");
+  return keys;
+}
+
+const TableKeys& driver_keys() {
+  static const TableKeys keys{
+      "Prescribed motion of a joint.",
+      {text("name").required().about("Name for messages and results."),
+       text("joint").required().about("The joint that is driven: revolute, translational or distance."),
+       quantity("motion", "rad or m", time_function_keys())
+           .required()
+           .about(
+               "Function of time of the relative angle of a revolute joint (angle of the second body minus "
+               "that of the first), the displacement along the axis of a translational joint, or the length "
+               "of a distance joint.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& spring_damper_keys() {
+  static const TableKeys keys = with_connection(
+      "Springs with dampers and actuators between two points: tension = k (l - free_length) + c l' + "
+      "actuator.",
+      {vectors("points", "m")
+           .entries(2)
+           .left_out("the two bodies' centres")
+           .about("The two end points at t = 0 in the global frame."),
+       local_points(), real("stiffness", "N/m").at_least(0).otherwise("0.0").about("k."),
+       real("damping", "N s/m").at_least(0).otherwise("0.0").about("c."),
+       real("free_length", "m").at_least(0).left_out("the length at t = 0").about("Length without tension."),
+       quantity("actuator", "N", time_function_keys())
+           .otherwise("0.0")
+           .about("Function of time; positive pulls the two points together.")});
+  return keys;
+}
+
+const TableKeys& torsional_spring_damper_keys() {
+  static const TableKeys keys = with_connection(
+      "Torsional springs with dampers: torque on the second body = -(k (theta - free_angle) + c theta').",
+      {real("stiffness", "N m/rad").at_least(0).otherwise("0.0").about("k."),
+       real("damping", "N m s/rad").at_least(0).otherwise("0.0").about("c."),
+       real("free_angle", "rad")
+           .left_out("the angle at t = 0")
+           .about("theta without torque; theta: angle of the second body minus that of the first.")});
+  return keys;
+}
+
+const TableKeys& applied_force_keys() {
+  static const TableKeys keys{
+      "Forces and torques on a body as functions of time.",
+      {text("name").required().about("Name for messages."),
+       text("body").required().about("The body that they act on."),
+       vector("point", "m")
+           .left_out("the body's centre")
+           .about("Point of action at t = 0 in the global frame."),
+       vector("local_point", "m")
+           .left_out("none")
+           .about("Point of action in the body's frame, in place of point."),
+       quantity("fx", "N", time_function_keys()).otherwise("0.0").about("Force along x."),
+       quantity("fy", "N", time_function_keys()).otherwise("0.0").about("Force along y."),
+       quantity("torque", "N m", time_function_keys()).otherwise("0.0").about("Torque about z."),
+       boolean("follows_body")
+           .otherwise("false")
+           .about("Whether the force's direction turns with the body.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& time_function_keys() {
+  static const std::vector<std::string> started = {"constant", "ramp", "sine"};
+  static const TableKeys keys{
+      "A function of time: a number, or a table such as { kind = \"ramp\", rate = 2.0 }.",
+      {text("kind")
+           .one_of({"constant", "ramp", "sine", "table"})
+           .required()
+           .about("Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
+                  "phase). "
+                  "Table: a smooth curve through the given points."),
+       real("value", "unit of the function").only_for(started).otherwise("0.0").about("Constant part."),
+       real("rate", "unit/s").only_for({"ramp"}).required().about("Slope."),
+       real("amplitude", "unit of the function").only_for({"sine"}).required().about("Amplitude."),
+       real("frequency", "Hz").only_for({"sine"}).above(0).required().about("Frequency."),
+       real("phase", "rad").only_for({"sine"}).otherwise("0.0").about("Phase."),
+       reals("times", "s").only_for({"table"}).required().about("Instants, increasing, two at least."),
+       reals("values", "unit of the function")
+           .only_for({"table"})
+           .required()
+           .about("Value at each instant.")},
+      "kind"};
+  return keys;
+}
+
+}  // namespace scree

@@ -1,0 +1,121 @@
+// Keys of particles.
+#include "deck/keys.hpp"
+
+namespace scree {
+
+const TableKeys& particle_keys() {
+  static const std::vector<std::string> spaced = {"row", "lattice"};
+  static const TableKeys keys{
+      "Groups of particles; their numbers count on from group to group in the deck's order.",
+      {text("name").left_out("none").about("Name for messages and for --set particles.NAME.key=value."),
+       text("kind")
+           .one_of({"list", "row", "lattice", "random", "file"})
+           .required()
+           .about("List: given positions. Row: equally spaced. Lattice: layer by layer, row by row. Random: "
+                  "random places without overlap in a box. File: read from a file."),
+       vectors("positions", "m").only_for({"list"}).required().about("Centres."),
+       vector("origin", "m")
+           .only_for(spaced)
+           .left_out("center is given")
+           .about("Centre of the first particle."),
+       vector("center", "m")
+           .only_for({"lattice"})
+           .left_out("origin is given")
+           .about("Centre of the whole lattice, also if count leaves some of its places empty."),
+       vector("spacing", "m")
+           .only_for(spaced)
+           .required()
+           .about("Row: from each particle to the next. Lattice: distance along each axis."),
+       integers("size")
+           .only_for({"lattice"})
+           .at_least(1)
+           .required()
+           .about("Places along each axis; filled along x first, then y, then z."),
+       integer("count")
+           .only_for({"row", "lattice", "random"})
+           .within(1, 1000000000)
+           .left_out("lattice: all its places")
+           .about("Number of particles; a lattice fills the first count places."),
+       vector("min", "m")
+           .only_for({"random"})
+           .required()
+           .about("Lower corner of the box that holds the discs."),
+       vector("max", "m").only_for({"random"}).required().about("Upper corner of the box."),
+       real("gap", "m")
+           .only_for({"random"})
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Smallest distance between the surfaces of two particles."),
+       integer("tries")
+           .only_for({"random"})
+           .within(1, 1000000000)
+           .otherwise("10000")
+           .about("Random places that are tried for one particle before the deck is refused."),
+       file("file").only_for({"file"}).required().about(
+           "CSV with a header line, or HDF5 (.h5, .hdf5) with one dataset per column: x, y, z (3D) [m]; "
+           "optional vx, vy, vz [m/s], radius [m], mass [kg]."),
+       quantity("radius", "m", distribution_keys())
+           .left_out("the file has a column radius")
+           .about("Radius, or a distribution to draw it from."),
+       quantity("mass", "kg", distribution_keys())
+           .left_out("the file's column mass, or from density")
+           .about("Mass, or a distribution."),
+       quantity("density", "kg/m^3", distribution_keys())
+           .left_out("the material's density")
+           .about("Density, or a distribution; gives the mass of a sphere (3D), or of a disc of the given "
+                  "thickness (2D)."),
+       real("thickness", "m").above(0).otherwise("1.0").about("2D: thickness of the discs, for density."),
+       text("material").left_out("the only material").about("Material."),
+       vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0, added to a file's."),
+       real("random_velocity", "m/s")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Each component gets a random part, uniform between minus and plus this."),
+       integer("seed").at_least(0).otherwise("1").about(
+           "Of the group's random numbers; the same seed gives the same particles.")},
+      "kind"};
+  return keys;
+}
+
+const TableKeys& distribution_keys() {
+  static const TableKeys keys{
+      "A positive quantity per particle: a number, or a table such as { kind = \"uniform\", min = 0.01, max "
+      "= 0.02 }.",
+      {text("kind")
+           .one_of({"constant", "uniform", "normal", "table"})
+           .required()
+           .about(
+               "Constant: value. Uniform: between min and max. Normal: mean and sd, drawn again outside min "
+               "and max. Table: one of values, with probabilities in proportion to weights."),
+       real("value", "unit of the quantity").only_for({"constant"}).above(0).required().about("Value."),
+       real("mean", "unit of the quantity")
+           .only_for({"normal"})
+           .above(0)
+           .required()
+           .about("Mean before the cut."),
+       real("sd", "unit of the quantity")
+           .only_for({"normal"})
+           .above(0)
+           .required()
+           .about("Standard deviation before the cut."),
+       real("min", "unit of the quantity")
+           .only_for({"uniform", "normal"})
+           .above(0)
+           .required()
+           .about("Smallest."),
+       real("max", "unit of the quantity")
+           .only_for({"uniform", "normal"})
+           .above(0)
+           .required()
+           .about("Largest."),
+       reals("values", "unit of the quantity")
+           .only_for({"table"})
+           .above(0)
+           .required()
+           .about("Possible values."),
+       reals("weights", "").only_for({"table"}).above(0).left_out("equal").about("Weight of each value.")},
+      "kind"};
+  return keys;
+}
+
+}  // namespace scree

@@ -1,0 +1,181 @@
+// Keys of everything but the bodies and the particles.
+#include "deck/keys.hpp"
+
+namespace scree {
+
+namespace {
+
+Key boundary(const std::string& name, const std::string& side) {
+  return text(name)
+      .one_of({"open", "wall", "periodic"})
+      .otherwise("\"open\"")
+      .about("Boundary on the side of " + side + "; \"periodic\" must stand on both sides of an axis.");
+}
+
+}  // namespace
+
+const TableKeys& deck_keys() {
+  static const TableKeys keys{
+      "",
+      {text("title").otherwise("\"\"").about("Name of the case, written into the results."),
+       table("space", space_keys()).required(),
+       vector("gravity", "m/s^2").otherwise("zero").about("Acceleration of gravity."),
+       table("time", time_keys()).required(), table("integrator", integrator_keys()),
+       table("contact", contact_keys()), table("output", output_keys()), tables("materials", material_keys()),
+       tables("walls", wall_keys()), tables("bodies", body_keys()), tables("joints", joint_keys()),
+       tables("drivers", driver_keys()), tables("spring_dampers", spring_damper_keys()),
+       tables("torsional_spring_dampers", torsional_spring_damper_keys()),
+       tables("applied_forces", applied_force_keys()), tables("particles", particle_keys())},
+      ""};
+  return keys;
+}
+
+const TableKeys& space_keys() {
+  static const TableKeys keys{
+      "The box that is simulated.",
+      {integer("dimension").within(2, 3).required().about("2: discs in the x-y plane; 3: spheres."),
+       vector("min", "m").required().about("Lower corner."),
+       vector("max", "m").required().about("Upper corner."), boundary("x_min", "smallest x"),
+       boundary("x_max", "largest x"), boundary("y_min", "smallest y"), boundary("y_max", "largest y"),
+       boundary("z_min", "smallest z (3D)"), boundary("z_max", "largest z (3D)"),
+       text("wall_material").left_out("the only material").about("Material of the sides that are walls."),
+       text("leaving")
+           .one_of({"error", "remove", "drift"})
+           .otherwise("\"error\"")
+           .about("What happens to a particle whose centre leaves through an open side: the run fails; it is "
+                  "removed and counted; it is counted and drifts on under gravity alone.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& time_keys() {
+  static const TableKeys keys{
+      "Simulated time and step control.",
+      {real("end", "s").above(0).required().about("The simulation runs from 0 to this time."),
+       real("step", "s").above(0).required().about("Step size; the first one if control is \"adaptive\"."),
+       text("control")
+           .one_of({"fixed", "adaptive"})
+           .otherwise("\"fixed\"")
+           .about("Fixed step, or steps that keep the estimated local error within tolerance."),
+       real("min_step", "s")
+           .above(0)
+           .left_out("step / 1e6")
+           .about("The run fails where a step would have to be smaller, also when a step is retried."),
+       real("max_step", "s")
+           .above(0)
+           .left_out("step if fixed; end / 100 but at least step if adaptive")
+           .about("Largest step."),
+       real("tolerance", "")
+           .above(0)
+           .otherwise("2e-8")
+           .about("Adaptive: allowed local error of a position per step, over the particle's radius.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& integrator_keys() {
+  static const TableKeys keys{
+      "Time integration and its Newton-like iteration.",
+      {real("hht_alpha", "")
+           .within(-1.0 / 3, 0)
+           .otherwise("0.0")
+           .about("HHT's numerical damping of bodies and particles; 0 has none."),
+       text("particles")
+           .one_of({"hht", "velocity-verlet"})
+           .otherwise("\"hht\"")
+           .about("Integrator of the particles: implicit, or explicit. Bodies always use HHT."),
+       integer("substeps")
+           .within(1, 1000000)
+           .otherwise("1")
+           .about("Velocity-verlet steps of the particles per step of the bodies."),
+       real("residual_tolerance", "").above(0).otherwise("1e-8").about("Of the iteration: scaled residual."),
+       real("correction_tolerance", "")
+           .above(0)
+           .otherwise("1e-8")
+           .about("Of the iteration: correction of a position over the particle's radius."),
+       integer("max_iterations").within(1, 10000).otherwise("50").about("Of a step, before it is retried.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& contact_keys() {
+  static const TableKeys pairs{
+      "The contact law F = K d^n + C d' of a pair of materials; d: overlap.",
+      {texts("materials").entries(2).left_out("the only material").about("The two materials, in any order."),
+       real("stiffness", "N/m^n")
+           .at_least(0)
+           .required()
+           .about("K; 0 with damping 0: the two do not interact."),
+       real("damping", "N s/m").at_least(0).otherwise("0.0").about("C."),
+       real("exponent", "").within(0.5, 4).otherwise("1.0").about("n; 1.5 for Hertz."),
+       boolean("tension").otherwise("false").about(
+           "Whether the force may pull just before separation; false cuts it at zero.")},
+      ""};
+  static const TableKeys keys{
+      "Contact laws and the pair search.",
+      {real("skin", "m")
+           .above(0)
+           .left_out("0.2 x the smallest radius")
+           .about("The neighbour list reaches this far past touching."),
+       boolean("connected_bodies_touch")
+           .otherwise("false")
+           .about("Whether two bodies that a joint or force element connects collide with each other."),
+       real("max_start_overlap", "")
+           .within(0, 1)
+           .otherwise("0.05")
+           .about("Overlap at t = 0 over the smaller radius: an error past this limit, a warning below it."),
+       tables("pairs", pairs)},
+      ""};
+  return keys;
+}
+
+const TableKeys& material_keys() {
+  static const TableKeys keys{
+      "Materials. Without any, there is one that is named \"default\".",
+      {text("name").required().about("Name that bodies, particles, walls and contact pairs refer to."),
+       real("density", "kg/m^3")
+           .above(0)
+           .left_out("none")
+           .about("For particles that give neither mass nor density.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& wall_keys() {
+  static const TableKeys keys{
+      "Plane walls inside the space, solid behind the plane.",
+      {text("name").required().about("Name for messages."),
+       vector("point", "m").required().about("Any point of the plane."),
+       vector("normal", "").required().about("Direction into the free side, of any length but 0."),
+       text("material").left_out("the only material").about("Material of the wall.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& output_keys() {
+  static const TableKeys keys{
+      "What is written, and how often.",
+      {text("directory").otherwise("\"results\"").about("Folder of the results; --output goes before it."),
+       real("snapshot_interval", "s")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Simulated time between snapshots; 0: only the first and the last state."),
+       real("history_interval", "s")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Simulated time between history samples; 0: every step."),
+       real("checkpoint_interval", "s")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Simulated time between checkpoints; 0: only on failure and on a signal."),
+       boolean("history_csv").otherwise("false").about("Whether the history is also written as CSV."),
+       texts("history_bodies").otherwise("[]").about("Bodies, or rows of bodies, whose motion is recorded."),
+       integers("history_particles")
+           .at_least(0)
+           .otherwise("[]")
+           .about("Particles whose motion is recorded: numbers in the deck's order, from 0.")},
+      ""};
+  return keys;
+}
+
+}  // namespace scree

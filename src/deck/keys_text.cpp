@@ -1,0 +1,81 @@
+// The manual of the deck's keys, printed by `scree keys`.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sstream>
+
+#include "deck/keys.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr std::size_t kWidth = 110;
+
+// Appends the words of `text` in lines of kWidth, each line indented.
+void wrap(std::string& out, const std::string& text, std::size_t indent) {
+  std::istringstream words(text);
+  std::string line(indent, ' '), word;
+  while (words >> word) {
+    if (line.size() > indent && line.size() + 1 + word.size() > kWidth) {
+      out += line + "\n";
+      line.assign(indent, ' ');
+    }
+    line += (line.size() > indent ? " " : "") + word;
+  }
+  out += line + "\n";
+}
+
+std::string default_text(const Key& key) {
+  if (key.is_required) return "required";
+  if (!key.default_value.empty()) return "default " + key.default_value;
+  return "left out: " + key.default_note;
+}
+
+void describe_key(std::string& out, const Key& key, const std::string& selector) {
+  out += "  " + key.name + "\n";
+  std::string facts = allowed_values(key, 0) + "; " + default_text(key);
+  if (!key.kinds.empty())
+    facts += fmt::format("; only with {} = \"{}\"", selector, fmt::join(key.kinds, "\", \""));
+  wrap(out, facts, 6);
+  wrap(out, key.sentence, 6);
+}
+
+void describe_table(std::string& out, const TableKeys& table, const std::string& header) {
+  out += header + "\n";
+  if (!table.sentence.empty()) wrap(out, table.sentence, 2);
+  for (const Key& key : table.keys) {
+    if (key.type != ValueType::table && key.type != ValueType::tables) describe_key(out, key, table.selector);
+  }
+  out += "\n";
+}
+
+void describe_below(std::string& out, const TableKeys& table, const std::string& path) {
+  for (const Key& key : table.keys) {
+    const bool single = key.type == ValueType::table;
+    if (!single && key.type != ValueType::tables) continue;
+    const std::string name = path.empty() ? key.name : path + "." + key.name;
+    const std::string header = single ? "[" + name + "]" : "[[" + name + "]]";
+    describe_table(out, *key.table, header + (key.is_required ? "  (required)" : ""));
+    describe_below(out, *key.table, name);
+  }
+}
+
+}  // namespace
+
+std::string keys_text() {
+  std::string out;
+  wrap(out,
+       "Keys of a deck, by table. [name] is a table; [[name]] is an element of a list and may stand any "
+       "number of "
+       "times. Each key: what it takes [unit]; default; meaning. SI units; angles in radians.",
+       0);
+  out += "\n";
+  describe_table(out, deck_keys(), "(top of the deck)");
+  describe_below(out, deck_keys(), "");
+  describe_table(out, time_function_keys(), "time function  (motion, actuator, fx, fy, torque)");
+  describe_table(out, distribution_keys(), "distribution  (radius, mass, density)");
+  return out;
+}
+
+}  // namespace scree

@@ -1,0 +1,81 @@
+#include "deck/overrides.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <vector>
+
+#include "base/error.hpp"
+#include "deck/suggestion.hpp"
+
+namespace scree {
+
+namespace {
+
+std::vector<std::string> split_path(const std::string& path) {
+  std::vector<std::string> parts;
+  std::size_t start = 0;
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', start)) {
+    parts.push_back(path.substr(start, dot - start));
+    start = dot + 1;
+  }
+  parts.push_back(path.substr(start));
+  return parts;
+}
+
+// A table { value = ... } whose nodes name the override as their source.
+toml::table parse_value(const std::string& text, const std::string& place) {
+  try {
+    return toml::parse("value = " + text, std::string_view(place));
+  } catch (const toml::parse_error& error) {
+    const bool bare = !text.empty() &&
+                      std::string_view("\"'[{").find(text.front()) == std::string_view::npos &&
+                      text.find_first_of("'\n") == std::string::npos;
+    if (!bare) throw InputError(fmt::format("{}: not a TOML value: {}", place, error.description()));
+  }
+  return toml::parse(fmt::format("value = '{}'", text), std::string_view(place));
+}
+
+// Element of a list of tables by its key `name`, or by its number.
+toml::table& element(toml::array& list, const std::string& id, const std::string& place) {
+  std::vector<std::string> names;
+  for (toml::node& node : list) {
+    toml::table* table = node.as_table();
+    const auto name = table ? (*table)["name"].value<std::string>() : std::nullopt;
+    if (name == id) return *table;
+    if (name) names.push_back(*name);
+  }
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), number);
+  const bool numeric = error == std::errc() && end == id.data() + id.size();
+  if (numeric && number < list.size() && list[number].is_table()) return *list[number].as_table();
+  if (numeric) throw InputError(fmt::format("{}: there are {} elements, counted from 0", place, list.size()));
+  throw InputError(fmt::format("{}: no element is named \"{}\"{}", place, id, suggestion(id, names)));
+}
+
+}  // namespace
+
+void apply_override(toml::table& deck, const std::string& override_text) {
+  const std::string place = "--set " + override_text;
+  const std::size_t equals = override_text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError(place + ": must have the form key.path=value");
+  const std::vector<std::string> path = split_path(override_text.substr(0, equals));
+  toml::table parsed = parse_value(override_text.substr(equals + 1), place);
+  if (parsed.size() != 1) throw InputError(place + ": must be one value");
+  toml::table* table = &deck;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    if (!table->contains(path[i])) table->insert(path[i], toml::table{});
+    toml::node* node = table->get(path[i]);
+    if (toml::array* list = node->as_array(); list && i + 2 < path.size()) {
+      table = &element(*list, path[++i], place);
+    } else if (node->is_table()) {
+      table = node->as_table();
+    } else {
+      throw InputError(fmt::format("{}: {} has no keys of its own", place, path[i]));
+    }
+  }
+  table->insert_or_assign(path.back(), std::move(*parsed.get("value")));
+}
+
+}  // namespace scree

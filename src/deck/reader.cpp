@@ -1,0 +1,303 @@
+#include "deck/reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <set>
+
+#include "base/error.hpp"
+#include "deck/suggestion.hpp"
+
+namespace scree {
+
+namespace {
+
+class Reader {
+ public:
+  Reader(std::string deck_path, int dimension) : deck_path_(std::move(deck_path)), dimension_(dimension) {}
+
+  DeckTable read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
+                       const std::string& place) const;
+
+ private:
+  // What a value is being read for.
+  struct Context {
+    const Key& key;
+    std::string path;   // of the key
+    std::string place;  // of the value
+  };
+
+  void check_key(const toml::key& key, const toml::node& node, const TableKeys& keys,
+                 const DeckTable& table) const;
+  void read_key(const toml::table& source, const Key& key, DeckTable& table, const std::string& place) const;
+  void fill_default(const Key& key, DeckTable& table, const std::string& place) const;
+  DeckValue read_value(const toml::node& node, const Context& context) const;
+  std::vector<DeckTable> read_tables(const toml::node& node, const Context& context) const;
+  DeckTable read_quantity(const toml::node& node, const Context& context) const;
+  Real number(const toml::node& node, const toml::node& whole, const Context& context) const;
+  std::int64_t integer(const toml::node& node, const toml::node& whole, const Context& context) const;
+  std::string text(const toml::node& node, const Context& context) const;
+  Vec3 vector(const toml::node& node, const toml::node& whole, const Context& context) const;
+  const toml::array& list(const toml::node& node, const Context& context) const;
+  template <class T, class ReadEntry>
+  std::vector<T> entries(const toml::node& node, const Context& context, const ReadEntry& read_entry) const;
+  [[noreturn]] void fail(const toml::node& node, const Context& context,
+                         const std::string& detail = "") const;
+
+  std::string deck_path_;
+  int dimension_;
+};
+
+std::string join_path(const std::string& table, const std::string& key) {
+  return table.empty() ? key : table + "." + key;
+}
+
+DeckTable Reader::read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
+                             const std::string& place) const {
+  DeckTable table(keys, path, place);
+  for (const Key& key : keys.keys) {
+    if (key.name == keys.selector) read_key(source, key, table, place);
+  }
+  for (const auto& [name, node] : source) check_key(name, node, keys, table);
+  for (const Key& key : keys.keys) {
+    if (key.name != keys.selector) read_key(source, key, table, place);
+  }
+  return table;
+}
+
+// Refuses keys that are not declared, or not for this kind of table.
+void Reader::check_key(const toml::key& name, const toml::node& node, const TableKeys& keys,
+                       const DeckTable& table) const {
+  const std::string key_name(name.str());
+  const std::string path = join_path(table.path(), key_name);
+  const std::string at = place_of(name.source().path ? name.source() : node.source(), table.place());
+  const auto found =
+      std::find_if(keys.keys.begin(), keys.keys.end(), [&](const Key& k) { return k.name == key_name; });
+  if (found == keys.keys.end()) {
+    std::vector<std::string> names;
+    for (const Key& key : keys.keys) names.push_back(key.name);
+    throw InputError(
+        fmt::format("{}: {} = {}: unknown key{}", at, path, shown(node), suggestion(key_name, names)));
+  }
+  if (found->kinds.empty()) return;
+  const std::string& kind = table.text(keys.selector);
+  if (std::find(found->kinds.begin(), found->kinds.end(), kind) != found->kinds.end()) return;
+  throw InputError(fmt::format("{}: {} = {}: not used with {} = \"{}\", only with \"{}\"", at, path,
+                               shown(node), keys.selector, kind, fmt::join(found->kinds, "\", \"")));
+}
+
+void Reader::read_key(const toml::table& source, const Key& key, DeckTable& table,
+                      const std::string& place) const {
+  if (!key.kinds.empty()) {
+    const std::string& kind = table.text(table.keys().selector);
+    if (std::find(key.kinds.begin(), key.kinds.end(), kind) == key.kinds.end()) return;
+  }
+  if (const toml::node* node = source.get(key.name)) {
+    const Context context{key, join_path(table.path(), key.name), place_of(node->source(), place)};
+    table.set(key.name, read_value(*node, context));
+  } else if (key.is_required) {
+    throw InputError(fmt::format("{}: {}: missing; it must be {}", place, join_path(table.path(), key.name),
+                                 allowed_values(key, dimension_)));
+  } else {
+    fill_default(key, table, place);
+  }
+}
+
+void Reader::fill_default(const Key& key, DeckTable& table, const std::string& place) const {
+  const Context context{key, join_path(table.path(), key.name), place};
+  if (key.type == ValueType::tables) {
+    table.set(key.name, {std::vector<DeckTable>{}, place, "[]"});
+  } else if (key.type == ValueType::table) {
+    table.set(key.name, {std::vector{read_table({}, *key.table, context.path, place)}, place, "{}"});
+  } else if (key.default_value == "zero") {
+    table.set(key.name, {Vec3{}, place, "zero"});
+  } else if (!key.default_value.empty()) {
+    const toml::table parsed = toml::parse("value = " + key.default_value, std::string_view("default"));
+    table.set(key.name, read_value(*parsed.get("value"), context));
+  }
+}
+
+DeckValue Reader::read_value(const toml::node& node, const Context& context) const {
+  DeckValue value{false, context.place, shown(node)};
+  switch (context.key.type) {
+    case ValueType::boolean:
+      if (!node.is_boolean()) fail(node, context);
+      value.data = node.as_boolean()->get();
+      break;
+    case ValueType::integer:
+      value.data = integer(node, node, context);
+      break;
+    case ValueType::real:
+      value.data = number(node, node, context);
+      break;
+    case ValueType::text:
+    case ValueType::file:
+      value.data = text(node, context);
+      break;
+    case ValueType::vector:
+      value.data = vector(node, node, context);
+      break;
+    case ValueType::reals:
+      value.data =
+          entries<Real>(node, context, [&](const toml::node& n) { return number(n, node, context); });
+      break;
+    case ValueType::integers:
+      value.data = entries<std::int64_t>(node, context,
+                                         [&](const toml::node& n) { return integer(n, node, context); });
+      break;
+    case ValueType::texts:
+      value.data = entries<std::string>(node, context, [&](const toml::node& n) {
+        if (!n.is_string()) fail(node, context);
+        return n.as_string()->get();
+      });
+      break;
+    case ValueType::vectors:
+      value.data =
+          entries<Vec3>(node, context, [&](const toml::node& n) { return vector(n, node, context); });
+      break;
+    case ValueType::quantity:
+      value.data = std::vector{read_quantity(node, context)};
+      break;
+    case ValueType::table:
+      if (!node.is_table()) fail(node, context);
+      value.data = std::vector{read_table(*node.as_table(), *context.key.table, context.path, context.place)};
+      break;
+    case ValueType::tables:
+      value.data = read_tables(node, context);
+      break;
+  }
+  return value;
+}
+
+std::vector<DeckTable> Reader::read_tables(const toml::node& node, const Context& context) const {
+  std::vector<DeckTable> tables;
+  std::set<std::string> names;
+  for (const toml::node& entry : list(node, context)) {
+    if (!entry.is_table()) fail(node, context);
+    const toml::node* name = entry.as_table()->get("name");
+    const bool named = name && name->is_string();
+    const std::string id = named ? name->as_string()->get() : std::to_string(tables.size());
+    const std::string place = place_of(entry.source(), context.place);
+    tables.push_back(read_table(*entry.as_table(), *context.key.table, join_path(context.path, id), place));
+    if (named && !names.insert(id).second)
+      tables.back().fail("name", "repeated; every name must be another one");
+  }
+  return tables;
+}
+
+DeckTable Reader::read_quantity(const toml::node& node, const Context& context) const {
+  if (node.is_table()) return read_table(*node.as_table(), *context.key.table, context.path, context.place);
+  number(node, node, context);
+  toml::table constant;
+  constant.insert("kind", "constant");
+  constant.insert("value", node);
+  return read_table(constant, *context.key.table, context.path, context.place);
+}
+
+Real Reader::number(const toml::node& node, const toml::node& whole, const Context& context) const {
+  const std::optional<Real> value = node.is_number() ? node.value<Real>() : std::nullopt;
+  const Key& key = context.key;
+  if (!value) fail(whole, context);
+  const bool above_min = key.min_excluded ? *value > key.min : *value >= key.min;
+  if (!std::isfinite(*value)) fail(whole, context, ", finite");
+  if (!above_min || *value > key.max) fail(whole, context);
+  return *value;
+}
+
+std::int64_t Reader::integer(const toml::node& node, const toml::node& whole, const Context& context) const {
+  if (!node.is_integer()) fail(whole, context);
+  number(node, whole, context);
+  return node.as_integer()->get();
+}
+
+std::string Reader::text(const toml::node& node, const Context& context) const {
+  if (!node.is_string()) fail(node, context);
+  const std::string value = node.as_string()->get();
+  const std::vector<std::string>& choices = context.key.choices;
+  if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end())
+    fail(node, context);
+  if (context.key.type != ValueType::file) return value;
+  const std::filesystem::path folder = std::filesystem::absolute(deck_path_).parent_path();
+  const std::string path = (folder / value).lexically_normal().string();
+  if (!std::ifstream(path)) fail(node, context, fmt::format("; {} cannot be read", path));
+  return path;
+}
+
+// A vector's z is 0 in 2D.
+Vec3 Reader::vector(const toml::node& node, const toml::node& whole, const Context& context) const {
+  const toml::array* numbers = node.as_array();
+  if (!numbers || numbers->size() != static_cast<std::size_t>(dimension_)) fail(whole, context);
+  const auto component = [&](std::size_t i) { return number(*numbers->get(i), whole, context); };
+  return {component(0), component(1), dimension_ == 3 ? component(2) : 0};
+}
+
+const toml::array& Reader::list(const toml::node& node, const Context& context) const {
+  if (!node.is_array()) fail(node, context);
+  const toml::array& array = *node.as_array();
+  if (context.key.length > 0 && array.size() != context.key.length) fail(node, context);
+  return array;
+}
+
+template <class T, class ReadEntry>
+std::vector<T> Reader::entries(const toml::node& node, const Context& context,
+                               const ReadEntry& read_entry) const {
+  std::vector<T> values;
+  for (const toml::node& entry : list(node, context)) values.push_back(read_entry(entry));
+  return values;
+}
+
+void Reader::fail(const toml::node& node, const Context& context, const std::string& detail) const {
+  const std::string allowed = allowed_values(context.key, dimension_);
+  if (context.place.starts_with("--set ")) {
+    throw InputError(fmt::format("{}: {} must be {}{}", context.place, context.path, allowed, detail));
+  }
+  throw InputError(
+      fmt::format("{}: {} = {}: must be {}{}", context.place, context.path, shown(node), allowed, detail));
+}
+
+}  // namespace
+
+DeckTable read_deck(const toml::table& source, const std::string& path) {
+  const auto dimension = source["space"]["dimension"].value<std::int64_t>();
+  const int known = dimension && *dimension == 2 ? 2 : 3;
+  return Reader(path, known).read_table(source, deck_keys(), "", path);
+}
+
+std::string place_of(const toml::source_region& source, const std::string& otherwise) {
+  if (!source.path) return otherwise;
+  if (source.path->starts_with("--set ")) return *source.path;
+  return fmt::format("{}:{}:{}", *source.path, source.begin.line, source.begin.column);
+}
+
+std::string shown(const toml::node& node) {
+  constexpr std::size_t kLongest = 70;
+  std::string text;
+  if (const auto* array = node.as_array()) {
+    for (const toml::node& entry : *array) {
+      if (text.size() > kLongest) break;
+      text += (text.empty() ? "" : ", ") + shown(entry);
+    }
+    text = "[" + text + "]";
+  } else if (const auto* table = node.as_table()) {
+    for (const auto& [key, value] : *table) {
+      if (text.size() > kLongest) break;
+      text += (text.empty() ? " " : ", ") + std::string(key.str()) + " = " + shown(value);
+    }
+    text = "{" + text + " }";
+  } else if (const auto* number = node.as_floating_point()) {
+    text = fmt::format("{}", number->get());
+  } else if (const auto* string = node.as_string()) {
+    text = "\"" + string->get() + "\"";
+  } else {
+    text = fmt::format("{}", node.is_boolean() ? (node.as_boolean()->get() ? "true" : "false")
+                                               : std::to_string(node.value_or(std::int64_t{0})));
+  }
+  return text.size() > kLongest + 3 ? text.substr(0, kLongest) + "..." : text;
+}
+
+}  // namespace scree

@@ -1,0 +1,13 @@
+// "Did you mean": the known name nearest to a misspelt one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace scree {
+
+// "; did you mean \"step\"?" where a name is within a few letters, otherwise "; known: a, b, c" ("" without
+// names).
+std::string suggestion(const std::string& misspelt, const std::vector<std::string>& names);
+
+}  // namespace scree

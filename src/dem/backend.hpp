@@ -1,0 +1,120 @@
+// The seam between the coupled step and the machine that computes the particles: the CPU, or one GPU.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/log.hpp"
+#include "base/timer.hpp"
+#include "base/types.hpp"
+#include "dem/particle_store.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+#include "physics/contact_law.hpp"
+
+namespace scree {
+
+// Norms of one Newton iteration of the particles, scaled and dimensionless, maxima over all particles.
+struct ParticleNorms {
+  Real residual = 0;            // over the largest force on a particle, at the iterate and at the start of the step
+  Real correction_bound = 0;    // of the position correction that the residual can still cause, over the radius
+  bool overshoot = false;       // the last correction went too far along its direction
+};
+
+struct ParticleCorrection {
+  Real correction = 0;  // largest position correction over the particle's radius
+  int iterations = 0;   // of the linear solve
+};
+
+// Sums over all particles; order-independent.
+struct ParticleLedger {
+  Real kinetic = 0, gravitational = 0, contact_elastic = 0;  // [J]
+  Real contact_loss = 0, integrator_loss = 0;                // since t = 0 [J]
+  Vec3 momentum;                                             // [kg m/s]
+  Vec3 angular_momentum;                                     // about the origin [kg m^2/s]
+  std::int64_t contacts = 0;                                 // touching pairs, walls and body shapes included
+  std::int64_t drifting = 0;                                 // particles outside that drift on
+};
+
+// A particle found outside the space at the end of a step.
+struct Leaver {
+  GlobalId global_id;
+  Vec3 position;  // [m]
+  bool lost;      // beyond a side that is a wall, which no particle can leave through
+  Real energy;           // kinetic and gravitational [J]
+  Real contact_loss, integrator_loss;  // booked on it so far [J]
+};
+
+// One entry per particle, any order.
+struct ParticlePack {
+  std::vector<GlobalId> global_id;
+  std::vector<Real> radius;
+  std::vector<Vec3> position, velocity, force;  // force: contacts only
+  std::vector<int> contacts;
+};
+
+struct ShapePack {
+  std::vector<int> body;
+  std::vector<Real> radius;
+  std::vector<Vec3> position, velocity, force;
+  std::vector<int> contacts;
+};
+
+// Dissipation in the shapes' own share of their contacts (with other bodies' shapes and with walls).
+struct ShapeLosses {
+  Real contact_loss = 0;  // since t = 0 [J]
+  Real loss_power = 0;    // at t_n [W]
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  virtual std::string description() const = 0;
+
+  // State of the particle side: what a checkpoint stores.
+  virtual void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) = 0;
+  virtual std::vector<ParticleRecord> records() const = 0;  // ordered by global id
+  virtual ShapeLosses shape_losses() const = 0;
+
+  // Neighbour list. Displacement: of any item since the list was built, over half the skin that the list covers;
+  // past 1 the list has expired.
+  virtual void place_bodies(std::span<const BodyMotion> motion) = 0;
+  virtual Real list_displacement() = 0;
+  virtual void build_list(Real skin, StageTimers& timers) = 0;
+  virtual std::int64_t list_entries() const = 0;
+
+  // Start: forces and accelerations of the loaded positions and velocities.
+  virtual void initial_forces() = 0;
+
+  // Implicit step. begin_step saves the state and predicts; rollback undoes it.
+  virtual void begin_step(Real h) = 0;
+  virtual void rollback() = 0;
+  virtual Real step_displacement() = 0;  // largest of a particle or shape since the step's start [m]
+  virtual ParticleNorms contact_force(DampingRamp ramp) = 0;
+  virtual void reduce_wrench(std::vector<BodyWrench>& wrench) = 0;
+  virtual ParticleCorrection particle_correct() = 0;
+  // Takes part of the last correction back, after contact_force has reported an overshoot.
+  virtual void shorten_correction() = 0;
+  virtual Real error() = 0;              // local position error of the step over the radius
+  virtual void accept() = 0;
+
+  // Explicit steps: verlet_start, then for each step place_bodies, list, and verlet_advance, which closes it and
+  // opens the next; verlet_finish instead closes the last.
+  virtual void verlet_start(Real h) = 0;
+  virtual void verlet_advance(Real h) = 0;
+  virtual void verlet_finish(Real h) = 0;
+
+  // The particles that have left the space since the last call, ordered by global id. Unless leaving is an error
+  // in the deck, they drift from now on or are removed, and the list must be built anew.
+  virtual std::vector<Leaver> collect_leavers() = 0;
+  // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s].
+  virtual ParticleLedger ledger(Real verlet_step) = 0;
+  virtual ParticlePack pack_particles() = 0;
+  virtual ShapePack pack_shapes() = 0;
+};
+
+// Both throw SimulationError naming stage and global id on values that are not finite.
+std::unique_ptr<Backend> make_cpu_backend(const Model& model);
+
+}  // namespace scree

@@ -1,0 +1,56 @@
+#include "dem/contact_kernels.hpp"
+
+#include <algorithm>
+
+#include "base/for_each.hpp"
+
+namespace scree {
+namespace {
+
+template <class Elastic, class Laws>
+class CpuContactKernels : public ContactKernels {
+ public:
+  explicit CpuContactKernels(Laws laws) : laws_(laws) {}
+
+  void forces(const ContactViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power) const override {
+    for_each(Serial{}, n, ContactForceItem<Elastic, Laws>{in, laws_, gravity, force, loss_power});
+  }
+  void verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
+                     Vec3* force) const override {
+    for_each(Serial{}, n, VerletFinishItem<Elastic, Laws>{{in, laws_, gravity, force, state.loss_power}, state});
+  }
+  Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const override {
+    return max_over(Serial{}, n, VerletAdvanceItem<Elastic, Laws>{{in, laws_, gravity, nullptr, nullptr}, state});
+  }
+  void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, DampingRamp ramp,
+              const ContactOutputs& out) const override {
+    for_each(Serial{}, n,
+             ContactSystemItem<Elastic, Laws>{in, laws_, gravity, weights, out.force, out.loss_power,
+                                              out.force_magnitude, ramp, out.matrix});
+  }
+  void shapes(const ContactViews& in, Index n, DampingRamp ramp, ShapeContact* out) const override {
+    for_each(Serial{}, n, ShapeContactItem<Elastic, Laws>{in, laws_, ramp, out});
+  }
+  void energies(const ContactViews& in, Index n, const EnergyOutputs& out) const override {
+    for_each(Serial{}, n, ContactEnergyItem<Elastic, Laws>{in, laws_, out.energy, out.contacts, out.pairs});
+  }
+
+ private:
+  Laws laws_;
+};
+
+template <class Elastic>
+std::unique_ptr<ContactKernels> with_elastic(const Contact& contact) {
+  if (contact.laws.size() == 1) return std::make_unique<CpuContactKernels<Elastic, OneLaw>>(OneLaw{contact.laws[0]});
+  return std::make_unique<CpuContactKernels<Elastic, LawTable>>(LawTable{contact.laws.data(), contact.materials()});
+}
+
+}  // namespace
+
+std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact) {
+  const bool linear =
+      std::all_of(contact.laws.begin(), contact.laws.end(), [](const KelvinVoigt& l) { return l.exponent == 1; });
+  return linear ? with_elastic<LinearElastic>(contact) : with_elastic<PowerElastic>(contact);
+}
+
+}  // namespace scree

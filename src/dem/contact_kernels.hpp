@@ -1,0 +1,42 @@
+// The contact stages for the law of this run, chosen once: loops over items are monomorphic inside.
+#pragma once
+
+#include <memory>
+
+#include "dem/contact_items.hpp"
+#include "dem/step_items.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// Outputs of the contact stages, one entry per owned particle.
+struct ContactOutputs {
+  Vec3* force;
+  Real* loss_power;
+  Real* force_magnitude;
+  ContactMatrix matrix;
+};
+
+struct EnergyOutputs {
+  Real* energy;
+  Index* contacts;
+  Real* pairs;
+};
+
+class ContactKernels {
+ public:
+  virtual ~ContactKernels() = default;
+  virtual void forces(const ContactViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power) const = 0;
+  virtual void verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
+                             Vec3* force) const = 0;
+  // The square of the largest displacement.
+  virtual Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const = 0;
+  virtual void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, DampingRamp ramp,
+                      const ContactOutputs& out) const = 0;
+  virtual void shapes(const ContactViews& in, Index n, DampingRamp ramp, ShapeContact* out) const = 0;
+  virtual void energies(const ContactViews& in, Index n, const EnergyOutputs& out) const = 0;
+};
+
+std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact);
+
+}  // namespace scree

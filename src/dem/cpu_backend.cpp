@@ -1,0 +1,181 @@
+// Items, list and bodies of the serial backend. The steps are in cpu_implicit.cpp and cpu_explicit.cpp.
+#include "dem/cpu_backend.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.hpp"
+
+namespace scree {
+
+CpuBackend::CpuBackend(const Model& model)
+    : model_(model),
+      subdomain_(model.space),
+      shapes_(model),
+      builder_(model, shapes_),
+      kernels_(make_contact_kernels(model.contact)),
+      hht_(hht_coefficients(model.integrator.hht_alpha)),
+      motion_(model.bodies.size()),
+      shape_shift_(static_cast<std::size_t>(shapes_.size())) {
+  for (const Wall& wall : model.walls) planes_.push_back({wall.point, wall.normal, wall.material});
+}
+
+void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
+  shape_losses_ = shapes;
+  store_.load(model_.particles, records);
+  new_loss_power_.assign(records.size(), 0);
+  layout_changed_ = true;
+}
+
+std::vector<ParticleRecord> CpuBackend::records() const {
+  std::vector<ParticleRecord> out = store_.records();
+  for (ParticleRecord& r : out) r.position = subdomain_.wrap(r.position, r.image);
+  return out;
+}
+
+ContactViews CpuBackend::views() const {
+  return {store_.position.data(),    store_.velocity.data(),    store_.material.data(),
+          list_.offsets.data(),      list_.neighbors.data(),    list_.wall_offsets.data(),
+          list_.walls.data(),        planes_.data(),            layout_.first_shape};
+}
+
+void CpuBackend::place_bodies(std::span<const BodyMotion> motion) {
+  motion_.assign(motion.begin(), motion.end());
+  if (!layout_changed_) place_shapes();
+}
+
+void CpuBackend::place_shapes() {
+  const Index items = layout_.items - layout_.first_shape;
+  Real squared = 0;
+  for (Index s = 0; s < items; ++s) {
+    const Index item = layout_.first_shape + s, shape = layout_.shape_of(item);
+    const ShapeItem& source = shapes_.items()[shape];
+    const PointMotion point = point_motion(motion_[source.body], source.offset);
+    Vec3 position = snap(point.position, subdomain_.snap_constant()) + shape_shift_[shape];
+    if (layout_.is_shape_image(item)) position += layout_.shape_images[s - layout_.shapes].shift;
+    shape_step_[s] = position - placed_[s];
+    placed_[s] = position;
+    squared = std::max(squared, dot(shape_step_[s], shape_step_[s]));
+    store_.position[item] = vec4(position, source.radius);
+    store_.velocity[item] = vec4(point.velocity, 0);
+  }
+  shape_bound_ += std::sqrt(squared);
+}
+
+// Trapezoidal in time, like the particles' losses.
+void CpuBackend::book_shape_losses(Real h) {
+  Real power = 0;
+  for (const ShapeContact& contact : shape_contacts_) power += contact.loss_power;
+  shape_losses_.contact_loss += h / 2 * (shape_losses_.loss_power + power);
+  shape_losses_.loss_power = power;
+}
+
+void CpuBackend::refresh_ghosts() {
+  update_halo_positions(layout_.ghosts, store_.position, layout_.owned);
+  update_halo(layout_.ghosts, store_.velocity, layout_.owned);
+}
+
+// Owned particles in the order of their cells; those that drift outside at the end.
+void CpuBackend::sort_cells(Real skin) {
+  const CellGrid grid = builder_.grid(skin, store_.owned + shapes_.size());
+  const Index outside = grid.count();
+  std::vector<Index> cell(store_.owned), start(outside + 2, 0), from(store_.owned);
+  store_.active = 0;
+  for (Index i = 0; i < store_.owned; ++i) {
+    store_.position[i] = vec4(subdomain_.wrap(xyz(store_.position[i]), store_.image[i]), store_.position[i].w);
+    cell[i] = store_.drifting[i] ? outside : grid.cell(xyz(store_.position[i]));
+    if (cell[i] < 0)
+      throw SimulationError("stage sort_cells: particle " + std::to_string(store_.global_id[i]) +
+                            " is outside the space or not finite");
+    store_.active += cell[i] != outside;
+    ++start[cell[i] + 1];
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  for (Index i = 0; i < store_.owned; ++i) from[start[cell[i]]++] = i;
+  store_.reorder(from);
+}
+
+void CpuBackend::lay_out_items(Real skin) {
+  layout_.owned = store_.owned, layout_.active = store_.active, layout_.shapes = shapes_.size();
+  const Real width = builder_.cutoff(skin);
+  layout_.ghosts = exchange_halo(subdomain_, model_.space, {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
+  layout_.first_shape = layout_.owned + static_cast<Index>(layout_.ghosts.size());
+
+  std::vector<Vec4> centers(shapes_.items().size());
+  for (Index s = 0; s < layout_.shapes; ++s) {
+    const ShapeItem& shape = shapes_.items()[s];
+    const Vec3 p = snap(point_motion(motion_[shape.body], shape.offset).position, subdomain_.snap_constant());
+    ImageCount unused;
+    const Vec3 wrapped = subdomain_.wrap(p, unused);
+    shape_shift_[s] = wrapped - p;
+    centers[s] = vec4(wrapped, shape.radius);
+  }
+  layout_.shape_images = exchange_halo(subdomain_, model_.space, centers, width);
+  layout_.items = layout_.first_shape + layout_.shapes + static_cast<Index>(layout_.shape_images.size());
+
+  store_.position.resize(layout_.items), store_.velocity.resize(layout_.items);
+  store_.material.resize(layout_.items), store_.global_id.resize(layout_.items);
+  for (std::size_t g = 0; g < layout_.ghosts.size(); ++g) {
+    store_.material[layout_.owned + g] = store_.material[layout_.ghosts[g].source];
+    store_.global_id[layout_.owned + g] = store_.global_id[layout_.ghosts[g].source];
+  }
+  for (Index item = layout_.first_shape; item < layout_.items; ++item) {
+    const ShapeItem& shape = shapes_.items()[layout_.shape_of(item)];
+    store_.material[item] = shape.material, store_.global_id[item] = shape.global_id;
+  }
+  shape_step_.assign(layout_.items - layout_.first_shape, Vec3{});
+  placed_.resize(layout_.items - layout_.first_shape);
+  shape_contacts_.resize(layout_.items - layout_.first_shape);
+}
+
+void CpuBackend::build_list(Real skin, StageTimers& timers) {
+  {
+    const auto scope = timers.time(Stage::sort_cells);
+    sort_cells(skin);
+  }
+  {
+    const auto scope = timers.time(Stage::exchange_halo);
+    lay_out_items(skin);
+    refresh_ghosts();
+    place_shapes();
+  }
+  const auto scope = timers.time(Stage::neighbors);
+  builder_.build(store_, layout_, skin, list_);
+  list_position_ = store_.position;
+  spare_position_ = store_.position, spare_velocity_ = store_.velocity;
+  displacement_bound_ = step_bound_ = shape_bound_ = 0;
+  layout_changed_ = false;
+
+  const std::size_t slots = list_.neighbors.size(), owned = static_cast<std::size_t>(layout_.owned);
+  new_loss_power_.resize(owned);
+  if (model_.integrator.particles != ParticleIntegrator::hht) return;
+  matrix_neighbor_.resize(slots), matrix_b_.resize(slots), direction_.resize(layout_.items);
+  force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
+  residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned), matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
+}
+
+Real CpuBackend::list_displacement() {
+  if (layout_changed_) return 2;
+  const Real half_skin = list_.skin / 2;
+  if (!in_implicit_step_) {  // the sum of the steps' largest displacements is cheap; the exact value follows past it
+    displacement_bound_ += std::max(step_bound_, shape_bound_);
+    step_bound_ = shape_bound_ = 0;
+    if (displacement_bound_ < half_skin) return displacement_bound_ / half_skin;
+  }
+  Real squared = 0;
+  const auto add = [&](Index i) {
+    const Vec3 d = xyz(store_.position[i]) - xyz(list_position_[i]);
+    const Real value = dot(d, d);
+    if (!(value <= squared)) squared = value;  // a NaN counts as expired
+  };
+  for (Index i = 0; i < layout_.active; ++i) add(i);
+  for (Index i = layout_.first_shape; i < layout_.items; ++i) add(i);
+  if (!std::isfinite(squared)) return 2;
+  displacement_bound_ = std::sqrt(squared);
+  return displacement_bound_ / half_skin;
+}
+
+std::unique_ptr<Backend> make_cpu_backend(const Model& model) { return std::make_unique<CpuBackend>(model); }
+
+}  // namespace scree

@@ -1,0 +1,110 @@
+// The serial backend of one rank: the paper's CMAP.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dem/backend.hpp"
+#include "dem/block_solver.hpp"
+#include "dem/body_shapes.hpp"
+#include "dem/contact_kernels.hpp"
+#include "dem/neighbor_list.hpp"
+#include "dem/particle_store.hpp"
+#include "dem/step_items.hpp"
+#include "physics/energy.hpp"
+
+namespace scree {
+
+class CpuBackend : public Backend {
+ public:
+  explicit CpuBackend(const Model& model);
+  std::string description() const override { return "cpu (serial)"; }
+
+  void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) override;
+  std::vector<ParticleRecord> records() const override;
+  ShapeLosses shape_losses() const override { return shape_losses_; }
+
+  void place_bodies(std::span<const BodyMotion> motion) override;
+  Real list_displacement() override;
+  void build_list(Real skin, StageTimers& timers) override;
+  std::int64_t list_entries() const override { return static_cast<std::int64_t>(list_.neighbors.size()); }
+  void initial_forces() override;
+
+  void begin_step(Real h) override;
+  void rollback() override;
+  Real step_displacement() override;
+  ParticleNorms contact_force(DampingRamp ramp) override;
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override;
+  ParticleCorrection particle_correct() override;
+  void shorten_correction() override;
+  Real error() override;
+  void accept() override;
+
+  void verlet_start(Real h) override;
+  void verlet_advance(Real h) override;
+  void verlet_finish(Real h) override;
+
+  std::vector<Leaver> collect_leavers() override;
+  ParticleLedger ledger(Real verlet_step) override;
+  ParticlePack pack_particles() override;
+  ShapePack pack_shapes() override;
+
+ private:
+  ContactViews views() const;
+  StepViews step_views();
+  VerletViews verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity);
+  void shape_forces(Real h);
+  Real slope(const std::vector<Vec3>& residual) const;
+  // Sizes all item arrays, fills in ghosts and shapes.
+  void lay_out_items(Real skin);
+  void sort_cells(Real skin);
+  void refresh_ghosts();
+  void place_shapes();
+  void book_shape_losses(Real h);
+  Vec3 unwrapped(Index i) const;  // position without the periodic box [m]
+  Real energy_of(Index i) const;  // kinetic and gravitational [J]
+
+  const Model& model_;
+  Subdomain subdomain_;
+  BodyShapes shapes_;
+  NeighborBuilder builder_;
+  std::unique_ptr<ContactKernels> kernels_;
+  std::vector<WallPlane> planes_;
+  HhtCoefficients hht_;
+
+  ParticleStore store_;
+  std::vector<BodyMotion> motion_;  // of the bodies as last placed
+  ShapeLosses shape_losses_;
+  NeighborList list_;
+  ItemLayout layout_;
+  std::vector<Vec3> shape_shift_;      // brings each shape into the periodic box [m]
+  std::vector<Vec4> list_position_;    // of all items when the list was built
+  bool layout_changed_ = true;         // particles left since the list was built
+
+  // Workspace of the implicit step: start of the step (begin_step), then contact_force, then particle_correct.
+  Real h_ = 0;
+  std::vector<Vec4> start_position_, start_velocity_;
+  std::vector<Vec3> start_acceleration_, start_force_;
+  std::vector<Real> new_loss_power_, force_magnitude_, stiffening_;
+  std::vector<Index> matrix_count_, matrix_neighbor_;
+  std::vector<Vec3> matrix_b_, residual_, right_hand_side_, correction_;
+  std::vector<Sym3> matrix_diagonal_, inverse_block_;
+  std::vector<Vec4> direction_;
+  std::vector<Vec3> placed_;      // position of each shape item as last placed [m]
+  std::vector<Vec3> shape_step_;  // its displacement by the last place_bodies [m]
+  std::vector<Vec4> spare_position_, spare_velocity_;  // explicit steps write here while neighbours are read
+  std::vector<ShapeContact> shape_contacts_;
+  Real largest_stiffening_ = 0, force_scale_ = 0;
+  // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at its
+  // start and at the iterate.
+  Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;
+  DampingRamp ramp_;  // of the last contact_force
+  bool in_implicit_step_ = false;
+  Real displacement_bound_ = 0;   // of any item since the list was built, at most [m]
+  Real step_bound_ = 0;           // of any particle in the open explicit step [m]
+  Real shape_bound_ = 0;          // of any shape since list_displacement was last asked, at most [m]
+  BlockSolver solver_;
+};
+
+}  // namespace scree

@@ -1,0 +1,187 @@
+// The implicit step of the serial backend.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/for_each.hpp"
+#include "base/reproducible_sum.hpp"
+#include "dem/cpu_backend.hpp"
+
+namespace scree {
+namespace {
+
+// A correction overshoots if the slope behind it has risen past this share of the slope before it.
+constexpr Real kMostSlope = 0.5;
+// A correction is not shortened below this share: at a kink of the potential no share is good enough.
+constexpr Real kLeastShare = 0.05;
+
+}  // namespace
+
+StepViews CpuBackend::step_views() {
+  return {store_.position.data(),     store_.velocity.data(),     store_.acceleration.data(),
+          start_position_.data(),     start_velocity_.data(),     start_acceleration_.data(),
+          start_force_.data(),        hht_,                       h_,
+          subdomain_.snap_constant()};
+}
+
+void CpuBackend::initial_forces() {
+  refresh_ghosts();
+  kernels_->forces(views(), model_.gravity, layout_.owned, store_.force.data(), store_.loss_power.data());
+  for (Index i = 0; i < layout_.owned; ++i)
+    store_.acceleration[i] = (1 / store_.velocity[i].w) * store_.force[i];
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, DampingRamp{}, shape_contacts_.data());
+  book_shape_losses(0);
+}
+
+void CpuBackend::begin_step(Real h) {
+  h_ = h;
+  applied_share_ = 0;
+  ramp_ = {};
+  in_implicit_step_ = true;
+  const auto owned = static_cast<std::ptrdiff_t>(layout_.owned);
+  start_position_ = store_.position;
+  start_velocity_.assign(store_.velocity.begin(), store_.velocity.begin() + owned);
+  start_acceleration_ = store_.acceleration;
+  start_force_ = store_.force;
+  for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
+  refresh_ghosts();
+}
+
+void CpuBackend::rollback() {
+  std::copy(start_position_.begin(), start_position_.begin() + layout_.owned, store_.position.begin());
+  std::copy(start_velocity_.begin(), start_velocity_.end(), store_.velocity.begin());
+  store_.acceleration = start_acceleration_;
+  store_.force = start_force_;
+  in_implicit_step_ = false;
+}
+
+Real CpuBackend::step_displacement() {
+  Real squared = 0;
+  const auto add = [&](Index i) {
+    const Vec3 d = xyz(store_.position[i]) - xyz(start_position_[i]);
+    squared = std::max(squared, dot(d, d));
+  };
+  for (Index i = 0; i < layout_.active; ++i) add(i);
+  for (Index i = layout_.first_shape; i < layout_.items; ++i) add(i);
+  return std::sqrt(squared);
+}
+
+ParticleNorms CpuBackend::contact_force(DampingRamp ramp) {
+  const Index n = layout_.owned;
+  const NewtonWeights weights{hht_.newmark_beta * h_ * h_, h_ * hht_.newmark_gamma};
+  const ContactMatrix matrix{matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(),
+                             matrix_diagonal_.data()};
+  kernels_->system(views(), model_.gravity, n, weights, ramp,
+                   {store_.force.data(), new_loss_power_.data(), force_magnitude_.data(), matrix});
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, ramp, shape_contacts_.data());
+  for_each(Serial{}, n, ResidualItem{step_views(), store_.force.data(), matrix, residual_.data(),
+                                     inverse_block_.data(), stiffening_.data()});
+
+  ParticleNorms norms;
+  Real residual = 0, bound = 0;
+  force_scale_ = largest_stiffening_ = 0;
+  for (Index i = 0; i < n; ++i) {
+    const Real r = norm(residual_[i]);
+    if (!std::isfinite(r))
+      throw SimulationError("stage contact_force: the force on particle " + std::to_string(store_.global_id[i]) +
+                            " is not finite");
+    residual = std::max(residual, r);
+    bound = std::max(bound, weights.stiffness * r * (1 + hht_.hht_alpha) / (store_.velocity[i].w * store_.position[i].w));
+    const Real at_start = norm(start_force_[i]) + store_.velocity[i].w * norm(start_acceleration_[i]);
+    force_scale_ = std::max(force_scale_, force_magnitude_[i] + at_start);
+    largest_stiffening_ = std::max(largest_stiffening_, stiffening_[i]);
+  }
+  norms.residual = residual == 0 ? 0 : residual / force_scale_;
+  norms.correction_bound = bound;
+  if (ramp.overlap != ramp_.overlap) applied_share_ = 0;  // the potential has changed: no search across that
+  ramp_ = ramp;
+  if (applied_share_ > kLeastShare) {
+    slope_ = -slope(residual_);
+    norms.overshoot = slope_ > kMostSlope * std::abs(start_slope_);
+  }
+  return norms;
+}
+
+// Residual along the last correction.
+Real CpuBackend::slope(const std::vector<Vec3>& residual) const {
+  return reproducible_sum(layout_.owned, [&](Index i) { return dot(residual[i], correction_[i]); });
+}
+
+// Regula falsi for the zero of the slope between the start of the correction and the iterate.
+void CpuBackend::shorten_correction() {
+  const Real full = std::abs(start_slope_) / (std::abs(start_slope_) + slope_);
+  const Real share = applied_share_ * std::clamp(full, Real(0.1), Real(0.8));
+  for (Index i = 0; i < layout_.owned; ++i) store_.acceleration[i] += (share - applied_share_) * correction_[i];
+  applied_share_ = share;
+  for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
+  refresh_ghosts();
+}
+
+void CpuBackend::reduce_wrench(std::vector<BodyWrench>& wrench) {
+  std::fill(wrench.begin(), wrench.end(), BodyWrench{});
+  const Index items = layout_.items - layout_.first_shape;
+  for (Index s = 0; s < items; ++s) {
+    const ShapeContact& contact = shape_contacts_[s];
+    if (contact.contacts == 0) continue;
+    const ShapeItem& shape = shapes_.items()[layout_.shape_of(layout_.first_shape + s)];
+    const Vec3 arm = point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
+    add_point_force(wrench[shape.body], contact.force, arm, contact.stiffness, contact.damping);
+  }
+}
+
+ParticleCorrection CpuBackend::particle_correct() {
+  const Index n = layout_.owned;
+  const Real weight = hht_.newmark_beta * h_ * h_;
+  const SubtractMatrixItem matrix{{matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(), matrix_diagonal_.data()},
+                                  list_.offsets.data(),
+                                  store_.velocity.data(),
+                                  1 / (1 + hht_.hht_alpha),
+                                  direction_.data(),
+                                  residual_.data()};
+  // The bodies have already taken their correction: as a known part of the solution it moves to the right.
+  if (layout_.items > layout_.first_shape) {
+    std::fill(direction_.begin(), direction_.end(), Vec4{});
+    for (Index item = layout_.first_shape; item < layout_.items; ++item)
+      direction_[item] = vec4((1 / weight) * shape_step_[item - layout_.first_shape], 0);
+    for_each(Serial{}, n, matrix);
+    std::fill(direction_.begin() + layout_.first_shape, direction_.end(), Vec4{});
+  }
+  right_hand_side_ = residual_;
+  Real right_hand_side = 0;
+  for (Index i = 0; i < n; ++i) right_hand_side = std::max(right_hand_side, norm(residual_[i]));
+  const Real goal = Real(0.1) * model_.integrator.residual_tolerance * force_scale_;
+  const BlockSolver::System system{matrix,          inverse_block_,      residual_,
+                                   layout_.ghosts, largest_stiffening_, std::max(goal, Real(0.01) * right_hand_side)};
+  ParticleCorrection out;
+  if (right_hand_side > 0) {
+    out.iterations = solver_.solve(system, direction_, correction_);
+    for (Index i = 0; i < n; ++i) {
+      store_.acceleration[i] += correction_[i];
+      out.correction = std::max(out.correction, weight * norm(correction_[i]) / store_.position[i].w);
+    }
+    start_slope_ = -slope(right_hand_side_);
+  }
+  applied_share_ = right_hand_side > 0 ? 1 : 0;
+  for_each(Serial{}, n, NewmarkItem{step_views()});
+  refresh_ghosts();
+  return out;
+}
+
+Real CpuBackend::error() {
+  Real largest = 0;
+  for (Index i = 0; i < layout_.owned; ++i)
+    largest = std::max(largest, hht_position_error(hht_, h_, start_acceleration_[i], store_.acceleration[i],
+                                                   store_.position[i].w));
+  return largest;
+}
+
+void CpuBackend::accept() {
+  for_each(Serial{}, layout_.owned,
+           AcceptItem{step_views(), store_.force.data(), store_.loss_power.data(), new_loss_power_.data(),
+                      store_.contact_loss.data(), store_.integrator_loss.data()});
+  store_.loss_power.swap(new_loss_power_);
+  book_shape_losses(h_);
+  in_implicit_step_ = false;
+}
+
+}  // namespace scree

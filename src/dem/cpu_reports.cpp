@@ -1,0 +1,119 @@
+// What the serial backend tells about its particles: leavers, sums, packs for output.
+#include <algorithm>
+#include <cmath>
+
+#include "base/reproducible_sum.hpp"
+#include "dem/cpu_backend.hpp"
+
+namespace scree {
+namespace {
+
+template <class Term>
+Vec3 vector_sum(Index n, const Term& term) {
+  return {reproducible_sum(n, [&](Index i) { return term(i).x; }), reproducible_sum(n, [&](Index i) { return term(i).y; }),
+          reproducible_sum(n, [&](Index i) { return term(i).z; })};
+}
+
+}  // namespace
+
+Real CpuBackend::energy_of(Index i) const {
+  const Vec4 v = store_.velocity[i];
+  return kinetic_energy(v.w, xyz(v)) + gravitational_energy(v.w, model_.gravity, unwrapped(i));
+}
+
+Vec3 CpuBackend::unwrapped(Index i) const {
+  const Vec3 period = subdomain_.period();
+  const ImageCount& image = store_.image[i];
+  return xyz(store_.position[i]) + Vec3{image.x * period.x, image.y * period.y, image.z * period.z};
+}
+
+std::vector<Leaver> CpuBackend::collect_leavers() {
+  std::vector<Leaver> leavers;
+  const bool error = model_.space.leaving == Leaving::error;
+  for (Index i = 0; i < store_.active; ++i) {
+    const Vec3 p = xyz(store_.position[i]);
+    if (store_.drifting[i] || subdomain_.inside(p)) continue;
+    leavers.push_back({store_.global_id[i], p, subdomain_.beyond_wall(p), energy_of(i), store_.contact_loss[i],
+                       store_.integrator_loss[i]});
+    store_.drifting[i] = !error;
+  }
+  if (leavers.empty() || error) return leavers;
+  std::sort(leavers.begin(), leavers.end(), [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
+  layout_changed_ = true;
+  if (model_.space.leaving == Leaving::remove) {
+    std::vector<Index> staying;
+    for (Index i = 0; i < store_.owned; ++i)
+      if (!store_.drifting[i]) staying.push_back(i);
+    store_.reorder(staying);
+  }
+  return leavers;
+}
+
+ParticleLedger CpuBackend::ledger(Real verlet_step) {
+  const Index n = store_.owned;
+  std::vector<Real> elastic(n), pairs(n);
+  std::vector<Index> touching(n);
+  kernels_->energies(views(), n, {elastic.data(), touching.data(), pairs.data()});
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, DampingRamp{}, shape_contacts_.data());
+
+  ParticleLedger out;
+  const auto mass = [&](Index i) { return store_.velocity[i].w; };
+  const auto velocity = [&](Index i) { return xyz(store_.velocity[i]); };
+  out.kinetic = reproducible_sum(n, [&](Index i) { return kinetic_energy(mass(i), velocity(i)); });
+  out.gravitational =
+      reproducible_sum(n, [&](Index i) { return gravitational_energy(mass(i), model_.gravity, unwrapped(i)); });
+  Real shapes_elastic = 0, body_pairs = 0;
+  for (const ShapeContact& contact : shape_contacts_) shapes_elastic += contact.energy, body_pairs += contact.pairs;
+  out.contact_elastic = reproducible_sum(n, [&](Index i) { return elastic[i]; }) + shapes_elastic;
+  out.contact_loss = reproducible_sum(n, [&](Index i) { return store_.contact_loss[i]; }) + shape_losses_.contact_loss;
+  out.integrator_loss = reproducible_sum(n, [&](Index i) {
+    return store_.integrator_loss[i] - verlet_energy_shift(verlet_step, mass(i), store_.acceleration[i]);
+  });
+  out.momentum = vector_sum(n, [&](Index i) { return mass(i) * velocity(i); });
+  out.angular_momentum = vector_sum(n, [&](Index i) { return mass(i) * cross(unwrapped(i), velocity(i)); });
+  out.contacts = std::llround(reproducible_sum(n, [&](Index i) { return pairs[i]; }) + body_pairs);
+  for (Index i = 0; i < n; ++i) out.drifting += store_.drifting[i];
+  return out;
+}
+
+ParticlePack CpuBackend::pack_particles() {
+  const Index n = store_.owned;
+  ParticlePack pack;
+  std::vector<Real> energy(n), pairs(n);
+  pack.contacts.resize(n);
+  kernels_->energies(views(), n, {energy.data(), pack.contacts.data(), pairs.data()});
+  for (Index i = 0; i < n; ++i) {
+    ImageCount unused;
+    pack.global_id.push_back(store_.global_id[i]);
+    pack.radius.push_back(store_.position[i].w);
+    pack.position.push_back(subdomain_.wrap(xyz(store_.position[i]), unused));
+    pack.velocity.push_back(xyz(store_.velocity[i]));
+    pack.force.push_back(store_.force[i] - store_.velocity[i].w * model_.gravity);
+  }
+  return pack;
+}
+
+ShapePack CpuBackend::pack_shapes() {
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, DampingRamp{}, shape_contacts_.data());
+  ShapePack pack;
+  for (Index s = 0; s < layout_.shapes; ++s) {
+    const ShapeItem& shape = shapes_.items()[s];
+    pack.body.push_back(shape.body);
+    pack.radius.push_back(shape.radius);
+    const PointMotion point = point_motion(motion_[shape.body], shape.offset);
+    ImageCount unused;
+    pack.position.push_back(subdomain_.wrap(point.position, unused));
+    pack.velocity.push_back(point.velocity);
+    pack.force.push_back(shape_contacts_[s].force);
+    pack.contacts.push_back(shape_contacts_[s].contacts);
+  }
+  for (std::size_t image = 0; image < layout_.shape_images.size(); ++image) {
+    const Index original = layout_.shape_images[image].source;
+    const ShapeContact& contact = shape_contacts_[layout_.shapes + image];
+    pack.force[original] += contact.force;
+    pack.contacts[original] += contact.contacts;
+  }
+  return pack;
+}
+
+}  // namespace scree

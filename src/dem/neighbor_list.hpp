@@ -1,0 +1,66 @@
+// Full neighbour list with a skin, rows ordered by the neighbours' global ids.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/body_shapes.hpp"
+#include "dem/particle_store.hpp"
+#include "model/model.hpp"
+#include "partition/cell_grid.hpp"
+#include "partition/halo.hpp"
+
+namespace scree {
+
+// Row i holds every item that can touch item i before the list expires. Rows of ghosts and of particles outside
+// the search are empty. A second list of the same form holds the walls near each item.
+struct NeighborList {
+  std::vector<Index> offsets, neighbors;     // [items + 1], [entries]
+  std::vector<Index> wall_offsets, walls;    // [items + 1], [entries]: indices into Model::walls
+  Real skin = 0;                             // reach past touching that this list covers [m]
+};
+
+// Where items of each kind stand in the store, and the body shapes' images across periodic sides.
+struct ItemLayout {
+  Index owned = 0, active = 0;        // owned particles, and those of them in the search
+  Index first_shape = 0;              // after owned and ghosts
+  Index items = 0;
+  std::vector<Ghost> ghosts;          // of owned particles
+  std::vector<Ghost> shape_images;    // of shapes: source counts from 0 within the shapes
+  Index shapes = 0;                   // originals, before their images
+  // Shape of an item >= first_shape, and whether the item is an image of it.
+  Index shape_of(Index item) const {
+    const Index s = item - first_shape;
+    return s < shapes ? s : shape_images[static_cast<std::size_t>(s - shapes)].source;
+  }
+  bool is_shape_image(Index item) const { return item - first_shape >= shapes; }
+};
+
+class NeighborBuilder {
+ public:
+  NeighborBuilder(const Model& model, const BodyShapes& shapes);
+
+  // The grid whose cells are at least one largest diameter plus skin wide.
+  CellGrid grid(Real skin, Index items) const;
+  // Largest distance of centres that the list must see: largest diameter plus skin [m].
+  Real cutoff(Real skin) const { return 2 * largest_radius_ + skin; }
+  // Fills the list from the positions of all items.
+  void build(const ParticleStore& store, const ItemLayout& layout, Real skin, NeighborList& list);
+
+ private:
+  void sort_into_cells(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid);
+  void collect_row(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid, Index i,
+                   NeighborList& list);
+  bool excluded(const ItemLayout& layout, Index i, Index j) const;
+  void order_row(const ParticleStore& store, const ItemLayout& layout, Index* first, Index* last) const;
+  void collect_walls(const ParticleStore& store, const ItemLayout& layout, NeighborList& list) const;
+
+  const Model& model_;
+  const BodyShapes& shapes_;
+  Real largest_radius_ = 0;
+  std::vector<Index> cell_start_, cell_items_, cell_of_;
+};
+
+}  // namespace scree

@@ -1,0 +1,164 @@
+// What happens for one particle in the stages of the step that need no neighbours.
+#pragma once
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/contact_items.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+// Unknowns of an implicit step: iterate in position, velocity, acceleration; start of the step beside them.
+struct StepViews {
+  Vec4 *position, *velocity;              // iterate at t_{n+1}
+  Vec3* acceleration;                     // iterate a_{n+1} [m/s^2]
+  const Vec4 *start_position, *start_velocity;
+  const Vec3 *start_acceleration, *start_force;
+  HhtCoefficients hht;
+  Real h;     // [s]
+  Vec3 snap;  // Subdomain::snap_constant
+};
+
+// Newmark's position and velocity from the current a_{n+1}.
+struct NewmarkItem {
+  StepViews step;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 x = step.start_position[i], v = step.start_velocity[i];
+    const Vec3 a0 = step.start_acceleration[i], a1 = step.acceleration[i];
+    const Vec3 dx = newmark_displacement(step.hht, step.h, xyz(v), a0, a1);
+    step.position[i] = vec4(xyz(x) + snap(dx, step.snap), x.w);
+    step.velocity[i] = vec4(newmark_velocity(step.hht, step.h, xyz(v), a0, a1), v.w);
+  }
+};
+
+// Minus the residual of Eq. 16, the block of the Newton matrix's diagonal and its inverse.
+struct ResidualItem {
+  StepViews step;
+  const Vec3* force;  // at the iterate [N]
+  ContactMatrix matrix;
+  Vec3* residual;     // [N]
+  Sym3* inverse_block;
+  Real* stiffening;   // norm of the contacts' part of the block over the mass part
+
+  SCREE_HD void operator()(Index i) const {
+    const Real mass = step.velocity[i].w, scaled_mass = mass / (1 + step.hht.hht_alpha);
+    residual[i] = -hht_residual(step.hht, mass, step.acceleration[i], force[i], step.start_force[i]);
+    Sym3 block = matrix.diagonal[i];
+    const Real rows[3] = {std::abs(block.xx) + std::abs(block.xy) + std::abs(block.xz),
+                          std::abs(block.xy) + std::abs(block.yy) + std::abs(block.yz),
+                          std::abs(block.xz) + std::abs(block.yz) + std::abs(block.zz)};
+    const Real largest = rows[0] > rows[1] ? (rows[0] > rows[2] ? rows[0] : rows[2])
+                                           : (rows[1] > rows[2] ? rows[1] : rows[2]);
+    stiffening[i] = largest / scaled_mass;
+    block += Sym3{scaled_mass, 0, 0, scaled_mass, 0, scaled_mass};
+    inverse_block[i] = inverse(block);
+  }
+};
+
+// residual_i -= (A d)_i for the Newton matrix A = mass / (1 + alpha) + contacts.
+struct SubtractMatrixItem {
+  ContactMatrix matrix;
+  const Index* offsets;
+  const Vec4* velocity;  // mass in w
+  Real inverse_scale;    // 1 / (1 + alpha)
+  const Vec4* d;         // all items
+  Vec3* residual;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec3 di = xyz(d[i]);
+    Vec3 sum = (velocity[i].w * inverse_scale) * di + matrix.diagonal[i] * di;
+    for (Index k = offsets[i]; k < offsets[i] + matrix.count[i]; ++k) {
+      const Vec3 b = matrix.b[k];
+      sum -= dot(b, xyz(d[matrix.neighbor[k]])) * b;
+    }
+    residual[i] -= sum;
+  }
+};
+
+// Closes an implicit step: dissipation and the integrator's loss.
+struct AcceptItem {
+  StepViews step;
+  const Vec3* force;             // at t_{n+1} [N]
+  const Real* start_loss_power;  // [W]
+  const Real* loss_power;        // [W]
+  Real* contact_loss;            // [J]
+  Real* integrator_loss;         // [J]
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 v0 = step.start_velocity[i];
+    contact_loss[i] += step.h / 2 * (start_loss_power[i] + loss_power[i]);
+    integrator_loss[i] += ::scree::integrator_loss(v0.w, xyz(step.position[i]) - xyz(step.start_position[i]), xyz(v0),
+                                          xyz(step.velocity[i]), step.start_force[i], force[i]);
+  }
+};
+
+// Particle state of a velocity-Verlet step as the items below read and write it.
+struct VerletViews {
+  Vec4 *position, *velocity;  // velocity within a step: what the contact law sees, v + h a_n
+  Vec3* acceleration;
+  Real* contact_loss;         // [J]
+  Real* loss_power;           // at the last time level [W]
+  Real h;                     // [s]
+  Vec3 snap;                  // Subdomain::snap_constant
+};
+
+// Position at the end of a step and the velocity that the contact law sees there, to second order. Returns the
+// square of the displacement.
+SCREE_HD Real verlet_open(const VerletViews& out, Index i, Vec4 x, Vec4 v, Vec3 a) {
+  const Vec3 dx = snap(verlet_displacement(out.h, xyz(v), a), out.snap);
+  out.position[i] = vec4(xyz(x) + dx, x.w);
+  out.velocity[i] = vec4(verlet_predicted_velocity(out.h, xyz(v), a), v.w);
+  return dot(dx, dx);
+}
+
+// Opens a step from the state.
+struct VerletStartItem {
+  VerletViews state;
+
+  SCREE_HD Real operator()(Index i) const {
+    if (state.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * state.loss_power[i];
+    return verlet_open(state, i, state.position[i], state.velocity[i], state.acceleration[i]);
+  }
+};
+
+// Closes a step: velocity and acceleration at its end from the force there. `state.velocity` is not the array that
+// the contacts read: other particles need the velocities as they were.
+template <class Elastic, class Laws>
+struct VerletFinishItem {
+  ContactForceItem<Elastic, Laws> contacts;
+  VerletViews state;
+
+  SCREE_HD void operator()(Index i) const {
+    contacts(i);
+    const Vec4 v = contacts.in.velocity[i];
+    const Vec3 a = (1 / v.w) * contacts.force[i];
+    state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
+    state.acceleration[i] = a;
+    if (contacts.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * contacts.loss_power[i];
+  }
+};
+
+// Closes a step and opens the next of the same length: the two items above in one pass over memory, bit for bit.
+template <class Elastic, class Laws>
+struct VerletAdvanceItem {
+  ContactForceItem<Elastic, Laws> contacts;
+  VerletViews state;
+
+  SCREE_HD Real operator()(Index i) const {
+    const TotalForce total = contacts.total(i);
+    const Vec4 v = contacts.in.velocity[i];
+    const Vec3 a = (1 / v.w) * total.force;
+    const Vec3 v1 = verlet_velocity(state.h, xyz(v), state.acceleration[i], a);
+    state.acceleration[i] = a;
+    if (total.loss_power != 0) {
+      state.contact_loss[i] += state.h / 2 * total.loss_power;
+      state.contact_loss[i] += state.h / 2 * total.loss_power;
+    }
+    return verlet_open(state, i, contacts.in.position[i], vec4(v1, v.w), a);
+  }
+};
+
+}  // namespace scree

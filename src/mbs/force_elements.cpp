@@ -1,0 +1,214 @@
+#include "mbs/force_elements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.hpp"
+#include "mbs/scalar_function.hpp"
+
+namespace scree {
+
+namespace {
+
+void add_at(std::vector<Real>& force, int index, Real value) {
+  if (index >= 0) force[static_cast<std::size_t>(index)] += value;
+}
+
+// l = |d|, e = d / l, p = perp(e), tension T = k (l - l_0) + c l' + actuator(t).
+// Q   = -T J,  J = l_q = [-e, -e.perp(a_1), e, e.perp(a_2)],  l' = J q'
+// -Q_q  = J (k J + c l'_q)^T + T H,  l'_q = H q'
+// -Q_q' = c J J^T
+// H = l_qq = G G^T / l + diag,  G = [-p, -p.perp(a_1), p, p.perp(a_2)],  diag: e.a_1 at theta_1, -e.a_2 at theta_2
+class SpringDamperElement final : public ForceElement {
+ public:
+  SpringDamperElement(const SpringDamper& element, Real end)
+      : name_(element.name),
+        pair_{{element.body[0], element.body[1]}, {planar(element.point[0]), planar(element.point[1])}},
+        index_(point_coordinates(pair_)),
+        stiffness_(element.stiffness),
+        damping_(element.damping),
+        free_length_(element.free_length),
+        actuator_(element.actuator, fmt::format("spring-damper '{}'", element.name), end) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      if (index_[k] >= 0) active_.push_back(k);
+    }
+  }
+
+  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const override {
+    const Line line = line_at(motion, t);
+    const std::array<Real, 6> gradient = gap_gradient(line.geometry, line.direction);
+    for (const std::size_t k : active_) force[static_cast<std::size_t>(index_[k])] -= line.tension * gradient[k];
+    return std::abs(line.tension) * length;
+  }
+
+  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness, SparseTerm& damping) const override {
+    const Line line = line_at(motion, t);
+    const PairGeometry& g = line.geometry;
+    const Vec2 e = line.direction;
+    const std::array<Real, 6> along = gap_gradient(g, e), across = gap_gradient(g, perp(e));
+    const Real bend1 = dot(e, g.arm[0]), bend2 = -dot(e, g.arm[1]);
+    const Real turning = dot(perp(e), g.gap_rate) / line.length;
+    std::array<Real, 6> tension_gradient{};
+    for (const std::size_t k : active_) {
+      tension_gradient[k] = stiffness_ * along[k] + damping_ * turning * across[k];
+    }
+    tension_gradient[2] += damping_ * bend1 * motion[pair_.body[0]].spin;
+    tension_gradient[5] += damping_ * bend2 * motion[pair_.body[1]].spin;
+    for (const std::size_t i : active_) {
+      const Real sideways = line.tension / line.length * across[i];
+      for (const std::size_t j : active_) {
+        stiffness.add(index_[i], index_[j], along[i] * tension_gradient[j] + sideways * across[j]);
+        damping.add(index_[i], index_[j], damping_ * along[i] * along[j]);
+      }
+    }
+    stiffness.add(index_[2], index_[2], line.tension * bend1);
+    stiffness.add(index_[5], index_[5], line.tension * bend2);
+  }
+
+  void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const override {
+    const Line line = line_at(motion, t);
+    powers.dissipated += damping_ * line.rate * line.rate;
+    powers.applied -= actuator_(t).value * line.rate;
+  }
+
+  Real elastic_energy(const PlanarMotion& motion) const override {
+    const Real stretch = norm(pair_geometry(pair_, motion).gap) - free_length_;
+    return stiffness_ / 2 * stretch * stretch;
+  }
+  Real elastic_scale(Real length) const override { return stiffness_ * length * length; }
+
+ private:
+  struct Line {
+    PairGeometry geometry;
+    Real length, rate, tension;
+    Vec2 direction;
+  };
+
+  Line line_at(const PlanarMotion& motion, Real t) const {
+    Line line;
+    line.geometry = pair_geometry(pair_, motion);
+    line.length = norm(line.geometry.gap);
+    if (line.length == 0) {
+      throw SimulationError(fmt::format("mbs_correct, rank 0: the two points of spring-damper '{}' coincide", name_));
+    }
+    line.direction = (1 / line.length) * line.geometry.gap;
+    line.rate = dot(line.direction, line.geometry.gap_rate);
+    line.tension = stiffness_ * (line.length - free_length_) + damping_ * line.rate + actuator_(t).value;
+    return line;
+  }
+
+  std::string name_;
+  PointPair pair_;
+  PairCoordinates index_;
+  std::vector<std::size_t> active_;  // places in index_ that are coordinates
+  Real stiffness_, damping_, free_length_;
+  ScalarFunction actuator_;
+};
+
+// theta = theta_2 - theta_1, torque on body 2: -(k (theta - theta_0) + c theta'), opposite on body 1.
+// -Q_q = k J J^T, -Q_q' = c J J^T, J = theta_q = (-1, 1)
+class TorsionalElement final : public ForceElement {
+ public:
+  explicit TorsionalElement(const TorsionalSpringDamper& element)
+      : element_(element), index_{pair_coordinates(element.body)[2], pair_coordinates(element.body)[5]} {}
+
+  Real add_force(const PlanarMotion& motion, Real, Real, std::vector<Real>& force) const override {
+    const Real torque = element_.stiffness * twist(motion) + element_.damping * rate(motion);
+    add_at(force, index_[0], torque);
+    add_at(force, index_[1], -torque);
+    return std::abs(torque);
+  }
+  void add_derivatives(const PlanarMotion&, Real, SparseTerm& stiffness, SparseTerm& damping) const override {
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        const Real sign = i == j ? 1 : -1;
+        stiffness.add(index_[i], index_[j], sign * element_.stiffness);
+        damping.add(index_[i], index_[j], sign * element_.damping);
+      }
+    }
+  }
+  void add_powers(const PlanarMotion& motion, Real, Powers& powers) const override {
+    powers.dissipated += element_.damping * rate(motion) * rate(motion);
+  }
+  Real elastic_energy(const PlanarMotion& motion) const override {
+    return element_.stiffness / 2 * twist(motion) * twist(motion);
+  }
+  Real elastic_scale(Real) const override { return element_.stiffness; }
+
+ private:
+  Real twist(const PlanarMotion& motion) const {
+    return motion[element_.body[1]].angle - motion[element_.body[0]].angle - element_.free_angle;
+  }
+  Real rate(const PlanarMotion& motion) const { return motion[element_.body[1]].spin - motion[element_.body[0]].spin; }
+
+  TorsionalSpringDamper element_;
+  int index_[2];
+};
+
+// F global or, if it follows the body, A f; torque about the centre of mass: T + a x F, a = A s.
+// -Q_q: global F: a.F at (theta, theta); following F: -perp(F) at (x, theta), (y, theta).  -Q_q' = 0
+class AppliedForceElement final : public ForceElement {
+ public:
+  AppliedForceElement(const AppliedForce& element, Real end)
+      : body_(element.body),
+        point_(planar(element.point)),
+        follows_body_(element.follows_body),
+        fx_(element.fx, owner(element), end),
+        fy_(element.fy, owner(element), end),
+        torque_(element.torque, owner(element), end) {}
+
+  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const override {
+    const Vec2 f = force_at(motion, t);
+    const Real moment = moment_at(motion, t);
+    add_at(force, 3 * body_, f.x);
+    add_at(force, 3 * body_ + 1, f.y);
+    add_at(force, 3 * body_ + 2, moment);
+    return std::max(norm(f) * length, std::abs(moment));
+  }
+  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness, SparseTerm&) const override {
+    const int angle = 3 * body_ + 2;
+    const Vec2 f = force_at(motion, t);
+    if (follows_body_) {
+      stiffness.add(3 * body_, angle, f.y);
+      stiffness.add(3 * body_ + 1, angle, -f.x);
+    } else {
+      stiffness.add(angle, angle, dot(motion[body_].turn(point_), f));
+    }
+  }
+  void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const override {
+    powers.applied += dot(force_at(motion, t), motion[body_].velocity) + moment_at(motion, t) * motion[body_].spin;
+  }
+
+ private:
+  static std::string owner(const AppliedForce& element) { return fmt::format("applied force '{}'", element.name); }
+  Vec2 force_at(const PlanarMotion& motion, Real t) const {
+    const Vec2 f{fx_(t).value, fy_(t).value};
+    return follows_body_ ? motion[body_].turn(f) : f;
+  }
+  Real moment_at(const PlanarMotion& motion, Real t) const {
+    return torque_(t).value + dot(perp(motion[body_].turn(point_)), force_at(motion, t));
+  }
+
+  int body_;
+  Vec2 point_;
+  bool follows_body_;
+  ScalarFunction fx_, fy_, torque_;
+};
+
+}  // namespace
+
+std::unique_ptr<ForceElement> make_force_element(const SpringDamper& element, Real end) {
+  return std::make_unique<SpringDamperElement>(element, end);
+}
+
+std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& element) {
+  return std::make_unique<TorsionalElement>(element);
+}
+
+std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, Real end) {
+  return std::make_unique<AppliedForceElement>(element, end);
+}
+
+}  // namespace scree

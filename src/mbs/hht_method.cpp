@@ -1,0 +1,116 @@
+#include "mbs/hht_method.hpp"
+
+#include <algorithm>
+
+namespace scree {
+
+namespace {
+
+std::size_t count(int n) { return static_cast<std::size_t>(n); }
+
+// Evaluates everything once so that the terms know their patterns; the values do not matter.
+KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, SystemTerms& terms,
+                         SystemDerivatives& derivatives) {
+  const std::vector<Real> acceleration(count(system.coordinates()), 0), multipliers(count(system.constraints()), 0);
+  terms.applied_force.assign(count(system.coordinates()), 0);
+  terms.constraint.assign(count(system.constraints()), 0);
+  system.evaluate(at, terms);
+  system.differentiate(at, acceleration, multipliers, derivatives);
+  return KktMatrix(terms, derivatives, system.coordinates(), system.constraints());
+}
+
+}  // namespace
+
+HhtMethod::HhtMethod(MechanicalSystem& system, Real hht_alpha, const std::vector<Real>& position,
+                     const std::vector<Real>& velocity)
+    : system_(system),
+      coefficients_(hht_coefficients(hht_alpha)),
+      kkt_(record_pattern(system, {0, position, velocity}, terms_, derivatives_)),
+      inertia_force_(count(system.coordinates())),
+      constraint_force_(count(system.coordinates())),
+      residual_(count(system.coordinates() + system.constraints())) {}
+
+void HhtMethod::predict(const MultibodyState& state, Real t, Real h) {
+  time_ = t;
+  step_ = h;
+  start_position_ = state.position;
+  start_velocity_ = state.velocity;
+  start_acceleration_ = state.acceleration;
+  start_force_ = state.force;
+  position_.resize(state.position.size());
+  velocity_.resize(state.velocity.size());
+  acceleration_ = state.acceleration;
+  multipliers_ = state.multipliers;
+  update_motion();
+}
+
+void HhtMethod::update_motion() {
+  const HhtCoefficients& c = coefficients_;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const Real v = start_velocity_[i], a0 = start_acceleration_[i], a1 = acceleration_[i];
+    position_[i] = start_position_[i] + newmark_displacement(c, step_, v, a0, a1);
+    velocity_[i] = newmark_velocity(c, step_, v, a0, a1);
+  }
+}
+
+void HhtMethod::evaluate_residual() {
+  system_.evaluate({end_time(), position_, velocity_}, terms_);
+  std::fill(inertia_force_.begin(), inertia_force_.end(), 0);
+  std::fill(constraint_force_.begin(), constraint_force_.end(), 0);
+  terms_.mass.multiply(1, acceleration_, inertia_force_);
+  terms_.constraint_jacobian.multiply_transposed(1, multipliers_, constraint_force_);
+  const Real alpha = coefficients_.hht_alpha, scale = 1 / (1 + alpha);
+  const std::size_t n = inertia_force_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    residual_[i] = scale * inertia_force_[i] + constraint_force_[i] - terms_.applied_force[i] +
+                   alpha * scale * start_force_[i];
+  }
+  for (std::size_t j = 0; j < terms_.constraint.size(); ++j) residual_[n + j] = terms_.constraint[j] / position_gain();
+}
+
+void HhtMethod::newton_matrix(std::span<Real> values) {
+  system_.differentiate({end_time(), position_, velocity_}, acceleration_, multipliers_, derivatives_);
+  const Real scale = 1 / (1 + coefficients_.hht_alpha);
+  const KktWeights weights{scale, position_gain(), step_ * coefficients_.newmark_gamma, position_gain() * scale};
+  kkt_.assemble(terms_, derivatives_, weights, values);
+}
+
+void HhtMethod::apply_correction(std::span<const Real> delta) {
+  const std::size_t n = acceleration_.size();
+  for (std::size_t i = 0; i < n; ++i) acceleration_[i] -= delta[i];
+  for (std::size_t j = 0; j < multipliers_.size(); ++j) multipliers_[j] -= delta[n + j];
+  update_motion();
+}
+
+void HhtMethod::close(MultibodyState& state) {
+  evaluate_residual();
+  state.position = position_;
+  state.velocity = velocity_;
+  state.acceleration = acceleration_;
+  state.multipliers = multipliers_;
+  state.applied = terms_.applied_force;
+  state.force = terms_.applied_force;
+  for (std::size_t i = 0; i < state.force.size(); ++i) state.force[i] -= constraint_force_[i];
+}
+
+void HhtMethod::acceleration_system(const MultibodyState& state, Real t, std::span<Real> values,
+                                    std::span<Real> rhs) {
+  const SystemInstant at{t, state.position, state.velocity};
+  system_.evaluate(at, terms_);
+  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  std::vector<Real> acceleration_rhs(terms_.constraint.size());
+  system_.acceleration_rhs(at, acceleration_rhs);
+  std::copy(terms_.applied_force.begin(), terms_.applied_force.end(), rhs.begin());
+  std::copy(acceleration_rhs.begin(), acceleration_rhs.end(), rhs.begin() + system_.coordinates());
+}
+
+void HhtMethod::set_acceleration(std::span<const Real> solution, MultibodyState& state) const {
+  const auto multipliers = solution.begin() + system_.coordinates();
+  state.acceleration.assign(solution.begin(), multipliers);
+  state.multipliers.assign(multipliers, solution.end());
+  state.applied = terms_.applied_force;
+  state.force = terms_.applied_force;
+  terms_.constraint_jacobian.multiply_transposed(-1, state.multipliers, state.force);
+}
+
+}  // namespace scree

@@ -1,0 +1,80 @@
+// HHT-I3 for a constrained mechanical system: coefficients, residual and Newton matrix, no policy.
+// Negrut, Rampalli, Ottarsson, Sajdak, J. Comput. Nonlinear Dyn. 2 (2007); Jung, Jun, Sohn (2013), Eqs. 1-3, 14-17.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mbs/kkt_matrix.hpp"
+#include "mbs/mechanical_system.hpp"
+#include "mbs/multibody.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+// One step from t_n to t_{n+1} = t_n + h. The unknowns are q''_{n+1} and lambda_{n+1}; q and q' follow by Newmark.
+class HhtMethod {
+ public:
+  // position, velocity: any instant at which the system can be evaluated; it gives the matrix its pattern.
+  HhtMethod(MechanicalSystem& system, Real hht_alpha, const std::vector<Real>& position,
+            const std::vector<Real>& velocity);
+
+  const SparsePattern& pattern() const { return kkt_.pattern(); }
+  const HhtCoefficients& coefficients() const { return coefficients_; }
+
+  // Opens a step: q''_{n+1} = q''_n, lambda_{n+1} = lambda_n.
+  void predict(const MultibodyState& state, Real t, Real h);
+
+  // At the current iterate: e1 (Eq. 16) in the first `coordinates` places, e2 (Eq. 17) in the other ones.
+  //   e1 = M q'' / (1 + alpha) + (Phi_q^T lambda - Q)_{n+1} - alpha / (1 + alpha) (Phi_q^T lambda - Q)_n
+  //   e2 = Phi / (beta h^2)
+  void evaluate_residual();
+  const std::vector<Real>& residual() const { return residual_; }
+  // Eqs. 14, 15 at the iterate of the last evaluate_residual(). values: [entries of pattern()].
+  //   A = M / (1 + alpha) - h gamma Q_q' + beta h^2 ((M q'')_q / (1 + alpha) + (Phi_q^T lambda - Q)_q)
+  void newton_matrix(std::span<Real> values);
+  // Subtracts `delta`, the Newton matrix' solution for residual(), from (q'', lambda) and updates q, q'.
+  void apply_correction(std::span<const Real> delta);
+
+  // Evaluates the forces at the current iterate and writes the end of the step into `state`.
+  void close(MultibodyState& state);
+
+  // Acceleration-level system at the state's q, q' and at time t:
+  //   [M, Phi_q^T; Phi_q, 0] (q'', lambda) = (Q, acceleration_rhs).
+  void acceleration_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
+  // Sets q'', lambda from its solution, and the forces that go with them.
+  void set_acceleration(std::span<const Real> solution, MultibodyState& state) const;
+
+  // Change of the position per change of the acceleration, beta h^2 [s^2].
+  Real position_gain() const { return coefficients_.newmark_beta * step_ * step_; }
+  Real end_time() const { return time_ + step_; }
+  Real step() const { return step_; }
+
+  // Of the current iterate.
+  const std::vector<Real>& position() const { return position_; }
+  const std::vector<Real>& velocity() const { return velocity_; }
+  const std::vector<Real>& acceleration() const { return acceleration_; }
+  const std::vector<Real>& multipliers() const { return multipliers_; }
+  // Of the last evaluate_residual().
+  const SystemTerms& terms() const { return terms_; }
+  const std::vector<Real>& inertia_force() const { return inertia_force_; }        // M q''
+  const std::vector<Real>& constraint_force() const { return constraint_force_; }  // Phi_q^T lambda
+  // Of the step's start.
+  const std::vector<Real>& start_acceleration() const { return start_acceleration_; }
+  const std::vector<Real>& start_force() const { return start_force_; }  // Q - Phi_q^T lambda
+
+ private:
+  void update_motion();
+
+  MechanicalSystem& system_;
+  HhtCoefficients coefficients_;
+  SystemTerms terms_;
+  SystemDerivatives derivatives_;
+  KktMatrix kkt_;
+  Real time_ = 0, step_ = 0;
+  std::vector<Real> start_position_, start_velocity_, start_acceleration_, start_force_;
+  std::vector<Real> position_, velocity_, acceleration_, multipliers_;
+  std::vector<Real> inertia_force_, constraint_force_, residual_;
+};
+
+}  // namespace scree

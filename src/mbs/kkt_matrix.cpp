@@ -1,0 +1,78 @@
+#include "mbs/kkt_matrix.hpp"
+
+#include <algorithm>
+
+namespace scree {
+
+namespace {
+
+using Columns = std::vector<std::vector<int>>;  // of every row
+
+void mark(const SparseTerm& term, Columns& columns) {
+  for (std::size_t i = 0; i < term.size(); ++i) columns[static_cast<std::size_t>(term.row(i))].push_back(term.column(i));
+}
+
+SparsePattern compress(Columns& columns) {
+  SparsePattern pattern;
+  pattern.row_start.push_back(0);
+  for (std::vector<int>& row : columns) {
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.row_start.push_back(static_cast<int>(pattern.column.size()));
+  }
+  return pattern;
+}
+
+void scatter(const SparseTerm& term, const std::vector<int>& slots, Real weight, std::span<Real> values) {
+  for (std::size_t i = 0; i < slots.size(); ++i) values[static_cast<std::size_t>(slots[i])] += weight * term.value(i);
+}
+
+}  // namespace
+
+KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates,
+                     int constraints) {
+  Columns columns(static_cast<std::size_t>(coordinates + constraints));
+  for (const SparseTerm* term :
+       {&terms.mass, &derivatives.stiffness, &derivatives.damping, &derivatives.inertia_stiffness}) {
+    mark(*term, columns);
+  }
+  const SparseTerm& jacobian = terms.constraint_jacobian;
+  for (std::size_t i = 0; i < jacobian.size(); ++i) {
+    const int row = coordinates + jacobian.row(i), column = jacobian.column(i);
+    columns[static_cast<std::size_t>(row)].push_back(column);
+    columns[static_cast<std::size_t>(column)].push_back(row);
+  }
+  pattern_ = compress(columns);
+  mass_ = slots_of(terms.mass, 0, false);
+  stiffness_ = slots_of(derivatives.stiffness, 0, false);
+  damping_ = slots_of(derivatives.damping, 0, false);
+  inertia_stiffness_ = slots_of(derivatives.inertia_stiffness, 0, false);
+  jacobian_ = slots_of(jacobian, coordinates, false);
+  jacobian_transposed_ = slots_of(jacobian, coordinates, true);
+}
+
+std::vector<int> KktMatrix::slots_of(const SparseTerm& term, int row_offset, bool transposed) const {
+  std::vector<int> slots(term.size());
+  for (std::size_t i = 0; i < term.size(); ++i) {
+    int row = term.row(i) + row_offset, column = term.column(i);
+    if (transposed) std::swap(row, column);
+    const auto begin = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row)];
+    const auto end = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row) + 1];
+    slots[i] = static_cast<int>(std::lower_bound(begin, end, column) - pattern_.column.begin());
+  }
+  return slots;
+}
+
+void KktMatrix::assemble(const SystemTerms& terms, const SystemDerivatives& derivatives, const KktWeights& weights,
+                         std::span<Real> values) const {
+  std::fill(values.begin(), values.end(), 0);
+  scatter(terms.mass, mass_, weights.mass, values);
+  scatter(derivatives.stiffness, stiffness_, weights.stiffness, values);
+  scatter(derivatives.damping, damping_, weights.damping, values);
+  scatter(derivatives.inertia_stiffness, inertia_stiffness_, weights.inertia_stiffness, values);
+  scatter(terms.constraint_jacobian, jacobian_, 1, values);
+  scatter(terms.constraint_jacobian, jacobian_transposed_, 1, values);
+}
+
+}  // namespace scree

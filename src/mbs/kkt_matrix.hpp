@@ -1,0 +1,41 @@
+// The saddle-point matrix [A, Phi_q^T; Phi_q, 0] in compressed rows, filled through slots found once.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mbs/mechanical_system.hpp"
+
+namespace scree {
+
+// Compressed rows: the columns of row i, in increasing order, are column[row_start[i]] ... column[row_start[i+1]-1].
+struct SparsePattern {
+  std::vector<int> row_start;  // [rows + 1]
+  std::vector<int> column;     // [entries]
+
+  int rows() const { return static_cast<int>(row_start.size()) - 1; }
+};
+
+// A = mass M + stiffness (Phi_q^T lambda - Q)_q + damping (-Q_q') + inertia_stiffness (M q'')_q.
+struct KktWeights {
+  Real mass = 1, stiffness = 0, damping = 0, inertia_stiffness = 0;
+};
+
+class KktMatrix {
+ public:
+  // The terms must have been evaluated once, so that their patterns are known.
+  KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates, int constraints);
+
+  const SparsePattern& pattern() const { return pattern_; }
+  // values: [entries of the pattern]. Cost is linear in the number of contributions.
+  void assemble(const SystemTerms& terms, const SystemDerivatives& derivatives, const KktWeights& weights,
+                std::span<Real> values) const;
+
+ private:
+  std::vector<int> slots_of(const SparseTerm& term, int row_offset, bool transposed) const;
+
+  SparsePattern pattern_;
+  std::vector<int> mass_, stiffness_, damping_, inertia_stiffness_, jacobian_, jacobian_transposed_;
+};
+
+}  // namespace scree

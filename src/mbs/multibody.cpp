@@ -1,0 +1,137 @@
+#include "mbs/multibody.hpp"
+
+#include <utility>
+
+#include "mbs/energy_ledger.hpp"
+#include "mbs/hht_method.hpp"
+#include "mbs/newton_solver.hpp"
+#include "mbs/planar_system.hpp"
+#include "mbs/start_checks.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+namespace {
+
+MultibodyState start_of(const Model& model) {
+  MultibodyState state;
+  for (const Body& body : model.bodies) {
+    state.position.insert(state.position.end(), {body.position.x, body.position.y, body.angle});
+    state.velocity.insert(state.velocity.end(), {body.velocity.x, body.velocity.y, body.angular_velocity});
+  }
+  return state;
+}
+
+const MultibodyState& checked(PlanarSystem& system, const MultibodyState& start) {
+  check_start(system, start.position, start.velocity);
+  return start;
+}
+
+BodyMotion body_motion(const Real* q, const Real* v, Real z) { return {{q[0], q[1], z}, {v[0], v[1], 0}, q[2], v[2]}; }
+
+}  // namespace
+
+struct Multibody::Impl {
+  explicit Impl(const Model& model)
+      : system(model),
+        start(checked(system, start_of(model))),
+        method(system, model.integrator.hht_alpha, start.position, start.velocity),
+        newton(system, method),
+        motion(model.bodies.size()) {}
+
+  void update_motion() {
+    for (std::size_t b = 0; b < motion.size(); ++b) {
+      motion[b] = body_motion(&method.position()[3 * b], &method.velocity()[3 * b], system.model().bodies[b].position.z);
+    }
+  }
+
+  PlanarSystem system;
+  MultibodyState start;  // q, q' of the model
+  HhtMethod method;
+  NewtonSolver newton;
+  std::vector<BodyMotion> motion;
+  MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
+  Real time = 0;       // of the open step's start [s]
+};
+
+Multibody::Multibody(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
+Multibody::~Multibody() = default;
+
+MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
+  MultibodyState state = impl_->start;
+  impl_->system.set_wrenches(wrench);
+  impl_->newton.solve_acceleration(state, 0);
+  return state;
+}
+
+void Multibody::predict(const MultibodyState& state, Real t, Real h) {
+  impl_->time = t;
+  impl_->method.predict(state, t, h);
+  impl_->newton.begin_step();
+  impl_->update_motion();
+}
+
+IterationNorms Multibody::correct(const std::vector<BodyWrench>& wrench) {
+  impl_->system.set_wrenches(wrench);
+  const IterationNorms norms = impl_->newton.iterate();
+  impl_->update_motion();
+  return norms;
+}
+
+Real Multibody::error() const {
+  const HhtMethod& method = impl_->method;
+  const std::vector<Real>&a0 = method.start_acceleration(), &a1 = method.acceleration();
+  const Real length = impl_->system.length_scale();
+  Real largest = 0;
+  for (std::size_t i = 0; i < a0.size(); i += 3) {
+    const Vec3 shift0{a0[i], a0[i + 1], 0}, shift1{a1[i], a1[i + 1], 0}, turn0{0, 0, a0[i + 2]}, turn1{0, 0, a1[i + 2]};
+    for (const Real error : {hht_position_error(method.coefficients(), method.step(), shift0, shift1, length),
+                             hht_position_error(method.coefficients(), method.step(), turn0, turn1, 1)}) {
+      // A comparison that lets NaN through: the step must not pass as exact.
+      if (!(error <= largest)) largest = error;
+    }
+  }
+  return largest;
+}
+
+void Multibody::accept(MultibodyState& state) {
+  Impl& impl = *impl_;
+  impl.method.close(impl.end);
+  book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
+  std::swap(state, impl.end);
+}
+
+const std::vector<BodyMotion>& Multibody::motion() const { return impl_->motion; }
+
+std::vector<BodyMotion> Multibody::motion(const MultibodyState& state, Real tau) const {
+  std::vector<BodyMotion> motion(impl_->motion.size());
+  for (std::size_t b = 0; b < motion.size(); ++b) {
+    Real q[3], v[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Real rate = state.velocity[3 * b + k], acceleration = state.acceleration[3 * b + k];
+      q[k] = state.position[3 * b + k] + tau * rate + tau * tau / 2 * acceleration;
+      v[k] = rate + tau * acceleration;
+    }
+    motion[b] = body_motion(q, v, impl_->system.model().bodies[b].position.z);
+  }
+  return motion;
+}
+
+MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const {
+  return stored_energies(impl_->system, state, t);
+}
+
+std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) const {
+  const auto groups = impl_->system.reactions({t, state.position, state.velocity}, state.multipliers);
+  std::vector<Reaction> reactions;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    reactions.push_back({impl_->system.groups()[i].name, {groups[i].force.x, groups[i].force.y, 0}, groups[i].torque});
+  }
+  return reactions;
+}
+
+int Multibody::coordinates() const { return impl_->system.coordinates(); }
+int Multibody::constraints() const { return impl_->system.constraints(); }
+std::string Multibody::solver_description() const { return impl_->newton.description(); }
+
+}  // namespace scree

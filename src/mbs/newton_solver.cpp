@@ -1,0 +1,89 @@
+#include "mbs/newton_solver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "mbs/start_checks.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kReuseContraction = 1e-2;
+
+}  // namespace
+
+NewtonSolver::NewtonSolver(const MechanicalSystem& system, HhtMethod& method)
+    : system_(system), method_(method), solver_(method.pattern()) {}
+
+void NewtonSolver::begin_step() { first_ = true; }
+
+// e1 over the largest force that takes part, each force times the scale of its coordinate; Phi over the scale of its
+// constraint. e2 itself holds the round-off of Phi over beta h^2, which grows without bound as h shrinks.
+Real NewtonSolver::scaled_residual() const {
+  const std::vector<Real>&residual = method_.residual(), &scale = system_.coordinate_scale();
+  const std::vector<Real>&inertia = method_.inertia_force(), &reaction = method_.constraint_force();
+  Real largest = method_.terms().force_scale, dynamic = 0, kinematic = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    const Real force = std::max({std::abs(inertia[i]), std::abs(reaction[i]), std::abs(method_.start_force()[i])});
+    if (!std::isfinite(residual[i])) {
+      throw SimulationError(fmt::format("mbs_correct, rank 0: the residual of {} is not finite at t = {} s",
+                                        system_.coordinate_name(static_cast<int>(i)), method_.end_time()));
+    }
+    largest = std::max(largest, force * scale[i]);
+    dynamic = std::max(dynamic, std::abs(residual[i]) * scale[i]);
+  }
+  const std::vector<Real>& gap = method_.terms().constraint;
+  for (std::size_t j = 0; j < gap.size(); ++j) {
+    if (!std::isfinite(gap[j])) {
+      throw SimulationError(fmt::format("mbs_correct, rank 0: the residual of {} is not finite at t = {} s",
+                                        system_.constraint_name(static_cast<int>(j)), method_.end_time()));
+    }
+    kinematic = std::max(kinematic, std::abs(gap[j]) / system_.constraint_scale()[j]);
+  }
+  // Without any force the residual is zero as well.
+  return std::max(dynamic / std::max(largest, std::numeric_limits<Real>::min()), kinematic);
+}
+
+Real NewtonSolver::scaled_correction() const {
+  const std::span<const Real> delta = solver_.solution();
+  Real largest = 0;
+  for (std::size_t i = 0; i < system_.coordinate_scale().size(); ++i) {
+    largest = std::max(largest, std::abs(delta[i]) / system_.coordinate_scale()[i]);
+  }
+  return method_.position_gain() * largest;
+}
+
+void NewtonSolver::solve_linear(bool refactor) {
+  if (solver_.solve(refactor)) return;
+  throw SimulationError(fmt::format("mbs_correct, rank 0: the matrix of the multibody system is singular at t = {} s; it "
+                                    "fails at {}",
+                                    method_.end_time(), singular_culprits(system_, method_.pattern(), solver_.values())));
+}
+
+void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {
+  method_.acceleration_system(state, t, solver_.values(), solver_.rhs());
+  solve_linear(true);
+  method_.set_acceleration(solver_.solution(), state);
+}
+
+IterationNorms NewtonSolver::iterate() {
+  method_.evaluate_residual();
+  IterationNorms norms;
+  norms.residual = scaled_residual();
+  const bool refactor = first_ || norms.residual > kReuseContraction * last_residual_;
+  if (refactor) method_.newton_matrix(solver_.values());
+  std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
+  solve_linear(refactor);
+  norms.correction = scaled_correction();
+  method_.apply_correction(solver_.solution());
+  last_residual_ = norms.residual;
+  first_ = false;
+  return norms;
+}
+
+}  // namespace scree

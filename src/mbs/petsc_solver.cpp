@@ -1,0 +1,214 @@
+#include "mbs/petsc_solver.hpp"
+
+#include <fmt/format.h>
+#include <petscksp.h>
+
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "mbs/petsc_session.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr const char* kPrefix = "mbs_";
+
+// Factor packages in the order of their measured speed on chains of bodies.
+constexpr std::array<const char*, 5> kPackages = {MATSOLVERKLU, MATSOLVERSUPERLU, MATSOLVERUMFPACK, MATSOLVERMUMPS,
+                                                  MATSOLVERPETSC};
+
+// The first message of PETSc's current error; its handler reports the innermost function first.
+std::string& petsc_message() {
+  static std::string message;
+  return message;
+}
+
+PetscErrorCode keep_message(MPI_Comm, int, const char*, const char*, PetscErrorCode code, PetscErrorType type,
+                            const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL) petsc_message() = message != nullptr ? message : "no message";
+  return code;
+}
+
+bool failed(PetscErrorCode code) { return static_cast<int>(code) != 0; }
+
+// Codes by which factor packages report a zero pivot; KLU's is the one of any external library.
+bool is_singular(PetscErrorCode code) {
+  return code == PETSC_ERR_LIB || code == PETSC_ERR_MAT_LU_ZRPVT || code == PETSC_ERR_MAT_CH_ZRPVT;
+}
+
+void check(PetscErrorCode code) {
+  if (failed(code)) throw SimulationError(fmt::format("PETSc, rank 0: {}", petsc_message()));
+}
+
+void check_option(PetscErrorCode code) {
+  if (failed(code)) throw InputError(fmt::format("PETSc option: {}", petsc_message()));
+}
+
+bool is_option_name(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && (std::isalpha(static_cast<unsigned char>(word[1])) || word[1] == '-');
+}
+
+}  // namespace
+
+PetscSession::PetscSession(const std::string& program, const std::vector<std::string>& options) {
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    if (!is_option_name(options[i]) && (i == 0 || !is_option_name(options[i - 1]))) {
+      throw InputError(fmt::format("'{}' is not a PETSc option: an option starts with '-', e.g. -mbs_ksp_view", options[i]));
+    }
+  }
+  // A run depends on its deck and its command line, not on files in the user's home; signals belong to the program;
+  // unused options are reported through unused_options().
+  words_ = {program, "-skip_petscrc", "-no_signal_handler", "-options_left", "no"};
+  words_.insert(words_.end(), options.begin(), options.end());
+  for (std::string& word : words_) arguments_.push_back(word.data());
+  arguments_.push_back(nullptr);
+  int count = static_cast<int>(words_.size());
+  char** arguments = arguments_.data();
+  PETSC_COMM_WORLD = MPI_COMM_SELF;
+  if (failed(PetscInitialize(&count, &arguments, nullptr, nullptr))) {
+    throw InputError(fmt::format("PETSc refuses its options: {}", fmt::join(options, " ")));
+  }
+  check(PetscPushErrorHandler(keep_message, nullptr));
+}
+
+PetscSession::~PetscSession() {
+  PetscPopErrorHandler();
+  PetscFinalize();
+}
+
+std::vector<std::string> PetscSession::unused_options() const {
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr;
+  check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::vector<std::string> unused;
+  for (PetscInt i = 0; i < count; ++i) {
+    unused.push_back(fmt::format("-{}{}{}", names[i], values[i] ? " " : "", values[i] ? values[i] : ""));
+  }
+  check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+  return unused;
+}
+
+std::string petsc_version() {
+  PetscInt major = 0, minor = 0, subminor = 0;
+  check(PetscGetVersionNumber(&major, &minor, &subminor, nullptr));
+  return fmt::format("{}.{}.{}", major, minor, subminor);
+}
+
+struct PetscSolver::Impl {
+  explicit Impl(const SparsePattern& sparse_pattern) : pattern(sparse_pattern) {}
+  ~Impl();
+  void create();
+  void choose_package(PC preconditioner);
+  bool is_available(const char* package);
+
+  SparsePattern pattern;
+  std::vector<Real> values, rhs, solution;
+  Mat matrix = nullptr;
+  Vec rhs_vector = nullptr, solution_vector = nullptr;
+  KSP solver = nullptr;
+};
+
+PetscSolver::Impl::~Impl() {
+  KSPDestroy(&solver);
+  VecDestroy(&solution_vector);
+  VecDestroy(&rhs_vector);
+  MatDestroy(&matrix);
+}
+
+bool PetscSolver::Impl::is_available(const char* package) {
+  PetscBool available = PETSC_FALSE;
+  check(MatGetFactorAvailable(matrix, package, MAT_FACTOR_LU, &available));
+  return available == PETSC_TRUE;
+}
+
+// The user's choice is needed before KSPSetFromOptions applies it: PETSc's own LU does not pivot, and the zero block
+// needs rows put in an order with nonzeros on the diagonal, which the other packages do not expect.
+void PetscSolver::Impl::choose_package(PC preconditioner) {
+  std::array<char, 64> chosen{};
+  PetscBool given = PETSC_FALSE;
+  check_option(PetscOptionsGetString(nullptr, kPrefix, "-pc_factor_mat_solver_type", chosen.data(), chosen.size(), &given));
+  std::string package = chosen.data();
+  if (given && !is_available(package.c_str())) {
+    std::string names;
+    for (const char* name : kPackages) {
+      if (is_available(name)) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+    }
+    throw InputError(fmt::format("-{}pc_factor_mat_solver_type {}: this PETSc has no such LU; it has {}", kPrefix,
+                                 package, names));
+  }
+  for (std::size_t i = 0; package.empty() && i < kPackages.size(); ++i) {
+    if (is_available(kPackages[i])) package = kPackages[i];
+  }
+  check(PCFactorSetMatSolverType(preconditioner, package.c_str()));
+  if (package == MATSOLVERPETSC) {
+    check(PCFactorSetMatOrderingType(preconditioner, MATORDERINGNATURAL));
+    check(PCFactorReorderForNonzeroDiagonal(preconditioner, PETSC_DECIDE));
+  }
+}
+
+void PetscSolver::Impl::create() {
+  const PetscInt n = pattern.rows();
+  values.assign(pattern.column.size(), 0);
+  rhs.assign(static_cast<std::size_t>(n), 0);
+  solution.assign(static_cast<std::size_t>(n), 0);
+  // PETSc works in these arrays; nothing is copied.
+  check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, pattern.row_start.data(), pattern.column.data(), values.data(),
+                                  &matrix));
+  check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, rhs.data(), &rhs_vector));
+  check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, solution.data(), &solution_vector));
+  check(KSPCreate(PETSC_COMM_SELF, &solver));
+  check(KSPSetOptionsPrefix(solver, kPrefix));
+  check(KSPSetOperators(solver, matrix, matrix));
+  check(KSPSetType(solver, KSPPREONLY));
+  PC preconditioner = nullptr;
+  check(KSPGetPC(solver, &preconditioner));
+  check(PCSetType(preconditioner, PCLU));
+  choose_package(preconditioner);
+  check_option(KSPSetFromOptions(solver));
+}
+
+PetscSolver::PetscSolver(const SparsePattern& pattern) : impl_(std::make_unique<Impl>(pattern)) { impl_->create(); }
+PetscSolver::~PetscSolver() = default;
+
+std::span<Real> PetscSolver::values() { return impl_->values; }
+std::span<Real> PetscSolver::rhs() { return impl_->rhs; }
+std::span<const Real> PetscSolver::solution() const { return impl_->solution; }
+
+bool PetscSolver::solve(bool refactor) {
+  // Taking and returning an array tells PETSc that its contents changed.
+  Real* array = nullptr;
+  if (refactor) {
+    check(MatSeqAIJGetArrayWrite(impl_->matrix, &array));
+    check(MatSeqAIJRestoreArrayWrite(impl_->matrix, &array));
+  }
+  check(VecGetArrayWrite(impl_->rhs_vector, &array));
+  check(VecRestoreArrayWrite(impl_->rhs_vector, &array));
+  const PetscErrorCode factored = KSPSetUp(impl_->solver);
+  if (is_singular(factored)) return false;
+  check(factored);
+  check(KSPSolve(impl_->solver, impl_->rhs_vector, impl_->solution_vector));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(impl_->solver, &reason));
+  bool finite = true;
+  for (const Real x : impl_->solution) finite = finite && std::isfinite(x);
+  return reason > 0 && finite;
+}
+
+std::string PetscSolver::description() const {
+  KSPType method = nullptr;
+  PCType preconditioner_type = nullptr;
+  PC preconditioner = nullptr;
+  check(KSPGetType(impl_->solver, &method));
+  check(KSPGetPC(impl_->solver, &preconditioner));
+  check(PCGetType(preconditioner, &preconditioner_type));
+  std::string text = fmt::format("petsc {}, {} + {}", petsc_version(), method, preconditioner_type);
+  MatSolverType package = nullptr;
+  if (std::string(preconditioner_type) == PCLU) check(PCFactorGetMatSolverType(preconditioner, &package));
+  if (package != nullptr) text += fmt::format(" ({})", package);
+  return text;
+}
+
+}  // namespace scree

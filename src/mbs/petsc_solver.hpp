@@ -1,0 +1,39 @@
+// Sparse direct solution of the saddle-point systems through PETSc.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "base/types.hpp"
+#include "mbs/kkt_matrix.hpp"
+
+namespace scree {
+
+// KSP preonly + LU, overruled by PETSc options with the prefix mbs_. The factor package is the first one that this
+// PETSc has of: KLU, SuperLU, UMFPACK, MUMPS, PETSc's own. The symbolic factorization is done once.
+class PetscSolver {
+ public:
+  // Needs a PetscSession. Throws InputError on an mbs_ option that PETSc refuses.
+  explicit PetscSolver(const SparsePattern& pattern);
+  ~PetscSolver();
+  PetscSolver(const PetscSolver&) = delete;
+  PetscSolver& operator=(const PetscSolver&) = delete;
+
+  std::span<Real> values();           // of the matrix, in the pattern's order
+  std::span<Real> rhs();              // [rows]
+  std::span<const Real> solution() const;  // [rows]
+
+  // Solves for rhs(). refactor: values() changed since the last call; otherwise its factors are used again. False: the
+  // matrix is singular, or the solution is not finite. Throws SimulationError on any other failure of PETSc.
+  bool solve(bool refactor);
+
+  // e.g. "petsc 3.18.5, preonly + lu (klu)"
+  std::string description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace scree

@@ -1,0 +1,103 @@
+// Kinematics of planar rigid bodies: two-vectors, poses, points fixed to bodies, and pairs of such points.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/types.hpp"
+#include "model/bodies.hpp"
+
+namespace scree {
+
+struct Vec2 {
+  Real x = 0, y = 0;
+};
+
+inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
+inline Vec2 operator*(Real s, Vec2 a) { return {s * a.x, s * a.y}; }
+inline Real dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
+inline Vec2 perp(Vec2 a) { return {-a.y, a.x}; }  // turned by +90 degrees
+inline Real norm(Vec2 a) { return std::sqrt(dot(a, a)); }
+inline Vec2 planar(Vec3 a) { return {a.x, a.y}; }
+
+// Motion of one body; the ground's is the default. Position [m], velocity [m/s], angle [rad], spin [rad/s].
+struct PlanarPose {
+  Vec2 position, velocity;
+  Real angle = 0, spin = 0, cosine = 1, sine = 0;
+
+  // A s: a body-fixed vector in the global frame.
+  Vec2 turn(Vec2 s) const { return {cosine * s.x - sine * s.y, sine * s.x + cosine * s.y}; }
+};
+
+// Poses of all bodies at one instant; index kGround is the ground.
+class PlanarMotion {
+ public:
+  explicit PlanarMotion(int bodies) : poses_(static_cast<std::size_t>(bodies) + 1) {}
+  // position, velocity: (x, y, angle) and rates, body by body.
+  void set(const std::vector<Real>& position, const std::vector<Real>& velocity) {
+    for (std::size_t i = 0; i + 1 < poses_.size(); ++i) {
+      const Real *q = &position[3 * i], *v = &velocity[3 * i];
+      poses_[i + 1] = {{q[0], q[1]}, {v[0], v[1]}, q[2], v[2], std::cos(q[2]), std::sin(q[2])};
+    }
+  }
+  const PlanarPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }
+
+ private:
+  std::vector<PlanarPose> poses_;  // the ground first
+};
+
+// Two bodies and a point fixed to each.
+struct PointPair {
+  int body[2] = {kGround, kGround};
+  Vec2 point[2];  // s_i, in the body frames [m]
+};
+
+// The pair at one instant: a_i = A_i s_i, d = P_2 - P_1 with P_i = r_i + a_i, and its rate.
+struct PairGeometry {
+  Vec2 arm[2];      // a_i [m]
+  Vec2 gap;         // d [m]
+  Vec2 gap_rate;    // d' = v_2 + w_2 perp(a_2) - v_1 - w_1 perp(a_1) [m/s]
+  Vec2 gap_second;  // the part of d'' without accelerations: w_1^2 a_1 - w_2^2 a_2 [m/s^2]
+};
+
+inline PairGeometry pair_geometry(const PointPair& pair, const PlanarMotion& motion) {
+  const PlanarPose &one = motion[pair.body[0]], &two = motion[pair.body[1]];
+  PairGeometry g;
+  g.arm[0] = one.turn(pair.point[0]);
+  g.arm[1] = two.turn(pair.point[1]);
+  g.gap = (two.position + g.arm[1]) - (one.position + g.arm[0]);
+  g.gap_rate = two.velocity + two.spin * perp(g.arm[1]) - (one.velocity + one.spin * perp(g.arm[0]));
+  g.gap_second = one.spin * one.spin * g.arm[0] - two.spin * two.spin * g.arm[1];
+  return g;
+}
+
+// Derivative of w.d, w held fixed, by the pair's six coordinates: [-w, -w.perp(a_1), w, w.perp(a_2)].
+inline std::array<Real, 6> gap_gradient(const PairGeometry& g, Vec2 w) {
+  return {-w.x, -w.y, -dot(w, perp(g.arm[0])), w.x, w.y, dot(w, perp(g.arm[1]))};
+}
+
+// The six coordinates (x, y, angle of body 1, then of body 2) of a pair in the system's vector of coordinates.
+// -1: not a coordinate, because the body is the ground or because nothing can depend on it.
+using PairCoordinates = std::array<int, 6>;
+
+inline PairCoordinates pair_coordinates(const int (&body)[2]) {
+  PairCoordinates index;
+  for (int k = 0; k < 6; ++k) {
+    const int b = body[k / 3];
+    index[static_cast<std::size_t>(k)] = b == kGround ? -1 : 3 * b + k % 3;
+  }
+  return index;
+}
+
+// Leaves out the angle of a body whose point is its centre: that point does not move with it.
+inline PairCoordinates point_coordinates(const PointPair& pair) {
+  PairCoordinates index = pair_coordinates(pair.body);
+  for (int i = 0; i < 2; ++i) {
+    if (pair.point[i].x == 0 && pair.point[i].y == 0) index[static_cast<std::size_t>(3 * i + 2)] = -1;
+  }
+  return index;
+}
+
+}  // namespace scree

@@ -1,0 +1,251 @@
+#include "mbs/planar_system.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace scree {
+
+namespace {
+
+// Positions of size 1 carry round-off of 1e-16; a force of stiffness times 1e-6 of the length scale stays far above
+// it, and a residual of 1e-8 of that force moves a body by 1e-14 of the length scale.
+constexpr Real kElasticFloor = 1e-6;
+
+// The planar part (x, y, rz) of a packed 6x6 block.
+constexpr int kPlanarRows[3] = {0, 1, 5};
+
+void add_planar_block(const std::array<Real, 21>& packed, int body, SparseTerm& out) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const int row = kPlanarRows[std::min(i, j)], column = kPlanarRows[std::max(i, j)];
+      out.add(3 * body + i, 3 * body + j, packed[static_cast<std::size_t>(packed6(row, column))]);
+    }
+  }
+}
+
+PointPair point_pair(const Joint& joint) {
+  return {{joint.body[0], joint.body[1]}, {planar(joint.point[0]), planar(joint.point[1])}};
+}
+
+}  // namespace
+
+PlanarSystem::PlanarSystem(const Model& model)
+    : model_(model),
+      motion_(static_cast<int>(model.bodies.size())),
+      scratch_(static_cast<int>(model.bodies.size())),
+      wrench_(model.bodies.size()) {
+  find_length_scale();
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    coordinate_scale_.insert(coordinate_scale_.end(), {length_scale_, length_scale_, 1});
+  }
+  std::vector<bool> driven(model.joints.size(), false);
+  for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) add_joint(model.joints[i], driven[i]);
+  for (const Driver& driver : model.drivers) add_driver(driver);
+  for (const SpringDamper& e : model.spring_dampers) elements_.push_back(make_force_element(e, model.time.end));
+  for (const TorsionalSpringDamper& e : model.torsional_spring_dampers) elements_.push_back(make_force_element(e));
+  for (const AppliedForce& e : model.applied_forces) elements_.push_back(make_force_element(e, model.time.end));
+  for (const auto& element : elements_) {
+    elastic_floor_ = std::max(elastic_floor_, kElasticFloor * element->elastic_scale(length_scale_));
+  }
+}
+
+void PlanarSystem::find_length_scale() {
+  Real radius = 0, reach = 0;
+  for (const Body& body : model_.bodies) {
+    for (const Shape& shape : body.shapes) radius = std::max(radius, shape.radius);
+  }
+  const auto add_point = [&](int body, Vec3 point) {
+    if (body != kGround) reach = std::max(reach, norm(planar(point)));
+  };
+  for (int i = 0; i < 2; ++i) {
+    for (const Joint& joint : model_.joints) add_point(joint.body[i], joint.point[i]);
+    for (const SpringDamper& element : model_.spring_dampers) add_point(element.body[i], element.point[i]);
+  }
+  for (const AppliedForce& element : model_.applied_forces) add_point(element.body, element.point);
+  length_scale_ = radius > 0 ? radius : reach > 0 ? reach : 1;
+}
+
+// Revolute: the points coincide. Fixed: and the angle. Translational: body 2's point has no displacement across the
+// axis, and the angle. Distance: the length, unless a driver prescribes it.
+void PlanarSystem::add_joint(const Joint& joint, bool driven) {
+  const PointPair pair = point_pair(joint);
+  std::vector<std::unique_ptr<Constraint>> parts;
+  switch (joint.kind) {
+    case JointKind::revolute:
+      parts.push_back(coincidence_constraint(pair));
+      break;
+    case JointKind::fixed:
+      parts.push_back(coincidence_constraint(pair));
+      parts.push_back(angle_constraint(joint.body, ScalarFunction(joint.angle_offset)));
+      break;
+    case JointKind::translational:
+      parts.push_back(axis_constraint(pair, perp(planar(joint.axis)), ScalarFunction(0)));
+      parts.push_back(angle_constraint(joint.body, ScalarFunction(joint.angle_offset)));
+      break;
+    case JointKind::distance:
+      if (!(joint.distance > 0)) {
+        throw InputError(fmt::format("joint '{}': distance {} m is not allowed, it must be positive", joint.name,
+                                     joint.distance));
+      }
+      if (!driven) parts.push_back(length_constraint(pair, ScalarFunction(joint.distance)));
+      break;
+  }
+  add_group(fmt::format("joint '{}'", joint.name), joint.name, std::move(parts));
+}
+
+void PlanarSystem::add_driver(const Driver& driver) {
+  const Joint& joint = model_.joints[static_cast<std::size_t>(driver.joint)];
+  const std::string title = fmt::format("driver '{}'", driver.name);
+  const ScalarFunction motion(driver.motion, title, model_.time.end);
+  std::vector<std::unique_ptr<Constraint>> parts;
+  switch (joint.kind) {
+    case JointKind::revolute:
+      parts.push_back(angle_constraint(joint.body, motion));
+      break;
+    case JointKind::translational:
+      parts.push_back(axis_constraint(point_pair(joint), planar(joint.axis), motion));
+      break;
+    case JointKind::distance:
+      parts.push_back(length_constraint(point_pair(joint), motion));
+      break;
+    case JointKind::fixed:
+      throw InputError(fmt::format("{}: joint '{}' is fixed and has nothing to drive; allowed are revolute, "
+                                   "translational and distance joints",
+                                   title, joint.name));
+  }
+  add_group(title, driver.name, std::move(parts));
+}
+
+void PlanarSystem::add_group(const std::string& title, const std::string& name,
+                             std::vector<std::unique_ptr<Constraint>> parts) {
+  ConstraintGroup group{title, name, static_cast<int>(constraints_.size()), 0, constraints(), 0};
+  for (std::unique_ptr<Constraint>& part : parts) {
+    first_row_.push_back(constraints());
+    for (int row = 0; row < part->rows(); ++row) {
+      is_angle_.push_back(part->is_angle());
+      constraint_scale_.push_back(part->is_angle() ? 1 : length_scale_);
+      group_.push_back(static_cast<int>(groups_.size()));
+    }
+    constraints_.push_back(std::move(part));
+  }
+  group.end = static_cast<int>(constraints_.size());
+  group.end_row = constraints();
+  groups_.push_back(std::move(group));
+}
+
+void PlanarSystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
+  motion_.set(at.position, at.velocity);
+  terms.mass.begin();
+  terms.force_scale = elastic_floor_;
+  for (int b = 0; b < bodies(); ++b) {
+    const Body& body = model_.bodies[static_cast<std::size_t>(b)];
+    Real* force = &terms.applied_force[static_cast<std::size_t>(3 * b)];
+    force[0] = body.mass * model_.gravity.x;
+    force[1] = body.mass * model_.gravity.y;
+    force[2] = 0;
+    terms.mass.add(3 * b, 3 * b, body.mass);
+    terms.mass.add(3 * b + 1, 3 * b + 1, body.mass);
+    terms.mass.add(3 * b + 2, 3 * b + 2, body.inertia);
+    terms.force_scale = std::max(terms.force_scale, length_scale_ * body.mass * norm(planar(model_.gravity)));
+  }
+  for (const auto& element : elements_) {
+    const Real size = element->add_force(motion_, at.time, length_scale_, terms.applied_force);
+    terms.force_scale = std::max(terms.force_scale, size);
+  }
+  add_contact(terms);
+  terms.constraint_jacobian.begin();
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->value(motion_, at.time, &terms.constraint[static_cast<std::size_t>(first_row_[i])]);
+    constraints_[i]->jacobian(motion_, first_row_[i], terms.constraint_jacobian);
+  }
+}
+
+void PlanarSystem::add_contact(SystemTerms& terms) const {
+  for (std::size_t b = 0; b < wrench_.size(); ++b) {
+    const BodyWrench& wrench = wrench_[b];
+    Real* force = &terms.applied_force[3 * b];
+    force[0] += wrench.force.x;
+    force[1] += wrench.force.y;
+    force[2] += wrench.torque.z;
+    const Real stiffness = std::max(wrench.stiffness[packed6(0, 0)], wrench.stiffness[packed6(1, 1)]);
+    const Real size = length_scale_ * std::max(norm(wrench.force), kElasticFloor * stiffness * length_scale_);
+    terms.force_scale = std::max(terms.force_scale, size);
+  }
+}
+
+void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real>&, const std::vector<Real>& multipliers,
+                                 SystemDerivatives& derivatives) {
+  derivatives.stiffness.begin();
+  derivatives.damping.begin();
+  for (const auto& element : elements_) {
+    element->add_derivatives(motion_, at.time, derivatives.stiffness, derivatives.damping);
+  }
+  for (int b = 0; b < bodies(); ++b) {
+    if (model_.bodies[static_cast<std::size_t>(b)].shapes.empty()) continue;
+    add_planar_block(wrench_[static_cast<std::size_t>(b)].stiffness, b, derivatives.stiffness);
+    add_planar_block(wrench_[static_cast<std::size_t>(b)].damping, b, derivatives.damping);
+  }
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->hessian(motion_, &multipliers[static_cast<std::size_t>(first_row_[i])], derivatives.stiffness);
+  }
+}
+
+void PlanarSystem::velocity_rhs(const SystemInstant& at, std::vector<Real>& rhs) const {
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->velocity_rhs(at.time, &rhs[static_cast<std::size_t>(first_row_[i])]);
+  }
+}
+
+void PlanarSystem::acceleration_rhs(const SystemInstant& at, std::vector<Real>& rhs) const {
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->acceleration_rhs(motion_, at.time, &rhs[static_cast<std::size_t>(first_row_[i])]);
+  }
+}
+
+std::string PlanarSystem::coordinate_name(int coordinate) const {
+  const std::size_t body = static_cast<std::size_t>(coordinate / 3);
+  return fmt::format("body '{}' (id {})", model_.bodies[body].name, body);
+}
+
+std::string PlanarSystem::constraint_name(int constraint) const {
+  return groups_[static_cast<std::size_t>(group_[static_cast<std::size_t>(constraint)])].title;
+}
+
+Powers PlanarSystem::powers(const SystemInstant& at, const std::vector<Real>& multipliers) {
+  scratch_.set(at.position, at.velocity);
+  Powers powers;
+  for (const auto& element : elements_) element->add_powers(scratch_, at.time, powers);
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    powers.drivers += constraints_[i]->power(at.time, &multipliers[static_cast<std::size_t>(first_row_[i])]);
+  }
+  return powers;
+}
+
+Real PlanarSystem::elastic_energy(const SystemInstant& at) const {
+  PlanarMotion motion(bodies());
+  motion.set(at.position, at.velocity);
+  Real energy = 0;
+  for (const auto& element : elements_) energy += element->elastic_energy(motion);
+  return energy;
+}
+
+std::vector<PlanarSystem::GroupReaction> PlanarSystem::reactions(const SystemInstant& at,
+                                                                 const std::vector<Real>& multipliers) const {
+  PlanarMotion motion(bodies());
+  motion.set(at.position, at.velocity);
+  std::vector<GroupReaction> reactions(groups_.size());
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    for (int i = groups_[k].first; i < groups_[k].end; ++i) {
+      const Real* lambda = &multipliers[static_cast<std::size_t>(first_row_[static_cast<std::size_t>(i)])];
+      constraints_[static_cast<std::size_t>(i)]->add_reaction(motion, lambda, reactions[k].force, reactions[k].torque);
+    }
+  }
+  return reactions;
+}
+
+}  // namespace scree

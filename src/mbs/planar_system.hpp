@@ -1,0 +1,87 @@
+// Planar rigid bodies with joints, drivers, force elements and contact wrenches as a MechanicalSystem.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mbs/constraints.hpp"
+#include "mbs/force_elements.hpp"
+#include "mbs/mechanical_system.hpp"
+#include "mbs/planar_motion.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// A joint or a driver and its rows of Phi.
+struct ConstraintGroup {
+  std::string title;  // "joint 'pin'", "driver 'crank'"
+  std::string name;   // "pin"
+  int first = 0, end = 0;          // of the system's constraint objects
+  int first_row = 0, end_row = 0;  // of Phi
+};
+
+// Coordinates: x, y [m] and angle [rad] of every body, in the model's order. Rows of Phi: joints, then drivers.
+class PlanarSystem final : public MechanicalSystem {
+ public:
+  // The model must outlive the system. Throws InputError naming the driver or element that is refused.
+  explicit PlanarSystem(const Model& model);
+
+  int coordinates() const override { return 3 * bodies(); }
+  int constraints() const override { return static_cast<int>(constraint_scale_.size()); }
+  void evaluate(const SystemInstant& at, SystemTerms& terms) override;
+  void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration,
+                     const std::vector<Real>& multipliers, SystemDerivatives& derivatives) override;
+  void velocity_rhs(const SystemInstant& at, std::vector<Real>& rhs) const override;
+  void acceleration_rhs(const SystemInstant& at, std::vector<Real>& rhs) const override;
+  const std::vector<Real>& coordinate_scale() const override { return coordinate_scale_; }
+  const std::vector<Real>& constraint_scale() const override { return constraint_scale_; }
+  std::string coordinate_name(int coordinate) const override;
+  std::string constraint_name(int constraint) const override;
+
+  // Wrenches that the next evaluate() and differentiate() use, one per body; the model starts without any.
+  void set_wrenches(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
+
+  const Model& model() const { return model_; }
+  int bodies() const { return static_cast<int>(model_.bodies.size()); }
+  // Characteristic length L [m]: the largest radius of a body's shape; without shapes the largest distance of a joint
+  // or force element from the centre of its body; without these 1 m.
+  Real length_scale() const { return length_scale_; }
+  const std::vector<ConstraintGroup>& groups() const { return groups_; }
+  // C of one row is an angle [rad], not a length [m].
+  bool is_angle(int row) const { return is_angle_[static_cast<std::size_t>(row)]; }
+
+  // At any instant, from scratch.
+  Powers powers(const SystemInstant& at, const std::vector<Real>& multipliers);
+  Real elastic_energy(const SystemInstant& at) const;
+  // Force [N] on body 2 of the group at its joint point and torque about that point [N m].
+  struct GroupReaction {
+    Vec2 force;
+    Real torque = 0;
+  };
+  std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
+
+ private:
+  void find_length_scale();
+  void add_joint(const Joint& joint, bool driven);
+  void add_driver(const Driver& driver);
+  void add_group(const std::string& title, const std::string& name, std::vector<std::unique_ptr<Constraint>> parts);
+  void add_contact(SystemTerms& terms) const;
+
+  const Model& model_;
+  Real length_scale_ = 1;
+  Real elastic_floor_ = 0;  // see SystemTerms::force_scale [J]
+  PlanarMotion motion_;     // of the last evaluate()
+  PlanarMotion scratch_;
+  std::vector<BodyWrench> wrench_;
+  std::vector<std::unique_ptr<Constraint>> constraints_;
+  std::vector<int> first_row_;  // of every constraint object
+  std::vector<bool> is_angle_;  // of every row
+  std::vector<int> group_;      // of every row
+  std::vector<ConstraintGroup> groups_;
+  std::vector<std::unique_ptr<ForceElement>> elements_;
+  std::vector<Real> coordinate_scale_, constraint_scale_;
+};
+
+}  // namespace scree

@@ -1,0 +1,55 @@
+// A sparse matrix given as a sequence of contributions that is the same in every evaluation.
+#pragma once
+
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+// Filled by begin() and add() in a fixed order. The first filling records where the entries are, later ones only
+// replace the values: pattern and values come from the same code and cannot disagree. Equal positions add up.
+class SparseTerm {
+ public:
+  void begin() {
+    recording_ = values_.empty();
+    cursor_ = 0;
+  }
+  // row, column: from 0; an entry with a negative one (the ground, a structural zero) is left out.
+  void add(int row, int column, Real value) {
+    if (row < 0 || column < 0) return;
+    if (recording_) {
+      rows_.push_back(row);
+      columns_.push_back(column);
+      values_.push_back(value);
+    } else {
+      values_[cursor_++] = value;
+    }
+  }
+
+  std::size_t size() const { return values_.size(); }
+  int row(std::size_t i) const { return rows_[i]; }
+  int column(std::size_t i) const { return columns_[i]; }
+  Real value(std::size_t i) const { return values_[i]; }
+
+  // y += scale A x
+  void multiply(Real scale, const std::vector<Real>& x, std::vector<Real>& y) const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      y[static_cast<std::size_t>(rows_[i])] += scale * values_[i] * x[static_cast<std::size_t>(columns_[i])];
+    }
+  }
+  // y += scale A^T x
+  void multiply_transposed(Real scale, const std::vector<Real>& x, std::vector<Real>& y) const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      y[static_cast<std::size_t>(columns_[i])] += scale * values_[i] * x[static_cast<std::size_t>(rows_[i])];
+    }
+  }
+
+ private:
+  std::vector<int> rows_, columns_;
+  std::vector<Real> values_;
+  std::size_t cursor_ = 0;
+  bool recording_ = true;
+};
+
+}  // namespace scree

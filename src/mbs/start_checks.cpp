@@ -1,0 +1,121 @@
+#include "mbs/start_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "mbs/rank_check.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kPositionGap = 1e-10;  // of the constraint's scale
+constexpr Real kVelocityGap = 1e-8;   // of the largest velocity plus the constraint's scale per second
+constexpr std::size_t kNamesShown = 8;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// Names without repetition, shortened to the first few.
+std::string list_names(const std::vector<std::string>& names) {
+  std::vector<std::string> once;
+  for (const std::string& name : names) {
+    if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+  }
+  const std::size_t shown = std::min(once.size(), kNamesShown);
+  std::string text = fmt::format("{}", fmt::join(once.begin(), once.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  if (once.size() > shown) text += fmt::format(" and {} more", once.size() - shown);
+  return text;
+}
+
+// A group's gap [m, rad], or its rate with per = "/s", as the length of its length rows and of its angle rows.
+void check_rows(const PlanarSystem& system, const ConstraintGroup& group, const std::vector<Real>& gap, Real limit,
+                const char* what, const char* per) {
+  for (const bool angle : {false, true}) {
+    Real square = 0, scale = 1;
+    for (int row = group.first_row; row < group.end_row; ++row) {
+      if (system.is_angle(row) != angle) continue;
+      square += gap[at(row)] * gap[at(row)];
+      scale = system.constraint_scale()[at(row)];
+    }
+    const Real size = std::sqrt(square);
+    if (size <= limit * scale) continue;
+    throw InputError(fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what, size, angle ? "rad" : "m",
+                                 per, limit * scale));
+  }
+}
+
+// The direction of a spring-damper or a distance is not defined where its points coincide.
+void check_directions(const Model& model, const PlanarMotion& motion) {
+  const auto check = [&](const int(&body)[2], const Vec3(&point)[2], const char* kind, const std::string& name) {
+    const PointPair pair{{body[0], body[1]}, {planar(point[0]), planar(point[1])}};
+    if (norm(pair_geometry(pair, motion).gap) > 0) return;
+    throw InputError(fmt::format("{} '{}': its two points coincide at t = 0, so it has no direction", kind, name));
+  };
+  for (const SpringDamper& element : model.spring_dampers) {
+    check(element.body, element.point, "spring-damper", element.name);
+  }
+  for (const Joint& joint : model.joints) {
+    if (joint.kind == JointKind::distance) check(joint.body, joint.point, "joint", joint.name);
+  }
+}
+
+void check_redundancy(const PlanarSystem& system, const SparseTerm& jacobian) {
+  std::vector<MatrixEntry> transposed;
+  for (std::size_t i = 0; i < jacobian.size(); ++i) {
+    const Real scale = system.coordinate_scale()[at(jacobian.column(i))];
+    transposed.push_back({jacobian.column(i), jacobian.row(i), jacobian.value(i) * scale});
+  }
+  const std::vector<int> rows = dependent_columns(system.coordinates(), system.constraints(), transposed);
+  if (rows.empty()) return;
+  std::vector<std::string> names;
+  for (const int row : rows) names.push_back(system.constraint_name(row));
+  throw InputError(fmt::format("redundant constraints: {} fix the same motion more than once; remove or change one",
+                               list_names(names)));
+}
+
+}  // namespace
+
+void check_start(PlanarSystem& system, const std::vector<Real>& position, const std::vector<Real>& velocity) {
+  const SystemInstant start{0, position, velocity};
+  PlanarMotion motion(system.bodies());
+  motion.set(position, velocity);
+  check_directions(system.model(), motion);
+  SystemTerms terms;
+  terms.applied_force.assign(at(system.coordinates()), 0);
+  terms.constraint.assign(at(system.constraints()), 0);
+  system.evaluate(start, terms);
+  std::vector<Real> gap_rate(at(system.constraints()), 0);
+  system.velocity_rhs(start, gap_rate);
+  for (Real& rate : gap_rate) rate = -rate;
+  terms.constraint_jacobian.multiply(1, velocity, gap_rate);
+  Real fastest = 0;
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    fastest = std::max(fastest, std::abs(velocity[i]) / system.coordinate_scale()[i]);
+  }
+  for (const ConstraintGroup& group : system.groups()) {
+    check_rows(system, group, terms.constraint, kPositionGap, "its two sides do not meet at t = 0, they miss by", "");
+    check_rows(system, group, gap_rate, kVelocityGap * (1 + fastest), "the velocities at t = 0 contradict it by", "/s");
+  }
+  check_redundancy(system, terms.constraint_jacobian);
+}
+
+std::string singular_culprits(const MechanicalSystem& system, const SparsePattern& pattern,
+                              std::span<const Real> values) {
+  std::vector<MatrixEntry> entries;
+  for (int row = 0; row < pattern.rows(); ++row) {
+    for (int k = pattern.row_start[at(row)]; k < pattern.row_start[at(row) + 1]; ++k) {
+      entries.push_back({row, pattern.column[at(k)], values[at(k)]});
+    }
+  }
+  std::vector<std::string> names;
+  for (const int column : dependent_columns(pattern.rows(), pattern.rows(), entries)) {
+    const int constraint = column - system.coordinates();
+    names.push_back(constraint < 0 ? system.coordinate_name(column) : system.constraint_name(constraint));
+  }
+  return names.empty() ? "no single joint or body" : list_names(names);
+}
+
+}  // namespace scree

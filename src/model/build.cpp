@@ -1,0 +1,160 @@
+#include "model/build.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/build_parts.hpp"
+
+namespace scree {
+
+namespace {
+
+// One side of the space; axis 0, 1, 2.
+Boundary boundary_of(const DeckTable& space, const std::string& key) {
+  const std::string& text = space.text(key);
+  if (text == "wall") return Boundary::wall;
+  return text == "periodic" ? Boundary::periodic : Boundary::open;
+}
+
+constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+
+void build_boundaries(const DeckTable& table, Space& space) {
+  for (int side = 0; side < kSides; ++side) space.boundary[side] = boundary_of(table, kSideNames[side]);
+  for (int side = kXMin; side < kSides; side += 2) {
+    const bool first = space.boundary[side] == Boundary::periodic;
+    const bool second = space.boundary[side + 1] == Boundary::periodic;
+    if (first == second) continue;
+    const int other = first ? side + 1 : side;
+    table.fail(kSideNames[first ? side : side + 1],
+               fmt::format("periodic sides come in pairs; {} must be \"periodic\" too", kSideNames[other]));
+  }
+  for (int side = kZMin; side <= kZMax && space.dimension == 2; ++side) {
+    if (space.boundary[side] != Boundary::open)
+      table.fail(kSideNames[side], "a space of dimension 2 has no z sides");
+  }
+}
+
+// The plane of a side of the space.
+Wall side_wall(const Space& space, int side) {
+  Wall wall{kSideNames[side], side % 2 == 0 ? space.min : space.max, {}, space.wall_material};
+  const Real sign = side % 2 == 0 ? 1 : -1;
+  if (side / 2 == 0) wall.normal.x = sign;
+  if (side / 2 == 1) wall.normal.y = sign;
+  if (side / 2 == 2) wall.normal.z = sign;
+  return wall;
+}
+
+}  // namespace
+
+Model build_model(const Deck& deck, Log& log) {
+  const DeckTable& root = deck.root;
+  Model model;
+  ModelNames names;
+  model.title = root.text("title");
+  model.gravity = root.vector("gravity");
+  build_materials(root, model, names);
+  build_space(root, names, model);
+  build_time(root, model);
+  build_bodies(root, model, names);
+  build_joints(root, model, names);
+  build_force_elements(root, model, names);
+  build_particles(root, model, names);
+  build_contact(root, model, names);
+  build_output(root, names, model);
+  check_start_positions(root, model, log);
+  check_steps(root, model, log);
+  return model;
+}
+
+void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
+  const DeckTable& table = deck.table("space");
+  Space& space = model.space;
+  space.dimension = static_cast<int>(table.integer("dimension"));
+  space.min = table.vector("min");
+  space.max = table.vector("max");
+  const Vec3 extent = space.max - space.min;
+  if (!(extent.x > 0) || !(extent.y > 0) || (space.dimension == 3 && !(extent.z > 0))) {
+    table.fail("max", "must be larger than space.min in every component");
+  }
+  build_boundaries(table, space);
+  const std::string& leaving = table.text("leaving");
+  space.leaving = leaving == "remove"  ? Leaving::remove
+                  : leaving == "drift" ? Leaving::drift
+                                       : Leaving::error;
+  for (const DeckTable& entry : deck.tables("walls")) {
+    const Vec3 normal = entry.vector("normal");
+    if (norm(normal) == 0) entry.fail("normal", "must not be 0");
+    model.walls.push_back({entry.text("name"), entry.vector("point"), (1 / norm(normal)) * normal,
+                           find_material(names, entry, "material")});
+  }
+  const bool walled = std::count(space.boundary.begin(), space.boundary.end(), Boundary::wall) > 0;
+  if (walled || table.has("wall_material"))
+    space.wall_material = find_material(names, table, "wall_material");
+  for (int side = 0; side < kSides; ++side) {
+    if (space.boundary[side] == Boundary::wall) model.walls.push_back(side_wall(space, side));
+  }
+}
+
+void build_time(const DeckTable& deck, Model& model) {
+  const DeckTable& table = deck.table("time");
+  TimeControl& time = model.time;
+  time.end = table.real("end");
+  time.step = table.real("step");
+  time.control = table.text("control") == "adaptive" ? StepControl::adaptive : StepControl::fixed;
+  const bool adaptive = time.control == StepControl::adaptive;
+  time.min_step = table.has("min_step") ? table.real("min_step") : time.step / 1e6;
+  time.max_step = adaptive ? std::max(time.step, time.end / 100) : time.step;
+  if (table.has("max_step")) time.max_step = table.real("max_step");
+  time.tolerance = table.real("tolerance");
+  if (time.min_step > time.step)
+    table.fail("min_step", fmt::format("must be at most time.step = {}", time.step));
+  if (time.max_step < time.step)
+    table.fail("max_step", fmt::format("must be at least time.step = {}", time.step));
+
+  const DeckTable& method = deck.table("integrator");
+  Integrator& integrator = model.integrator;
+  integrator.hht_alpha = method.real("hht_alpha");
+  integrator.particles =
+      method.text("particles") == "hht" ? ParticleIntegrator::hht : ParticleIntegrator::velocity_verlet;
+  integrator.substeps = static_cast<int>(method.integer("substeps"));
+  integrator.residual_tolerance = method.real("residual_tolerance");
+  integrator.correction_tolerance = method.real("correction_tolerance");
+  integrator.max_iterations = static_cast<int>(method.integer("max_iterations"));
+  const bool implicit = integrator.particles == ParticleIntegrator::hht;
+  if (implicit && integrator.substeps > 1) {
+    method.fail("substeps", "must be 1, unless integrator.particles = \"velocity-verlet\"");
+  }
+  if (!implicit && adaptive) {
+    method.fail("particles",
+                "time.control = \"adaptive\" needs \"hht\": the explicit method has no error estimate");
+  }
+}
+
+void build_output(const DeckTable& deck, const ModelNames& names, Model& model) {
+  const DeckTable& table = deck.table("output");
+  Output& output = model.output;
+  output.directory = table.text("directory");
+  output.snapshot_interval = table.real("snapshot_interval");
+  output.history_interval = table.real("history_interval");
+  output.checkpoint_interval = table.real("checkpoint_interval");
+  output.history_csv = table.boolean("history_csv");
+  for (const std::string& name : table.texts("history_bodies")) {
+    const auto single = names.bodies.find(name);
+    const std::vector<int> bodies = single != names.bodies.end()
+                                        ? std::vector{single->second}
+                                        : find_row(names, name, table, "history_bodies");
+    output.history_bodies.insert(output.history_bodies.end(), bodies.begin(), bodies.end());
+  }
+  const auto count = static_cast<std::int64_t>(model.particles.size());
+  for (const std::int64_t id : table.integers("history_particles")) {
+    if (id >= count) {
+      table.fail(
+          "history_particles",
+          fmt::format("there is no particle {}; the deck has {} particles, counted from 0", id, count));
+    }
+    output.history_particles.push_back(id);
+  }
+}
+
+}  // namespace scree

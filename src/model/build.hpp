@@ -1,0 +1,15 @@
+// From the deck to the model.
+#pragma once
+
+#include "base/log.hpp"
+#include "deck/deck.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// Builds and checks the whole model. Warnings (overlaps at the start, steps far above a contact time) go to
+// the log. Throws InputError on anything that contradicts itself, naming place, key, value and what is
+// allowed; IoError on files of particles that cannot be read.
+Model build_model(const Deck& deck, Log& log);
+
+}  // namespace scree

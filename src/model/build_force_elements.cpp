@@ -1,0 +1,74 @@
+// Spring-dampers, torsional spring-dampers and applied forces.
+#include <cmath>
+
+#include "model/build_parts.hpp"
+#include "model/connections.hpp"
+
+namespace scree {
+
+namespace {
+
+void build_spring_dampers(const DeckTable& table, Model& model, const ModelNames& names, NameMap& taken) {
+  for (const Connection& connection : find_connections(table, names)) {
+    add_name(taken, connection.name, static_cast<int>(taken.size()), table);
+    SpringDamper element;
+    element.name = connection.name;
+    for (int side = 0; side < 2; ++side) element.body[side] = connection.body[side];
+    find_end_points(table, model, connection, element.point);
+    const Vec3 ends = to_global_point(model, element.body[1], element.point[1]) -
+                      to_global_point(model, element.body[0], element.point[0]);
+    const Real length = std::hypot(ends.x, ends.y);
+    if (length == 0) table.fail("name", "the two points of a spring-damper must not coincide at t = 0");
+    element.stiffness = table.real("stiffness");
+    element.damping = table.real("damping");
+    element.free_length = table.has("free_length") ? table.real("free_length") : length;
+    element.actuator = build_time_function(table.table("actuator"));
+    model.spring_dampers.push_back(std::move(element));
+  }
+}
+
+void build_torsional(const DeckTable& table, Model& model, const ModelNames& names, NameMap& taken) {
+  for (const Connection& connection : find_connections(table, names)) {
+    add_name(taken, connection.name, static_cast<int>(taken.size()), table);
+    TorsionalSpringDamper element;
+    element.name = connection.name;
+    for (int side = 0; side < 2; ++side) element.body[side] = connection.body[side];
+    element.stiffness = table.real("stiffness");
+    element.damping = table.real("damping");
+    element.free_angle = table.has("free_angle")
+                             ? table.real("free_angle")
+                             : start_angle(model, element.body[1]) - start_angle(model, element.body[0]);
+    model.torsional_spring_dampers.push_back(element);
+  }
+}
+
+AppliedForce build_applied_force(const DeckTable& table, const Model& model, const ModelNames& names) {
+  AppliedForce force;
+  force.name = table.text("name");
+  force.body = find_name(names.bodies, table, "body", "body");
+  if (table.has("point") && table.has("local_point"))
+    table.fail("local_point", "not used together with point");
+  if (table.has("point")) force.point = to_body_point(model, force.body, table.vector("point"));
+  if (table.has("local_point")) force.point = table.vector("local_point");
+  force.fx = build_time_function(table.table("fx"));
+  force.fy = build_time_function(table.table("fy"));
+  force.torque = build_time_function(table.table("torque"));
+  force.follows_body = table.boolean("follows_body");
+  return force;
+}
+
+}  // namespace
+
+void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names) {
+  NameMap springs, torsional;
+  for (const DeckTable& table : deck.tables("spring_dampers"))
+    build_spring_dampers(table, model, names, springs);
+  for (const DeckTable& table : deck.tables("torsional_spring_dampers")) {
+    build_torsional(table, model, names, torsional);
+  }
+  for (const DeckTable& table : deck.tables("applied_forces")) {
+    model.applied_forces.push_back(build_applied_force(table, model, names));
+  }
+}
+
+}  // namespace scree

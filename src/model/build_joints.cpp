@@ -1,0 +1,156 @@
+// Joints and drivers.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/build_parts.hpp"
+#include "model/connections.hpp"
+
+namespace scree {
+
+namespace {
+
+JointKind joint_kind(const std::string& type) {
+  if (type == "revolute") return JointKind::revolute;
+  if (type == "translational") return JointKind::translational;
+  return type == "fixed" ? JointKind::fixed : JointKind::distance;
+}
+
+// The body's centre where the other side is the ground, otherwise midway between the centres [m].
+Vec3 default_point(const Model& model, const Connection& connection) {
+  const Vec3 a = start_position(model, connection.body[0]), b = start_position(model, connection.body[1]);
+  if (connection.body[0] == kGround) return b;
+  if (connection.body[1] == kGround) return a;
+  return Real(0.5) * (a + b);
+}
+
+// Local points of revolute, translational and fixed joints.
+void place_common_point(const DeckTable& table, const Model& model, const Connection& connection,
+                        Joint& joint) {
+  if (table.has("local_points")) {
+    if (table.has("point")) table.fail("local_points", "not used together with point");
+    for (std::size_t side = 0; side < 2; ++side) joint.point[side] = table.vectors("local_points")[side];
+    return;
+  }
+  if (table.has("point")) check_single(table, "point");
+  const Vec3 point = table.has("point") ? table.vector("point") : default_point(model, connection);
+  for (int side = 0; side < 2; ++side) joint.point[side] = to_body_point(model, joint.body[side], point);
+}
+
+Vec3 global_axis(const DeckTable& table) {
+  const Vec3 axis = table.has("axis") ? table.vector("axis") : Vec3{1, 0, 0};
+  if (std::hypot(axis.x, axis.y) == 0 || axis.z != 0)
+    table.fail("axis", "must not be 0 and must lie in the x-y plane");
+  return (1 / norm(axis)) * axis;
+}
+
+// How far the joint's two sides are from meeting at t = 0 [m].
+Real joint_gap(const Joint& joint, Vec3 ends) {
+  const Real length = std::hypot(ends.x, ends.y);
+  if (joint.kind == JointKind::distance) return std::abs(length - joint.distance);
+  return length;
+}
+
+std::string body_name(const Model& model, int body) {
+  return body == kGround ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
+}
+
+// Round-off of coordinates is far below 1e-9 of them.
+void check_joint_meets(const DeckTable& table, const Model& model, const Joint& joint) {
+  const Vec3 a = to_global_point(model, joint.body[0], joint.point[0]);
+  const Vec3 b = to_global_point(model, joint.body[1], joint.point[1]);
+  Vec3 ends = b - a;
+  if (joint.kind == JointKind::translational) {
+    const Real c = std::cos(start_angle(model, joint.body[0])),
+               s = std::sin(start_angle(model, joint.body[0]));
+    const Vec3 axis{c * joint.axis.x - s * joint.axis.y, s * joint.axis.x + c * joint.axis.y, 0};
+    ends = ends - dot(ends, axis) * axis;
+  }
+  const Real gap = joint_gap(joint, ends);
+  if (gap <= 1e-9 * (1 + norm(a) + norm(b))) return;
+  const std::string key = joint.kind == JointKind::distance ? "distance" : "local_points";
+  table.fail(
+      table.has(key) ? key : "name",
+      fmt::format(
+          "the two sides of joint \"{}\" do not meet: at t = 0 the point of {} is at ({}, {}), that of "
+          "{} at ({}, {}), off by {:.6g} m",
+          joint.name, body_name(model, joint.body[0]), a.x, a.y, body_name(model, joint.body[1]), b.x, b.y,
+          gap));
+}
+
+Joint build_joint(const DeckTable& table, const Model& model, const Connection& connection) {
+  Joint joint;
+  joint.name = connection.name;
+  joint.kind = joint_kind(table.text("type"));
+  for (int side = 0; side < 2; ++side) joint.body[side] = connection.body[side];
+  if (joint.kind == JointKind::distance) {
+    find_end_points(table, model, connection, joint.point);
+    const Vec3 ends = to_global_point(model, joint.body[1], joint.point[1]) -
+                      to_global_point(model, joint.body[0], joint.point[0]);
+    joint.distance = table.has("distance") ? table.real("distance") : std::hypot(ends.x, ends.y);
+    if (joint.distance == 0) table.fail("name", "the two points of a distance joint must not coincide");
+  } else {
+    place_common_point(table, model, connection, joint);
+  }
+  if (joint.kind == JointKind::translational) {
+    joint.axis = to_body_direction(model, joint.body[0], global_axis(table));
+  }
+  joint.angle_offset = start_angle(model, joint.body[1]) - start_angle(model, joint.body[0]);
+  check_joint_meets(table, model, joint);
+  return joint;
+}
+
+void check_table_function(const DeckTable& table) {
+  const std::vector<Real>&times = table.reals("times"), &values = table.reals("values");
+  if (times.size() < 2) table.fail("times", "must have two entries at least");
+  if (times.size() != values.size())
+    table.fail("values", fmt::format("must have {} entries, as times", times.size()));
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!(times[i] > times[i - 1])) {
+      table.fail("times", fmt::format("must increase; entry {} is {} after {}", i, times[i], times[i - 1]));
+    }
+  }
+}
+
+}  // namespace
+
+TimeFunction build_time_function(const DeckTable& table) {
+  TimeFunction function;
+  const std::string& kind = table.text("kind");
+  if (kind == "table") {
+    check_table_function(table);
+    function.kind = TimeFunction::Kind::table;
+    function.times = table.reals("times");
+    function.values = table.reals("values");
+    return function;
+  }
+  function.value = table.real("value");
+  if (kind == "ramp") {
+    function.kind = TimeFunction::Kind::ramp;
+    function.rate = table.real("rate");
+  } else if (kind == "sine") {
+    function.kind = TimeFunction::Kind::sine;
+    function.amplitude = table.real("amplitude");
+    function.frequency = table.real("frequency");
+    function.phase = table.real("phase");
+  }
+  return function;
+}
+
+void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
+  for (const DeckTable& table : deck.tables("joints")) {
+    for (const Connection& connection : find_connections(table, names)) {
+      add_name(names.joints, connection.name, static_cast<int>(model.joints.size()), table);
+      model.joints.push_back(build_joint(table, model, connection));
+    }
+  }
+  for (const DeckTable& table : deck.tables("drivers")) {
+    const int joint = find_name(names.joints, table, "joint", "joint");
+    if (model.joints[static_cast<std::size_t>(joint)].kind == JointKind::fixed) {
+      table.fail("joint", "a fixed joint cannot be driven; it must be revolute, translational or distance");
+    }
+    model.drivers.push_back({table.text("name"), joint, build_time_function(table.table("motion"))});
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,31 @@
+// The parts of build_model(), in the order in which they run. Each fills its part of the model, adds its
+// names, and throws InputError naming place, key, value and what is allowed.
+#pragma once
+
+#include "base/log.hpp"
+#include "deck/deck.hpp"
+#include "model/model.hpp"
+#include "model/names.hpp"
+
+namespace scree {
+
+void build_materials(const DeckTable& deck, Model& model, ModelNames& names);
+void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
+void build_time(const DeckTable& deck, Model& model);                            // also the integrator
+void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
+void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
+void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names);
+void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
+void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
+
+// A time function from a quantity of the deck.
+TimeFunction build_time_function(const DeckTable& table);
+
+// Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
+// for smaller overlaps.
+void check_start_positions(const DeckTable& deck, const Model& model, Log& log);
+// Warns of steps far above the contact time; refuses explicit steps past the stability limit.
+void check_steps(const DeckTable& deck, const Model& model, Log& log);
+
+}  // namespace scree

@@ -1,0 +1,111 @@
+#include "model/connections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+
+namespace {
+
+Vec3 rotate(Vec3 v, Real angle) {
+  const Real c = std::cos(angle), s = std::sin(angle);
+  return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
+}
+
+Connection named_pair(const DeckTable& table, const ModelNames& names) {
+  Connection connection{table.text("name"), {}};
+  const std::vector<std::string>& bodies = table.texts("bodies");
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (bodies[side] == "ground") {
+      connection.body[side] = kGround;
+      continue;
+    }
+    const auto row = names.rows.find(bodies[side]);
+    if (row != names.rows.end() && !names.bodies.contains(bodies[side])) {
+      table.fail("bodies", fmt::format("\"{0}\" is a row; name one of its bodies, \"{0}.0\" to \"{0}.{1}\"",
+                                       bodies[side], row->second.size() - 1));
+    }
+    connection.body[side] = find_name(names.bodies, bodies[side], table, "bodies", "body");
+  }
+  if (connection.body[0] == connection.body[1]) table.fail("bodies", "must be two different bodies");
+  return connection;
+}
+
+}  // namespace
+
+std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names) {
+  if (table.has("bodies") + table.has("chain") + table.has("each") != 1) {
+    table.fail("name", "exactly one of the keys bodies, chain and each must be given");
+  }
+  if (table.has("bodies")) return {named_pair(table, names)};
+  const bool chain = table.has("chain");
+  const std::string key = chain ? "chain" : "each";
+  const std::vector<int>& row = find_row(names, table.text(key), table, key);
+  if (chain && row.size() < 2) table.fail(key, "must name a row of two bodies or more");
+  std::vector<Connection> connections;
+  for (std::size_t i = chain ? 1 : 0; i < row.size(); ++i) {
+    const std::string name = fmt::format("{}.{}", table.text("name"), connections.size());
+    connections.push_back({name, {chain ? row[i - 1] : kGround, row[i]}});
+  }
+  return connections;
+}
+
+Vec3 start_position(const Model& model, int body) {
+  return body == kGround ? Vec3{} : model.bodies[static_cast<std::size_t>(body)].position;
+}
+
+Real start_angle(const Model& model, int body) {
+  return body == kGround ? 0 : model.bodies[static_cast<std::size_t>(body)].angle;
+}
+
+Vec3 to_body_point(const Model& model, int body, Vec3 global) {
+  return to_body_direction(model, body, global - start_position(model, body));
+}
+
+Vec3 to_global_point(const Model& model, int body, Vec3 local) {
+  return start_position(model, body) + rotate(local, start_angle(model, body));
+}
+
+Vec3 to_body_direction(const Model& model, int body, Vec3 global) {
+  return rotate(global, -start_angle(model, body));
+}
+
+void find_end_points(const DeckTable& table, const Model& model, const Connection& connection,
+                     Vec3 local[2]) {
+  if (table.has("points")) check_single(table, "points");
+  if (table.has("points") && table.has("local_points"))
+    table.fail("local_points", "not used together with points");
+  for (std::size_t side = 0; side < 2; ++side) {
+    const int body = connection.body[side];
+    if (table.has("local_points")) {
+      local[side] = table.vectors("local_points")[side];
+    } else if (table.has("points")) {
+      local[side] = to_body_point(model, body, table.vectors("points")[side]);
+    } else if (body == kGround) {
+      table.fail("points", "missing; the ground has no centre: give points or local_points, two points");
+    } else {
+      local[side] = {};
+    }
+  }
+}
+
+void check_single(const DeckTable& table, const std::string& key) {
+  if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
+}
+
+std::vector<std::pair<int, int>> connected_bodies(const Model& model) {
+  std::vector<std::pair<int, int>> pairs;
+  const auto add = [&](const int(&body)[2]) {
+    if (body[0] != kGround && body[1] != kGround) pairs.emplace_back(std::minmax(body[0], body[1]));
+  };
+  for (const Joint& joint : model.joints) add(joint.body);
+  for (const SpringDamper& element : model.spring_dampers) add(element.body);
+  for (const TorsionalSpringDamper& element : model.torsional_spring_dampers) add(element.body);
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+}  // namespace scree

@@ -1,0 +1,40 @@
+// Between which bodies, and which of their points, the joints and force elements of one deck table stand.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "deck/deck.hpp"
+#include "model/model.hpp"
+#include "model/names.hpp"
+
+namespace scree {
+
+// One element: its name and its two bodies.
+struct Connection {
+  std::string name;
+  int body[2] = {kGround, kGround};
+};
+
+// From the keys bodies, chain or each. Throws InputError.
+std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names);
+
+// Position at t = 0 of a body's centre; the origin for the ground [m].
+Vec3 start_position(const Model& model, int body);
+Real start_angle(const Model& model, int body);  // [rad]
+// A direction or point between the global frame and a body's, at t = 0 [m].
+Vec3 to_body_point(const Model& model, int body, Vec3 global);
+Vec3 to_global_point(const Model& model, int body, Vec3 local);
+Vec3 to_body_direction(const Model& model, int body, Vec3 global);
+
+// Fills the two local points from local_points, points or the bodies' centres. Throws InputError where the
+// ground needs a point that is not given.
+void find_end_points(const DeckTable& table, const Model& model, const Connection& connection, Vec3 local[2]);
+// Refuses `key` together with chain or each: one global point cannot hold for several elements.
+void check_single(const DeckTable& table, const std::string& key);
+
+// Pairs of bodies, smaller index first, that a joint or a force element connects; sorted, each once.
+std::vector<std::pair<int, int>> connected_bodies(const Model& model);
+
+}  // namespace scree

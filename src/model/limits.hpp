@@ -1,0 +1,38 @@
+// Contact times and step limits of the model's pairs of materials.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "model/model.hpp"
+
+namespace scree {
+
+// Extremes of what one material is used for; radius and mass are 0 where it is not used.
+struct MaterialUse {
+  std::int64_t particles = 0;
+  int shapes = 0, walls = 0;
+  Real smallest_radius = 0;         // [m]
+  Real smallest_particle_mass = 0;  // [kg]
+  Real smallest_body_mass = 0;      // [kg] at a shape: 1 / (1/m + offset^2 / inertia)
+};
+
+std::vector<MaterialUse> material_uses(const Model& model);
+// Whether something of material a can touch something of material b; shapes of bodies that are all connected
+// with each other cannot.
+bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
+
+struct PairLimit {
+  int material[2] = {0, 0};
+  Real stiffness = 0;      // [N/m], typical_stiffness()
+  Real contact_time = 0;   // shortest, undamped and head-on [s]
+  Real explicit_step = 0;  // stability limit of velocity-verlet in dense contact [s]; 0: no particles
+};
+
+// One entry per pair of materials that can meet and interact.
+std::vector<PairLimit> pair_limits(const Model& model);
+// The pair with the shortest contact time; the one with the smallest explicit step.
+std::optional<PairLimit> shortest_contact(const std::vector<PairLimit>& limits);
+std::optional<PairLimit> smallest_explicit_step(const std::vector<PairLimit>& limits);
+
+}  // namespace scree

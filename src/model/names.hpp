@@ -1,0 +1,35 @@
+// Names of the deck's parts, resolved to indices of the model while it is built.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "deck/deck.hpp"
+
+namespace scree {
+
+using NameMap = std::map<std::string, int>;
+
+struct ModelNames {
+  NameMap materials, bodies, joints;
+  std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
+  std::vector<Real> densities;                   // of the materials [kg/m^3], 0 where not given
+};
+
+// Index of the name that `table.key` holds. what: "material", "body", ... for the message. Throws InputError
+// with the known names.
+int find_name(const NameMap& names, const DeckTable& table, const std::string& key, const std::string& what);
+// The same for a name that stands in a list.
+int find_name(const NameMap& names, const std::string& name, const DeckTable& table, const std::string& key,
+              const std::string& what);
+// Bodies of the row that `name` means. Throws InputError.
+const std::vector<int>& find_row(const ModelNames& names, const std::string& name, const DeckTable& table,
+                                 const std::string& key);
+// Material that `table.key` names; where the key is left out, the only material. Throws InputError.
+int find_material(const ModelNames& names, const DeckTable& table, const std::string& key);
+// Adds a name. Throws InputError where it exists already.
+void add_name(NameMap& names, const std::string& name, int index, const DeckTable& table);
+
+}  // namespace scree

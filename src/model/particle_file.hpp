@@ -1,0 +1,22 @@
+// Particles from a CSV or HDF5 file.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+// Columns by name, all of one length: x, y [m] and, in 3D, z always; vx, vy, vz [m/s], radius [m], mass [kg]
+// where the file has them. vx and vy (and vz in 3D) come together.
+using ParticleColumns = std::map<std::string, std::vector<Real>>;
+
+// CSV: a header line with the columns' names, then one line per particle; commas between, blanks and lines
+// that start with # are skipped. HDF5 (names that end in .h5 or .hdf5): one dataset of numbers per column.
+// Throws InputError naming file, line, column and value on contents that are no such table; IoError where the
+// file cannot be read.
+ParticleColumns read_particle_file(const std::string& path, int dimension);
+
+}  // namespace scree

@@ -1,0 +1,72 @@
+#include "output/durable_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.hpp"
+
+namespace scree {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const char* action, int error) {
+  throw IoError(fmt::format("{}: cannot {}: {}", path, action, std::strerror(error)));
+}
+
+void sync_path(const std::string& path, int flags) {
+  const int file = open(path.c_str(), flags | O_CLOEXEC);
+  if (file < 0) fail(path, "open", errno);
+  const int error = fsync(file) == 0 ? 0 : errno;
+  close(file);
+  // Some file systems cannot sync a directory; its entries are then synced with the file.
+  if (error != 0 && !(error == EINVAL && (flags & O_DIRECTORY))) fail(path, "sync", error);
+}
+
+// Opens, writes, syncs and closes. Returns the system's error number, 0 if all went well.
+int write_and_sync(const std::string& path, int flags, const std::string& text) {
+  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
+  if (file < 0) return errno;
+  int error = 0;
+  for (std::size_t done = 0; done < text.size() && error == 0;) {
+    const ssize_t written = write(file, text.data() + done, text.size() - done);
+    if (written >= 0) {
+      done += static_cast<std::size_t>(written);
+    } else if (errno != EINTR) {
+      error = errno;
+    }
+  }
+  if (error == 0 && fsync(file) != 0) error = errno;
+  if (close(file) != 0 && error == 0) error = errno;
+  return error;
+}
+
+}  // namespace
+
+void sync_file(const std::string& path) { sync_path(path, O_RDONLY); }
+
+void replace_file(const std::string& from, const std::string& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) fail(to, "replace", errno);
+  const std::string directory = std::filesystem::path(to).parent_path().string();
+  sync_path(directory.empty() ? "." : directory, O_RDONLY | O_DIRECTORY);
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".tmp";
+  if (const int error = write_and_sync(beside, O_CREAT | O_TRUNC, text)) {
+    std::remove(beside.c_str());
+    fail(beside, "write", error);
+  }
+  replace_file(beside, path);
+}
+
+void append_text_file(const std::string& path, const std::string& text) {
+  if (const int error = write_and_sync(path, O_APPEND, text)) fail(path, "write", error);
+}
+
+}  // namespace scree

@@ -1,0 +1,21 @@
+// Files that survive a crash: synced to disk, written beside and renamed.
+#pragma once
+
+#include <string>
+
+namespace scree {
+
+// Waits until the file's content is on disk. Throws IoError.
+void sync_file(const std::string& path);
+
+// Gives a synced file its final name at one instant, replacing what was there, and syncs the directory.
+// Throws IoError; `to` is then what it was before.
+void replace_file(const std::string& from, const std::string& to);
+
+// Writes PATH.tmp, syncs it and renames it to PATH. Throws IoError; PATH is then what it was before.
+void write_text_file(const std::string& path, const std::string& text);
+
+// Adds text at the end of an existing file and syncs it. Throws IoError; a part may then have been written.
+void append_text_file(const std::string& path, const std::string& text);
+
+}  // namespace scree

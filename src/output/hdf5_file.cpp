@@ -1,0 +1,280 @@
+#include "output/hdf5_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace scree {
+
+namespace {
+
+// Once a write has failed (a full disk), the library's exit handlers write again and crash. So they are
+// refused: the one at exit here, the one in MPI_Finalize by starting the library before MPI. Every file is
+// closed by its owner.
+[[maybe_unused]] const bool kNoExitHandlers = H5dont_atexit() >= 0 && H5open() >= 0;
+
+// Owner of one identifier; negative where the call that made it failed.
+class Hdf5Id {
+ public:
+  Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Hdf5Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  Hdf5Id(Hdf5Id&& other) : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  operator hid_t() const { return id_; }
+  bool valid() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+herr_t keep_description(unsigned level, const H5E_error2_t* error, void* reason) {
+  if (level == 0) *static_cast<std::string*>(reason) = error->desc;
+  return 0;
+}
+
+// What the library's innermost function says, shortened to the system's message where it carries one.
+std::string library_reason() {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_description, &reason);
+  const std::string mark = "error message = '";
+  if (const auto begin = reason.find(mark); begin != std::string::npos) {
+    const auto from = begin + mark.size();
+    reason = reason.substr(from, reason.find('\'', from) - from);
+  }
+  return reason.empty() ? "no reason given" : reason;
+}
+
+// Shape of a dataset: {rows, width}, width 1 for a vector, {1, 1} for a scalar.
+std::array<hsize_t, 2> shape_of(hid_t space) {
+  std::array<hsize_t, 2> shape = {1, 1};
+  if (H5Sget_simple_extent_ndims(space) <= 2) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+  return shape;
+}
+
+// ASCII where the text allows it: some readers of VTKHDF expect no other.
+Hdf5Id text_type(const std::string& text) {
+  Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  if (!text.empty()) H5Tset_size(type, text.size());
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const auto beyond_ascii = [](char c) { return static_cast<unsigned char>(c) > 127; };
+  if (std::any_of(text.begin(), text.end(), beyond_ascii)) H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
+}
+
+// HDF5 has no string of length zero: an empty text is a dataspace without elements.
+Hdf5Id text_space(const std::string& text) {
+  return {H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose};
+}
+
+Hdf5Id making_groups() {
+  Hdf5Id plist(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(plist, 1);
+  return plist;
+}
+
+}  // namespace
+
+void Hdf5File::fail(const std::string& action) const {
+  throw IoError(fmt::format("{}: cannot {}: {}", path_, action, library_reason()));
+}
+
+Hdf5File::Hdf5File(const std::string& path, Hdf5Access access)
+    : path_(path), writing_(access != Hdf5Access::read) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  Hdf5Id plist(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fclose_degree(plist, H5F_CLOSE_STRONG);
+  if (access == Hdf5Access::create) {
+    file_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, plist);
+  } else {
+    file_ = H5Fopen(path.c_str(), writing_ ? H5F_ACC_RDWR : H5F_ACC_RDONLY, plist);
+  }
+  if (file_ < 0) fail(access == Hdf5Access::create ? "create" : "open");
+}
+
+Hdf5File::~Hdf5File() {
+  if (file_ >= 0) H5Fclose(file_);
+}
+
+void Hdf5File::close() {
+  const hid_t file = std::exchange(file_, H5I_INVALID_HID);
+  const bool flushed = !writing_ || H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
+  const std::string reason = flushed ? "" : library_reason();
+  if (H5Fclose(file) < 0 && flushed) fail("close");
+  if (!flushed) throw IoError(fmt::format("{}: cannot write: {}", path_, reason));
+}
+
+void Hdf5File::create_rows(const std::string& name, hid_t type, int width, std::int64_t chunk_rows,
+                           const DatasetLabel& label) {
+  const int dimensions = width == 1 ? 1 : 2;
+  const hsize_t shape[2] = {0, static_cast<hsize_t>(width)};
+  const hsize_t limit[2] = {H5S_UNLIMITED, static_cast<hsize_t>(width)};
+  const hsize_t chunk[2] = {static_cast<hsize_t>(chunk_rows), static_cast<hsize_t>(width)};
+  {
+    Hdf5Id space(H5Screate_simple(dimensions, shape, limit), H5Sclose);
+    Hdf5Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_chunk(layout, dimensions, chunk);
+    Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, making_groups(), layout, H5P_DEFAULT),
+                   H5Dclose);
+    if (!dataset.valid()) fail("create dataset " + name);
+  }
+  write_text_attribute(name, "unit", label.unit);
+  write_text_attribute(name, "description", label.description);
+}
+
+void Hdf5File::append_rows(const std::string& name, hid_t type, const void* values, std::int64_t rows) {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  if (rows == 0) return;
+  Hdf5Id old_space(H5Dget_space(dataset), H5Sclose);
+  const int dimensions = H5Sget_simple_extent_ndims(old_space);
+  std::array<hsize_t, 2> shape = shape_of(old_space);
+  const std::array<hsize_t, 2> start = {shape[0], 0};
+  const std::array<hsize_t, 2> count = {static_cast<hsize_t>(rows), shape[1]};
+  shape[0] += count[0];
+  if (H5Dset_extent(dataset, shape.data()) < 0) fail("extend dataset " + name);
+  Hdf5Id file_space(H5Dget_space(dataset), H5Sclose);
+  Hdf5Id memory_space(H5Screate_simple(dimensions, count.data(), nullptr), H5Sclose);
+  H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  if (H5Dwrite(dataset, type, memory_space, file_space, H5P_DEFAULT, values) < 0)
+    fail("write dataset " + name);
+}
+
+void Hdf5File::resize_rows(const std::string& name, std::int64_t rows) {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  std::array<hsize_t, 2> shape = shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose));
+  shape[0] = static_cast<hsize_t>(rows);
+  if (H5Dset_extent(dataset, shape.data()) < 0) fail("resize dataset " + name);
+}
+
+std::int64_t Hdf5File::rows(const std::string& name) const {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  return static_cast<std::int64_t>(shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose))[0]);
+}
+
+void Hdf5File::write_array(const std::string& name, hid_t type, const void* values, std::int64_t count) {
+  const hsize_t size = static_cast<hsize_t>(count);
+  Hdf5Id space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, making_groups(), H5P_DEFAULT, H5P_DEFAULT),
+                 H5Dclose);
+  if (!dataset.valid()) fail("create dataset " + name);
+  if (count > 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+    fail("write dataset " + name);
+}
+
+std::int64_t Hdf5File::value_count(const std::string& name) const {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  Hdf5Id space(H5Dget_space(dataset), H5Sclose);
+  return static_cast<std::int64_t>(H5Sget_simple_extent_npoints(space));
+}
+
+void Hdf5File::read_array(const std::string& name, hid_t type, void* values) const {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  Hdf5Id file_type(H5Dget_type(dataset), H5Tclose);
+  if (H5Tequal(file_type, type) <= 0) {
+    throw IoError(fmt::format("{}: dataset {} holds another type than expected", path_, name));
+  }
+  if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) fail("read dataset " + name);
+}
+
+void Hdf5File::write_text(const std::string& name, const std::string& text) {
+  Hdf5Id type = text_type(text);
+  Hdf5Id dataset(
+      H5Dcreate2(file_, name.c_str(), type, text_space(text), making_groups(), H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose);
+  if (!dataset.valid()) fail("create dataset " + name);
+  if (text.empty()) return;
+  if (H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) fail("write dataset " + name);
+}
+
+std::string Hdf5File::read_text(const std::string& name) const {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  Hdf5Id type(H5Dget_type(dataset), H5Tclose);
+  Hdf5Id space(H5Dget_space(dataset), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING)
+    throw IoError(fmt::format("{}: dataset {} is not a text", path_, name));
+  if (H5Sget_simple_extent_type(space) == H5S_NULL) return {};
+  std::string text(H5Tget_size(type), '\0');
+  if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) fail("read dataset " + name);
+  return text;
+}
+
+void Hdf5File::write_text_attribute(const std::string& object, const std::string& name,
+                                    const std::string& text) {
+  Hdf5Id type = text_type(text);
+  Hdf5Id owner(H5Oopen(file_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  Hdf5Id attribute(H5Acreate2(owner, name.c_str(), type, text_space(text), H5P_DEFAULT, H5P_DEFAULT),
+                   H5Aclose);
+  if (!attribute.valid()) fail(fmt::format("create attribute {} of {}", name, object));
+  if (!text.empty() && H5Awrite(attribute, type, text.data()) < 0) fail("write attribute " + name);
+}
+
+void Hdf5File::write_integer_attribute(const std::string& object, const std::string& name,
+                                       const std::vector<std::int64_t>& values) {
+  const hsize_t size = values.size();
+  Hdf5Id space(size == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &size, nullptr), H5Sclose);
+  Hdf5Id owner(H5Oopen(file_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  const bool there = H5Aexists(owner, name.c_str()) > 0;
+  Hdf5Id attribute(there ? H5Aopen(owner, name.c_str(), H5P_DEFAULT)
+                         : H5Acreate2(owner, name.c_str(), H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Aclose);
+  if (!attribute.valid()) fail(fmt::format("create attribute {} of {}", name, object));
+  if (H5Awrite(attribute, H5T_NATIVE_INT64, values.data()) < 0) fail("write attribute " + name);
+}
+
+bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {
+  return H5Aexists_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::string Hdf5File::read_text_attribute(const std::string& object, const std::string& name) const {
+  Hdf5Id owner(H5Oopen(file_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  Hdf5Id attribute(H5Aopen(owner, name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid()) fail(fmt::format("read attribute {} of {}", name, object));
+  Hdf5Id type(H5Aget_type(attribute), H5Tclose);
+  Hdf5Id space(H5Aget_space(attribute), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING)
+    throw IoError(fmt::format("{}: attribute {} is not a text", path_, name));
+  if (H5Sget_simple_extent_type(space) == H5S_NULL) return {};
+  std::string text(H5Tget_size(type), '\0');
+  if (H5Aread(attribute, type, text.data()) < 0) fail("read attribute " + name);
+  return text;
+}
+
+void Hdf5File::create_group(const std::string& name) {
+  Hdf5Id group(H5Gcreate2(file_, name.c_str(), making_groups(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) fail("create group " + name);
+}
+
+void Hdf5File::link(const std::string& target, const std::string& name) {
+  if (H5Lcreate_hard(file_, target.c_str(), file_, name.c_str(), making_groups(), H5P_DEFAULT) < 0) {
+    fail(fmt::format("link {} to {}", name, target));
+  }
+}
+
+std::vector<std::string> Hdf5File::dataset_names(const std::string& group) const {
+  std::vector<std::string> found;
+  Hdf5Id id(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  if (!id.valid()) fail("open group " + group);
+  const auto visit = [](hid_t, const char* name, const H5L_info_t*, void* names) -> herr_t {
+    static_cast<std::vector<std::string>*>(names)->push_back(name);
+    return 0;
+  };
+  if (H5Lvisit(id, H5_INDEX_NAME, H5_ITER_INC, visit, &found) < 0) fail("list group " + group);
+  std::erase_if(found, [&](const std::string& name) {
+    Hdf5Id object(H5Oopen(id, name.c_str(), H5P_DEFAULT), H5Oclose);
+    return H5Iget_type(object) != H5I_DATASET;
+  });
+  return found;
+}
+
+}  // namespace scree

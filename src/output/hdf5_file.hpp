@@ -1,0 +1,108 @@
+// One HDF5 file: a thin owner of the C library's identifiers. Every failure is an IoError with the file's
+// name and the library's reason; the library itself prints nothing.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+enum class Hdf5Access {
+  create,  // a new file; an old one of this name is overwritten
+  read,
+  modify  // an existing file
+};
+
+// Rows [offset, offset + count) of a dataset: what one rank, or one snapshot, reads or writes.
+struct RowRange {
+  std::int64_t offset = 0, count = 0;
+};
+
+// What a reader should know of a dataset: its attributes "unit" and "description".
+struct DatasetLabel {
+  std::string unit, description;
+};
+
+// The library's type for a value in memory; files hold the same type.
+template <class T>
+hid_t hdf5_type() {
+  static_assert(std::is_same_v<T, Real> || std::is_same_v<T, std::int32_t> ||
+                std::is_same_v<T, std::int64_t>);
+  if constexpr (std::is_same_v<T, Real>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
+  return H5T_NATIVE_INT64;
+}
+
+// All functions throw IoError. Names are paths from the root; missing groups are made on the way.
+class Hdf5File {
+ public:
+  Hdf5File(const std::string& path, Hdf5Access access);
+  ~Hdf5File();  // closes; a failure goes unseen, so a writer calls close() first
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+  void close();  // hands everything to the operating system
+
+  // ---- extensible datasets of shape [rows] (width 1) or [rows][width] ----
+  template <class T>
+  void create_rows(const std::string& name, int width, std::int64_t chunk_rows, const DatasetLabel& label) {
+    create_rows(name, hdf5_type<T>(), width, chunk_rows, label);
+  }
+  // values: rows x width.
+  template <class T>
+  void append_rows(const std::string& name, const T* values, std::int64_t rows) {
+    append_rows(name, hdf5_type<T>(), values, rows);
+  }
+  // Rows past the new number are cut off, or filled with zeros.
+  void resize_rows(const std::string& name, std::int64_t rows);
+  std::int64_t rows(const std::string& name) const;
+
+  // ---- datasets of fixed size ----
+  template <class T>
+  void write_array(const std::string& name, const std::vector<T>& values) {
+    write_array(name, hdf5_type<T>(), values.data(), static_cast<std::int64_t>(values.size()));
+  }
+  void write_text(const std::string& name, const std::string& text);
+
+  // All values of either kind of dataset, row by row. Throws also where the file holds another type.
+  template <class T>
+  std::vector<T> read_array(const std::string& name) const {
+    std::vector<T> values(static_cast<std::size_t>(value_count(name)));
+    read_array(name, hdf5_type<T>(), values.data());
+    return values;
+  }
+  std::string read_text(const std::string& name) const;
+
+  // ---- attributes and links ----
+  void write_text_attribute(const std::string& object, const std::string& name, const std::string& text);
+  // One value becomes a scalar, several a vector; an attribute of this name is overwritten.
+  void write_integer_attribute(const std::string& object, const std::string& name,
+                               const std::vector<std::int64_t>& values);
+  bool has_attribute(const std::string& object, const std::string& name) const;
+  std::string read_text_attribute(const std::string& object, const std::string& name) const;
+  void create_group(const std::string& name);
+  // `name` becomes a second name of `target` (a hard link).
+  void link(const std::string& target, const std::string& name);
+  // Paths below `group`, relative to it, of all datasets.
+  std::vector<std::string> dataset_names(const std::string& group) const;
+
+ private:
+  void create_rows(const std::string& name, hid_t type, int width, std::int64_t chunk_rows,
+                   const DatasetLabel& label);
+  void append_rows(const std::string& name, hid_t type, const void* values, std::int64_t rows);
+  void write_array(const std::string& name, hid_t type, const void* values, std::int64_t count);
+  void read_array(const std::string& name, hid_t type, void* values) const;
+  std::int64_t value_count(const std::string& name) const;
+  [[noreturn]] void fail(const std::string& action) const;
+
+  std::string path_;
+  bool writing_;
+  hid_t file_ = H5I_INVALID_HID;
+};
+
+}  // namespace scree

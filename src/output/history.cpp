@@ -1,0 +1,128 @@
+#include "output/history.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+#include <utility>
+
+#include "base/error.hpp"
+#include "output/durable_file.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr std::int64_t kRowsPerChunk = 512;
+
+std::string dataset_path(const HistoryColumn& column) {
+  return column.group.empty() ? column.name : column.group + "/" + column.name;
+}
+
+// Quoted where a comma or a quote would break the line into other fields (RFC 4180).
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_header(const std::vector<HistoryColumn>& columns) {
+  std::string line;
+  for (const HistoryColumn& column : columns) {
+    if (!line.empty()) line += ',';
+    line += csv_field(fmt::format("{} [{}]", dataset_path(column), column.unit));
+  }
+  return line + '\n';
+}
+
+// values[column][row]; each number in the shortest form that reads back as the same number.
+std::string csv_rows(const std::vector<std::vector<Real>>& values) {
+  fmt::memory_buffer text;
+  const std::size_t rows = values.empty() ? 0 : values.front().size();
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < values.size(); ++column) {
+      fmt::format_to(std::back_inserter(text), "{}{}", column == 0 ? "" : ",", values[column][row]);
+    }
+    text.push_back('\n');
+  }
+  return fmt::to_string(text);
+}
+
+}  // namespace
+
+HistoryWriter::HistoryWriter(const std::string& directory, std::vector<HistoryColumn> columns, bool csv,
+                             std::int64_t keep)
+    : columns_(std::move(columns)),
+      file_(directory + "/history.h5"),
+      csv_path_(csv ? directory + "/history.csv" : ""),
+      buffer_(columns_.size()),
+      rows_(keep) {
+  if (keep == 0) {
+    file_.remove();
+    std::error_code none_there;
+    std::filesystem::remove(directory + "/history.csv", none_there);
+  } else {
+    cut(keep);
+  }
+  if (csv) rewrite_csv();
+}
+
+void HistoryWriter::cut(std::int64_t keep) {
+  bool longer = false;
+  {
+    const Hdf5File file(file_.path(), Hdf5Access::read);
+    for (const HistoryColumn& column : columns_) {
+      const std::int64_t rows = file.rows(dataset_path(column));
+      if (rows < keep) {
+        throw IoError(fmt::format("{}: {} holds {} rows, but the restarted run has written {}", file_.path(),
+                                  dataset_path(column), rows, keep));
+      }
+      longer = longer || rows > keep;
+    }
+  }
+  if (!longer) return;
+  file_.update([&](Hdf5File& file) {
+    for (const HistoryColumn& column : columns_) file.resize_rows(dataset_path(column), keep);
+  });
+}
+
+void HistoryWriter::append(const std::vector<Real>& row) {
+  if (row.size() != columns_.size()) {
+    throw SimulationError(
+        fmt::format("history row of {} values for {} columns", row.size(), columns_.size()));
+  }
+  for (std::size_t column = 0; column < row.size(); ++column) buffer_[column].push_back(row[column]);
+  ++rows_;
+}
+
+void HistoryWriter::write_rows(Hdf5File& file, std::int64_t rows_before) const {
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const std::string path = dataset_path(columns_[c]);
+    if (rows_before == 0) {
+      file.create_rows<Real>(path, 1, kRowsPerChunk, {columns_[c].unit, columns_[c].description});
+    }
+    file.append_rows(path, buffer_[c].data(), std::ssize(buffer_[c]));
+  }
+}
+
+void HistoryWriter::flush() {
+  if (buffer_.empty() || buffer_.front().empty()) return;
+  const std::int64_t rows_before = rows_ - std::ssize(buffer_.front());
+  file_.update([&](Hdf5File& file) { write_rows(file, rows_before); });
+  if (!csv_path_.empty()) append_text_file(csv_path_, csv_rows(buffer_));
+  for (auto& column : buffer_) column.clear();
+}
+
+// From history.h5, so that a restarted run needs no CSV of the first one.
+void HistoryWriter::rewrite_csv() const {
+  std::vector<std::vector<Real>> values(columns_.size());
+  if (rows_ > 0) {
+    const Hdf5File file(file_.path(), Hdf5Access::read);
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      values[c] = file.read_array<Real>(dataset_path(columns_[c]));
+  }
+  write_text_file(csv_path_, csv_header(columns_) + csv_rows(values));
+}
+
+}  // namespace scree

@@ -1,0 +1,110 @@
+#include "output/run_record.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <toml++/toml.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "base/version.hpp"
+#include "output/durable_file.hpp"
+#include "output/library_versions.hpp"
+
+namespace scree {
+
+namespace {
+
+// JSON has no number for these; they become texts.
+void insert_number(toml::table& table, const std::string& key, double value) {
+  if (std::isfinite(value)) {
+    table.insert_or_assign(key, value);
+  } else {
+    table.insert_or_assign(key, fmt::format("{}", value));
+  }
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+toml::table run_table(const RunRecord& record) {
+  return toml::table{{"deck_path", record.deck_path},
+                     {"resolved_deck", record.resolved_deck},
+                     {"command_line", record.command_line},
+                     {"status", record.status},
+                     {"exit_code", record.exit_code},
+                     {"started", record.started},
+                     {"ended", record.ended},
+                     {"backend", record.backend},
+                     {"solver", record.solver},
+                     {"restarted_from", record.restarted_from},
+                     {"ranks", record.ranks}};
+}
+
+toml::table build_table() {
+  toml::table libraries;
+  for (const auto& [name, text] : library_versions()) libraries.insert_or_assign(name, text);
+  return toml::table{{"version", version()},
+                     {"commit", commit()},
+                     {"compiler", compiler()},
+                     {"flags", compile_flags()},
+                     {"libraries", libraries}};
+}
+
+toml::table cost_table(const RunRecord& record) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  toml::table table;
+  insert_number(table, "wall_seconds", record.wall_seconds);
+  insert_number(table, "cpu_seconds", record.cpu_seconds);
+  table.insert_or_assign("peak_memory_kib", static_cast<std::int64_t>(usage.ru_maxrss));
+  return table;
+}
+
+// In the step's order.
+toml::array stage_array(const StageTimers& timers) {
+  toml::array stages;
+  for (int s = 0; s < static_cast<int>(Stage::count); ++s) {
+    const StageTimers::Entry& entry = timers[static_cast<Stage>(s)];
+    toml::table stage{{"stage", kStageNames[static_cast<std::size_t>(s)]}, {"calls", entry.calls}};
+    insert_number(stage, "seconds", entry.seconds);
+    stages.push_back(stage);
+  }
+  return stages;
+}
+
+}  // namespace
+
+void write_run_record(const std::string& directory, const RunRecord& record) {
+  toml::table counts, measures;
+  for (const auto& [name, value] : record.counts) counts.insert_or_assign(name, value);
+  for (const auto& [name, value] : record.measures) insert_number(measures, name, value);
+  toml::array warnings;
+  for (const std::string& warning : record.warnings) warnings.push_back(warning);
+  const toml::table document{{"run", run_table(record)},
+                             {"build", build_table()},
+                             {"host", toml::table{{"name", host_name()}, {"processor", processor()}}},
+                             {"cost", cost_table(record)},
+                             {"stages", stage_array(record.timers)},
+                             {"counts", counts},
+                             {"measures", measures},
+                             {"warnings", warnings}};
+  std::ostringstream text;
+  text << toml::json_formatter{document} << '\n';
+  write_text_file(directory + "/run_record.json", text.str());
+}
+
+}  // namespace scree

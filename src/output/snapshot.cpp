@@ -1,0 +1,77 @@
+#include "output/snapshot.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "output/vtkhdf_series.hpp"
+
+namespace scree {
+
+namespace {
+
+static_assert(sizeof(Vec3) == 3 * sizeof(Real), "a Vec3 array is written as a [n][3] dataset");
+
+PointField scalar(const char* name, const char* unit, const char* description, std::span<const Real> values) {
+  return {name, {unit, description}, 1, values.data()};
+}
+
+// [n][3]
+const Real* components(std::span<const Vec3> values) { return reinterpret_cast<const Real*>(values.data()); }
+
+PointField vector(const char* name, const char* unit, const char* description, std::span<const Vec3> values) {
+  return {name, {unit, description}, 3, components(values)};
+}
+
+PointField number(const char* name, const char* description, std::span<const int> values) {
+  return {name, {"1", description}, 1, values.data()};
+}
+
+PointSnapshot particle_points(Real time, const ParticleSnapshot& particles) {
+  PointSnapshot snapshot{time, std::ssize(particles.position), components(particles.position), {}};
+  snapshot.fields = {{"global_id",
+                      {"1", "identity of the particle, counted from 0 in the deck's order"},
+                      1,
+                      particles.global_id.data()},
+                     scalar("radius", "m", "radius", particles.radius),
+                     vector("velocity", "m/s", "velocity", particles.velocity),
+                     vector("force", "N", "total contact force on the particle", particles.force),
+                     number("contacts", "touching neighbours and walls", particles.contacts)};
+  return snapshot;
+}
+
+PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
+  PointSnapshot snapshot{time, std::ssize(bodies.position), components(bodies.position), {}};
+  snapshot.fields = {
+      number("body", "body that the shape belongs to, counted from 0 in the deck's order", bodies.body),
+      scalar("radius", "m", "radius of the shape", bodies.radius),
+      vector("velocity", "m/s", "velocity of the shape's centre", bodies.velocity),
+      scalar("angle", "rad", "angle of the body about z", bodies.angle),
+      scalar("angular_velocity", "rad/s", "angular velocity of the body about z", bodies.angular_velocity),
+      vector("force", "N", "total contact force on the shape", bodies.force),
+      number("contacts", "touching neighbours and walls", bodies.contacts)};
+  return snapshot;
+}
+
+}  // namespace
+
+SnapshotWriter::SnapshotWriter(const std::string& directory, const std::string& title, int keep)
+    : particles_(std::make_unique<VtkHdfSeries>(directory, "particles", title, keep)),
+      bodies_(std::make_unique<VtkHdfSeries>(directory, "bodies", title, keep)),
+      snapshots_(keep) {
+  if (particles_->snapshots() != keep)
+    throw IoError(particles_->path() + ": missing, the restarted run needs it");
+}
+
+SnapshotWriter::~SnapshotWriter() = default;
+
+void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies) {
+  if (!bodies.position.empty() && bodies_->snapshots() != snapshots_) {
+    throw IoError(fmt::format("{}: holds {} snapshots where {} were written", bodies_->path(),
+                              bodies_->snapshots(), snapshots_));
+  }
+  particles_->append(particle_points(time, particles));
+  if (!bodies.position.empty()) bodies_->append(body_points(time, bodies));
+  ++snapshots_;
+}
+
+}  // namespace scree

@@ -1,0 +1,69 @@
+// A time series of point sets in one VTKHDF file, and an .xdmf that refers to the same data.
+//
+// VTKHDF 2.0, type PolyData with one vertex cell per point: docs.vtk.org, "VTKHDF format specification". All
+// snapshots' rows follow each other in each dataset; the group Steps says where those of one snapshot begin.
+// The vertices of a snapshot are one part; it is shared by the snapshots that follow with the same number of
+// points.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/types.hpp"
+#include "output/twin_file.hpp"
+
+namespace scree {
+
+// One field of one snapshot: values[point][width], width 1 or 3.
+struct PointField {
+  std::string name;
+  DatasetLabel label;
+  int width = 1;
+  std::variant<const Real*, const int*, const GlobalId*> values;
+};
+
+struct PointSnapshot {
+  Real time = 0;                   // [s]
+  std::int64_t points = 0;         // may differ from snapshot to snapshot, and be 0
+  const Real* position = nullptr;  // [points][3] [m]
+  std::vector<PointField> fields;  // the same names and widths in every snapshot
+};
+
+// Where one snapshot lies in the file; all counted in rows.
+struct SnapshotPlace {
+  Real time = 0;                             // [s]
+  std::int64_t points = 0, first_point = 0;  // in Points and in every field
+  std::int64_t part = 0, first_cell = 0;     // in NumberOfPoints; in Vertices/Connectivity
+};
+
+class VtkHdfSeries {
+ public:
+  // Continues DIRECTORY/NAME.vtkhdf where there is one and keep > 0, cutting off all but its first `keep`
+  // snapshots; otherwise starts anew. Throws IoError where the file has fewer.
+  VtkHdfSeries(const std::string& directory, const std::string& name, const std::string& title, int keep);
+
+  // Adds a snapshot to the .vtkhdf, then rewrites the .xdmf. Throws IoError; the files then hold what they
+  // held.
+  void append(const PointSnapshot& snapshot);
+  int snapshots() const { return static_cast<int>(places_.size()); }
+  const std::string& path() const { return file_.path(); }
+
+ private:
+  void read_places();
+  void cut(std::size_t keep);
+  void lay_out(Hdf5File& file, const PointSnapshot& first) const;
+  SnapshotPlace next_place(const PointSnapshot& snapshot) const;
+  void write(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
+  void remove_xdmf() const;
+  void write_xdmf(const PointSnapshot& snapshot);
+
+  std::string name_, title_, xdmf_path_;
+  TwinFile file_;
+  std::vector<SnapshotPlace> places_;
+  std::string xdmf_grids_;  // of the first xdmf_snapshots_ snapshots
+  std::size_t xdmf_snapshots_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,92 @@
+#include "output/xdmf.hpp"
+
+#include <fmt/format.h>
+
+namespace scree {
+
+namespace {
+
+// A dataset's name below /VTKHDF, its width and the type of its values in XDMF's words.
+struct XdmfArray {
+  std::string dataset;
+  int width;
+  const char* type;
+  int bytes;
+};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+// Rows [first, first + count) of a dataset. XDMF 2 readers take the two inner items (the selection, then the
+// data), XDMF 3 readers the outer item's own text, "file:dataset|start:stride:count:shape"; each ignores the
+// other's.
+std::string slab(const XdmfSeries& series, const XdmfArray& array, std::int64_t first, std::int64_t count) {
+  const bool vector = array.width > 1;
+  const std::string width = vector ? fmt::format(" {}", array.width) : "";
+  const std::string zero = vector ? " 0" : "", one = vector ? " 1" : "";
+  const std::string source = fmt::format("{}:/VTKHDF/{}", escaped(series.data_file), escaped(array.dataset));
+  const std::string type =
+      fmt::format("NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\"", array.type, array.bytes);
+  const std::int64_t end = first + count;
+  return fmt::format(
+      "<DataItem Type=\"HyperSlab\" Dimensions=\"{1}{2}\" {6}>{5}|{0}{3}:1{4}:{1}{2}:{7}{2}"
+      "<DataItem Dimensions=\"3 {8}\" NumberType=\"Int\" Format=\"XML\">{0}{3} 1{4} {1}{2}</DataItem>"
+      "<DataItem Dimensions=\"{7}{2}\" {6}>{5}</DataItem></DataItem>",
+      first, count, width, zero, one, source, type, end, vector ? 2 : 1);
+}
+
+XdmfArray field_array(const PointField& field) {
+  XdmfArray array{"PointData/" + field.name, field.width, "Float", 8};
+  if (std::holds_alternative<const int*>(field.values)) array.type = "Int", array.bytes = 4;
+  if (std::holds_alternative<const GlobalId*>(field.values)) array.type = "Int", array.bytes = 8;
+  return array;
+}
+
+}  // namespace
+
+std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
+  if (place.points == 0) return {};
+  std::string text = fmt::format("<Grid Name=\"{}\"><Time Value=\"{}\"/>\n", series.name, place.time);
+  text += fmt::format(
+      "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}</Topology>\n",
+      place.points, slab(series, {"Vertices/Connectivity", 1, "Int", 8}, place.first_cell, place.points));
+  text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+                      slab(series, {"Points", 3, "Float", 8}, place.first_point, place.points));
+  for (const PointField& field : *series.fields) {
+    text += fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
+                        escaped(field.name), field.width == 3 ? "Vector" : "Scalar",
+                        slab(series, field_array(field), place.first_point, place.points));
+  }
+  return text + "</Grid>\n";
+}
+
+std::string xdmf_document(const XdmfSeries& series, const std::string& grids) {
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+      "<Information Name=\"title\" Value=\"{}\"/>\n"
+      "<Grid Name=\"{}\" GridType=\"Collection\" "
+      "CollectionType=\"Temporal\">\n{}</Grid>\n</Domain>\n</Xdmf>\n",
+      escaped(series.title), escaped(series.name), grids);
+}
+
+}  // namespace scree

@@ -1,0 +1,23 @@
+// XDMF 3 text for readers that do not know VTKHDF (ParaView before 5.13). It refers to the .vtkhdf's
+// datasets.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "output/vtkhdf_series.hpp"
+
+namespace scree {
+
+struct XdmfSeries {
+  std::string name, title;
+  std::string data_file;  // the .vtkhdf's name, in the same directory
+  const std::vector<PointField>* fields = nullptr;
+};
+
+// One snapshot's <Grid>; empty for a snapshot without points, which these readers cannot open.
+std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place);
+// The whole document around the grids of all snapshots.
+std::string xdmf_document(const XdmfSeries& series, const std::string& grids);
+
+}  // namespace scree

@@ -1,0 +1,46 @@
+// Step limits that follow from the contact law.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "physics/contact_law.hpp"
+
+namespace scree {
+
+// Mass of the relative motion of two bodies [kg].
+SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
+
+// Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the radius
+// [m].
+SCREE_HD Real typical_stiffness(const KelvinVoigt& law, Real radius) {
+  if (law.exponent == 1) return law.normal_stiffness;
+  return law.normal_stiffness * law.exponent * std::pow(Real(0.01) * radius, law.exponent - 1);
+}
+
+// Circular frequency of a single undamped contact [1/s].
+SCREE_HD Real contact_frequency(Real stiffness, Real mass) { return std::sqrt(stiffness / mass); }
+
+// Duration of an undamped head-on contact [s]: half a period of the relative motion.
+SCREE_HD Real contact_time(Real stiffness, Real reduced_mass) {
+  return std::numbers::pi_v<Real> / contact_frequency(stiffness, reduced_mass);
+}
+
+// Largest circular frequency of equal particles in the densest lattice [1/s]: sqrt(6 K/m) for discs
+// (triangular), sqrt(8 K/m) for spheres (face-centred cubic). There the sum of n n^T over a particle's
+// contacts is 3 and 4 times the unit matrix, and the highest mode moves neighbours against each other.
+SCREE_HD Real dense_frequency(Real stiffness, Real mass, int dimension) {
+  return std::sqrt((dimension == 2 ? 6 : 8) * stiffness / mass);
+}
+
+// Stability limit [s] of velocity Verlet, whose damping acts on the predicted velocity v + h a, for one mode
+// of circular frequency w [1/s]: h^2 w^2 / 4 + 2 z h w = 1, where the mode's amplification is -1. stiffness
+// [N/m] and damping [N s/m] of the mode's contacts give its damping ratio z = C w / (2 K).
+SCREE_HD Real verlet_step_limit(Real frequency, Real stiffness, Real damping) {
+  const Real ratio = damping * frequency / (2 * stiffness);
+  return 2 / frequency * (std::sqrt(1 + 4 * ratio * ratio) - 2 * ratio);
+}
+
+}  // namespace scree

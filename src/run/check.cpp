@@ -1,0 +1,113 @@
+#include "run/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/limits.hpp"
+
+namespace scree {
+
+namespace {
+
+// Estimates of what one particle, and one coordinate or constraint of the multibody side, keep in memory:
+// state, scratch and a neighbour list of some ten entries; a few vectors and the sparse factors.
+constexpr Real kBytesPerParticle = 600;
+constexpr Real kBytesPerUnknown = 1000;
+
+int constraint_count(const Model& model) {
+  int count = static_cast<int>(model.drivers.size());
+  for (const Joint& joint : model.joints) {
+    if (joint.kind == JointKind::fixed) count += 3;
+    if (joint.kind == JointKind::revolute || joint.kind == JointKind::translational) count += 2;
+    if (joint.kind == JointKind::distance) count += 1;
+  }
+  return count;
+}
+
+std::string range(const std::vector<Real>& values, const char* unit) {
+  const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
+  if (*smallest == *largest) return fmt::format("{:.6g} {}", *smallest, unit);
+  return fmt::format("{:.6g} to {:.6g} {}", *smallest, *largest, unit);
+}
+
+std::string space_lines(const Model& model) {
+  const Space& space = model.space;
+  const auto corner = [&](Vec3 p) {
+    return space.dimension == 2 ? fmt::format("({}, {})", p.x, p.y)
+                                : fmt::format("({}, {}, {})", p.x, p.y, p.z);
+  };
+  std::string lines = fmt::format("space          {}D, {} to {} m, {} wall(s)\n", space.dimension,
+                                  corner(space.min), corner(space.max), model.walls.size());
+  if (model.particles.size() == 0) return lines + "particles      none\n";
+  return lines + fmt::format("particles      {}, radius {}, mass {}\n", model.particles.size(),
+                             range(model.particles.radius, "m"), range(model.particles.mass, "kg"));
+}
+
+std::string multibody_lines(const Model& model) {
+  if (model.bodies.empty()) return "bodies         none\n";
+  std::size_t shapes = 0;
+  for (const Body& body : model.bodies) shapes += body.shapes.size();
+  const int coordinates = 3 * static_cast<int>(model.bodies.size()), constraints = constraint_count(model);
+  return fmt::format("bodies         {} with {} shape(s), {} joint(s), {} driver(s), {} force element(s)\n",
+                     model.bodies.size(), shapes, model.joints.size(), model.drivers.size(),
+                     model.spring_dampers.size() + model.torsional_spring_dampers.size() +
+                         model.applied_forces.size()) +
+         fmt::format("unknowns       {} coordinates, {} constraints: {} degrees of freedom\n", coordinates,
+                     constraints, coordinates - constraints);
+}
+
+std::string limit_lines(const Model& model) {
+  std::string lines;
+  const std::vector<std::string>& names = model.contact.material_names;
+  for (const PairLimit& limit : pair_limits(model)) {
+    const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
+    lines += fmt::format("contact        \"{}\" on \"{}\": K = {:.6g} N/m{}, C = {:.6g} N s/m, {}\n",
+                         names[static_cast<std::size_t>(limit.material[0])],
+                         names[static_cast<std::size_t>(limit.material[1])], law.normal_stiffness,
+                         law.exponent == 1 ? "" : fmt::format("^{}", law.exponent), law.normal_damping,
+                         law.tension ? "may pull" : "cut at zero");
+    lines += fmt::format("               shortest contact {:.4g} s{}, resolved at steps up to {:.2g} s\n",
+                         limit.contact_time, law.exponent == 1 ? "" : " (at 1 % overlap)",
+                         0.2 * limit.contact_time);
+    if (limit.explicit_step > 0) {
+      lines += fmt::format("               velocity-verlet in dense contact: steps up to {:.4g} s\n",
+                           limit.explicit_step);
+    }
+  }
+  return lines;
+}
+
+std::string time_lines(const Model& model) {
+  const TimeControl& time = model.time;
+  const Integrator& integrator = model.integrator;
+  const bool fixed = time.control == StepControl::fixed;
+  std::string lines = fmt::format("time           0 to {} s, ", time.end);
+  lines += fixed ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, std::ceil(time.end / time.step))
+                 : fmt::format("adaptive steps from {:.4g} to {:.4g} s, tolerance {}\n", time.min_step,
+                               time.max_step, time.tolerance);
+  const std::string particles = integrator.particles == ParticleIntegrator::hht
+                                    ? "the same"
+                                    : fmt::format("velocity-verlet, {} substep(s)", integrator.substeps);
+  return lines + fmt::format("integrator     bodies HHT with alpha = {}; particles {}\n",
+                             integrator.hht_alpha, particles);
+}
+
+std::string memory_line(const Model& model) {
+  const Real unknowns = 3 * static_cast<Real>(model.bodies.size()) + constraint_count(model);
+  const Real bytes =
+      kBytesPerParticle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns;
+  return fmt::format(
+      "memory         about {:.3g} MB of state and scratch (estimate: {} B per particle, {} B per unknown)\n",
+      bytes / 1e6, kBytesPerParticle, kBytesPerUnknown);
+}
+
+}  // namespace
+
+std::string check_report(const Model& model) {
+  const std::string title = model.title.empty() ? "" : "title          " + model.title + "\n";
+  return title + space_lines(model) + multibody_lines(model) + limit_lines(model) + time_lines(model) +
+         fmt::format("search         skin {:.4g} m\n", model.contact.skin) + memory_line(model);
+}
+
+}  // namespace scree

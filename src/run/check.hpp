@@ -1,0 +1,14 @@
+// The report of `scree check`.
+#pragma once
+
+#include <string>
+
+#include "model/model.hpp"
+
+namespace scree {
+
+// Sizes, materials, contact times and step limits, degrees of freedom, and an estimate of the memory; several
+// lines.
+std::string check_report(const Model& model);
+
+}  // namespace scree

@@ -1,0 +1,177 @@
+#include "run/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace scree {
+namespace {
+
+using Columns = std::vector<HistoryColumn>;
+
+void step_columns(Columns& out) {
+  const auto add = [&](const char* name, const char* unit, const char* text) { out.push_back({"step", name, unit, text}); };
+  add("time", "s", "simulated time");
+  add("length", "s", "length of the last step");
+  add("steps", "1", "accepted steps so far");
+  add("newton_iterations", "1", "Newton iterations so far");
+  add("linear_iterations", "1", "iterations of the particles' linear solve so far");
+  add("rejected_error", "1", "steps rejected for their local error so far");
+  add("rejected_newton", "1", "steps rejected for want of convergence so far");
+  add("ramped_contacts", "1", "steps that converged with the jump of the damping force at touch spread out, so far");
+  add("contacts", "1", "touching pairs, walls and body shapes included");
+  add("left", "1", "particles that have left the space so far");
+}
+
+void energy_columns(Columns& out) {
+  const auto add = [&](const char* name, const char* text) { out.push_back({"energy", name, "J", text}); };
+  add("kinetic", "kinetic energy of particles and bodies");
+  add("gravitational", "gravitational energy, zero at the origin");
+  add("elastic_force_elements", "elastic energy of force elements");
+  add("elastic_contacts", "elastic energy of contacts");
+  add("dissipated_force_elements", "dissipated in force elements since t = 0");
+  add("dissipated_contacts", "dissipated in contacts since t = 0");
+  add("dissipated_integrator", "taken out by the time integration since t = 0");
+  add("driver_work", "work of drivers, actuators and applied forces since t = 0");
+  add("carried_out", "kinetic and gravitational energy of removed particles when they left");
+  add("total", "kinetic, gravitational and elastic energy");
+  add("balance_error", "total + dissipated + carried out - driver work, less its value at t = 0");
+  add("exchanged", "energy that changed its place since t = 0, from row to row");
+}
+
+void momentum_columns(Columns& out) {
+  for (const char* axis : {"x", "y", "z"})
+    out.push_back({"momentum", std::string("linear_") + axis, "kg m/s", "momentum of the particles"});
+  for (const char* axis : {"x", "y", "z"})
+    out.push_back({"momentum", std::string("angular_") + axis, "kg m^2/s", "angular momentum of the particles about the origin"});
+}
+
+void motion_columns(Columns& out, const std::string& group, bool body) {
+  for (const char* axis : {"x", "y", "z"}) out.push_back({group, axis, "m", "position"});
+  for (const char* axis : {"x", "y", "z"}) out.push_back({group, std::string("v") + axis, "m/s", "velocity"});
+  if (!body) return;
+  out.push_back({group, "angle", "rad", "angle about z"});
+  out.push_back({group, "angular_velocity", "rad/s", "angular velocity about z"});
+}
+
+Columns history_columns(const Model& model, const std::vector<Reaction>& reactions) {
+  Columns out;
+  step_columns(out);
+  energy_columns(out);
+  momentum_columns(out);
+  for (const Reaction& reaction : reactions) {
+    const std::string group = "reactions/" + reaction.joint;
+    out.push_back({group, "fx", "N", "reaction on the joint's second body at its joint point"});
+    out.push_back({group, "fy", "N", "reaction on the joint's second body at its joint point"});
+    out.push_back({group, "torque", "N m", "reaction torque on the joint's second body"});
+  }
+  for (const int body : model.output.history_bodies) motion_columns(out, "bodies/" + model.bodies[body].name, true);
+  for (const GlobalId id : model.output.history_particles) motion_columns(out, "particles/" + std::to_string(id), false);
+  return out;
+}
+
+std::vector<Reaction> reactions_of(const BodyLink& link, const State& state) {
+  return link.multibody() ? link.multibody()->reactions(state.bodies, state.clock.time) : std::vector<Reaction>{};
+}
+
+void append(std::vector<Real>& row, Vec3 v) { row.insert(row.end(), {v.x, v.y, v.z}); }
+
+// values[i] becomes values[order[i]].
+template <class T>
+std::vector<T> ordered(const std::vector<T>& values, const std::vector<std::size_t>& order) {
+  std::vector<T> out(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) out[i] = values[order[i]];
+  return out;
+}
+
+}  // namespace
+
+Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
+                   const State& state)
+    : model_(model),
+      backend_(backend),
+      link_(link),
+      history_(directory, history_columns(model, reactions_of(link, state)), model.output.history_csv,
+               state.history_rows),
+      snapshots_(directory, model.title, static_cast<int>(state.snapshots)) {}
+
+void Recorder::history(State& state, Real h) {
+  const auto real = [](std::int64_t n) { return static_cast<Real>(n); };
+  const StepCounts& n = state.counts;
+  std::vector<Real> row{state.clock.time,           h,
+                        real(n.steps),              real(n.newton_iterations),
+                        real(n.linear_iterations),  real(n.rejected_error),
+                        real(n.rejected_newton),    real(n.ramped_contacts)};
+  energy_row(state, row);
+  body_row(state, row);
+  particle_row(row);
+  history_.append(row);
+  ++state.history_rows;
+}
+
+void Recorder::energy_row(State& state, std::vector<Real>& row) {
+  const bool verlet = model_.integrator.particles == ParticleIntegrator::velocity_verlet;
+  const ParticleLedger particles = backend_.ledger(verlet ? model_.time.step / model_.integrator.substeps : 0);
+  const Ledger ledger = make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
+  BalanceState& balance = state.balance;
+  if (state.history_rows == 0) balance = {ledger.accounted(), 0, ledger};
+  balance.exchanged += energy_exchanged(balance.last, ledger);
+  balance.last = ledger;
+
+  row.push_back(static_cast<Real>(particles.contacts));
+  row.push_back(static_cast<Real>(state.carried_out.left));
+  for (const Real entry : ledger.entries()) row.push_back(entry);
+  row.insert(row.end(), {ledger.mechanical(), ledger.accounted() - balance.start, balance.exchanged});
+  append(row, particles.momentum);
+  append(row, particles.angular_momentum);
+}
+
+void Recorder::body_row(const State& state, std::vector<Real>& row) const {
+  if (link_.multibody() == nullptr) return;
+  for (const Reaction& reaction : reactions_of(link_, state))
+    row.insert(row.end(), {reaction.force.x, reaction.force.y, reaction.torque});
+  if (model_.output.history_bodies.empty()) return;
+  const std::vector<BodyMotion> motion = link_.multibody()->motion(state.bodies);
+  for (const int body : model_.output.history_bodies) {
+    append(row, motion[body].position);
+    append(row, motion[body].velocity);
+    row.insert(row.end(), {motion[body].angle, motion[body].angular_velocity});
+  }
+}
+
+void Recorder::particle_row(std::vector<Real>& row) {
+  if (model_.output.history_particles.empty()) return;
+  const ParticlePack pack = backend_.pack_particles();
+  for (const GlobalId id : model_.output.history_particles) {
+    const auto found = std::find(pack.global_id.begin(), pack.global_id.end(), id);
+    if (found == pack.global_id.end()) {  // removed
+      row.insert(row.end(), 6, std::nan(""));
+      continue;
+    }
+    const auto i = static_cast<std::size_t>(found - pack.global_id.begin());
+    append(row, pack.position[i]);
+    append(row, pack.velocity[i]);
+  }
+}
+
+void Recorder::snapshot(State& state) {
+  ParticlePack p = backend_.pack_particles();
+  std::vector<std::size_t> order(p.global_id.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return p.global_id[a] < p.global_id[b]; });
+  p = {ordered(p.global_id, order), ordered(p.radius, order), ordered(p.position, order),
+       ordered(p.velocity, order),  ordered(p.force, order),  ordered(p.contacts, order)};
+
+  const ShapePack s = backend_.pack_shapes();
+  const std::vector<BodyMotion> motion = link_.motion();
+  std::vector<Real> angle, angular_velocity;
+  for (const int body : s.body) {
+    angle.push_back(motion[body].angle);
+    angular_velocity.push_back(motion[body].angular_velocity);
+  }
+  snapshots_.append(state.clock.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
+                    {s.body, s.radius, s.position, s.velocity, angle, angular_velocity, s.force, s.contacts});
+  ++state.snapshots;
+}
+
+}  // namespace scree

@@ -1,0 +1,207 @@
+#include "run/simulation.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+
+#include "output/run_record.hpp"
+#include "run/signals.hpp"
+#include "run/step_loop.hpp"
+
+namespace scree {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::unique_ptr<Backend> make_backend(const Model& model, const std::string& name) {
+  if (name == "cuda")
+    throw InputError("--backend cuda: this version computes on the CPU only; allowed: auto, cpu");
+  return make_cpu_backend(model);
+}
+
+State read_state(const RunOptions& options) {
+  const Checkpoint checkpoint = read_checkpoint(options.restart);
+  if (checkpoint.text("fingerprint") != options.fingerprint)
+    throw InputError("--restart " + options.restart +
+                     ": the checkpoint belongs to another deck; only time.end and the table output may differ");
+  return unpack(checkpoint);
+}
+
+class Simulation {
+ public:
+  Simulation(const Model& model, const RunOptions& options, Log& log)
+      : model_(model),
+        options_(options),
+        log_(log),
+        state_(options.restart.empty() ? State{} : read_state(options)),
+        backend_(make_backend(model, options.backend)),
+        link_(model),
+        step_(model, *backend_, link_, timers_) {
+    std::filesystem::create_directories(options.output_directory);
+    start_or_resume();
+    recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
+    if (options.restart.empty()) {
+      recorder_->history(state_, 0);
+      recorder_->snapshot(state_);
+    }
+  }
+
+  ExitCode run();
+
+ private:
+  void start_or_resume();
+  void checkpoint(const State& state, const std::string& name);
+  void progress(const State& state, Real h);
+  ExitCode finish(const std::string& status, ExitCode code);
+  void write_record(const std::string& status, ExitCode code);
+  void summarize() const;
+
+  const Model& model_;
+  const RunOptions& options_;
+  Log& log_;
+  State state_;
+  StageTimers timers_;
+  std::unique_ptr<Backend> backend_;
+  BodyLink link_;
+  CoupledStep step_;
+  std::unique_ptr<Recorder> recorder_;
+  std::string started_ = utc_now();
+  Clock::time_point start_ = Clock::now(), last_progress_ = start_;
+  double start_cpu_ = cpu_seconds();
+  Real start_time_ = 0;
+  int tenths_reported_ = 0;
+};
+
+void Simulation::start_or_resume() {
+  if (options_.restart.empty()) {
+    state_.clock = StepClock(model_).state();
+    backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
+    step_.start(state_.bodies);
+  } else {
+    backend_->load(state_.particles, state_.shapes);
+    step_.counts() = state_.counts;
+    step_.resume(state_.bodies);
+  }
+  start_time_ = state_.clock.time;
+}
+
+void Simulation::checkpoint(const State& state, const std::string& name) {
+  recorder_->flush();
+  Checkpoint out = pack(state);
+  out.texts["fingerprint"] = options_.fingerprint;
+  out.texts["deck"] = options_.resolved_deck;
+  const std::string path = options_.output_directory + "/" + name;
+  write_checkpoint(path, out);
+}
+
+void Simulation::progress(const State& state, Real h) {
+  const double since = std::chrono::duration<double>(Clock::now() - last_progress_).count();
+  const Real share = (state.clock.time - start_time_) / (model_.time.end - start_time_);
+  const int tenths = static_cast<int>(10 * share);
+  if (since < 0.25 && tenths == tenths_reported_) return;
+  if (since >= 0.25) last_progress_ = Clock::now(), recorder_->flush();
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  log_.progress(fmt::format("t = {:.4f} of {:g} s, {} steps, h = {:.2e} s, {:.1f} s elapsed, {:.1f} s to go",
+                            state.clock.time, model_.time.end, state.counts.steps, h, elapsed,
+                            elapsed * (1 - share) / std::max(share, 1e-9)),
+                tenths != tenths_reported_);
+  tenths_reported_ = tenths;
+}
+
+ExitCode Simulation::run() {
+  write_record("running", ExitCode::done);
+  const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
+  StepLoop loop(parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
+                [this](const State& s, Real h) { progress(s, h); });
+  try {
+    if (loop.run() == LoopEnd::done) return finish("done", ExitCode::done);
+  } catch (const SimulationError& error) {
+    checkpoint(loop.last_good_state(), "checkpoint_failed.h5");
+    log_.warning(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
+    log_.info("last good state: " + options_.output_directory + "/checkpoint_failed.h5");
+    return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
+  }
+  checkpoint(loop.complete_state(), "checkpoint.h5");
+  const std::string signal = strsignal(signal_received());
+  log_.info("stopped by signal (" + signal + "); continue with --restart " + options_.output_directory +
+            "/checkpoint.h5");
+  return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
+}
+
+ExitCode Simulation::finish(const std::string& status, ExitCode code) {
+  recorder_->flush();
+  write_record(status, code);
+  summarize();
+  return code;
+}
+
+void Simulation::write_record(const std::string& status, ExitCode code) {
+  RunRecord record;
+  record.deck_path = options_.deck_path, record.resolved_deck = options_.resolved_deck;
+  record.command_line = options_.command_line;
+  record.status = status, record.exit_code = static_cast<int>(code);
+  record.started = started_, record.ended = utc_now();
+  record.backend = backend_->description();
+  record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
+  record.restarted_from = options_.restart;
+  record.wall_seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  record.cpu_seconds = cpu_seconds() - start_cpu_;
+  record.timers = timers_;
+  const StepCounts& n = step_.counts();
+  record.counts = {{"steps", n.steps},
+                   {"newton_iterations", n.newton_iterations},
+                   {"linear_iterations", n.linear_iterations},
+                   {"rejected_error", n.rejected_error},
+                   {"rejected_newton", n.rejected_newton},
+                   {"ramped_contacts", n.ramped_contacts},
+                   {"list_builds", n.list_builds},
+                   {"list_entries", backend_->list_entries()},
+                   {"particles", static_cast<std::int64_t>(model_.particles.size())},
+                   {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
+                   {"left", state_.carried_out.left},
+                   {"history_rows", state_.history_rows},
+                   {"snapshots", state_.snapshots}};
+  const BalanceState& b = state_.balance;
+  record.measures = {{"simulated_time", state_.clock.time},
+                     {"balance_error", b.last.accounted() - b.start},
+                     {"energy_exchanged", b.exchanged}};
+  record.warnings = log_.warnings();
+  write_run_record(options_.output_directory, record);
+}
+
+void Simulation::summarize() const {
+  const StepCounts& n = step_.counts();
+  const BalanceState& b = state_.balance;
+  const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
+  log_.info(fmt::format("t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
+                        state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
+                        n.linear_iterations, n.list_builds));
+  log_.info(fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} particles left the space",
+                        b.last.accounted() - b.start, b.exchanged, state_.carried_out.left));
+  log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,
+                        options_.output_directory));
+}
+
+}  // namespace
+
+ExitCode run_simulation(const Model& model, const RunOptions& options, Log& log) {
+  catch_signals();
+  Simulation simulation(model, options, log);
+  return simulation.run();
+}
+
+}  // namespace scree

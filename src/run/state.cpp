@@ -1,0 +1,153 @@
+#include "run/state.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace scree {
+namespace {
+
+// One list of members serves both directions: pack() and unpack() visit the same fields in the same order.
+class Writer {
+ public:
+  explicit Writer(Checkpoint& out) : out_(out) {}
+  void operator()(const char* name, const Real& value) { out_.reals[name] = {value}; }
+  void operator()(const char* name, const std::int64_t& value) { out_.integers[name] = {value}; }
+  void operator()(const char* name, const bool& value) { out_.integers[name] = {value ? 1 : 0}; }
+  void operator()(const char* name, const std::vector<Real>& values) { out_.reals[name] = values; }
+
+ private:
+  Checkpoint& out_;
+};
+
+class Reader {
+ public:
+  explicit Reader(const Checkpoint& in) : in_(in) {}
+  void operator()(const char* name, Real& value) { value = single(name, in_.real_array(name)); }
+  void operator()(const char* name, std::int64_t& value) { value = single(name, in_.integer_array(name)); }
+  void operator()(const char* name, bool& value) { value = single(name, in_.integer_array(name)) != 0; }
+  void operator()(const char* name, std::vector<Real>& values) { values = in_.real_array(name); }
+
+ private:
+  template <class T>
+  T single(const char* name, const std::vector<T>& values) const {
+    if (values.size() != 1) throw IoError(in_.path + ": '" + name + "' is not a single value");
+    return values[0];
+  }
+  const Checkpoint& in_;
+};
+
+template <class Visitor, class StateType>
+void visit_clock(Visitor& visit, StateType& clock) {
+  visit("clock/time", clock.time);
+  visit("clock/start", clock.start);
+  visit("clock/end", clock.end);
+  visit("clock/grid_steps", clock.grid_steps);
+  visit("clock/grid_done", clock.grid_done);
+  visit("clock/level", clock.level);
+  visit("clock/parts_left", clock.parts_left);
+  visit("clock/next_step", clock.next_step);
+  visit("clock/just_rejected", clock.just_rejected);
+  visit("clock/histories", clock.histories);
+  visit("clock/snapshots", clock.snapshots);
+  visit("clock/checkpoints", clock.checkpoints);
+}
+
+template <class Visitor, class LedgerType>
+void visit_ledger(Visitor& visit, LedgerType& ledger) {
+  visit("balance/kinetic", ledger.kinetic);
+  visit("balance/gravitational", ledger.gravitational);
+  visit("balance/elastic_force_elements", ledger.elastic_force_elements);
+  visit("balance/elastic_contacts", ledger.elastic_contacts);
+  visit("balance/dissipated_force_elements", ledger.dissipated_force_elements);
+  visit("balance/dissipated_contacts", ledger.dissipated_contacts);
+  visit("balance/dissipated_integrator", ledger.dissipated_integrator);
+  visit("balance/driver_work", ledger.driver_work);
+  visit("balance/carried_out", ledger.carried_out);
+}
+
+template <class Visitor, class StateType>
+void visit_state(Visitor& visit, StateType& state) {
+  visit_clock(visit, state.clock);
+  visit("counts/steps", state.counts.steps);
+  visit("counts/newton_iterations", state.counts.newton_iterations);
+  visit("counts/linear_iterations", state.counts.linear_iterations);
+  visit("counts/rejected_error", state.counts.rejected_error);
+  visit("counts/rejected_newton", state.counts.rejected_newton);
+  visit("counts/ramped_contacts", state.counts.ramped_contacts);
+  visit("bodies/position", state.bodies.position);
+  visit("bodies/velocity", state.bodies.velocity);
+  visit("bodies/acceleration", state.bodies.acceleration);
+  visit("bodies/multipliers", state.bodies.multipliers);
+  visit("bodies/force", state.bodies.force);
+  visit("bodies/applied", state.bodies.applied);
+  visit("bodies/dissipated", state.bodies.dissipated);
+  visit("bodies/integrator_loss", state.bodies.integrator_loss);
+  visit("bodies/driver_work", state.bodies.driver_work);
+  visit("shapes/contact_loss", state.shapes.contact_loss);
+  visit("shapes/loss_power", state.shapes.loss_power);
+  visit("carried_out/left", state.carried_out.left);
+  visit("carried_out/removed", state.carried_out.removed);
+  visit("carried_out/energy", state.carried_out.energy);
+  visit("carried_out/contact_loss", state.carried_out.contact_loss);
+  visit("carried_out/integrator_loss", state.carried_out.integrator_loss);
+  visit("balance/start", state.balance.start);
+  visit("balance/exchanged", state.balance.exchanged);
+  visit_ledger(visit, state.balance.last);
+  visit("output/history_rows", state.history_rows);
+  visit("output/snapshots", state.snapshots);
+}
+
+constexpr int kRealsPerParticle = 15, kIntegersPerParticle = 5;
+
+void pack_particles(const std::vector<ParticleRecord>& particles, Checkpoint& out) {
+  std::vector<Real>& reals = out.reals["particles/reals"];
+  std::vector<std::int64_t>& integers = out.integers["particles/integers"];
+  reals.reserve(particles.size() * kRealsPerParticle), integers.reserve(particles.size() * kIntegersPerParticle);
+  for (const ParticleRecord& p : particles) {
+    for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force})
+      for (const Real value : {v.x, v.y, v.z}) reals.push_back(value);
+    for (const Real value : {p.contact_loss, p.loss_power, p.integrator_loss}) reals.push_back(value);
+    for (const std::int64_t value : {p.global_id, std::int64_t{p.image.x}, std::int64_t{p.image.y},
+                                     std::int64_t{p.image.z}, std::int64_t{p.drifting}})
+      integers.push_back(value);
+  }
+}
+
+std::vector<ParticleRecord> unpack_particles(const Checkpoint& in) {
+  const std::vector<Real>& reals = in.real_array("particles/reals");
+  const std::vector<std::int64_t>& integers = in.integer_array("particles/integers");
+  const std::size_t n = reals.size() / kRealsPerParticle;
+  if (reals.size() != n * kRealsPerParticle || integers.size() != n * kIntegersPerParticle)
+    throw IoError(in.path + ": the particles' arrays do not fit together");
+  std::vector<ParticleRecord> particles(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Real* r = &reals[i * kRealsPerParticle];
+    const std::int64_t* k = &integers[i * kIntegersPerParticle];
+    const auto vector = [r](int at) { return Vec3{r[at], r[at + 1], r[at + 2]}; };
+    const auto whole = [k](int at) { return static_cast<std::int32_t>(k[at]); };
+    particles[i] = {k[0],  vector(0), vector(3), vector(6),                      vector(9),
+                    r[12], r[13],     r[14],     {whole(1), whole(2), whole(3)}, k[4] != 0};
+  }
+  return particles;
+}
+
+}  // namespace
+
+Checkpoint pack(const State& state) {
+  Checkpoint out;
+  Writer writer(out);
+  visit_state(writer, state);
+  pack_particles(state.particles, out);
+  return out;
+}
+
+State unpack(const Checkpoint& checkpoint) {
+  State state;
+  Reader reader(checkpoint);
+  visit_state(reader, state);
+  state.particles = unpack_particles(checkpoint);
+  return state;
+}
+
+}  // namespace scree

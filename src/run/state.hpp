@@ -1,0 +1,38 @@
+// State: all that changes in time and nothing else. A checkpoint stores exactly this.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coupling/coupled_step.hpp"
+#include "coupling/ledger.hpp"
+#include "dem/backend.hpp"
+#include "mbs/multibody.hpp"
+#include "output/checkpoint.hpp"
+#include "run/step_clock.hpp"
+
+namespace scree {
+
+// Energy balance since t = 0.
+struct BalanceState {
+  Real start = 0;      // Ledger::accounted() at t = 0 [J]
+  Real exchanged = 0;  // energy that changed its place so far, from sample to sample of the history [J]
+  Ledger last;         // at the last sample
+};
+
+struct State {
+  ClockState clock;
+  StepCounts counts;
+  MultibodyState bodies;
+  std::vector<ParticleRecord> particles;  // ordered by global id; lives in the backend between checkpoints
+  ShapeLosses shapes;
+  CarriedOut carried_out;
+  BalanceState balance;
+  std::int64_t history_rows = 0, snapshots = 0;  // written so far
+};
+
+Checkpoint pack(const State& state);
+// Throws IoError naming what is missing.
+State unpack(const Checkpoint& checkpoint);
+
+}  // namespace scree

@@ -1,0 +1,104 @@
+#include "run/step_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "base/error.hpp"
+#include "run/signals.hpp"
+
+namespace scree {
+namespace {
+
+// Keeping a good state of an explicit run may take this share of the run's time.
+constexpr double kGoodStateShare = 0.02;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(const State&)> write_checkpoint,
+                   std::function<void(const State&, Real)> progress)
+    : parts_(parts),
+      state_(state),
+      clock_(parts.model, state.clock),
+      write_checkpoint_(std::move(write_checkpoint)),
+      progress_(std::move(progress)),
+      implicit_(parts.model.integrator.particles == ParticleIntegrator::hht) {
+  keep_good_state();
+}
+
+LoopEnd StepLoop::run() {
+  while (!clock_.done()) {
+    if (signal_received() != 0) return LoopEnd::stopped_by_signal;
+    take_step();
+  }
+  return LoopEnd::done;
+}
+
+void StepLoop::take_step() {
+  const Real h = clock_.begin_step();
+  Real error = 0;
+  if (implicit_) {
+    const StepOutcome outcome = parts_.step.implicit_step(state_.bodies, clock_.time(), h);
+    if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
+    if (outcome.verdict == Verdict::not_converged) return clock_.rejected_for_convergence(outcome.trouble);
+    error = outcome.error;
+  } else {
+    parts_.step.explicit_step(state_.bodies, clock_.time(), h);
+  }
+  clock_.accepted(error);
+  state_.clock = clock_.state();
+  leave();
+  output(h);
+}
+
+// Particles outside the space: an error, or out of the pair search from the next step on.
+void StepLoop::leave() {
+  const auto scope = parts_.timers.time(Stage::migrate);
+  const std::vector<Leaver> leavers = parts_.backend.collect_leavers();
+  const Leaving policy = parts_.model.space.leaving;
+  for (const Leaver& l : leavers) {
+    if (!l.lost && policy != Leaving::error) continue;
+    throw SimulationError(fmt::format("stage migrate: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}",
+                                      l.global_id, l.position.x, l.position.y, l.position.z,
+                                      l.lost ? "beyond a side that is a wall"
+                                             : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
+  }
+  book_leavers(leavers, policy, state_.carried_out);
+  if (!leavers.empty()) parts_.step.rebuild_list(parts_.model.contact.skin);
+}
+
+void StepLoop::output(Real h) {
+  const auto scope = parts_.timers.time(Stage::output);
+  state_.counts = parts_.step.counts();
+  const bool history = clock_.take_history(), snapshot = clock_.take_snapshot(), checkpoint = clock_.take_checkpoint();
+  state_.clock = clock_.state();
+  if (history) parts_.recorder.history(state_, h);
+  if (snapshot) parts_.recorder.snapshot(state_);
+  if (checkpoint) write_checkpoint_(complete_state());
+  progress_(state_, h);
+  if (!implicit_ && seconds_now() - good_age_ > good_cost_ / kGoodStateShare) keep_good_state();
+}
+
+void StepLoop::keep_good_state() {
+  if (implicit_) return;
+  const double start = seconds_now();
+  good_ = complete_state();
+  good_age_ = seconds_now();
+  good_cost_ = good_age_ - start;
+}
+
+const State& StepLoop::complete_state() {
+  state_.clock = clock_.state();
+  state_.counts = parts_.step.counts();
+  state_.particles = parts_.backend.records();
+  state_.shapes = parts_.backend.shape_losses();
+  return state_;
+}
+
+const State& StepLoop::last_good_state() { return implicit_ ? complete_state() : good_; }
+
+}  // namespace scree

@@ -1,0 +1,57 @@
+// The loop over steps: reads from top to bottom as the algorithm.
+#pragma once
+
+#include <functional>
+
+#include "base/log.hpp"
+#include "coupling/coupled_step.hpp"
+#include "run/recorder.hpp"
+#include "run/state.hpp"
+#include "run/step_clock.hpp"
+
+namespace scree {
+
+enum class LoopEnd { done, stopped_by_signal };
+
+// What the loop works on; all of it outlives the loop.
+struct LoopParts {
+  const Model& model;
+  Backend& backend;
+  BodyLink& link;
+  CoupledStep& step;
+  Recorder& recorder;
+  StageTimers& timers;
+};
+
+class StepLoop {
+ public:
+  // write_checkpoint: called with the complete state whenever one is due.
+  StepLoop(const LoopParts& parts, State& state, std::function<void(const State&)> write_checkpoint,
+           std::function<void(const State&, Real h)> progress);
+
+  // Steps until the end or a signal. Throws SimulationError when the run cannot go on.
+  LoopEnd run();
+  // The state as it is, complete with the particles.
+  const State& complete_state();
+  // After a failure. Implicit: the start of the failed step. Explicit: a copy kept some steps ago, because an
+  // explicit step cannot be undone.
+  const State& last_good_state();
+
+ private:
+  void take_step();
+  void leave();
+  void output(Real h);
+  void keep_good_state();
+
+  LoopParts parts_;
+  State& state_;
+  StepClock clock_;
+  std::function<void(const State&)> write_checkpoint_;
+  std::function<void(const State&, Real)> progress_;
+  bool implicit_;
+  State good_;             // explicit: the copy
+  double good_cost_ = 0;   // seconds that keeping it took
+  double good_age_ = 0;    // steady clock when it was kept [s]
+};
+
+}  // namespace scree

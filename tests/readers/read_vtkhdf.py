@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Opens a result directory with VTK's own reader and compares every time step with the raw HDF5 data.
+
+    python3 tests/readers/read_vtkhdf.py RESULT_DIR [--steps N]
+
+Needs vtk >= 9.5, h5py and numpy. Exits with 1 at the first mismatch, which it names.
+"""
+
+import argparse
+import pathlib
+import sys
+
+import h5py
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+PARTICLE_FIELDS = {"global_id": 1, "radius": 1, "velocity": 3, "force": 3, "contacts": 1}
+BODY_FIELDS = {"body": 1, "radius": 1, "velocity": 3, "angle": 1, "angular_velocity": 1, "force": 3, "contacts": 1}
+
+
+def require(condition, message):
+    if not condition:
+        sys.exit(f"error: {message}")
+
+
+class ErrorCounter:
+    """Counts what VTK would only print."""
+
+    def __init__(self, algorithm):
+        self.count = 0
+        algorithm.AddObserver("ErrorEvent", self.add)
+
+    def add(self, *_):
+        self.count += 1
+
+
+def check_attributes(file, path):
+    root = file["VTKHDF"]
+    require(list(root.attrs["Version"]) == [2, 0], f"{path}: VTKHDF Version {root.attrs['Version']}")
+    require(root.attrs["Type"] == b"PolyData", f"{path}: VTKHDF Type {root.attrs['Type']}")
+
+    def check(name, item):
+        if isinstance(item, h5py.Dataset):
+            for attribute in ("unit", "description"):
+                require(item.attrs.get(attribute), f"{path}: {name} has no {attribute}")
+
+    root.visititems(check)
+
+
+def raw_snapshot(root, step, fields):
+    """Points and fields of one step, read by the offsets alone."""
+    steps = root["Steps"]
+    count = root["NumberOfPoints"][steps["PartOffsets"][step]]
+    first = steps["PointOffsets"][step]
+    data = {"Points": root["Points"][first : first + count]}
+    for name in fields:
+        first = steps[f"PointDataOffsets/{name}"][step]
+        data[name] = root[f"PointData/{name}"][first : first + count]
+    return data
+
+
+def check_step(path, step, polydata, raw, fields):
+    where = f"{path}, step {step}"
+    count = len(raw["Points"])
+    require(polydata.GetNumberOfPoints() == count, f"{where}: {polydata.GetNumberOfPoints()} points for {count}")
+    require(polydata.GetNumberOfVerts() == count, f"{where}: {polydata.GetNumberOfVerts()} vertices for {count}")
+    require(polydata.GetNumberOfCells() == count, f"{where}: {polydata.GetNumberOfCells()} cells for {count}")
+    if count == 0:
+        return
+    connectivity = vtk_to_numpy(polydata.GetVerts().GetConnectivityArray())
+    require(np.array_equal(connectivity, np.arange(count)), f"{where}: vertices do not name their points")
+    require(np.array_equal(vtk_to_numpy(polydata.GetPoints().GetData()), raw["Points"]), f"{where}: Points differ")
+    for name, width in fields.items():
+        array = polydata.GetPointData().GetArray(name)
+        require(array is not None, f"{where}: no field {name}")
+        require(array.GetNumberOfComponents() == width, f"{where}: {name} has {array.GetNumberOfComponents()} components")
+        values = vtk_to_numpy(array)
+        require(np.array_equal(values, raw[name], equal_nan=values.dtype.kind == "f"), f"{where}: {name} differs")
+        require(values.dtype.kind != "f" or np.isfinite(values).all(), f"{where}: {name} is not finite")
+    require((raw["radius"] > 0).all(), f"{where}: a radius is not positive")
+
+
+def check_file(path, fields):
+    """Returns the number of steps."""
+    reader = vtk.vtkHDFReader()
+    errors = ErrorCounter(reader)
+    require(reader.CanReadFile(str(path)), f"{path}: VTK's reader does not take it")
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    with h5py.File(path, "r") as file:
+        check_attributes(file, path)
+        root = file["VTKHDF"]
+        times = root["Steps/Values"][:]
+        require(reader.GetNumberOfSteps() == len(times), f"{path}: {reader.GetNumberOfSteps()} steps for {len(times)}")
+        require((np.diff(times) > 0).all(), f"{path}: times do not increase")
+        counts = []
+        for step, time in enumerate(times):
+            reader.SetStep(step)
+            reader.Update()
+            require(reader.GetTimeValue() == time, f"{path}, step {step}: time {reader.GetTimeValue()} for {time}")
+            raw = raw_snapshot(root, step, fields)
+            check_step(path, step, reader.GetOutput(), raw, fields)
+            counts.append(len(raw["Points"]))
+    require(errors.count == 0, f"{path}: VTK reported {errors.count} errors")
+    print(f"{path}: {len(times)} steps, t = {times[0]:g} .. {times[-1]:g} s, {min(counts)} to {max(counts)} points: right")
+    return len(times)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("result_directory", type=pathlib.Path)
+    parser.add_argument("--steps", type=int, help="number of snapshots that must be there")
+    arguments = parser.parse_args()
+    steps = check_file(arguments.result_directory / "particles.vtkhdf", PARTICLE_FIELDS)
+    require(arguments.steps in (None, steps), f"{steps} snapshots where {arguments.steps} must be")
+    bodies = arguments.result_directory / "bodies.vtkhdf"
+    if bodies.exists():
+        require(check_file(bodies, BODY_FIELDS) == steps, "particles and bodies differ in their number of snapshots")
+
+
+if __name__ == "__main__":
+    main()

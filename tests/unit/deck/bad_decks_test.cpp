@@ -1,0 +1,132 @@
+// Every kind of wrong deck has one message that names place, key, value and what is allowed.
+#include "support/catch.hpp"
+#include "support/decks.hpp"
+
+namespace scree {
+
+namespace {
+
+// A deck whose line `line` (counted from 1) is replaced.
+std::string with_line(int line, const std::string& replacement) {
+  std::string result, rest = kSmallDeck;
+  for (int number = 1; !rest.empty(); ++number) {
+    const std::size_t end = rest.find('\n') + 1;
+    result += number == line ? replacement + "\n" : rest.substr(0, end);
+    rest.erase(0, end);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a good deck gives no error") { CHECK(deck_error(kSmallDeck).empty()); }
+
+TEST_CASE("text that is not TOML") {
+  const std::string message = deck_error("[space\ndimension = 2\n");
+  CHECK(contains(message, "deck.toml:1:"));
+  CHECK(contains(message, "not TOML"));
+}
+
+TEST_CASE("a repeated key") {
+  const std::string message = deck_error(with_line(8, "step = 1e-3\nstep = 2e-3"));
+  CHECK(contains(message, "deck.toml:9:"));
+  CHECK(contains(message, "step"));
+}
+
+TEST_CASE("unknown keys and tables get a suggestion") {
+  CHECK(deck_error(with_line(8, "stp = 1e-3")) ==
+        "deck.toml:8:1: time.stp = 0.001: unknown key; did you mean \"step\"?");
+  CHECK(contains(deck_error(kSmallDeck + "[contct]\n"),
+                 "deck.toml:9:2: contct = { }: unknown key; did you mean \"contact\"?"));
+  const std::string far_off = deck_error(with_line(8, "step = 1e-3\nsomething_else = 1"));
+  CHECK(contains(far_off, "time.something_else = 1: unknown key; known: end, step, control"));
+}
+
+TEST_CASE("values of the wrong type") {
+  CHECK(deck_error(with_line(8, "step = \"fast\"")) ==
+        "deck.toml:8:8: time.step = \"fast\": must be a number above 0 [s]");
+  CHECK(deck_error(with_line(3, "dimension = 2.0")) ==
+        "deck.toml:3:13: space.dimension = 2: must be an integer from 2 to 3");
+  CHECK(deck_error(with_line(4, "min = -1.0")) ==
+        "deck.toml:4:7: space.min = -1: must be 2 numbers [m] in brackets");
+  CHECK(
+      contains(deck_error(with_line(4, "min = [0, 0, 0]")), "space.min = [0, 0, 0]: must be 2 numbers [m]"));
+  CHECK(
+      contains(deck_error(with_line(4, "min = [0, true]")), "space.min = [0, true]: must be 2 numbers [m]"));
+  CHECK(contains(deck_error("title = 5\n" + kSmallDeck), "deck.toml:1:9: title = 5: must be a text"));
+  CHECK(contains(deck_error(kSmallDeck + "[output]\nhistory_csv = 1\n"),
+                 "history_csv = 1: must be true or false"));
+  CHECK(contains(deck_error(kSmallDeck + "[output]\nhistory_bodies = [1]\n"), "must be a list of texts"));
+  CHECK(contains(deck_error("contact = 3\n" + kSmallDeck), "contact = 3: must be a table"));
+  CHECK(contains(deck_error("bodies = 3\n" + kSmallDeck), "bodies = 3: must be a list of tables"));
+}
+
+TEST_CASE("numbers out of range, infinite and not a number") {
+  CHECK(deck_error(with_line(8, "step = -1e-3")) ==
+        "deck.toml:8:8: time.step = -0.001: must be a number above 0 [s]");
+  CHECK(contains(deck_error(with_line(8, "step = 0")), "time.step = 0: must be a number above 0 [s]"));
+  CHECK(contains(deck_error(with_line(8, "step = nan")),
+                 "time.step = nan: must be a number above 0 [s], finite"));
+  CHECK(contains(deck_error(with_line(7, "end = inf")),
+                 "time.end = inf: must be a number above 0 [s], finite"));
+  CHECK(contains(deck_error(with_line(4, "min = [-inf, 0.0]")),
+                 "space.min = [-inf, 0]: must be 2 numbers [m]"));
+  CHECK(contains(deck_error(with_line(3, "dimension = 4")),
+                 "space.dimension = 4: must be an integer from 2 to 3"));
+  CHECK(contains(deck_error(kSmallDeck + "[integrator]\nhht_alpha = 0.1\n"),
+                 "integrator.hht_alpha = 0.1: must be a number from -0.3333333333333333 to 0"));
+  CHECK(contains(deck_error(kSmallDeck + "[[contact.pairs]]\nstiffness = -1.0\n"),
+                 "deck.toml:10:13: contact.pairs.0.stiffness = -1: must be a number of at least 0 [N/m^n]"));
+  CHECK(contains(deck_error(kSmallDeck + "[output]\nhistory_particles = [-1]\n"),
+                 "must be a list of integers of at least 0"));
+}
+
+TEST_CASE("texts that are no choice") {
+  CHECK(contains(deck_error(with_line(8, "step = 1e-3\ncontrol = \"adaptiv\"")),
+                 "deck.toml:9:11: time.control = \"adaptiv\": must be one of \"fixed\", \"adaptive\""));
+}
+
+TEST_CASE("missing keys and tables") {
+  CHECK(deck_error(with_line(8, "")) == "deck.toml:6:1: time.step: missing; it must be a number above 0 [s]");
+  CHECK(contains(deck_error("title = \"x\"\n"), "deck.toml: space: missing; it must be a table"));
+  CHECK(contains(deck_error(kSmallDeck + "[[bodies]]\nname = \"a\"\n"),
+                 "deck.toml:9:1: bodies.a.mass: missing; it must be a number above 0 [kg]"));
+}
+
+TEST_CASE("keys that the kind of table does not use") {
+  const std::string lattice = "[[particles]]\nname = \"block\"\nkind = \"lattice\"\nfile = \"x.csv\"\n";
+  CHECK(deck_error(kSmallDeck + lattice) ==
+        "deck.toml:12:1: particles.block.file = \"x.csv\": not used with kind = \"lattice\", only with "
+        "\"file\"");
+  const std::string motion =
+      "[[drivers]]\nname = \"d\"\njoint = \"j\"\nmotion = { kind = \"ramp\", rate = 1, phase = 0 }\n";
+  CHECK(
+      contains(deck_error(kSmallDeck + motion), "drivers.d.motion.phase = 0: not used with kind = \"ramp\""));
+}
+
+TEST_CASE("a quantity is a number or a table") {
+  const std::string start = kSmallDeck + "[[particles]]\nkind = \"list\"\npositions = [[0, 0]]\n";
+  CHECK(
+      contains(deck_error(start + "radius = \"big\"\n"),
+               "deck.toml:12:10: particles.0.radius = \"big\": must be a number [m] or a table with a kind"));
+  CHECK(contains(deck_error(start + "radius = -1\n"),
+                 "deck.toml:12:10: particles.0.radius.value = -1: must be a number above 0"));
+  CHECK(contains(deck_error(start + "radius = { kind = \"uniform\", min = 1 }\n"),
+                 "particles.0.radius.max: missing"));
+}
+
+TEST_CASE("repeated names") {
+  const std::string body = "[[bodies]]\nname = \"a\"\nmass = 1\ninertia = 1\nposition = [0, 0]\n";
+  CHECK(deck_error(kSmallDeck + body + body) ==
+        "deck.toml:15:8: bodies.a.name = \"a\": repeated; every name must be another one");
+}
+
+TEST_CASE("a file that cannot be read") {
+  const std::string message =
+      deck_error(kSmallDeck + "[[particles]]\nkind = \"file\"\nfile = \"absent.csv\"\n");
+  CHECK(contains(message, "deck.toml:11:8: particles.0.file = \"absent.csv\": must be the path of a file"));
+  CHECK(contains(message, "absent.csv cannot be read"));
+  CHECK_THROWS_AS(load_deck("no/such/deck.toml", {}), IoError);
+}
+
+}  // namespace scree

@@ -1,0 +1,147 @@
+// Decks whose values are each allowed but contradict each other.
+#include "support/catch.hpp"
+#include "support/models.hpp"
+
+namespace scree {
+
+namespace {
+
+const std::string kPair = "[[contact.pairs]]\nstiffness = 1e6\n";
+const std::string kBodies = R"([[bodies]]
+name = "a"
+mass = 1.0
+inertia = 0.1
+position = [0.0, 0.0]
+[[bodies]]
+name = "row"
+count = 3
+spacing = [0.2, 0.0]
+mass = 1.0
+inertia = 0.1
+position = [0.0, 0.5]
+)";
+
+std::string particles_at(const std::string& positions) {
+  return "[[particles]]\nkind = \"list\"\npositions = " + positions + "\nradius = 0.05\nmass = 1.0\n";
+}
+
+std::string joint_with(const std::string& keys) { return "[[joints]]\nname = \"pin\"\n" + keys; }
+
+}  // namespace
+
+TEST_CASE("unknown names of materials, bodies and joints") {
+  const std::string materials = "[[materials]]\nname = \"glass\"\n[[materials]]\nname = \"steel\"\n";
+  CHECK(model_error(kSmallDeck + materials + particles_at("[[0, 0]]") + "material = \"glas\"\n") ==
+        "deck.toml:18:12: particles.0.material = \"glas\": there is no material named \"glas\"; did you mean "
+        "\"glass\"?");
+  CHECK(contains(model_error(kSmallDeck + materials + particles_at("[[0, 0]]")),
+                 "particles.0.material: missing; it must name a material, as the deck has more than one"));
+  const std::string joint = joint_with("type = \"revolute\"\nbodies = [\"ground\", \"b\"]\n");
+  CHECK(model_error(kSmallDeck + kBodies + joint) ==
+        "deck.toml:24:10: joints.pin.bodies = [\"ground\", \"b\"]: there is no body named \"b\"; did you "
+        "mean \"a\"?");
+  CHECK(contains(
+      model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nbodies = [\"a\", \"row\"]\n")),
+      "\"row\" is a row; name one of its bodies, \"row.0\" to \"row.2\""));
+  CHECK(
+      contains(model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nchain = \"rwo\"\n")),
+               "joints.pin.chain = \"rwo\": there is no body or row of bodies named \"rwo\"; did you mean"));
+  CHECK(contains(model_error(kSmallDeck + "[[drivers]]\nname = \"d\"\njoint = \"pin\"\nmotion = 0.0\n"),
+                 "drivers.d.joint = \"pin\": there is no joint named \"pin\""));
+  CHECK(contains(model_error(kSmallDeck + "[output]\nhistory_bodies = [\"c\"]\n"),
+                 "output.history_bodies = [\"c\"]"));
+  CHECK(contains(model_error(kSmallDeck + "[output]\nhistory_particles = [0]\n"), "there is no particle 0"));
+}
+
+TEST_CASE("names that a row repeats") {
+  const std::string clash = "[[bodies]]\nname = \"row.1\"\nmass = 1\ninertia = 1\nposition = [0, 0]\n";
+  CHECK(contains(model_error(kSmallDeck + kBodies + clash), "the name \"row.1\" is repeated"));
+}
+
+TEST_CASE("joints whose two sides do not meet") {
+  const std::string message = model_error(
+      kSmallDeck + kBodies +
+      joint_with(
+          "type = \"revolute\"\nbodies = [\"a\", \"row.0\"]\nlocal_points = [[0.0, 0.0], [0.0, -0.4]]\n"));
+  CHECK(contains(message, "deck.toml:25:16: joints.pin.local_points = [[0, 0], [0, -0.4]]"));
+  CHECK(contains(message, "the two sides of joint \"pin\" do not meet"));
+  CHECK(contains(message, "off by 0.1 m"));
+  CHECK(
+      contains(model_error(kSmallDeck + kBodies +
+                           joint_with("type = \"distance\"\nbodies = [\"a\", \"row.0\"]\ndistance = 0.4\n")),
+               "joints.pin.distance = 0.4: the two sides of joint \"pin\" do not meet"));
+  CHECK(
+      contains(model_error(kSmallDeck + kBodies +
+                           joint_with("type = \"translational\"\nbodies = [\"a\", \"row.0\"]\naxis = [1, 0]\n"
+                                      "local_points = [[0, 0], [0, -0.45]]\n")),
+               "off by 0.05 m"));
+}
+
+TEST_CASE("joints between the wrong things") {
+  CHECK(contains(
+      model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nbodies = [\"a\", \"a\"]\n")),
+      "must be two different bodies"));
+  CHECK(contains(model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\n")),
+                 "exactly one of the keys bodies, chain and each"));
+  CHECK(contains(model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nchain = \"a\"\n")),
+                 "must name a row of two bodies or more"));
+  CHECK(contains(model_error(kSmallDeck + kBodies +
+                             joint_with("type = \"revolute\"\nchain = \"row\"\npoint = [0, 0]\n")),
+                 "not used with chain or each"));
+  CHECK(contains(
+      model_error(kSmallDeck + kBodies + joint_with("type = \"fixed\"\nbodies = [\"ground\", \"a\"]\n") +
+                  "[[drivers]]\nname = \"d\"\njoint = \"pin\"\nmotion = 0.0\n"),
+      "drivers.d.joint = \"pin\": a fixed joint cannot be driven"));
+  CHECK(contains(
+      model_error(kSmallDeck + kBodies + joint_with("type = \"distance\"\nbodies = [\"ground\", \"a\"]\n")),
+      "the ground has no centre"));
+}
+
+TEST_CASE("tables of time functions must increase") {
+  const std::string force =
+      "[[applied_forces]]\nname = \"f\"\nbody = \"a\"\nfx = { kind = \"table\", times = ";
+  CHECK(contains(model_error(kSmallDeck + kBodies + force + "[0, 1, 1], values = [0, 0, 0] }\n"),
+                 "applied_forces.f.fx.times = [0, 1, 1]: must increase; entry 2 is 1 after 1"));
+  CHECK(contains(model_error(kSmallDeck + kBodies + force + "[0, 1], values = [0] }\n"),
+                 "must have 2 entries, as times"));
+  CHECK(
+      contains(model_error(kSmallDeck + kBodies + force + "[0], values = [0] }\n"), "two entries at least"));
+}
+
+TEST_CASE("the space") {
+  CHECK(model_error(kSmallDeck, {"space.max=[1, -1]"}) ==
+        "--set space.max=[1, -1]: must be larger than space.min in every component");
+  CHECK(contains(model_error(kSmallDeck, {"space.x_min=periodic"}), "x_max must be \"periodic\" too"));
+  CHECK(contains(model_error(kSmallDeck, {"space.z_min=wall"}), "a space of dimension 2 has no z sides"));
+  const std::string narrow = kSmallDeck + kPair + particles_at("[[0, 0]]");
+  const std::vector<std::string> periodic = {"space.x_min=periodic", "space.x_max=periodic",
+                                             "particles.0.radius=0.5"};
+  CHECK(contains(model_error(narrow, periodic), "the periodic space must be at least 2.2 m long in x"));
+  CHECK(contains(model_error(kSmallDeck + "[[walls]]\nname = \"w\"\npoint = [0, 0]\nnormal = [0, 0]\n"),
+                 "walls.w.normal = [0, 0]: must not be 0"));
+}
+
+TEST_CASE("start positions outside the space") {
+  const std::string message = model_error(kSmallDeck + kPair + particles_at("[[0, 0], [0, 1.5]]"));
+  CHECK(
+      contains(message, "particle 1 starts at (0, 1.5, 0), outside the space from (-1, -1, 0) to (1, 1, 0)"));
+}
+
+TEST_CASE("every pair of materials that can meet needs a law") {
+  CHECK(contains(model_error(kSmallDeck + particles_at("[[0, 0], [0, 0.5]]")),
+                 "contact.pairs: no pair with materials = [\"default\", \"default\"], which can meet"));
+  CHECK(model_error(kSmallDeck + particles_at("[[0, 0]]")).empty());
+  CHECK(contains(model_error(kSmallDeck + kPair + kPair), "every pair of materials must be given once"));
+  CHECK(contains(model_error(kSmallDeck + "[[contact.pairs]]\nstiffness = 0\ndamping = 1\n"),
+                 "must be 0 where"));
+}
+
+TEST_CASE("time and integrator") {
+  CHECK(contains(model_error(kSmallDeck, {"time.min_step=1"}), "must be at most time.step = 0.001"));
+  CHECK(contains(model_error(kSmallDeck, {"time.max_step=1e-4"}), "must be at least time.step = 0.001"));
+  CHECK(contains(model_error(kSmallDeck, {"integrator.substeps=2"}), "must be 1, unless"));
+  CHECK(contains(model_error(kSmallDeck, {"integrator.particles=velocity-verlet", "time.control=adaptive"}),
+                 "the explicit method has no error estimate"));
+}
+
+}  // namespace scree

@@ -1,0 +1,99 @@
+// Particles from CSV and HDF5 files.
+#include "model/particle_file.hpp"
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "support/catch.hpp"
+#include "support/models.hpp"
+
+namespace scree {
+
+namespace {
+
+// A folder of its own that is gone at the end.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / "scree_particle_file_test") {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return file(name);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write_hdf5(const std::string& path, const std::map<std::string, std::vector<Real>>& columns) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  for (const auto& [name, values] : columns) {
+    const hsize_t size = values.size();
+    const hid_t space = H5Screate_simple(1, &size, nullptr);
+    const hid_t set =
+        H5Dcreate2(file, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(set);
+    H5Sclose(space);
+  }
+  H5Fclose(file);
+}
+
+}  // namespace
+
+TEST_CASE("particles from CSV") {
+  const Folder folder;
+  const std::string path =
+      folder.write("p.csv", "# a comment\nx, y, radius, vx, vy\n0.1,0.2,0.05,1,2\n\n-0.3,0.4,0.06,3,-4e-1\n");
+  const ParticleColumns columns = read_particle_file(path, 2);
+  CHECK(columns.at("x") == std::vector<Real>{0.1, -0.3});
+  CHECK(columns.at("vy") == std::vector<Real>{2, -0.4});
+  const std::string deck = kSmallDeck +
+                           "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"file\"\nmass = 1.0\n"
+                           "velocity = [10.0, 0.0]\nfile = \"" +
+                           path + "\"\n";
+  const ParticleSet p = model_of(deck).particles;
+  CHECK(p.radius == std::vector<Real>{0.05, 0.06});
+  CHECK(p.velocity[1] == Vec3{13, -0.4, 0});
+  CHECK(contains(model_error(deck, {"particles.0.radius=0.1"}), "not used: the file has a column radius"));
+}
+
+TEST_CASE("particles from HDF5") {
+  const Folder folder;
+  const std::string path = folder.file("p.h5");
+  write_hdf5(path, {{"x", {0.1, 0.5}}, {"y", {0.2, 0.6}}, {"z", {0.3, 0.7}}, {"mass", {1, 2}}});
+  const ParticleColumns columns = read_particle_file(path, 3);
+  CHECK(columns.at("z") == std::vector<Real>{0.3, 0.7});
+  CHECK(columns.at("mass") == std::vector<Real>{1, 2});
+  CHECK_FALSE(columns.contains("radius"));
+  write_hdf5(path, {{"x", {0.1, 0.5}}, {"y", {0.2}}});
+  CHECK(
+      contains(input_error([&] { read_particle_file(path, 2); }), "column y has 1 values; must be 2, as x"));
+  CHECK_THROWS_AS(read_particle_file(folder.write("text.h5", "no HDF5"), 2), IoError);
+}
+
+TEST_CASE("wrong files name file, line, column and value") {
+  const Folder folder;
+  const auto error = [&](const std::string& text, int dimension = 2) {
+    const std::string path = folder.write("bad.csv", text);
+    return input_error([&] { read_particle_file(path, dimension); });
+  };
+  CHECK(contains(error("x,y\n1,2\n3,abc\n"), "bad.csv:3: column y = abc: must be a number"));
+  CHECK(contains(error("x,y,radus\n"), "bad.csv:1: unknown column \"radus\"; did you mean \"radius\"?"));
+  CHECK(contains(error("x,y,x\n"), "column \"x\" is repeated"));
+  CHECK(contains(error("x,y\n1,2,3\n"), "bad.csv:2: 3 values; must be 2, as the header"));
+  CHECK(contains(error("x\n1\n"), "column y is missing"));
+  CHECK(contains(error("x,y,vx\n1,2,3\n"), "column vy is missing"));
+  CHECK(contains(error("x,y\n1,2\n", 3), "column z is missing"));
+  CHECK(
+      contains(error("x,y,radius\n1,2,-1\n"), "particle 0: radius = -1: must be a positive, finite number"));
+  CHECK(contains(error("x,y\n1,nan\n"), "y = nan: must be a finite number"));
+  CHECK(contains(error(""), "column x is missing"));
+}
+
+}  // namespace scree

@@ -1,0 +1,145 @@
+// Overlaps at the start, and steps against contact times.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "model/connections.hpp"
+#include "model/limits.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+
+namespace scree {
+
+namespace {
+
+const std::string kDeck = kSmallDeck + R"(
+[[contact.pairs]]
+stiffness = 1e4
+[[particles]]
+kind = "list"
+positions = [[0.0, 0.0], [0.5, 0.5]]
+radius = 0.05
+mass = 1.0
+)";
+
+std::string at(const std::string& positions) { return "particles.0.positions=" + positions; }
+
+}  // namespace
+
+TEST_CASE("overlapping particles: a warning, past the limit an error") {
+  CHECK(model_warnings(kDeck).empty());
+  CHECK(model_warnings(kDeck, {at("[[0, 0], [0.1, 0]]")}).empty());
+  const std::vector<std::string> warnings = model_warnings(kDeck, {at("[[0, 0], [0.0995, 0], [0, 0.099]]")});
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0] ==
+        "particle 0 and particle 2 overlap at t = 0 by 0.02 of the smaller radius, the worst of all pairs");
+  const std::string message = model_error(kDeck, {at("[[0, 0], [0.09, 0]]")});
+  CHECK(contains(message, "contact.max_start_overlap = 0.05"));
+  CHECK(contains(
+      message,
+      "particle 0 and particle 1 overlap at t = 0 by 0.2 of the smaller radius; allowed: at most 0.05"));
+  CHECK(model_error(kDeck, {at("[[0, 0], [0.09, 0]]"), "contact.max_start_overlap=0.3"}).empty());
+}
+
+TEST_CASE("overlaps with walls and across periodic sides") {
+  const std::string wall = model_error(kDeck, {"space.y_min=wall", at("[[0, -0.96]]")});
+  CHECK(contains(wall, "particle 0 and wall \"y_min\" overlap at t = 0 by 0.2"));
+  const std::string periodic = model_error(
+      kDeck, {"space.x_min=periodic", "space.x_max=periodic", at("[[-0.99, 0], [0, 0.5], [0.98, 0]]")});
+  CHECK(contains(periodic, "particle 0 and particle 2 overlap at t = 0 by 1.4"));
+}
+
+TEST_CASE("overlaps with bodies; connected bodies are left out") {
+  const std::string bodies = R"([[bodies]]
+name = "row"
+count = 3
+spacing = [0.08, 0.0]
+mass = 1.0
+inertia = 0.1
+position = [-0.5, -0.5]
+shapes = [{ radius = 0.05 }]
+)";
+  const std::string springs = "[[spring_dampers]]\nname = \"s\"\nchain = \"row\"\n";
+  CHECK(contains(model_error(kDeck + bodies), "body \"row.0\" and body \"row.1\" overlap"));
+  CHECK(model_error(kDeck + bodies + springs).empty());
+  CHECK(contains(model_error(kDeck + bodies + springs, {"contact.connected_bodies_touch=true"}),
+                 "overlap at t = 0"));
+  CHECK(contains(model_error(kDeck + bodies + springs, {at("[[-0.5, -0.42]]")}),
+                 "particle 0 and body \"row.0\" overlap"));
+  const Model model = model_of(kDeck + bodies + springs);
+  CHECK(connected_bodies(model) == std::vector<std::pair<int, int>>{{0, 1}, {1, 2}});
+}
+
+TEST_CASE("the grid finds the worst overlap that brute force finds") {
+  const std::string text = kSmallDeck + R"(
+[contact]
+max_start_overlap = 1.0
+[[contact.pairs]]
+stiffness = 1e4
+[[particles]]
+name = "a"
+kind = "lattice"
+center = [0.0, 0.0]
+spacing = [0.07, 0.07]
+size = [20, 20]
+radius = { kind = "uniform", min = 0.01, max = 0.0345 }
+mass = 1.0
+[[particles]]
+name = "b"
+kind = "list"
+positions = [[0.01, 0.013]]
+radius = 0.02
+mass = 1.0
+)";
+  const ParticleSet p = model_of(text).particles;
+  Real worst = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Real overlap = p.radius[i] + p.radius[j] - norm(p.position[i] - p.position[j]);
+      worst = std::max(worst, overlap / std::min(p.radius[i], p.radius[j]));
+    }
+  }
+  REQUIRE(worst > 0);
+  const std::string message = model_error(text, {"contact.max_start_overlap=1e-6"});
+  CHECK(contains(message, fmt::format("by {:.4g} of the smaller radius", worst)));
+}
+
+TEST_CASE("a step far above the contact time is a warning") {
+  // Two equal discs: pi sqrt(m / (2 K)) = 0.0222 s.
+  const std::vector<PairLimit> limits = pair_limits(model_of(kDeck));
+  REQUIRE(limits.size() == 1);
+  CHECK(limits[0].contact_time == Approx(std::numbers::pi * std::sqrt(0.5 / 1e4)));
+  CHECK(model_warnings(kDeck, {"time.step=4e-3"}).empty());
+  const std::vector<std::string> warnings = model_warnings(kDeck, {"time.step=5e-3"});
+  REQUIRE(warnings.size() == 1);
+  CHECK(contains(warnings[0],
+                 "time.step: steps of 0.005 s are large for contacts of \"default\" and \"default\" that "
+                 "last 0.02221 s"));
+  CHECK(model_warnings(kDeck, {"time.step=5e-3", "time.control=adaptive"}).empty());
+}
+
+TEST_CASE("an explicit step past the stability limit is an error") {
+  // 2 / sqrt(6 K/m) = 8.165e-3 s.
+  const std::string verlet = "integrator.particles=velocity-verlet";
+  CHECK(pair_limits(model_of(kDeck))[0].explicit_step == Approx(2 / std::sqrt(6e4)));
+  CHECK(model_error(kDeck, {verlet, "time.step=8e-3"}).empty());
+  const std::string message = model_error(kDeck, {verlet, "time.step=8.3e-3"});
+  CHECK(contains(message,
+                 "--set time.step=8.3e-3: a velocity-verlet step of step / substeps = 0.0083 s is unstable"));
+  CHECK(contains(message, "it must be at most 0.008165 s"));
+  CHECK(model_error(kDeck, {verlet, "time.step=8.3e-3", "integrator.substeps=2"}).empty());
+}
+
+TEST_CASE("exponents other than 1 are estimated at an overlap of 1 % of the radius") {
+  const std::string exponent = "contact.pairs.0.exponent=1.5";
+  const std::vector<PairLimit> limits = pair_limits(model_of(kDeck, {exponent}));
+  CHECK(limits[0].stiffness == Approx(1e4 * 1.5 * std::sqrt(0.01 * 0.05)));
+  const std::vector<std::string> warnings =
+      model_warnings(kDeck, {exponent, "integrator.particles=velocity-verlet", "time.step=0.1"});
+  REQUIRE(warnings.size() == 2);
+  CHECK(contains(warnings[0], "unstable"));
+}
+
+}  // namespace scree

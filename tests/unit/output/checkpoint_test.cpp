@@ -1,0 +1,110 @@
+#include "output/checkpoint.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "base/error.hpp"
+#include "scratch.hpp"
+#include "support/catch.hpp"
+
+using namespace scree;
+
+namespace {
+
+// Values that a detour through decimals or a compare would change.
+Checkpoint awkward_checkpoint() {
+  Checkpoint checkpoint;
+  checkpoint.reals["particles/velocity"] = {0.1,
+                                            -0.0,
+                                            std::bit_cast<double>(std::uint64_t{0x7ff80000deadbeef}),
+                                            std::bit_cast<double>(std::uint64_t{0xfff0000000000001}),
+                                            -INFINITY,
+                                            std::numeric_limits<double>::denorm_min()};
+  checkpoint.reals["bodies/multipliers"] = {};
+  checkpoint.reals["time"] = {1.0 / 3};
+  checkpoint.integers["particles/global_id"] = {0, -1, std::numeric_limits<std::int64_t>::min()};
+  checkpoint.integers["none"] = {};
+  checkpoint.texts["deck"] = "title = \"ü\"\n";
+  checkpoint.texts["empty"] = "";
+  checkpoint.texts["long"] = std::string(200000, 'x');
+  return checkpoint;
+}
+
+std::vector<std::uint64_t> bits(const std::vector<Real>& values) {
+  std::vector<std::uint64_t> result;
+  for (const Real value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint returns bit for bit") {
+  ScratchDirectory scratch;
+  const Checkpoint written = awkward_checkpoint();
+  write_checkpoint(scratch / "c.h5", written);
+  write_checkpoint(scratch / "c.h5", written);  // over the first
+  const Checkpoint read = read_checkpoint(scratch / "c.h5");
+  CHECK(read.reals.size() == written.reals.size());
+  for (const auto& [name, values] : written.reals) CHECK(bits(read.real_array(name)) == bits(values));
+  CHECK(read.integers == written.integers);
+  CHECK(read.texts == written.texts);
+  CHECK(read.path == scratch / "c.h5");
+  CHECK(!std::filesystem::exists(scratch / "c.h5.tmp"));
+}
+
+TEST_CASE("what a checkpoint lacks is named") {
+  ScratchDirectory scratch;
+  write_checkpoint(scratch / "c.h5", awkward_checkpoint());
+  const Checkpoint checkpoint = read_checkpoint(scratch / "c.h5");
+  CHECK_THROWS_AS(checkpoint.real_array("none"), IoError);
+  CHECK_THROWS_AS(checkpoint.integer_array("time"), IoError);
+  try {
+    checkpoint.text("commit");
+    FAIL("no exception");
+  } catch (const IoError& error) {
+    CHECK(std::string(error.what()) == (scratch / "c.h5") + ": the checkpoint lacks \"commit\"");
+  }
+}
+
+TEST_CASE("a truncated checkpoint is refused at every length") {
+  ScratchDirectory scratch;
+  write_checkpoint(scratch / "c.h5", awkward_checkpoint());
+  const auto size = std::filesystem::file_size(scratch / "c.h5");
+  for (std::uintmax_t length = 0; length < size; length += 1 + size / 50) {
+    std::filesystem::copy_file(scratch / "c.h5", scratch / "cut.h5",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(scratch / "cut.h5", length);
+    CAPTURE(length);
+    CHECK_THROWS_AS(read_checkpoint(scratch / "cut.h5"), IoError);
+  }
+}
+
+TEST_CASE("foreign and missing files are refused") {
+  ScratchDirectory scratch;
+  CHECK_THROWS_AS(read_checkpoint(scratch / "missing.h5"), IoError);
+  CHECK_THROWS_AS(read_checkpoint(scratch.path()), IoError);
+  std::ofstream(scratch / "text.h5") << "not HDF5\n";
+  CHECK_THROWS_AS(read_checkpoint(scratch / "text.h5"), IoError);
+  {
+    Hdf5File file(scratch / "other.h5", Hdf5Access::create);
+    file.write_array("/reals/time", std::vector<Real>{1});
+    file.close();
+  }
+  CHECK_THROWS_AS(read_checkpoint(scratch / "other.h5"), IoError);
+}
+
+TEST_CASE("a checkpoint that cannot be written leaves the old one") {
+  ScratchDirectory scratch;
+  CHECK_THROWS_AS(write_checkpoint(scratch / "no_such_directory/c.h5", awkward_checkpoint()), IoError);
+  Checkpoint checkpoint;
+  checkpoint.reals["a"] = {1};
+  write_checkpoint(scratch / "c.h5", checkpoint);
+  checkpoint.reals["a/b"] = {2};  // a name cannot be both an array and a group
+  CHECK_THROWS_AS(write_checkpoint(scratch / "c.h5", checkpoint), IoError);
+  CHECK(read_checkpoint(scratch / "c.h5").real_array("a") == std::vector<Real>{1});
+  CHECK(!std::filesystem::exists(scratch / "c.h5.tmp"));
+}

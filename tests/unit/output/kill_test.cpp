@@ -1,0 +1,174 @@
+// What a killed or failing run leaves behind.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <new>
+#include <random>
+
+#include "base/error.hpp"
+#include "output/checkpoint.hpp"
+#include "output/history.hpp"
+#include "scratch.hpp"
+#include "support/catch.hpp"
+
+using namespace scree;
+
+// The HDF5 library frees nothing of a file whose last write failed; the leak sanitizer, where it is on, must
+// not turn that into an exit code.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
+
+namespace {
+
+// A counter that parent and child see.
+class SharedCounter {
+ public:
+  SharedCounter() {
+    void* memory = mmap(nullptr, sizeof(Count), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    count_ = new (memory) Count(0);
+  }
+  ~SharedCounter() { munmap(count_, sizeof(Count)); }
+  SharedCounter(const SharedCounter&) = delete;
+  SharedCounter& operator=(const SharedCounter&) = delete;
+  int operator()() const { return *count_; }
+  void set(int value) { *count_ = value; }
+
+ private:
+  using Count = std::atomic<int>;
+  Count* count_;
+};
+
+// Runs `work` in a child process, which then ends; an exception is its exit code 1.
+pid_t start_child(const std::function<void()>& work) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  try {
+    work();
+    _exit(0);
+  } catch (...) {
+    _exit(1);
+  }
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+// In the child: a file cannot grow past this size, as on a full disk.
+void limit_file_size(rlim_t bytes) {
+  signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{bytes, bytes};
+  setrlimit(RLIMIT_FSIZE, &limit);
+}
+
+int points_of_step(int step) { return 40 + 20 * (step / 5 % 3); }
+
+}  // namespace
+
+TEST_CASE("a run killed at any moment leaves every snapshot readable, and goes on from there") {
+  ScratchDirectory scratch;
+  SharedCounter acknowledged;
+  std::mt19937 random(20);
+  int kept = 0, killed_within_append = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    CAPTURE(trial);
+    acknowledged.set(-1);
+    const pid_t child = start_child([&] {
+      SnapshotWriter writer(scratch.path(), "title", kept);
+      for (acknowledged.set(kept);; acknowledged.set(writer.snapshots())) {
+        PredictableSnapshot(writer.snapshots(), points_of_step(writer.snapshots()), 2).append_to(writer);
+      }
+    });
+    while (acknowledged() < kept + 2 && waitpid(child, nullptr, WNOHANG) == 0) usleep(100);
+    usleep(static_cast<useconds_t>(random() % 12000));
+    kill(child, SIGKILL);
+    REQUIRE(WIFSIGNALED(wait_for(child)));
+    const auto counts = read_predictable_particles(scratch / "particles.vtkhdf");
+    const int found = static_cast<int>(counts.size());
+    REQUIRE(found >= acknowledged());
+    REQUIRE(found <= acknowledged() + 1);
+    for (int step = 0; step < found; ++step) {
+      REQUIRE(counts[static_cast<std::size_t>(step)] == points_of_step(step));
+    }
+    const auto shapes = Hdf5File(scratch / "bodies.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points");
+    REQUIRE(shapes >= 2 * acknowledged());
+    killed_within_append += found > acknowledged() ||
+                            std::filesystem::exists(scratch / "particles.xdmf.tmp") ||
+                            std::filesystem::exists(scratch / "particles.vtkhdf.old");
+    kept = acknowledged() - trial % 2;  // so that every other run also cuts
+  }
+  CHECK(kept >= 60);
+  CHECK(killed_within_append > 0);
+}
+
+TEST_CASE("a full disk is an error, and what was written stays") {
+  ScratchDirectory scratch;
+  SECTION("checkpoint") {
+    Checkpoint checkpoint;
+    checkpoint.reals["a"] = {1, 2, 3};
+    write_checkpoint(scratch / "c.h5", checkpoint);
+    const int status = wait_for(start_child([&] {
+      limit_file_size(100000);
+      checkpoint.reals["a"].assign(100000, 4);
+      try {
+        write_checkpoint(scratch / "c.h5", checkpoint);
+      } catch (const IoError&) {
+        std::exit(4);  // with the handlers that run at exit
+      }
+    }));
+    REQUIRE(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 4);
+    CHECK(read_checkpoint(scratch / "c.h5").real_array("a") == std::vector<Real>{1, 2, 3});
+    CHECK(!std::filesystem::exists(scratch / "c.h5.tmp"));
+  }
+  SECTION("snapshots") {
+    SharedCounter written;
+    const int status = wait_for(start_child([&] {
+      SnapshotWriter writer(scratch.path(), "title", 0);
+      limit_file_size(200000);
+      try {
+        for (;; written.set(writer.snapshots()))
+          PredictableSnapshot(writer.snapshots(), 200, 0).append_to(writer);
+      } catch (const IoError&) {
+        std::exit(4);
+      }
+    }));
+    REQUIRE(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 4);
+    CHECK(written() > 2);
+    CHECK(read_predictable_particles(scratch / "particles.vtkhdf") ==
+          std::vector<int>(static_cast<std::size_t>(written()), 200));
+  }
+}
+
+TEST_CASE("a history killed at any moment holds every flushed row") {
+  ScratchDirectory scratch;
+  SharedCounter flushed;
+  const std::vector<HistoryColumn> columns = {{"", "time", "s", "time"},
+                                              {"energy", "kinetic", "J", "energy"}};
+  std::mt19937 random(21);
+  for (int trial = 0; trial < 20; ++trial) {
+    CAPTURE(trial);
+    flushed.set(0);
+    const pid_t child = start_child([&] {
+      HistoryWriter writer(scratch.path(), columns, true, 0);
+      for (;; writer.flush(), flushed.set(static_cast<int>(writer.rows()))) {
+        for (int i = 0; i < 100; ++i) writer.append({static_cast<Real>(writer.rows()), 0.5});
+      }
+    });
+    while (flushed() < 100) usleep(100);
+    usleep(static_cast<useconds_t>(random() % 12000));
+    kill(child, SIGKILL);
+    wait_for(child);
+    const auto time = Hdf5File(scratch / "history.h5", Hdf5Access::read).read_array<Real>("/time");
+    REQUIRE(static_cast<int>(time.size()) >= flushed());
+    for (std::size_t row = 0; row < time.size(); ++row) REQUIRE(time[row] == static_cast<Real>(row));
+  }
+}

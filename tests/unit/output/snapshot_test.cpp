@@ -1,0 +1,151 @@
+#include "output/snapshot.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "base/error.hpp"
+#include "scratch.hpp"
+#include "support/catch.hpp"
+
+using namespace scree;
+
+namespace {
+
+void write_snapshots(SnapshotWriter& writer, const std::vector<int>& counts, int shapes) {
+  for (const int n : counts) PredictableSnapshot(writer.snapshots(), n, shapes).append_to(writer);
+}
+
+std::string file_text(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+int occurrences(const std::string& text, const std::string& word) {
+  int count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("snapshots of changing size return as written") {
+  ScratchDirectory scratch;
+  const std::vector<int> counts = {5, 5, 3, 0, 0, 7, 300};
+  SnapshotWriter writer(scratch.path(), "title", 0);
+  write_snapshots(writer, counts, 0);
+  CHECK(writer.snapshots() == 7);
+  CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == counts);
+  CHECK(!std::filesystem::exists(scratch / "bodies.vtkhdf"));
+}
+
+TEST_CASE("snapshots of equal size share their vertices") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer(scratch.path(), "title", 0);
+  write_snapshots(writer, {5, 5, 3, 3, 3, 5}, 0);
+  const Hdf5File file(scratch / "particles.vtkhdf", Hdf5Access::read);
+  CHECK(file.read_array<std::int64_t>("/VTKHDF/Steps/PartOffsets") ==
+        std::vector<std::int64_t>{0, 0, 1, 1, 1, 2});
+  CHECK(file.read_array<std::int64_t>("/VTKHDF/NumberOfPoints") == std::vector<std::int64_t>{5, 3, 5});
+  CHECK(file.rows("/VTKHDF/Vertices/Connectivity") == 13);
+  CHECK(file.rows("/VTKHDF/Points") == 24);
+}
+
+TEST_CASE("bodies have a series of their own") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer(scratch.path(), "title", 0);
+  write_snapshots(writer, {2, 2, 2}, 4);
+  const Hdf5File file(scratch / "bodies.vtkhdf", Hdf5Access::read);
+  CHECK(file.rows("/VTKHDF/Points") == 12);
+  CHECK(file.read_array<int>("/VTKHDF/PointData/body") ==
+        std::vector<int>{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3});
+  CHECK(file.read_array<Real>("/VTKHDF/PointData/angle")[9] == 2001);
+}
+
+TEST_CASE("every dataset says its unit and what it is") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer(scratch.path(), "a title with an ü", 0);
+  write_snapshots(writer, {2}, 1);
+  for (const char* name : {"particles.vtkhdf", "bodies.vtkhdf"}) {
+    const Hdf5File file(scratch / name, Hdf5Access::read);
+    const auto datasets = file.dataset_names("/VTKHDF");
+    CHECK(datasets.size() > 15);
+    for (const std::string& dataset : datasets) {
+      CAPTURE(dataset);
+      CHECK(!file.read_text_attribute("/VTKHDF/" + dataset, "unit").empty());
+      CHECK(!file.read_text_attribute("/VTKHDF/" + dataset, "description").empty());
+    }
+    CHECK(file.read_text_attribute("/Scree", "title") == "a title with an ü");
+    CHECK(file.read_text_attribute("/VTKHDF", "Type") == "PolyData");
+  }
+}
+
+TEST_CASE("a restarted run cuts off later snapshots and goes on") {
+  ScratchDirectory scratch;
+  {
+    SnapshotWriter writer(scratch.path(), "title", 0);
+    write_snapshots(writer, {5, 4, 4, 6, 6}, 3);
+  }
+  SnapshotWriter writer(scratch.path(), "title", 3);
+  CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 4, 4});
+  write_snapshots(writer, {4, 2}, 3);
+  CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 4, 4, 4, 2});
+  CHECK(Hdf5File(scratch / "bodies.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points") == 15);
+  CHECK(occurrences(file_text(scratch / "particles.xdmf"), "<Time") == 5);
+}
+
+TEST_CASE("files that do not fit the restarted run are refused") {
+  ScratchDirectory scratch;
+  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), "title", 1), IoError);
+  {
+    SnapshotWriter writer(scratch.path(), "title", 0);
+    write_snapshots(writer, {5, 5}, 2);
+  }
+  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), "title", 3), IoError);
+  std::filesystem::remove(scratch / "bodies.vtkhdf");
+  SnapshotWriter writer(scratch.path(), "title", 2);
+  CHECK_THROWS_AS(write_snapshots(writer, {5}, 2), IoError);
+  std::filesystem::resize_file(scratch / "particles.vtkhdf", 2000);
+  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), "title", 2), IoError);
+}
+
+TEST_CASE("a new run replaces old files and leaves nothing beside them") {
+  ScratchDirectory scratch;
+  {
+    SnapshotWriter writer(scratch.path(), "title", 0);
+    write_snapshots(writer, {5, 5, 5}, 2);
+  }
+  {
+    SnapshotWriter writer(scratch.path(), "title", 0);
+    CHECK(!std::filesystem::exists(scratch / "particles.vtkhdf"));
+    write_snapshots(writer, {1, 1}, 0);
+  }
+  CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{1, 1});
+  const std::filesystem::directory_iterator files(scratch.path());
+  CHECK(std::distance(begin(files), end(files)) == 2);
+}
+
+TEST_CASE("a reader that holds the file does not stop the writer") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer(scratch.path(), "title", 0);
+  write_snapshots(writer, {5, 5}, 0);
+  const int reader = open((scratch / "particles.vtkhdf").c_str(), O_RDONLY);
+  REQUIRE(flock(reader, LOCK_SH) == 0);  // as the HDF5 library of a reader does
+  write_snapshots(writer, {5, 5, 5}, 0);
+  close(reader);
+  CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 5, 5, 5, 5});
+}
+
+TEST_CASE("the XDMF refers to every snapshot that has points") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer(scratch.path(), "sand & <gravel>", 0);
+  write_snapshots(writer, {5, 0, 3}, 0);
+  const std::string text = file_text(scratch / "particles.xdmf");
+  CHECK(occurrences(text, "<Time Value=\"0.5\"/>") == 1);
+  CHECK(occurrences(text, "<Time") == 2);  // these readers crash on a grid without points
+  CHECK(occurrences(text, "sand &amp; &lt;gravel&gt;") == 1);
+  CHECK(occurrences(text, "particles.vtkhdf:/VTKHDF/PointData/velocity|5 0:1 1:3 3:8 3") == 1);
+}

@@ -1,0 +1,104 @@
+// Case 5.1 of Jung, Jun, Sohn (2013): the discrete HHT solution, the truth, and the static chain.
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/multibody_run.hpp"
+
+using namespace scree;
+
+namespace {
+
+// Rows of numbers of a reference file; lines that do not start with a number are its head.
+std::vector<std::vector<Real>> read_reference(const std::string& name) {
+  std::ifstream file(std::string(SCREE_SOURCE_DIR) + "/tests/reference/" + name);
+  REQUIRE(file.good());
+  std::vector<std::vector<Real>> rows;
+  for (std::string line; std::getline(file, line);) {
+    std::vector<Real> row;
+    std::istringstream words(line);
+    for (std::string word; std::getline(words, word, ',');) {
+      char* end = nullptr;
+      const Real value = std::strtod(word.c_str(), &end);
+      if (end == word.c_str()) break;
+      row.push_back(value);
+    }
+    if (!row.empty()) rows.push_back(row);
+  }
+  return rows;
+}
+
+// Largest difference in x or y of bodies 4 and 5 from a reference with columns t, x4, y4, vx4, vy4, x5, y5, ... every
+// 1 ms.
+Real largest_error(Real hht_alpha, int steps_per_sample, const std::vector<std::vector<Real>>& reference) {
+  Model model = paper_net();
+  model.integrator.hht_alpha = hht_alpha;
+  MultibodyRun run(model);
+  Real largest = 0;
+  for (const std::vector<Real>& row : reference) {
+    for (const int body : {4, 5}) {
+      const std::size_t column = body == 4 ? 1 : 5;
+      largest = std::max({largest, std::abs(run.x(body) - row[column]), std::abs(run.y(body) - row[column + 1])});
+    }
+    if (&row != &reference.back()) run.steps(steps_per_sample, 1e-3 / steps_per_sample);
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("the net follows the discrete HHT solution") {
+  CHECK(largest_error(0, 1, read_reference("hht51_h1e-3_alpha_0.csv")) < 1e-10);
+  CHECK(largest_error(-0.3, 1, read_reference("hht51_h1e-3_alpha_m030.csv")) < 1e-10);
+}
+
+TEST_CASE("the net's error against the truth is the method's, and of second order") {
+  const auto truth = read_reference("chain51_bodies4_5.csv");
+  // alpha and the error of two independent implementations at h = 1e-3 [m], known to four digits.
+  const std::array<std::array<Real, 2>, 6> known = {
+      {{0, 1.691e-4}, {-0.05, 1.931e-4}, {-0.1, 2.131e-4}, {-0.2, 2.416e-4}, {-0.3, 2.545e-4}, {-1.0 / 3, 2.554e-4}}};
+  for (const auto& [hht_alpha, error] : known) {
+    const Real coarse = largest_error(hht_alpha, 1, truth), fine = largest_error(hht_alpha, 2, truth);
+    const Real order = std::log2(coarse / fine);
+    CAPTURE(hht_alpha, coarse, fine, order);
+    CHECK(coarse == Approx(error).epsilon(5e-3));
+    CHECK(order > 1.98);
+    CHECK(order < 2.02);
+  }
+}
+
+TEST_CASE("the net comes to rest in the static shape") {
+  // The springs' own dampers hardly slow the swinging. Dampers to far points of the ground do, and exert nothing on a
+  // chain at rest.
+  Model model = paper_net();
+  for (int body = 1; body < 19; ++body) {
+    for (const Vec3 far : {Vec3{100, -0.6, 0}, Vec3{0, 100, 0}}) {
+      SpringDamper damper;
+      damper.name = "far." + std::to_string(model.spring_dampers.size());
+      damper.body[1] = body;
+      damper.point[0] = far;
+      damper.damping = 10;
+      model.spring_dampers.push_back(damper);
+    }
+  }
+  MultibodyRun run(model);
+  run.steps(4000, 5e-3);
+  for (const std::vector<Real>& row : read_reference("chain_static.csv")) {
+    const int body = static_cast<int>(row[0]);
+    CAPTURE(body);
+    CHECK(std::abs(run.x(body) - row[1]) < 1e-8);
+    CHECK(std::abs(run.y(body) - row[2]) < 1e-8);
+  }
+  CHECK(std::abs(-0.6 - run.y(9) - 0.1830828390810137) < 1e-8);
+  const auto reactions = run.multibody.reactions(run.state, run.time);
+  REQUIRE(reactions.size() == 2);
+  CHECK(reactions[0].joint == "pin.0");
+  CHECK(std::abs(reactions[0].force.x + 238.226060665) < 1e-8 * 238.226060665);
+  CHECK(std::abs(reactions[1].force.x - 238.226060665) < 1e-8 * 238.226060665);
+  // Each pin carries half of the weight.
+  CHECK(std::abs(reactions[0].force.y - 10 * kGravity) < 1e-8 * 238.226060665);
+}
