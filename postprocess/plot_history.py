@@ -3,7 +3,8 @@
 
     python3 postprocess/plot_history.py RESULT_DIR [--columns GROUP/NAME ...]
 
-Writes RESULT_DIR/history.png. --columns adds a panel per unit with other columns of the history; --list names all.
+Writes RESULT_DIR/history.png. --columns adds a panel per unit with other columns of the history; --list names
+them all.
 """
 
 import argparse
@@ -41,7 +42,7 @@ def plot_columns(panel, columns, names):
 
 
 def plot_balance(panel, columns, name):
-    """The balance error, and how large it is beside the energies that were exchanged."""
+    """The balance error, its largest value above."""
     time, balance = columns["time"][0], columns[name][0]
     panel.plot(time, balance, color=COLORS[0], linewidth=1.4)
     panel.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3))
@@ -61,10 +62,14 @@ def chosen_columns(columns, names):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("result_directory", type=pathlib.Path)
     parser.add_argument("--columns", nargs="+", default=[], metavar="GROUP/NAME")
-    parser.add_argument("--list", action="store_true", help="print the columns with unit and description, plot nothing")
+    parser.add_argument(
+        "--list", action="store_true", help="print the columns with unit and description, plot nothing"
+    )
     arguments = parser.parse_args()
     columns = read_history(arguments.result_directory)
     if arguments.list:
@@ -79,8 +84,16 @@ def main():
     heights = [4.5] * bool(energies) + [2.2] * len(balances) + [3.0] * len(others)
     if not heights:
         fail(f"{arguments.result_directory}: the history has no energies; name others with --columns")
-    figure, panels = plt.subplots(len(heights), 1, figsize=(11, sum(heights) + 0.6), height_ratios=heights, sharex=True,
-                                  squeeze=False, layout="constrained", dpi=120)
+    figure, panels = plt.subplots(
+        len(heights),
+        1,
+        figsize=(11, sum(heights) + 0.6),
+        height_ratios=heights,
+        sharex=True,
+        squeeze=False,
+        layout="constrained",
+        dpi=120,
+    )
     panels = iter(panels[:, 0])
     if energies:
         panel = next(panels)

@@ -3,8 +3,8 @@
 
     python3 postprocess/render.py RESULT_DIR
 
-Writes RESULT_DIR/final.png and RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg). Particles are drawn to scale
-and coloured by their speed, bodies in orange: discs in 2D, lit spheres in 3D.
+Writes RESULT_DIR/final.png and RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg). Particles are drawn
+to scale and coloured by their speed, bodies in orange: discs in 2D, lit spheres in 3D.
 """
 
 import argparse
@@ -28,11 +28,13 @@ FRAMES_PER_SECOND = 25
 
 
 def vtk_renders():
-    """Whether VTK can draw here; tried in a process of its own, since it crashes where no OpenGL library is found."""
+    """Whether VTK can draw here; tried in another process: it crashes where it finds no OpenGL library."""
     probe = pathlib.Path(__file__).with_name("spheres.py")
     if subprocess.run([sys.executable, probe], capture_output=True).returncode == 0:
         return True
-    print("VTK cannot render here (is libegl1 installed?): spheres are drawn as shaded discs", file=sys.stderr)
+    print(
+        "VTK cannot render here (is libegl1 installed?): spheres are drawn as shaded discs", file=sys.stderr
+    )
     return False
 
 
@@ -42,9 +44,13 @@ def chosen_frames(count, limit):
 
 
 def is_planar(particles, bodies):
-    return all(np.ptp(series.rows(i, "Points")[:, 2]) == 0
-               for series in (particles, bodies) if series
-               for i in (0, len(series) - 1) if len(series.rows(i, "Points")))
+    return all(
+        np.ptp(series.rows(i, "Points")[:, 2]) == 0
+        for series in (particles, bodies)
+        if series
+        for i in (0, len(series) - 1)
+        if len(series.rows(i, "Points"))
+    )
 
 
 def speed_limit(particles, snapshots):
@@ -54,7 +60,9 @@ def speed_limit(particles, snapshots):
     if largest <= 0:
         return 1.0
     unit = 10.0 ** np.floor(np.log10(largest))
-    return float(next(step * unit for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if step * unit >= largest))
+    return float(
+        next(step * unit for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if step * unit >= largest)
+    )
 
 
 class Picture:
@@ -73,7 +81,8 @@ class Picture:
 
     def draw(self, snapshot):
         self.scene.draw(snapshot)
-        text = f"t = {self.particles.times[snapshot]:.4g} s, {len(self.particles.rows(snapshot, 'radius')):,} particles"
+        count = len(self.particles.rows(snapshot, "radius"))
+        text = f"t = {self.particles.times[snapshot]:.4g} s, {count:,} particles"
         if self.scene.bodies:
             text += f", {len(np.unique(self.scene.bodies.rows(snapshot, 'body'))):,} bodies (orange)"
         self.title.set_text(f"{self.particles.title}\n{text}")
@@ -107,11 +116,18 @@ def save_animation(picture, snapshots, directory):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("result_directory", type=pathlib.Path)
     parser.add_argument("--frames", type=int, default=200, help="largest number of frames (default 200)")
-    parser.add_argument("--view", type=float, nargs=4, metavar=("XMIN", "XMAX", "YMIN", "YMAX"),
-                        help="part of the plane to show, 2D only [m]; default: all but stray particles")
+    parser.add_argument(
+        "--view",
+        type=float,
+        nargs=4,
+        metavar=("XMIN", "XMAX", "YMIN", "YMAX"),
+        help="part of the plane to show, 2D only [m]; default: all but stray particles",
+    )
     parser.add_argument("--no-animation", action="store_true")
     parser.add_argument("--no-vtk", action="store_true", help="draw spheres without VTK, as shaded discs")
     arguments = parser.parse_args()

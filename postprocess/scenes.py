@@ -11,7 +11,7 @@ LONGEST_SIDE = 7.5  # of the axes [inch]
 
 
 def bounds(series, snapshots, strays):
-    """Box around the points of some snapshots, grown by the largest radius. strays: percentage left out per side."""
+    """Box around the points of some snapshots, grown by the radius. strays: percentage left out per side."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for snapshot in snapshots:
         points = series.rows(snapshot, "Points")
@@ -42,7 +42,9 @@ def figure_size(width, height):
 
 def disc_collection(axes, **style):
     """Circles whose diameters are lengths in the axes' units."""
-    discs = EllipseCollection([], [], [], units="xy", offsets=np.empty((0, 2)), transOffset=axes.transData, **style)
+    discs = EllipseCollection(
+        [], [], [], units="xy", offsets=np.empty((0, 2)), transOffset=axes.transData, **style
+    )
     axes.add_collection(discs, autolim=False)
     return discs
 
@@ -77,11 +79,16 @@ class DiscScene:
         self.shapes = disc_collection(axes, facecolors=BODY_COLOR, edgecolors=EDGE_COLOR, linewidths=0.6)
 
     def draw(self, snapshot):
-        place_discs(self.colors, self.particles.rows(snapshot, "Points")[:, :2],
-                    self.particles.rows(snapshot, "radius"))
+        place_discs(
+            self.colors,
+            self.particles.rows(snapshot, "Points")[:, :2],
+            self.particles.rows(snapshot, "radius"),
+        )
         self.colors.set_array(self.particles.speed(snapshot))
         if self.bodies:
-            place_discs(self.shapes, self.bodies.rows(snapshot, "Points")[:, :2], self.bodies.rows(snapshot, "radius"))
+            place_discs(
+                self.shapes, self.bodies.rows(snapshot, "Points")[:, :2], self.bodies.rows(snapshot, "radius")
+            )
 
 
 def scale_bar_length(width):
@@ -103,7 +110,9 @@ class SphereScene:
         self.axes_of_picture = np.array([right, np.cross(eye, right), eye])
         low, high = common_bounds(particles, bodies, snapshots)
         self.center = (low + high) / 2
-        self.box = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+        self.box = np.array(
+            [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+        )
         flat = self.project(self.box)
         self.half = 1.02 * np.abs(flat[:, :2]).max(axis=0)  # half width and height of the picture [m]
         self.use_vtk = use_vtk
@@ -132,7 +141,9 @@ class SphereScene:
             pixels[1] = round(pixels[0] * self.half[1] / self.half[0])
             self.renderer = SphereRenderer(pixels, self.center, self.axes_of_picture, self.half[1], self.box)
             extent = (-self.half[0], self.half[0], -self.half[1], self.half[1])
-            self.image = axes.imshow(np.zeros((2, 2, 3)), extent=extent, interpolation="antialiased", zorder=0)
+            self.image = axes.imshow(
+                np.zeros((2, 2, 3)), extent=extent, interpolation="antialiased", zorder=0
+            )
         else:
             self.discs = disc_collection(axes, edgecolors=EDGE_COLOR, linewidths=0.2)
 
@@ -140,7 +151,9 @@ class SphereScene:
         length = scale_bar_length(2 * self.half[0])
         x, y = -0.95 * self.half[0], -0.94 * self.half[1]
         axes.plot([x, x + length], [y, y], color="black", linewidth=3, solid_capstyle="butt")
-        axes.text(x + length / 2, y + 0.02 * self.half[1], f"{length:g} m", ha="center", va="bottom", fontsize=12)
+        axes.text(
+            x + length / 2, y + 0.02 * self.half[1], f"{length:g} m", ha="center", va="bottom", fontsize=12
+        )
 
     def draw_directions(self, axes):
         """Where x, y and z point, in the lower right corner."""
@@ -148,7 +161,12 @@ class SphereScene:
         length = 0.1 * self.half.min()
         for name, direction in zip("xyz", self.axes_of_picture[:2].T):
             tip = origin + length * direction
-            axes.annotate("", tip, origin, arrowprops={"arrowstyle": "-|>", "color": "black", "shrinkA": 0, "shrinkB": 0})
+            axes.annotate(
+                "",
+                tip,
+                origin,
+                arrowprops={"arrowstyle": "-|>", "color": "black", "shrinkA": 0, "shrinkB": 0},
+            )
             axes.text(*(origin + 1.35 * length * direction), name, ha="center", va="center", fontsize=12)
 
     def draw(self, snapshot):

@@ -1,4 +1,7 @@
-"""Lit spheres through VTK, rendered off screen. Run as a program, it tells by its exit code whether that works."""
+"""Lit spheres through VTK, rendered off screen.
+
+Run as a program, it tells by its exit code whether VTK can do so here.
+"""
 
 import os
 import sys
@@ -8,12 +11,14 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 if sys.platform == "linux" and not os.environ.get("DISPLAY"):
-    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # else it looks for a display and warns
+    os.environ.setdefault(
+        "VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"
+    )  # else it looks for a display and warns
 
 
 class SphereRenderer:
     def __init__(self, pixels, center, axes_of_picture, half_height, box):
-        """pixels: width, height; axes_of_picture: right, up, towards the eye; box: corners of the outline [m]."""
+        """pixels: width, height; axes_of_picture: right, up, towards the eye; box: outline's corners [m]."""
         self._data = vtk.vtkPolyData()
         ball = vtk.vtkSphereSource()
         ball.SetRadius(1.0)

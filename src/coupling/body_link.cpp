@@ -15,7 +15,7 @@ bool is_root() {
 
 }  // namespace
 
-BodyLink::BodyLink(const Model& model) : motion_(model.bodies.size()), wrench_(model.bodies.size()) {
+BodyLink::BodyLink(const Model& model) : motion_(model.bodies.size()), step_wrench_(model.bodies.size()), end_wrench_(model.bodies.size()) {
   if (!model.bodies.empty() && is_root()) multibody_ = std::make_unique<Multibody>(model);
 }
 
@@ -37,9 +37,8 @@ void BodyLink::broadcast_motion(Backend& backend, const MultibodyState& state, R
   broadcast(backend);
 }
 
-const std::vector<BodyWrench>& BodyLink::reduce_wrench(Backend& backend) {
-  if (has_bodies()) backend.reduce_wrench(wrench_);
-  return wrench_;
+void BodyLink::reduce_wrench(Backend& backend) {
+  if (has_bodies()) backend.reduce_wrench(step_wrench_, end_wrench_);
 }
 
 }  // namespace scree

@@ -23,8 +23,10 @@ class BodyLink {
   void broadcast_motion(Backend& backend);
   // The same for an instant tau [s] after `state`, along rank 0's prediction.
   void broadcast_motion(Backend& backend, const MultibodyState& state, Real tau);
-  // All -> rank 0: contact wrench and contact stiffness per body.
-  const std::vector<BodyWrench>& reduce_wrench(Backend& backend);
+  // All -> rank 0: contact wrench and contact stiffness per body, as Backend::reduce_wrench.
+  void reduce_wrench(Backend& backend);
+  const std::vector<BodyWrench>& step_wrench() const { return step_wrench_; }
+  const std::vector<BodyWrench>& end_wrench() const { return end_wrench_; }
   const std::vector<BodyMotion>& motion() const { return motion_; }
 
  private:
@@ -32,7 +34,7 @@ class BodyLink {
 
   std::unique_ptr<Multibody> multibody_;
   std::vector<BodyMotion> motion_;
-  std::vector<BodyWrench> wrench_;
+  std::vector<BodyWrench> step_wrench_, end_wrench_;
 };
 
 }  // namespace scree

@@ -1,22 +1,11 @@
 #include "coupling/coupled_step.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.hpp"
 
 namespace scree {
 namespace {
-
-// The jump of the damping force at first touch can leave a pair for which neither open nor closed is consistent
-// with the end of the step. From kRampAfter iterations on it is spread over a small overlap, a share of the smallest
-// radius that grows tenfold every kRampAfter iterations.
-constexpr int kRampAfter = 8;
-constexpr Real kRampShare = 1e-5, kMostRampShare = 1e-2;
-
-Real ramp_share(int iteration) {
-  return iteration < kRampAfter ? 0 : std::min(kMostRampShare, kRampShare * std::pow(Real(10), iteration / kRampAfter - 1));
-}
 
 // A list that was too short for the step is built again this many times before the step counts as failed.
 constexpr int kMostListBuilds = 4;
@@ -25,13 +14,10 @@ constexpr int kMostListBuilds = 4;
 
 struct CoupledStep::Iteration {
   Real correction = 1;  // of the particles
-  bool ramped = false;
 };
 
 CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
-    : model_(model), backend_(backend), link_(link), timers_(timers) {
-  for (const Real radius : model.particles.radius) smallest_radius_ = std::min(smallest_radius_, radius);
-}
+    : model_(model), backend_(backend), link_(link), timers_(timers) {}
 
 void CoupledStep::rebuild_list(Real skin) {
   backend_.build_list(skin, timers_);
@@ -43,7 +29,8 @@ void CoupledStep::start(MultibodyState& bodies) {
   resume(bodies);
   backend_.initial_forces();
   // Only now are the contact wrenches at the start known.
-  if (link_.multibody()) bodies = link_.multibody()->initial_state(link_.reduce_wrench(backend_));
+  link_.reduce_wrench(backend_);
+  if (link_.multibody()) bodies = link_.multibody()->initial_state(link_.end_wrench());
 }
 
 void CoupledStep::resume(const MultibodyState& bodies) {
@@ -116,23 +103,19 @@ bool CoupledStep::iterate() {
   Iteration last;
   for (int iteration = 0; iteration < model_.integrator.max_iterations; ++iteration) {
     ++counts_.newton_iterations;
-    if (iterate_once(iteration, last)) {
-      counts_.ramped_contacts += last.ramped;
-      return true;
-    }
+    if (iterate_once(last)) return true;
   }
   return false;
 }
 
 // One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
 // correction: block Gauss-Seidel on the coupled Newton system.
-bool CoupledStep::iterate_once(int iteration, Iteration& last) {
+bool CoupledStep::iterate_once(Iteration& last) {
   const Integrator& limits = model_.integrator;
   ParticleNorms particles;
   {
     const auto scope = timers_.time(Stage::contact_force);
-    last.ramped = iteration >= kRampAfter;
-    particles = backend_.contact_force({ramp_share(iteration) * smallest_radius_});
+    particles = backend_.contact_force();
     if (particles.overshoot) {
       backend_.shorten_correction();
       return false;
@@ -140,14 +123,13 @@ bool CoupledStep::iterate_once(int iteration, Iteration& last) {
   }
   bool bodies_done = true;
   if (link_.has_bodies()) {
-    const std::vector<BodyWrench>* wrench = nullptr;
     {
       const auto scope = timers_.time(Stage::reduce_wrench);
-      wrench = &link_.reduce_wrench(backend_);
+      link_.reduce_wrench(backend_);
     }
     {
       const auto scope = timers_.time(Stage::mbs_correct);
-      const IterationNorms bodies = link_.multibody()->correct(*wrench);
+      const IterationNorms bodies = link_.multibody()->correct(link_.step_wrench());
       bodies_done = bodies.residual <= limits.residual_tolerance && bodies.correction <= limits.correction_tolerance;
     }
     const auto scope = timers_.time(Stage::broadcast_motion);
@@ -198,8 +180,8 @@ void CoupledStep::solve_bodies() {
   std::vector<BodyWrench> wrench;
   {
     const auto scope = timers_.time(Stage::reduce_wrench);
-    wrench = link_.reduce_wrench(backend_);
-    for (BodyWrench& w : wrench) w.stiffness = {}, w.damping = {};
+    link_.reduce_wrench(backend_);
+    wrench = link_.end_wrench();
   }
   const auto scope = timers_.time(Stage::mbs_correct);
   const Integrator& limits = model_.integrator;

@@ -24,7 +24,6 @@ struct StepOutcome {
 struct StepCounts {
   std::int64_t steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::int64_t rejected_error = 0, rejected_newton = 0;
-  std::int64_t ramped_contacts = 0;      // steps that converged with the damping force's jump spread out
   std::int64_t list_builds = 0;          // neighbour list; not part of the state
 };
 
@@ -52,14 +51,13 @@ class CoupledStep {
   void undo_step(const MultibodyState& bodies);
   bool covered(const MultibodyState& bodies);
   bool iterate();
-  bool iterate_once(int iteration, Iteration& last);
+  bool iterate_once(Iteration& last);
   void solve_bodies();
 
   const Model& model_;
   Backend& backend_;
   BodyLink& link_;
   StageTimers& timers_;
-  Real smallest_radius_ = 1;  // of the particles, at most [m]
   StepCounts counts_;
 };
 

@@ -65,7 +65,9 @@ void apply_override(toml::table& deck, const std::string& override_text) {
   if (parsed.size() != 1) throw InputError(place + ": must be one value");
   toml::table* table = &deck;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (!table->contains(path[i])) table->insert(path[i], toml::table{});
+    if (!table->contains(path[i])) {
+      table->insert_or_assign(path[i], std::move(*parse_value("{}", place).get("value")));
+    }
     toml::node* node = table->get(path[i]);
     if (toml::array* list = node->as_array(); list && i + 2 < path.size()) {
       table = &element(*list, path[++i], place);

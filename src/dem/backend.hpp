@@ -11,7 +11,6 @@
 #include "dem/particle_store.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
-#include "physics/contact_law.hpp"
 
 namespace scree {
 
@@ -91,8 +90,10 @@ class Backend {
   virtual void begin_step(Real h) = 0;
   virtual void rollback() = 0;
   virtual Real step_displacement() = 0;  // largest of a particle or shape since the step's start [m]
-  virtual ParticleNorms contact_force(DampingRamp ramp) = 0;
-  virtual void reduce_wrench(std::vector<BodyWrench>& wrench) = 0;
+  virtual ParticleNorms contact_force() = 0;
+  // Contact wrenches on the bodies: what the step needs, and at the end of the step; equal unless contacts open or
+  // close within it.
+  virtual void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) = 0;
   virtual ParticleCorrection particle_correct() = 0;
   // Takes part of the last correction back, after contact_force has reported an overshoot.
   virtual void shorten_correction() = 0;

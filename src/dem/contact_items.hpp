@@ -110,90 +110,177 @@ struct ContactMatrix {
   Sym3* diagonal;   // sum of b b^T over the row, walls included [kg]
 };
 
+// Sums over the contacts of each particle in an implicit step; "step" and "end" as in StepContact.
+struct StepForces {
+  Vec3 *step_force, *end_force;  // gravity included [N]
+  Real *step_loss, *end_loss;    // [W]
+  Real* magnitude;               // sum of |F| over contacts and gravity: the scale of the residual [N]
+};
+
 // Weights of stiffness and damping in the Newton matrix.
 struct NewtonWeights {
   Real stiffness;  // beta h^2 [s^2]
   Real damping;    // h gamma [s]
 };
 
-// Force, dissipation and Newton matrix row of particle i.
+// Where a step started, all items, and whether contacts that open or close within it are resolved; else the force at
+// its end counts for the whole step, as in the paper.
+struct StepStart {
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;
+  Real h;                // [s]
+  bool resolve_events;
+};
+
+// One contact of an implicit step.
+struct StepContact {
+  ContactForce step;  // what the step's end must hold for the step to be right: see step_contact_force
+  Real end_force;     // at the end itself [N]
+  Real end_loss;      // [W]
+};
+
+// o, rate: overlap and rate at the end of the step; o0, rate0: at its start.
+template <class Elastic>
+SCREE_HD StepContact step_contact(const KelvinVoigt& law, const StepStart& start, Real overlap0, Real rate0,
+                                  Real overlap1, Real rate1) {
+  const ContactForce end =
+      overlap1 > 0 ? contact_force<Elastic>(law, overlap1, rate1) : ContactForce{0, 0, 0, 0};
+  if (!start.resolve_events) return {end, end.force, end.loss};
+  return {step_contact_force<Elastic>(law, {overlap0, rate0, overlap1, rate1, start.h}), end.force, end.loss};
+}
+
+// Visits the contacts of item i over a step: visit(StepContact, normal at the end, slot of the neighbour or -1 for a wall, partner).
 template <class Elastic, class Laws>
-struct ContactSystemItem {
+struct StepContacts {
   ContactViews in;
   Laws laws;
-  Vec3 gravity;
-  NewtonWeights weights;
-  Vec3* force;              // [N]
-  Real* loss_power;         // [W]
-  Real* force_magnitude;    // sum of |F| over contacts and gravity [N]: the scale of the residual
-  DampingRamp ramp;
-  ContactMatrix matrix;
+  StepStart start;
 
-  SCREE_HD void operator()(Index i) const {
-    const Vec4 p = in.position[i], u = in.velocity[i];
-    const int material = in.material[i];
-    Vec3 f = u.w * gravity;
-    Real loss = 0, magnitude = norm(f);
-    Index entries = 0;
-    Sym3 diagonal;
-    const auto add = [&](const ContactForce& c, Vec3 normal, Real share) {
-      f += c.force * normal;
-      magnitude += std::abs(c.force);
-      loss += share * c.loss;
-      return weights.stiffness * c.stiffness + weights.damping * c.damping;
-    };
+  SCREE_HD static Real rate(Vec3 normal, Vec3 relative_velocity) { return -dot(normal, relative_velocity); }
+
+  template <class Visit>
+  SCREE_HD void neighbors(Index i, const Visit& visit) const {
+    const Vec4 p = in.position[i], p0 = start.position[i];
     for (Index k = in.offsets[i]; k < in.offsets[i + 1]; ++k) {
       const Index j = in.neighbors[k];
       const Vec4 q = in.position[j];
-      const Overlap o = sphere_overlap(xyz(p) - xyz(q), p.w + q.w);
-      if (o.overlap <= 0) continue;
-      const Real rate = -dot(o.normal, xyz(u) - xyz(in.velocity[j]));
-      const Real s = add(contact_force<Elastic>(laws.get(material, in.material[j]), o.overlap, rate, ramp), o.normal,
-                         particle_share(j, in.first_shape));
-      diagonal += outer(s, o.normal);
-      const Index slot = in.offsets[i] + entries++;
-      matrix.neighbor[slot] = j;
-      matrix.b[slot] = std::sqrt(s) * o.normal;
+      const Vec3 r = xyz(p) - xyz(q), r0 = xyz(p0) - xyz(start.position[j]);
+      const Real reach = p.w + q.w;
+      if (dot(r, r) >= reach * reach && dot(r0, r0) >= reach * reach) continue;
+      const Overlap o = sphere_overlap(r, reach), o0 = sphere_overlap(r0, reach);
+      const KelvinVoigt& law = laws.get(in.material[i], in.material[j]);
+      visit(step_contact<Elastic>(law, start, o0.overlap,
+                                  rate(o0.normal, xyz(start.velocity[i]) - xyz(start.velocity[j])), o.overlap,
+                                  rate(o.normal, xyz(in.velocity[i]) - xyz(in.velocity[j]))),
+            o.normal, j);
     }
+  }
+
+  template <class Visit>
+  SCREE_HD void walls(Index i, const Visit& visit) const {
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
-      const Overlap o = wall_overlap(p, wall);
-      if (o.overlap <= 0) continue;
-      const Real rate = -dot(o.normal, xyz(u));
-      const Real s = add(contact_force<Elastic>(laws.get(material, wall.material), o.overlap, rate, ramp), o.normal, 1);
-      diagonal += outer(s, o.normal);
+      const Overlap o = wall_overlap(in.position[i], wall), o0 = wall_overlap(start.position[i], wall);
+      if (o.overlap <= 0 && o0.overlap <= 0) continue;
+      const KelvinVoigt& law = laws.get(in.material[i], wall.material);
+      visit(step_contact<Elastic>(law, start, o0.overlap, rate(o.normal, xyz(start.velocity[i])), o.overlap,
+                                  rate(o.normal, xyz(in.velocity[i]))),
+            o.normal);
     }
-    force[i] = f, loss_power[i] = loss, force_magnitude[i] = magnitude;
+  }
+};
+
+// Force, dissipation and Newton matrix row of particle i in an implicit step.
+template <class Elastic, class Laws>
+struct ContactSystemItem {
+  StepContacts<Elastic, Laws> contacts;
+  Vec3 gravity;
+  NewtonWeights weights;
+  StepForces out;
+  ContactMatrix matrix;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec3 weight = contacts.in.velocity[i].w * gravity;
+    Vec3 step_force = weight, end_force = weight;
+    Real step_loss = 0, end_loss = 0, magnitude = norm(weight);
+    Index entries = 0;
+    Sym3 diagonal;
+    const auto add = [&](const StepContact& c, Vec3 normal, Real share) {
+      step_force += c.step.force * normal;
+      end_force += c.end_force * normal;
+      magnitude += std::abs(c.step.force);
+      step_loss += share * c.step.loss;
+      end_loss += share * c.end_loss;
+      const Real s = weights.stiffness * c.step.stiffness + weights.damping * c.step.damping;
+      diagonal += outer(s, normal);
+      return s;
+    };
+    contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
+      const Real s = add(c, normal, particle_share(j, contacts.in.first_shape));
+      const Index slot = contacts.in.offsets[i] + entries++;
+      matrix.neighbor[slot] = j;
+      matrix.b[slot] = std::sqrt(s) * normal;
+    });
+    contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
+    out.step_force[i] = step_force, out.end_force[i] = end_force;
+    out.step_loss[i] = step_loss, out.end_loss[i] = end_loss;
+    out.magnitude[i] = magnitude;
     matrix.count[i] = entries;
     matrix.diagonal[i] = diagonal;
   }
 };
 
-// What the contacts of one shape of a body sum to.
+// What the contacts of one shape of a body sum to. Every contact force passes through the shape's centre.
 struct ShapeContact {
-  Vec3 force;                // on the shape; every contact force passes through the shape's centre [N]
-  Sym3 stiffness, damping;   // -d(force)/d(position), -d(force)/d(velocity) of the shape's centre [N/m], [N s/m]
-  Real loss_power = 0;       // the shape's share [W]
+  Vec3 force;                // for the step: see StepContact [N]
+  Vec3 end_force;            // at the end of the step [N]
+  Sym3 stiffness, damping;   // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
+  Real step_loss = 0, end_loss = 0;  // the shape's share [W]
   Real energy = 0;           // the shape's share of the contacts' elastic energy [J]
   Real pairs = 0;            // the shape's share of the number of contacts
   Index contacts = 0;
 };
 
-// Contacts of shape item i. Particles book the dissipation of their contacts with shapes, shapes among each
-// other half each.
+// Particles book the energies of their contacts with shapes; shapes among each other half each.
+SCREE_HD Real shape_share(Index j, Index first_shape) { return j < first_shape ? Real(0) : Real(0.5); }
+
+// Contacts of a shape item over an implicit step.
+template <class Elastic, class Laws>
+struct ShapeStepItem {
+  StepContacts<Elastic, Laws> contacts;
+  ShapeContact* out;  // [shape items], indexed from first_shape
+
+  SCREE_HD void operator()(Index shape) const {
+    const Index i = contacts.in.first_shape + shape;
+    ShapeContact sum;
+    const auto add = [&](const StepContact& c, Vec3 normal, Real share) {
+      sum.force += c.step.force * normal;
+      sum.end_force += c.end_force * normal;
+      sum.stiffness += outer(c.step.stiffness, normal);
+      sum.damping += outer(c.step.damping, normal);
+      sum.step_loss += share * c.step.loss;
+      sum.end_loss += share * c.end_loss;
+      ++sum.contacts;
+    };
+    contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
+      add(c, normal, shape_share(j, contacts.in.first_shape));
+    });
+    contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
+    out[shape] = sum;
+  }
+};
+
+// Contacts of a shape item at one instant.
 template <class Elastic, class Laws>
 struct ShapeContactItem {
   ContactViews in;
   Laws laws;
-  DampingRamp ramp;
   ShapeContact* out;  // [shape items], indexed from first_shape
 
   SCREE_HD void add(ShapeContact& sum, const KelvinVoigt& law, const Overlap& o, Real rate, Real share) const {
-    const ContactForce c = contact_force<Elastic>(law, o.overlap, rate, ramp);
+    const ContactForce c = contact_force<Elastic>(law, o.overlap, rate);
     sum.force += c.force * o.normal;
-    sum.stiffness += outer(c.stiffness, o.normal);
-    sum.damping += outer(c.damping, o.normal);
-    sum.loss_power += share * c.loss;
+    sum.end_loss += share * c.loss;
     sum.energy += share * Elastic::energy(law, o.overlap);
     sum.pairs += share;
     ++sum.contacts;
@@ -208,14 +295,14 @@ struct ShapeContactItem {
       const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
       if (o.overlap <= 0) continue;
       const Real rate = -dot(o.normal, xyz(u) - xyz(in.velocity[j]));
-      add(sum, laws.get(in.material[i], in.material[j]), o, rate, j < in.first_shape ? 0 : Real(0.5));
+      add(sum, laws.get(in.material[i], in.material[j]), o, rate, shape_share(j, in.first_shape));
     }
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
       const Overlap o = wall_overlap(p, wall);
-      if (o.overlap > 0)
-        add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
+      if (o.overlap > 0) add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
     }
+    sum.end_force = sum.force, sum.step_loss = sum.end_loss;
     out[shape] = sum;
   }
 };

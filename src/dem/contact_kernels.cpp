@@ -22,14 +22,15 @@ class CpuContactKernels : public ContactKernels {
   Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const override {
     return max_over(Serial{}, n, VerletAdvanceItem<Elastic, Laws>{{in, laws_, gravity, nullptr, nullptr}, state});
   }
-  void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, DampingRamp ramp,
-              const ContactOutputs& out) const override {
-    for_each(Serial{}, n,
-             ContactSystemItem<Elastic, Laws>{in, laws_, gravity, weights, out.force, out.loss_power,
-                                              out.force_magnitude, ramp, out.matrix});
+  void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, const StepStart& start,
+              const StepForces& out, const ContactMatrix& matrix) const override {
+    for_each(Serial{}, n, ContactSystemItem<Elastic, Laws>{{in, laws_, start}, gravity, weights, out, matrix});
   }
-  void shapes(const ContactViews& in, Index n, DampingRamp ramp, ShapeContact* out) const override {
-    for_each(Serial{}, n, ShapeContactItem<Elastic, Laws>{in, laws_, ramp, out});
+  void shapes(const ContactViews& in, Index n, const StepStart& start, ShapeContact* out) const override {
+    for_each(Serial{}, n, ShapeStepItem<Elastic, Laws>{{in, laws_, start}, out});
+  }
+  void shapes(const ContactViews& in, Index n, ShapeContact* out) const override {
+    for_each(Serial{}, n, ShapeContactItem<Elastic, Laws>{in, laws_, out});
   }
   void energies(const ContactViews& in, Index n, const EnergyOutputs& out) const override {
     for_each(Serial{}, n, ContactEnergyItem<Elastic, Laws>{in, laws_, out.energy, out.contacts, out.pairs});

@@ -9,14 +9,6 @@
 
 namespace scree {
 
-// Outputs of the contact stages, one entry per owned particle.
-struct ContactOutputs {
-  Vec3* force;
-  Real* loss_power;
-  Real* force_magnitude;
-  ContactMatrix matrix;
-};
-
 struct EnergyOutputs {
   Real* energy;
   Index* contacts;
@@ -31,9 +23,11 @@ class ContactKernels {
                              Vec3* force) const = 0;
   // The square of the largest displacement.
   virtual Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const = 0;
-  virtual void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, DampingRamp ramp,
-                      const ContactOutputs& out) const = 0;
-  virtual void shapes(const ContactViews& in, Index n, DampingRamp ramp, ShapeContact* out) const = 0;
+  virtual void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, const StepStart& start,
+                      const StepForces& out, const ContactMatrix& matrix) const = 0;
+  // Contacts of shapes over an implicit step, and at one instant.
+  virtual void shapes(const ContactViews& in, Index n, const StepStart& start, ShapeContact* out) const = 0;
+  virtual void shapes(const ContactViews& in, Index n, ShapeContact* out) const = 0;
   virtual void energies(const ContactViews& in, Index n, const EnergyOutputs& out) const = 0;
 };
 

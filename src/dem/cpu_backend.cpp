@@ -24,7 +24,6 @@ CpuBackend::CpuBackend(const Model& model)
 void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
   shape_losses_ = shapes;
   store_.load(model_.particles, records);
-  new_loss_power_.assign(records.size(), 0);
   layout_changed_ = true;
 }
 
@@ -65,10 +64,10 @@ void CpuBackend::place_shapes() {
 
 // Trapezoidal in time, like the particles' losses.
 void CpuBackend::book_shape_losses(Real h) {
-  Real power = 0;
-  for (const ShapeContact& contact : shape_contacts_) power += contact.loss_power;
-  shape_losses_.contact_loss += h / 2 * (shape_losses_.loss_power + power);
-  shape_losses_.loss_power = power;
+  Real step_power = 0, end_power = 0;
+  for (const ShapeContact& contact : shape_contacts_) step_power += contact.step_loss, end_power += contact.end_loss;
+  shape_losses_.contact_loss += h / 2 * (shape_losses_.loss_power + step_power);
+  shape_losses_.loss_power = end_power;
 }
 
 void CpuBackend::refresh_ghosts() {
@@ -148,9 +147,9 @@ void CpuBackend::build_list(Real skin, StageTimers& timers) {
   layout_changed_ = false;
 
   const std::size_t slots = list_.neighbors.size(), owned = static_cast<std::size_t>(layout_.owned);
-  new_loss_power_.resize(owned);
   if (model_.integrator.particles != ParticleIntegrator::hht) return;
   matrix_neighbor_.resize(slots), matrix_b_.resize(slots), direction_.resize(layout_.items);
+  step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
   force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
   residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned), matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
 }

@@ -34,8 +34,8 @@ class CpuBackend : public Backend {
   void begin_step(Real h) override;
   void rollback() override;
   Real step_displacement() override;
-  ParticleNorms contact_force(DampingRamp ramp) override;
-  void reduce_wrench(std::vector<BodyWrench>& wrench) override;
+  ParticleNorms contact_force() override;
+  void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) override;
   ParticleCorrection particle_correct() override;
   void shorten_correction() override;
   Real error() override;
@@ -54,6 +54,7 @@ class CpuBackend : public Backend {
   ContactViews views() const;
   StepViews step_views();
   VerletViews verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity);
+  StepForces step_forces();
   void shape_forces(Real h);
   Real slope(const std::vector<Vec3>& residual) const;
   // Sizes all item arrays, fills in ghosts and shapes.
@@ -86,7 +87,8 @@ class CpuBackend : public Backend {
   Real h_ = 0;
   std::vector<Vec4> start_position_, start_velocity_;
   std::vector<Vec3> start_acceleration_, start_force_;
-  std::vector<Real> new_loss_power_, force_magnitude_, stiffening_;
+  std::vector<Vec3> step_force_, end_force_;
+  std::vector<Real> step_loss_, end_loss_, force_magnitude_, stiffening_;
   std::vector<Index> matrix_count_, matrix_neighbor_;
   std::vector<Vec3> matrix_b_, residual_, right_hand_side_, correction_;
   std::vector<Sym3> matrix_diagonal_, inverse_block_;
@@ -99,7 +101,6 @@ class CpuBackend : public Backend {
   // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at its
   // start and at the iterate.
   Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;
-  DampingRamp ramp_;  // of the last contact_force
   bool in_implicit_step_ = false;
   Real displacement_bound_ = 0;   // of any item since the list was built, at most [m]
   Real step_bound_ = 0;           // of any particle in the open explicit step [m]

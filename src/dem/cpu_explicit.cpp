@@ -23,7 +23,7 @@ void CpuBackend::verlet_start(Real h) {
 }
 
 void CpuBackend::shape_forces(Real h) {
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, DampingRamp{}, shape_contacts_.data());
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
   book_shape_losses(h);
 }
 

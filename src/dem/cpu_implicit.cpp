@@ -29,18 +29,16 @@ void CpuBackend::initial_forces() {
   kernels_->forces(views(), model_.gravity, layout_.owned, store_.force.data(), store_.loss_power.data());
   for (Index i = 0; i < layout_.owned; ++i)
     store_.acceleration[i] = (1 / store_.velocity[i].w) * store_.force[i];
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, DampingRamp{}, shape_contacts_.data());
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
   book_shape_losses(0);
 }
 
 void CpuBackend::begin_step(Real h) {
   h_ = h;
   applied_share_ = 0;
-  ramp_ = {};
   in_implicit_step_ = true;
-  const auto owned = static_cast<std::ptrdiff_t>(layout_.owned);
   start_position_ = store_.position;
-  start_velocity_.assign(store_.velocity.begin(), store_.velocity.begin() + owned);
+  start_velocity_ = store_.velocity;
   start_acceleration_ = store_.acceleration;
   start_force_ = store_.force;
   for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
@@ -49,7 +47,7 @@ void CpuBackend::begin_step(Real h) {
 
 void CpuBackend::rollback() {
   std::copy(start_position_.begin(), start_position_.begin() + layout_.owned, store_.position.begin());
-  std::copy(start_velocity_.begin(), start_velocity_.end(), store_.velocity.begin());
+  std::copy(start_velocity_.begin(), start_velocity_.begin() + layout_.owned, store_.velocity.begin());
   store_.acceleration = start_acceleration_;
   store_.force = start_force_;
   in_implicit_step_ = false;
@@ -66,15 +64,19 @@ Real CpuBackend::step_displacement() {
   return std::sqrt(squared);
 }
 
-ParticleNorms CpuBackend::contact_force(DampingRamp ramp) {
+StepForces CpuBackend::step_forces() {
+  return {step_force_.data(), end_force_.data(), step_loss_.data(), end_loss_.data(), force_magnitude_.data()};
+}
+
+ParticleNorms CpuBackend::contact_force() {
   const Index n = layout_.owned;
   const NewtonWeights weights{hht_.newmark_beta * h_ * h_, h_ * hht_.newmark_gamma};
+  const StepStart start{start_position_.data(), start_velocity_.data(), h_, model_.integrator.resolve_events};
   const ContactMatrix matrix{matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(),
                              matrix_diagonal_.data()};
-  kernels_->system(views(), model_.gravity, n, weights, ramp,
-                   {store_.force.data(), new_loss_power_.data(), force_magnitude_.data(), matrix});
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, ramp, shape_contacts_.data());
-  for_each(Serial{}, n, ResidualItem{step_views(), store_.force.data(), matrix, residual_.data(),
+  kernels_->system(views(), model_.gravity, n, weights, start, step_forces(), matrix);
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, start, shape_contacts_.data());
+  for_each(Serial{}, n, ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(),
                                      inverse_block_.data(), stiffening_.data()});
 
   ParticleNorms norms;
@@ -93,8 +95,6 @@ ParticleNorms CpuBackend::contact_force(DampingRamp ramp) {
   }
   norms.residual = residual == 0 ? 0 : residual / force_scale_;
   norms.correction_bound = bound;
-  if (ramp.overlap != ramp_.overlap) applied_share_ = 0;  // the potential has changed: no search across that
-  ramp_ = ramp;
   if (applied_share_ > kLeastShare) {
     slope_ = -slope(residual_);
     norms.overshoot = slope_ > kMostSlope * std::abs(start_slope_);
@@ -117,15 +117,17 @@ void CpuBackend::shorten_correction() {
   refresh_ghosts();
 }
 
-void CpuBackend::reduce_wrench(std::vector<BodyWrench>& wrench) {
-  std::fill(wrench.begin(), wrench.end(), BodyWrench{});
+void CpuBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
+  std::fill(step.begin(), step.end(), BodyWrench{});
+  std::fill(end.begin(), end.end(), BodyWrench{});
   const Index items = layout_.items - layout_.first_shape;
   for (Index s = 0; s < items; ++s) {
     const ShapeContact& contact = shape_contacts_[s];
     if (contact.contacts == 0) continue;
     const ShapeItem& shape = shapes_.items()[layout_.shape_of(layout_.first_shape + s)];
     const Vec3 arm = point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
-    add_point_force(wrench[shape.body], contact.force, arm, contact.stiffness, contact.damping);
+    add_point_force(step[shape.body], contact.force, arm, contact.stiffness, contact.damping);
+    add_point_force(end[shape.body], contact.end_force, arm, {}, {});
   }
 }
 
@@ -177,9 +179,8 @@ Real CpuBackend::error() {
 
 void CpuBackend::accept() {
   for_each(Serial{}, layout_.owned,
-           AcceptItem{step_views(), store_.force.data(), store_.loss_power.data(), new_loss_power_.data(),
+           AcceptItem{step_views(), step_forces(), store_.force.data(), store_.loss_power.data(),
                       store_.contact_loss.data(), store_.integrator_loss.data()});
-  store_.loss_power.swap(new_loss_power_);
   book_shape_losses(h_);
   in_implicit_step_ = false;
 }

@@ -54,7 +54,7 @@ ParticleLedger CpuBackend::ledger(Real verlet_step) {
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
   kernels_->energies(views(), n, {elastic.data(), touching.data(), pairs.data()});
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, DampingRamp{}, shape_contacts_.data());
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
 
   ParticleLedger out;
   const auto mass = [&](Index i) { return store_.velocity[i].w; };
@@ -94,7 +94,7 @@ ParticlePack CpuBackend::pack_particles() {
 }
 
 ShapePack CpuBackend::pack_shapes() {
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, DampingRamp{}, shape_contacts_.data());
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
   ShapePack pack;
   for (Index s = 0; s < layout_.shapes; ++s) {
     const ShapeItem& shape = shapes_.items()[s];

@@ -1,8 +1,8 @@
 #include "mbs/rank_check.hpp"
 
 #include <Eigen/OrderingMethods>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-#include <Eigen/SparseQR>
 #include <algorithm>
 #include <cmath>
 
@@ -10,12 +10,15 @@ namespace scree {
 
 namespace {
 
-constexpr Real kDependent = 1e-10;
-constexpr Real kTakesPart = 1e-6;  // of the largest coefficient of a dependency
+constexpr Real kSuspect = 1e-8;      // pivot of A^T A, the squared distance of a column from those before it
+constexpr Real kDependent = 1e-9;    // distance itself, computed from the columns
+constexpr Real kTakesPart = 1e-6;    // coefficient of a dependency, relative to the largest
+constexpr Real kPivotShift = 1e-14;  // keeps the factorization going past a pivot that vanishes
 
 using Matrix = Eigen::SparseMatrix<Real>;
+using Vector = Eigen::VectorXd;
 
-Matrix scaled_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
+Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
   std::vector<Eigen::Triplet<Real>> triplets;
   triplets.reserve(entries.size());
   for (const MatrixEntry& entry : entries) triplets.emplace_back(entry.row, entry.column, entry.value);
@@ -25,36 +28,52 @@ Matrix scaled_columns(int rows, int columns, const std::vector<MatrixEntry>& ent
     const Real length = matrix.col(j).norm();
     if (length > 0) matrix.col(j) /= length;
   }
-  matrix.makeCompressed();
   return matrix;
+}
+
+// With P A^T A P^T = L D L^T and l the part of L's row k left of the diagonal, the first k columns of A P^T combine by
+// L_11^-T l to what is nearest to column k. The combination minus column k, in the order of A's columns.
+Vector combination(const Matrix& l, int k, const Eigen::SimplicialLDLT<Matrix>& factors) {
+  Vector c = Vector::Zero(l.rows());
+  for (int i = 0; i < k; ++i) c[i] = l.coeff(k, i);
+  for (int i = k; i-- > 0;) {
+    for (Matrix::InnerIterator it(l, i); it; ++it) {
+      if (it.row() > i && it.row() < k) c[i] -= it.value() * c[it.row()];
+    }
+  }
+  c[k] = -1;
+  return factors.permutationPinv() * c;
 }
 
 }  // namespace
 
 std::vector<int> dependent_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
-  if (columns == 0) return {};
   for (const MatrixEntry& entry : entries) {
     if (!std::isfinite(entry.value)) return {};
   }
-  Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>> qr;
-  qr.setPivotThreshold(kDependent);
-  qr.compute(scaled_columns(rows, columns, entries));
-  const int rank = static_cast<int>(qr.rank());
-  if (rank == columns) return {};
-  // A P = Q [R_11, R_12; 0, 0]: the first dependent column equals the independent ones times R_11^-1 R_12.
-  const Matrix r = qr.matrixR();
-  const Matrix r11 = r.topLeftCorner(rank, rank);
-  const Eigen::VectorXd r12 = Eigen::VectorXd(r.col(rank)).head(rank);
-  const Eigen::VectorXd coefficient = r11.triangularView<Eigen::Upper>().solve(r12);
-  Real largest = 1;
-  for (const Real c : coefficient) largest = std::max(largest, std::abs(c));
-  const auto& permutation = qr.colsPermutation().indices();
-  std::vector<int> dependent{static_cast<int>(permutation[rank])};
-  for (int i = 0; i < rank; ++i) {
-    if (std::abs(coefficient[i]) > kTakesPart * largest) dependent.push_back(static_cast<int>(permutation[i]));
+  if (columns == 0) return {};
+  const Matrix a = unit_columns(rows, columns, entries);
+  const Matrix normal = Matrix(a.transpose()) * a;
+  Eigen::SimplicialLDLT<Matrix> factors;
+  factors.setShift(kPivotShift);
+  factors.compute(normal);
+  const Vector pivots = factors.vectorD();
+  const Matrix l = factors.matrixL();
+  for (int k = 0; k < columns; ++k) {
+    if (pivots[k] > kSuspect) continue;
+    const Vector c = combination(l, k, factors);
+    const Vector rest = a * c;
+    Real largest = 0, distance = 0;
+    for (const Real x : c) largest = std::max(largest, std::abs(x));
+    for (const Real x : rest) distance = std::max(distance, std::abs(x));
+    if (distance > kDependent * largest) continue;
+    std::vector<int> dependent;
+    for (int j = 0; j < columns; ++j) {
+      if (std::abs(c[j]) > kTakesPart * largest) dependent.push_back(j);
+    }
+    return dependent;
   }
-  std::sort(dependent.begin(), dependent.end());
-  return dependent;
+  return {};
 }
 
 }  // namespace scree

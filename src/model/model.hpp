@@ -66,6 +66,9 @@ struct TimeControl {
 struct Integrator {
   Real hht_alpha = 0;
   ParticleIntegrator particles = ParticleIntegrator::hht;
+  // hht: a contact that opens or closes within a step acts over the part of the step that it is closed; else the
+  // force at the end of the step stands for all of it, as in the paper.
+  bool resolve_events = true;
   int substeps = 1;                 // of velocity-verlet per multibody step
   Real residual_tolerance = 1e-8;   // scaled, both sides
   Real correction_tolerance = 1e-8; // scaled by radius (particles) or length scale (bodies)

@@ -12,6 +12,11 @@ namespace scree {
 
 namespace {
 
+// Rows [offset, offset + count) of a dataset: what one snapshot or, with several writers, one rank writes.
+struct RowRange {
+  std::int64_t offset = 0, count = 0;
+};
+
 // Once a write has failed (a full disk), the library's exit handlers write again and crash. So they are
 // refused: the one at exit here, the one in MPI_Finalize by starting the library before MPI. Every file is
 // closed by its owner.
@@ -55,6 +60,15 @@ std::array<hsize_t, 2> shape_of(hid_t space) {
   std::array<hsize_t, 2> shape = {1, 1};
   if (H5Sget_simple_extent_ndims(space) <= 2) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
   return shape;
+}
+
+bool write_range(hid_t dataset, hid_t type, RowRange range, const void* values) {
+  Hdf5Id space(H5Dget_space(dataset), H5Sclose);
+  const std::array<hsize_t, 2> start = {static_cast<hsize_t>(range.offset), 0};
+  const std::array<hsize_t, 2> count = {static_cast<hsize_t>(range.count), shape_of(space)[1]};
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  Hdf5Id memory(H5Screate_simple(H5Sget_simple_extent_ndims(space), count.data(), nullptr), H5Sclose);
+  return H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, values) >= 0;
 }
 
 // ASCII where the text allows it: some readers of VTKHDF expect no other.
@@ -131,18 +145,11 @@ void Hdf5File::append_rows(const std::string& name, hid_t type, const void* valu
   Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail("open dataset " + name);
   if (rows == 0) return;
-  Hdf5Id old_space(H5Dget_space(dataset), H5Sclose);
-  const int dimensions = H5Sget_simple_extent_ndims(old_space);
-  std::array<hsize_t, 2> shape = shape_of(old_space);
-  const std::array<hsize_t, 2> start = {shape[0], 0};
-  const std::array<hsize_t, 2> count = {static_cast<hsize_t>(rows), shape[1]};
-  shape[0] += count[0];
+  std::array<hsize_t, 2> shape = shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose));
+  const RowRange range{static_cast<std::int64_t>(shape[0]), rows};
+  shape[0] += static_cast<hsize_t>(rows);
   if (H5Dset_extent(dataset, shape.data()) < 0) fail("extend dataset " + name);
-  Hdf5Id file_space(H5Dget_space(dataset), H5Sclose);
-  Hdf5Id memory_space(H5Screate_simple(dimensions, count.data(), nullptr), H5Sclose);
-  H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-  if (H5Dwrite(dataset, type, memory_space, file_space, H5P_DEFAULT, values) < 0)
-    fail("write dataset " + name);
+  if (!write_range(dataset, type, range, values)) fail("write dataset " + name);
 }
 
 void Hdf5File::resize_rows(const std::string& name, std::int64_t rows) {

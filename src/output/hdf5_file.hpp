@@ -19,11 +19,6 @@ enum class Hdf5Access {
   modify  // an existing file
 };
 
-// Rows [offset, offset + count) of a dataset: what one rank, or one snapshot, reads or writes.
-struct RowRange {
-  std::int64_t offset = 0, count = 0;
-};
-
 // What a reader should know of a dataset: its attributes "unit" and "description".
 struct DatasetLabel {
   std::string unit, description;

@@ -55,24 +55,77 @@ struct PowerElastic {
   }
 };
 
-// How the jump of the damping force at first touch is treated. In an implicit step it can make neither the open
-// nor the closed contact consistent with the overlap at the step's end; what is consistent is a force between the
-// two at zero overlap. A ramp finds it: damping of an approaching contact grows over this overlap.
-struct DampingRamp {
-  Real overlap = 0;  // [m]; 0: none, the law as it stands
-};
-
 // Force of a closed contact: overlap d > 0 [m], overlap rate d_dot [m/s], positive when approaching.
 template <class Elastic>
-SCREE_HD ContactForce contact_force(const KelvinVoigt& law, Real d, Real d_dot, DampingRamp ramp = {}) {
-  const bool ramped = d < ramp.overlap && d_dot > 0;
-  const Real damping = ramped ? law.normal_damping * (d / ramp.overlap) : law.normal_damping;
+SCREE_HD ContactForce contact_force(const KelvinVoigt& law, Real d, Real d_dot) {
   const Real elastic = Elastic::force(law, d);
-  const Real force = elastic + damping * d_dot;
+  const Real force = elastic + law.normal_damping * d_dot;
   if (force < 0 && !law.tension) return {0, 0, 0, -elastic * d_dot};
-  Real stiffness = Elastic::stiffness(law, d);
-  if (ramped) stiffness += law.normal_damping * d_dot / ramp.overlap;
-  return {force, stiffness, damping, damping * d_dot * d_dot};
+  return {force, Elastic::stiffness(law, d), law.normal_damping, law.normal_damping * d_dot * d_dot};
+}
+
+// A contact over one time step: at its start (0) and its end (1). Overlaps may be negative: gaps.
+struct ContactStep {
+  Real overlap0, rate0;  // [m], [m/s]
+  Real overlap1, rate1;
+  Real h;                // [s]
+};
+
+// What the trapezoidal rule must find at the end of the step, in place of the force there, for the step's impulse
+// and work to be right although the contact opens or closes within the step:
+//   impulse h (F0 + F) / 2 = force summed over the part of the step that is spent in contact.
+// With the part from the straight line between the overlaps, the elastic work (F0 + F) / 2 (d1 - d0) is exactly the
+// change of the elastic energy: no step size creates energy at impacts (the discrete gradient of LaBudde and Greenspan 1974,
+// Simo, Tarnow and Wong 1992). F and its slope are continuous at first touch.
+// stiffness and damping are dF/d(overlap1) and dF/d(rate1), cut at 0; loss is made for the trapezoidal rule alike.
+
+// d0 <= 0 < d1: in contact over the share d1 / (d1 - d0).
+template <class Elastic>
+SCREE_HD ContactForce touching_force(const KelvinVoigt& law, const ContactStep& c) {
+  const Real travel = c.overlap1 - c.overlap0, share = c.overlap1 / travel;
+  const Real energy = Elastic::energy(law, c.overlap1), damping = law.normal_damping;
+  const Real force = 2 * (energy + damping * c.rate1 * c.overlap1) / travel;
+  if (force < 0 && !law.tension) return {0, 0, 0, 0};
+  const Real slope = (2 * (Elastic::force(law, c.overlap1) + damping * c.rate1) - force) / travel;
+  return {force, slope > 0 ? slope : 0, 2 * share * damping, 2 * share * damping * c.rate1 * c.rate1};
+}
+
+// d1 <= 0 < d0 with tension: in contact over the share d0 / (d0 - d1).
+template <class Elastic>
+SCREE_HD ContactForce releasing_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start) {
+  const Real travel = c.overlap0 - c.overlap1, share = c.overlap0 / travel;
+  const Real damping = law.normal_damping;
+  const Real twice_mean = 2 * (Elastic::energy(law, c.overlap0) + damping * c.rate1 * c.overlap0) / travel;
+  const Real slope = twice_mean / travel;
+  return {twice_mean - start.force, slope > 0 ? slope : 0, 2 * share * damping,
+          2 * share * damping * c.rate1 * c.rate1 - start.loss};
+}
+
+// The force cut at zero reaches it within the step: it falls in a straight line over the share F0 / (F0 - F1), F1 < 0
+// the force that the law's slope at the start leads to. What elastic energy is left then is lost.
+template <class Elastic>
+SCREE_HD ContactForce fading_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start) {
+  const Real drop = -start.stiffness * (c.overlap1 - c.overlap0) - start.damping * (c.rate1 - c.rate0);
+  const Real share = drop > start.force ? start.force / drop : 1;
+  const Real impulse = share * start.force / 2;
+  const Real energy1 = c.overlap1 > 0 ? Elastic::energy(law, c.overlap1) : 0;
+  const Real lost = Elastic::energy(law, c.overlap0) - energy1 - impulse * (c.overlap0 - c.overlap1);
+  return {2 * impulse - start.force, share * share * start.stiffness, share * share * start.damping,
+          2 * lost / c.h - start.loss};
+}
+
+// The contact over a step that may open or close within it.
+template <class Elastic>
+SCREE_HD ContactForce step_contact_force(const KelvinVoigt& law, const ContactStep& c) {
+  if (c.overlap0 <= 0) return c.overlap1 > 0 ? touching_force<Elastic>(law, c) : ContactForce{0, 0, 0, 0};
+  if (c.overlap1 > 0 && law.tension) return contact_force<Elastic>(law, c.overlap1, c.rate1);
+  const ContactForce start = contact_force<Elastic>(law, c.overlap0, c.rate0);
+  if (law.tension) return releasing_force<Elastic>(law, c, start);
+  if (c.overlap1 > 0) {
+    const ContactForce end = contact_force<Elastic>(law, c.overlap1, c.rate1);
+    if (end.force > 0) return end;
+  }
+  return fading_force<Elastic>(law, c, start);
 }
 
 }  // namespace scree

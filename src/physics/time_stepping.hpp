@@ -43,6 +43,11 @@ SCREE_HD Vec3 hht_residual(const HhtCoefficients& c, Real mass, Vec3 a1, Vec3 f1
   return (mass * scale) * a1 - f1 + (c.hht_alpha * scale) * f0;
 }
 
+// From the acceleration that a step needed at its end to the one there, where a contact opened or closed within it.
+SCREE_HD Vec3 hht_event_acceleration(const HhtCoefficients& c, Real mass, Vec3 step_force, Vec3 end_force) {
+  return ((1 + c.hht_alpha) / mass) * (end_force - step_force);
+}
+
 // Energy that a step takes out of the motion [J]: trapezoidal work of the forces minus the change of kinetic
 // energy. Zero for hht_alpha = 0.
 SCREE_HD Real integrator_loss(Real mass, Vec3 dx, Vec3 v0, Vec3 v1, Vec3 f0, Vec3 f1) {

@@ -18,7 +18,6 @@ void step_columns(Columns& out) {
   add("linear_iterations", "1", "iterations of the particles' linear solve so far");
   add("rejected_error", "1", "steps rejected for their local error so far");
   add("rejected_newton", "1", "steps rejected for want of convergence so far");
-  add("ramped_contacts", "1", "steps that converged with the jump of the damping force at touch spread out, so far");
   add("contacts", "1", "touching pairs, walls and body shapes included");
   add("left", "1", "particles that have left the space so far");
 }
@@ -101,7 +100,7 @@ void Recorder::history(State& state, Real h) {
   std::vector<Real> row{state.clock.time,           h,
                         real(n.steps),              real(n.newton_iterations),
                         real(n.linear_iterations),  real(n.rejected_error),
-                        real(n.rejected_newton),    real(n.ramped_contacts)};
+                        real(n.rejected_newton)};
   energy_row(state, row);
   body_row(state, row);
   particle_row(row);

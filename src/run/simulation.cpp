@@ -167,7 +167,6 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"linear_iterations", n.linear_iterations},
                    {"rejected_error", n.rejected_error},
                    {"rejected_newton", n.rejected_newton},
-                   {"ramped_contacts", n.ramped_contacts},
                    {"list_builds", n.list_builds},
                    {"list_entries", backend_->list_entries()},
                    {"particles", static_cast<std::int64_t>(model_.particles.size())},

@@ -74,7 +74,6 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("counts/linear_iterations", state.counts.linear_iterations);
   visit("counts/rejected_error", state.counts.rejected_error);
   visit("counts/rejected_newton", state.counts.rejected_newton);
-  visit("counts/ramped_contacts", state.counts.ramped_contacts);
   visit("bodies/position", state.bodies.position);
   visit("bodies/velocity", state.bodies.velocity);
   visit("bodies/acceleration", state.bodies.acceleration);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,7 @@ void measure(int bodies) {
   const double iterations = static_cast<double>(run.iterations) / steps;
   fmt::print("{:7d} {:10d} {:12.2f} {:12.4f} {:14.4f} {:11.2f} {:14.4f}\n", bodies, 5 * bodies, 1e3 * construction,
              1e3 * per_step, 1e6 * per_step / bodies, iterations, 1e3 * per_step / iterations);
+  std::fflush(stdout);
 }
 
 }  // namespace

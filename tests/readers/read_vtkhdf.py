@@ -16,7 +16,15 @@ import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 PARTICLE_FIELDS = {"global_id": 1, "radius": 1, "velocity": 3, "force": 3, "contacts": 1}
-BODY_FIELDS = {"body": 1, "radius": 1, "velocity": 3, "angle": 1, "angular_velocity": 1, "force": 3, "contacts": 1}
+BODY_FIELDS = {
+    "body": 1,
+    "radius": 1,
+    "velocity": 3,
+    "angle": 1,
+    "angular_velocity": 1,
+    "force": 3,
+    "contacts": 1,
+}
 
 
 def require(condition, message):
@@ -48,6 +56,25 @@ def check_attributes(file, path):
     root.visititems(check)
 
 
+def check_offsets(root, path, fields):
+    """The snapshots' rows follow each other without a gap, to the end of every dataset."""
+    steps = root["Steps"]
+    count = root["NumberOfPoints"][:][steps["PartOffsets"][:]]
+    first = np.concatenate([[0], np.cumsum(count)])
+    require(
+        steps.attrs["NSteps"] == len(count), f"{path}: NSteps is {steps.attrs['NSteps']} for {len(count)}"
+    )
+    require(len(root["Points"]) == first[-1], f"{path}: {len(root['Points'])} rows of Points for {first[-1]}")
+    require(
+        np.array_equal(steps["PointOffsets"], first[:-1]), f"{path}: PointOffsets do not follow each other"
+    )
+    for name in fields:
+        rows = len(root[f"PointData/{name}"])
+        require(rows == first[-1], f"{path}: {rows} rows of {name} for {first[-1]}")
+        offsets = steps[f"PointDataOffsets/{name}"]
+        require(np.array_equal(offsets, first[:-1]), f"{path}: offsets of {name} do not follow each other")
+
+
 def raw_snapshot(root, step, fields):
     """Points and fields of one step, read by the offsets alone."""
     steps = root["Steps"]
@@ -63,22 +90,26 @@ def raw_snapshot(root, step, fields):
 def check_step(path, step, polydata, raw, fields):
     where = f"{path}, step {step}"
     count = len(raw["Points"])
-    require(polydata.GetNumberOfPoints() == count, f"{where}: {polydata.GetNumberOfPoints()} points for {count}")
-    require(polydata.GetNumberOfVerts() == count, f"{where}: {polydata.GetNumberOfVerts()} vertices for {count}")
-    require(polydata.GetNumberOfCells() == count, f"{where}: {polydata.GetNumberOfCells()} cells for {count}")
+    for kind in ("Points", "Verts", "Cells"):
+        found = getattr(polydata, f"GetNumberOf{kind}")()
+        require(found == count, f"{where}: {found} {kind} for {count}")
     if count == 0:
         return
     connectivity = vtk_to_numpy(polydata.GetVerts().GetConnectivityArray())
     require(np.array_equal(connectivity, np.arange(count)), f"{where}: vertices do not name their points")
-    require(np.array_equal(vtk_to_numpy(polydata.GetPoints().GetData()), raw["Points"]), f"{where}: Points differ")
+    positions = vtk_to_numpy(polydata.GetPoints().GetData())
+    require(np.array_equal(positions, raw["Points"]), f"{where}: Points differ")
     for name, width in fields.items():
         array = polydata.GetPointData().GetArray(name)
         require(array is not None, f"{where}: no field {name}")
-        require(array.GetNumberOfComponents() == width, f"{where}: {name} has {array.GetNumberOfComponents()} components")
+        components = array.GetNumberOfComponents()
+        require(components == width, f"{where}: {name} has {components} components")
         values = vtk_to_numpy(array)
-        require(np.array_equal(values, raw[name], equal_nan=values.dtype.kind == "f"), f"{where}: {name} differs")
-        require(values.dtype.kind != "f" or np.isfinite(values).all(), f"{where}: {name} is not finite")
+        require(np.isfinite(values).all(), f"{where}: {name} is not finite")
+        require(np.array_equal(values, raw[name]), f"{where}: {name} differs")
     require((raw["radius"] > 0).all(), f"{where}: a radius is not positive")
+    identity = raw["global_id" if "global_id" in raw else "body"]
+    require((np.diff(identity) >= 0).all(), f"{where}: not in the order of the ids")
 
 
 def check_file(path, fields):
@@ -91,24 +122,30 @@ def check_file(path, fields):
     with h5py.File(path, "r") as file:
         check_attributes(file, path)
         root = file["VTKHDF"]
+        check_offsets(root, path, fields)
         times = root["Steps/Values"][:]
-        require(reader.GetNumberOfSteps() == len(times), f"{path}: {reader.GetNumberOfSteps()} steps for {len(times)}")
+        found = reader.GetNumberOfSteps()
+        require(found == len(times), f"{path}: {found} steps for {len(times)}")
         require((np.diff(times) > 0).all(), f"{path}: times do not increase")
         counts = []
         for step, time in enumerate(times):
             reader.SetStep(step)
             reader.Update()
-            require(reader.GetTimeValue() == time, f"{path}, step {step}: time {reader.GetTimeValue()} for {time}")
+            found = reader.GetTimeValue()
+            require(found == time, f"{path}, step {step}: time {found} for {time}")
             raw = raw_snapshot(root, step, fields)
             check_step(path, step, reader.GetOutput(), raw, fields)
             counts.append(len(raw["Points"]))
     require(errors.count == 0, f"{path}: VTK reported {errors.count} errors")
-    print(f"{path}: {len(times)} steps, t = {times[0]:g} .. {times[-1]:g} s, {min(counts)} to {max(counts)} points: right")
+    span = f"t = {times[0]:g} .. {times[-1]:g} s"
+    print(f"{path}: {len(times)} steps, {span}, {min(counts)} to {max(counts)} points: right")
     return len(times)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("result_directory", type=pathlib.Path)
     parser.add_argument("--steps", type=int, help="number of snapshots that must be there")
     arguments = parser.parse_args()
@@ -116,7 +153,8 @@ def main():
     require(arguments.steps in (None, steps), f"{steps} snapshots where {arguments.steps} must be")
     bodies = arguments.result_directory / "bodies.vtkhdf"
     if bodies.exists():
-        require(check_file(bodies, BODY_FIELDS) == steps, "particles and bodies differ in their number of snapshots")
+        same = check_file(bodies, BODY_FIELDS) == steps
+        require(same, "particles and bodies differ in their number of snapshots")
 
 
 if __name__ == "__main__":

@@ -129,7 +129,7 @@ TEST_CASE("start positions outside the space") {
 
 TEST_CASE("every pair of materials that can meet needs a law") {
   CHECK(contains(model_error(kSmallDeck + particles_at("[[0, 0], [0, 0.5]]")),
-                 "contact.pairs: no pair with materials = [\"default\", \"default\"], which can meet"));
+                 "contact.pairs = []: no pair with materials = [\"default\", \"default\"], which can meet"));
   CHECK(model_error(kSmallDeck + particles_at("[[0, 0]]")).empty());
   CHECK(contains(model_error(kSmallDeck + kPair + kPair), "every pair of materials must be given once"));
   CHECK(contains(model_error(kSmallDeck + "[[contact.pairs]]\nstiffness = 0\ndamping = 1\n"),

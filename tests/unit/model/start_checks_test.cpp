@@ -89,7 +89,7 @@ mass = 1.0
 [[particles]]
 name = "b"
 kind = "list"
-positions = [[0.01, 0.013]]
+positions = [[0.005, 0.003]]
 radius = 0.02
 mass = 1.0
 )";

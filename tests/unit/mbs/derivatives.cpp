@@ -1,0 +1,252 @@
+// Analytic derivatives against central differences: every joint, driver and force element, between two bodies and
+// between body and ground.
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mbs/hht_method.hpp"
+#include "mbs/planar_system.hpp"
+#include "support/catch.hpp"
+#include "support/multibody_run.hpp"
+
+using namespace scree;
+
+namespace {
+
+constexpr Real kTime = 0.3;
+
+Model two_bodies() {
+  Model model = empty_model();
+  model.bodies.push_back(paper_disc("one", 0.3, -0.2));
+  model.bodies.push_back(paper_disc("two", 1.1, 0.5));
+  return model;
+}
+
+Joint joint_between(JointKind kind, int first, int second) {
+  Joint joint;
+  joint.name = "joint";
+  joint.kind = kind;
+  joint.body[0] = first;
+  joint.body[1] = second;
+  joint.point[0] = {0.31, -0.17, 0};
+  joint.point[1] = {-0.23, 0.12, 0};
+  joint.axis = {0.6, 0.8, 0};
+  joint.distance = 0.9;
+  joint.angle_offset = 0.4;
+  return joint;
+}
+
+TimeFunction sine() {
+  TimeFunction function;
+  function.kind = TimeFunction::Kind::sine;
+  function.value = 0.7;
+  function.amplitude = 0.2;
+  function.frequency = 0.8;
+  function.phase = 0.5;
+  return function;
+}
+
+// Models with one joint, driver or force element each.
+std::vector<std::pair<std::string, Model>> samples() {
+  std::vector<std::pair<std::string, Model>> all;
+  for (const auto& [first, second] : {std::pair{0, 1}, std::pair{kGround, 1}, std::pair{0, kGround}}) {
+    const std::string ends = " " + std::to_string(first) + " " + std::to_string(second);
+    for (const JointKind kind :
+         {JointKind::revolute, JointKind::translational, JointKind::fixed, JointKind::distance}) {
+      Model model = two_bodies();
+      model.joints.push_back(joint_between(kind, first, second));
+      all.emplace_back("joint " + std::to_string(static_cast<int>(kind)) + ends, model);
+      if (kind == JointKind::fixed) continue;
+      model.drivers.push_back({"driver", 0, sine()});
+      all.emplace_back("driver " + std::to_string(static_cast<int>(kind)) + ends, model);
+    }
+    Model spring = two_bodies();
+    SpringDamper element{"spring", {first, second}, {{0.31, -0.17, 0}, {-0.23, 0.12, 0}}, 70, 9, 0.4, sine()};
+    spring.spring_dampers.push_back(element);
+    all.emplace_back("spring" + ends, spring);
+    element.point[0] = element.point[1] = {0, 0, 0};
+    spring.spring_dampers[0] = element;
+    all.emplace_back("spring between centres" + ends, spring);
+    Model torsion = two_bodies();
+    torsion.torsional_spring_dampers.push_back({"torsion", {first, second}, 30, 4, 0.2});
+    all.emplace_back("torsion" + ends, torsion);
+  }
+  for (const bool follows : {false, true}) {
+    Model force = two_bodies();
+    force.applied_forces.push_back({"push", 1, {0.2, -0.3, 0}, sine(), sine(), sine(), follows});
+    force.applied_forces[0].fy.value = -1.3;
+    all.emplace_back(follows ? "following force" : "force", force);
+  }
+  return all;
+}
+
+using Matrix = std::vector<std::vector<Real>>;
+
+Matrix dense(const SparseTerm& term, int rows, int columns) {
+  Matrix matrix(static_cast<std::size_t>(rows), std::vector<Real>(static_cast<std::size_t>(columns), 0));
+  for (std::size_t i = 0; i < term.size(); ++i) {
+    matrix[static_cast<std::size_t>(term.row(i))][static_cast<std::size_t>(term.column(i))] += term.value(i);
+  }
+  return matrix;
+}
+
+// d f / d x by central differences of half width `step`.
+Matrix differences(const std::function<std::vector<Real>(const std::vector<Real>&)>& f, std::vector<Real> x,
+                   Real step = 1e-6) {
+  Matrix matrix(f(x).size(), std::vector<Real>(x.size()));
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    const Real centre = x[j];
+    x[j] = centre + step;
+    const std::vector<Real> after = f(x);
+    x[j] = centre - step;
+    const std::vector<Real> before = f(x);
+    x[j] = centre;
+    for (std::size_t i = 0; i < after.size(); ++i) matrix[i][j] = (after[i] - before[i]) / (2 * step);
+  }
+  return matrix;
+}
+
+void check_equal(const Matrix& a, const Matrix& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < a[i].size(); ++j) {
+      CAPTURE(i, j);
+      CHECK(a[i][j] == Approx(b[i][j]).margin(1e-7).epsilon(1e-7));
+    }
+  }
+}
+
+// A system at an instant that satisfies nothing in particular: the derivatives hold everywhere.
+struct Probe {
+  explicit Probe(const Model& sample) : model(sample), system(model) {
+    terms.applied_force.assign(static_cast<std::size_t>(system.coordinates()), 0);
+    terms.constraint.assign(static_cast<std::size_t>(system.constraints()), 0);
+    multipliers.assign(terms.constraint.size(), 0);
+    for (std::size_t j = 0; j < multipliers.size(); ++j) multipliers[j] = 3.1 - 1.7 * static_cast<Real>(j);
+  }
+  void evaluate(const std::vector<Real>& q, const std::vector<Real>& v, Real t = kTime) {
+    system.evaluate({t, q, v}, terms);
+  }
+  // Phi_q^T lambda - Q
+  std::vector<Real> force(const std::vector<Real>& q, const std::vector<Real>& v) {
+    evaluate(q, v);
+    std::vector<Real> force(terms.applied_force.size(), 0);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] = -terms.applied_force[i];
+    terms.constraint_jacobian.multiply_transposed(1, multipliers, force);
+    return force;
+  }
+
+  Model model;
+  PlanarSystem system;
+  SystemTerms terms;
+  SystemDerivatives derivatives;
+  std::vector<Real> multipliers;
+  std::vector<Real> position{0.35, -0.25, 0.3, 1.2, 0.6, -0.7}, velocity{0.4, -0.9, 1.3, -0.6, 0.8, -2.1};
+};
+
+}  // namespace
+
+TEST_CASE("stiffness and damping are the derivatives of the forces") {
+  for (const auto& [name, model] : samples()) {
+    INFO(name);
+    Probe probe(model);
+    const int n = probe.system.coordinates();
+    probe.evaluate(probe.position, probe.velocity);
+    const std::vector<Real> acceleration(static_cast<std::size_t>(n), 0);
+    const SystemInstant at{kTime, probe.position, probe.velocity};
+    probe.system.differentiate(at, acceleration, probe.multipliers, probe.derivatives);
+    check_equal(dense(probe.derivatives.stiffness, n, n),
+                differences([&](const auto& q) { return probe.force(q, probe.velocity); }, probe.position));
+    check_equal(dense(probe.derivatives.damping, n, n),
+                differences([&](const auto& v) { return probe.force(probe.position, v); }, probe.velocity));
+  }
+}
+
+TEST_CASE("the constraint Jacobian and right-hand sides are the derivatives of the constraints") {
+  for (const auto& [name, model] : samples()) {
+    INFO(name);
+    Probe probe(model);
+    const auto constraint = [&](const std::vector<Real>& q, Real t) {
+      probe.evaluate(q, probe.velocity, t);
+      return probe.terms.constraint;
+    };
+    // Along q(t + s) = q + s q': Phi' = Phi_q q' - velocity_rhs, and Phi'' = -acceleration_rhs as q'' = 0.
+    const auto along = [&](Real s) {
+      std::vector<Real> q = probe.position;
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] += s * probe.velocity[i];
+      return constraint(q, kTime + s);
+    };
+    const Matrix numeric = differences([&](const auto& q) { return constraint(q, kTime); }, probe.position);
+    constexpr Real kStep = 1e-4;
+    const std::vector<Real> before = along(-kStep), now = along(0), after = along(kStep);
+    probe.evaluate(probe.position, probe.velocity);
+    const SystemInstant at{kTime, probe.position, probe.velocity};
+    const int rows = probe.system.constraints();
+    check_equal(dense(probe.terms.constraint_jacobian, rows, probe.system.coordinates()), numeric);
+    std::vector<Real> rate(now.size()), second(now.size());
+    probe.system.velocity_rhs(at, rate);
+    probe.system.acceleration_rhs(at, second);
+    for (Real& r : rate) r = -r;
+    probe.terms.constraint_jacobian.multiply(1, probe.velocity, rate);
+    for (std::size_t j = 0; j < now.size(); ++j) {
+      CHECK(rate[j] == Approx((after[j] - before[j]) / (2 * kStep)).margin(1e-6));
+      CHECK(-second[j] == Approx((after[j] - 2 * now[j] + before[j]) / (kStep * kStep)).margin(1e-5));
+    }
+  }
+}
+
+TEST_CASE("Newton's matrix is the derivative of the residual, contact included") {
+  Model model = two_bodies();
+  model.integrator.hht_alpha = -0.2;
+  model.joints.push_back(joint_between(JointKind::translational, 0, 1));
+  model.drivers.push_back({"driver", 0, sine()});
+  model.spring_dampers.push_back({"spring", {kGround, 0}, {{2, 1, 0}, {-0.23, 0.12, 0}}, 70, 9, 0.4, sine()});
+  Probe probe(model);
+  HhtMethod method(probe.system, model.integrator.hht_alpha, probe.position, probe.velocity);
+  MultibodyState state;
+  state.position = probe.position;
+  state.velocity = probe.velocity;
+  state.acceleration = {1, -2, 3, -1, 2, 0.5};
+  state.multipliers = probe.multipliers;
+  state.force = {0.3, 0.1, -0.2, 0.5, -0.6, 0.1};
+  const std::size_t n = state.position.size(), size = n + state.multipliers.size();
+  constexpr Real kStep = 0.02;
+
+  // A contact of body 1 with a plane: a linear spring and damper along n at an arm from its centre.
+  std::vector<BodyWrench> wrench(2);
+  const Vec3 normal{0.6, 0.8, 0}, arm{0.03, -0.04, 0};
+  const Sym3 stiffness = outer(300, normal), damping = outer(5, normal);
+  const auto residual_at = [&](const std::vector<Real>& unknowns) {
+    method.predict(state, 0.1, kStep);
+    std::vector<Real> delta(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      delta[i] = (i < n ? state.acceleration[i] : state.multipliers[i - n]) - unknowns[i];
+    }
+    method.apply_correction(delta);
+    const std::vector<Real>&q = method.position(), &v = method.velocity();
+    const Vec3 moved{q[3] - arm.y * q[5], q[4] + arm.x * q[5], 0}, rate{v[3] - arm.y * v[5], v[4] + arm.x * v[5], 0};
+    const Vec3 force = -(stiffness * moved) - damping * rate;
+    wrench[1] = {};
+    add_point_force(wrench[1], force, arm, stiffness, damping);
+    probe.system.set_wrenches(wrench);
+    method.evaluate_residual();
+    return method.residual();
+  };
+  std::vector<Real> unknowns = state.acceleration;
+  unknowns.insert(unknowns.end(), state.multipliers.begin(), state.multipliers.end());
+  for (Real& x : unknowns) x += 0.3;
+  // The positions feel an acceleration only times beta h^2, so its steps are large.
+  const Matrix numeric = differences(residual_at, unknowns, 0.1);
+  residual_at(unknowns);
+  std::vector<Real> values(method.pattern().column.size());
+  method.newton_matrix(values);
+  Matrix analytic(size, std::vector<Real>(size, 0));
+  for (std::size_t i = 0; i < size; ++i) {
+    for (int k = method.pattern().row_start[i]; k < method.pattern().row_start[i + 1]; ++k) {
+      analytic[i][static_cast<std::size_t>(method.pattern().column[static_cast<std::size_t>(k)])] =
+          values[static_cast<std::size_t>(k)];
+    }
+  }
+  check_equal(analytic, numeric);
+}
