@@ -74,40 +74,37 @@ struct ContactStep {
 // What the trapezoidal rule must find at the end of the step, in place of the force there, for the step's impulse
 // and work to be right although the contact opens or closes within the step:
 //   impulse h (F0 + F) / 2 = force summed over the part of the step that is spent in contact.
-// With the part from the straight line between the overlaps, the elastic work (F0 + F) / 2 (d1 - d0) is exactly the
-// change of the elastic energy: no step size creates energy at impacts (the discrete gradient of LaBudde and Greenspan 1974,
-// Simo, Tarnow and Wong 1992). F and its slope are continuous at first touch.
+// With that part from the straight line between the overlaps, the elastic work (F0 + F) / 2 (d1 - d0) is exactly
+// the change of the elastic energy: no step size creates energy at impacts. This is the discrete gradient of
+// LaBudde and Greenspan (1974) and of Simo, Tarnow and Wong (1992). F is continuous at d1 = 0, where the force itself
+// jumps by C d_dot: a Newton loop cannot cycle between open and closed.
 // stiffness and damping are dF/d(overlap1) and dF/d(rate1), cut at 0; loss is made for the trapezoidal rule alike.
 
-// d0 <= 0 < d1: in contact over the share d1 / (d1 - d0).
+// d0 <= 0 < d1: in contact over the share d1 / (d1 - d0), at the rate (d1 - d0) / h.
 template <class Elastic>
 SCREE_HD ContactForce touching_force(const KelvinVoigt& law, const ContactStep& c) {
-  const Real travel = c.overlap1 - c.overlap0, share = c.overlap1 / travel;
-  const Real energy = Elastic::energy(law, c.overlap1), damping = law.normal_damping;
-  const Real force = 2 * (energy + damping * c.rate1 * c.overlap1) / travel;
-  if (force < 0 && !law.tension) return {0, 0, 0, 0};
-  const Real slope = (2 * (Elastic::force(law, c.overlap1) + damping * c.rate1) - force) / travel;
-  return {force, slope > 0 ? slope : 0, 2 * share * damping, 2 * share * damping * c.rate1 * c.rate1};
+  const Real travel = c.overlap1 - c.overlap0, rate = travel / c.h, twice_damping = 2 * law.normal_damping;
+  const Real elastic = 2 * Elastic::energy(law, c.overlap1) / travel;
+  const Real slope = (2 * Elastic::force(law, c.overlap1) - elastic) / travel + twice_damping / c.h;
+  return {elastic + twice_damping * c.overlap1 / c.h, slope, 0, twice_damping * rate * c.overlap1 / c.h};
 }
 
 // d1 <= 0 < d0 with tension: in contact over the share d0 / (d0 - d1).
 template <class Elastic>
 SCREE_HD ContactForce releasing_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start) {
-  const Real travel = c.overlap0 - c.overlap1, share = c.overlap0 / travel;
-  const Real damping = law.normal_damping;
-  const Real twice_mean = 2 * (Elastic::energy(law, c.overlap0) + damping * c.rate1 * c.overlap0) / travel;
-  const Real slope = twice_mean / travel;
-  return {twice_mean - start.force, slope > 0 ? slope : 0, 2 * share * damping,
-          2 * share * damping * c.rate1 * c.rate1 - start.loss};
+  const Real travel = c.overlap0 - c.overlap1, rate = -travel / c.h, twice_damping = 2 * law.normal_damping;
+  const Real elastic = 2 * Elastic::energy(law, c.overlap0) / travel;
+  const Real lost = -twice_damping * rate * c.overlap0 / c.h;
+  return {elastic - twice_damping * c.overlap0 / c.h - start.force, elastic / travel, 0, lost - start.loss};
 }
 
-// The force cut at zero reaches it within the step: it falls in a straight line over the share F0 / (F0 - F1), F1 < 0
-// the force that the law's slope at the start leads to. What elastic energy is left then is lost.
+// d0 > 0 without tension, the law's force F1 at the end negative (end_force, beyond release along the slope at the
+// start): the force falls to zero in a straight line over the share F0 / (F0 - F1). What elastic energy is left
+// then is lost.
 template <class Elastic>
-SCREE_HD ContactForce fading_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start) {
-  const Real drop = -start.stiffness * (c.overlap1 - c.overlap0) - start.damping * (c.rate1 - c.rate0);
-  const Real share = drop > start.force ? start.force / drop : 1;
-  const Real impulse = share * start.force / 2;
+SCREE_HD ContactForce fading_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start,
+                                   Real end_force) {
+  const Real share = start.force / (start.force - end_force), impulse = share * start.force / 2;
   const Real energy1 = c.overlap1 > 0 ? Elastic::energy(law, c.overlap1) : 0;
   const Real lost = Elastic::energy(law, c.overlap0) - energy1 - impulse * (c.overlap0 - c.overlap1);
   return {2 * impulse - start.force, share * share * start.stiffness, share * share * start.damping,
@@ -121,11 +118,11 @@ SCREE_HD ContactForce step_contact_force(const KelvinVoigt& law, const ContactSt
   if (c.overlap1 > 0 && law.tension) return contact_force<Elastic>(law, c.overlap1, c.rate1);
   const ContactForce start = contact_force<Elastic>(law, c.overlap0, c.rate0);
   if (law.tension) return releasing_force<Elastic>(law, c, start);
-  if (c.overlap1 > 0) {
-    const ContactForce end = contact_force<Elastic>(law, c.overlap1, c.rate1);
-    if (end.force > 0) return end;
-  }
-  return fading_force<Elastic>(law, c, start);
+  const Real stiffness = c.overlap1 > 0 ? Elastic::stiffness(law, c.overlap1) : Elastic::stiffness(law, c.overlap0);
+  const Real elastic = c.overlap1 > 0 ? Elastic::force(law, c.overlap1) : stiffness * c.overlap1;
+  const Real end_force = elastic + law.normal_damping * c.rate1;
+  if (end_force > 0) return {end_force, stiffness, law.normal_damping, law.normal_damping * c.rate1 * c.rate1};
+  return fading_force<Elastic>(law, c, start, end_force);
 }
 
 }  // namespace scree
