@@ -94,7 +94,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     }
   }
   backend_.accept();
-  if (link_.multibody()) link_.multibody()->accept(bodies);
+  if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
   ++counts_.steps;
   return outcome;
 }
@@ -169,7 +169,7 @@ void CoupledStep::explicit_step(MultibodyState& bodies, Real t, Real h) {
   if (link_.multibody()) {
     link_.multibody()->predict(bodies, t, h);
     solve_bodies();
-    link_.multibody()->accept(bodies);
+    link_.multibody()->accept(bodies, link_.end_wrench());
   }
   link_.broadcast_motion(backend_, bodies, 0);
   ++counts_.steps;

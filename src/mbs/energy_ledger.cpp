@@ -18,8 +18,8 @@ void book_step(PlanarSystem& system, const MultibodyState& start, Real t, Real h
   const Real driver_work = h / 2 * (p0.drivers + p1.drivers);
   Real loss = driver_work;
   const std::vector<Real>&v0 = start.velocity, &v1 = end.velocity, &f0 = start.applied, &f1 = end.applied;
-  for (std::size_t b = 0; b < system.model().bodies.size(); ++b) {
-    const Body& body = system.model().bodies[b];
+  for (std::size_t b = 0; b < system.bodies().size(); ++b) {
+    const Body& body = system.bodies()[b];
     loss += integrator_loss(body.mass, translation(end.position, b) - translation(start.position, b),
                             translation(v0, b), translation(v1, b), translation(f0, b), translation(f1, b));
     loss += integrator_loss(body.inertia, rotation(end.position, b) - rotation(start.position, b), rotation(v0, b),
@@ -32,12 +32,11 @@ void book_step(PlanarSystem& system, const MultibodyState& start, Real t, Real h
 
 MultibodyEnergies stored_energies(const PlanarSystem& system, const MultibodyState& state, Real t) {
   MultibodyEnergies energies;
-  const Model& model = system.model();
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
+  for (std::size_t b = 0; b < system.bodies().size(); ++b) {
+    const Body& body = system.bodies()[b];
     energies.kinetic += kinetic_energy(body.mass, translation(state.velocity, b)) +
                         kinetic_energy(body.inertia, rotation(state.velocity, b));
-    energies.gravitational += gravitational_energy(body.mass, model.gravity, translation(state.position, b));
+    energies.gravitational += gravitational_energy(body.mass, system.gravity(), translation(state.position, b));
   }
   energies.elastic = system.elastic_energy({t, state.position, state.velocity});
   return energies;

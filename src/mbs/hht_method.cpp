@@ -104,6 +104,27 @@ void HhtMethod::acceleration_system(const MultibodyState& state, Real t, std::sp
   std::copy(acceleration_rhs.begin(), acceleration_rhs.end(), rhs.begin() + system_.coordinates());
 }
 
+bool HhtMethod::change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs) {
+  system_.evaluate({end_time(), state.position, state.velocity}, terms_);
+  if (terms_.applied_force == state.applied) return false;
+  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  std::fill(rhs.begin(), rhs.end(), 0);
+  for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];
+  return true;
+}
+
+void HhtMethod::apply_change(std::span<const Real> solution, MultibodyState& state) const {
+  const std::size_t n = state.acceleration.size();
+  std::vector<Real> change(solution.begin() + static_cast<std::ptrdiff_t>(n), solution.end());
+  for (std::size_t i = 0; i < n; ++i) {
+    state.acceleration[i] += (1 + coefficients_.hht_alpha) * solution[i];
+    state.force[i] += terms_.applied_force[i] - state.applied[i];
+  }
+  for (std::size_t j = 0; j < change.size(); ++j) state.multipliers[j] += change[j];
+  terms_.constraint_jacobian.multiply_transposed(-1, change, state.force);
+  state.applied = terms_.applied_force;
+}
+
 void HhtMethod::set_acceleration(std::span<const Real> solution, MultibodyState& state) const {
   const auto multipliers = solution.begin() + system_.coordinates();
   state.acceleration.assign(solution.begin(), multipliers);

@@ -43,6 +43,8 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
     columns[static_cast<std::size_t>(row)].push_back(column);
     columns[static_cast<std::size_t>(column)].push_back(row);
   }
+  // PETSc's own LU wants every diagonal entry to be there, zeros too.
+  for (int row = 0; row < coordinates + constraints; ++row) columns[static_cast<std::size_t>(row)].push_back(row);
   pattern_ = compress(columns);
   mass_ = slots_of(terms.mass, 0, false);
   stiffness_ = slots_of(derivatives.stiffness, 0, false);

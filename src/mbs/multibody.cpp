@@ -22,9 +22,10 @@ MultibodyState start_of(const Model& model) {
   return state;
 }
 
-const MultibodyState& checked(PlanarSystem& system, const MultibodyState& start) {
-  check_start(system, start.position, start.velocity);
-  return start;
+MultibodyState checked_start(const Model& model, PlanarSystem& system) {
+  MultibodyState state = start_of(model);
+  check_start(model, system, state.position, state.velocity);
+  return state;
 }
 
 BodyMotion body_motion(const Real* q, const Real* v, Real z) { return {{q[0], q[1], z}, {v[0], v[1], 0}, q[2], v[2]}; }
@@ -34,14 +35,14 @@ BodyMotion body_motion(const Real* q, const Real* v, Real z) { return {{q[0], q[
 struct Multibody::Impl {
   explicit Impl(const Model& model)
       : system(model),
-        start(checked(system, start_of(model))),
+        start(checked_start(model, system)),
         method(system, model.integrator.hht_alpha, start.position, start.velocity),
         newton(system, method),
         motion(model.bodies.size()) {}
 
   void update_motion() {
     for (std::size_t b = 0; b < motion.size(); ++b) {
-      motion[b] = body_motion(&method.position()[3 * b], &method.velocity()[3 * b], system.model().bodies[b].position.z);
+      motion[b] = body_motion(&method.position()[3 * b], &method.velocity()[3 * b], system.bodies()[b].position.z);
     }
   }
 
@@ -94,10 +95,12 @@ Real Multibody::error() const {
   return largest;
 }
 
-void Multibody::accept(MultibodyState& state) {
+void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench) {
   Impl& impl = *impl_;
   impl.method.close(impl.end);
   book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
+  impl.system.set_wrenches(end_wrench);
+  impl.newton.change_end_forces(impl.end);
   std::swap(state, impl.end);
 }
 
@@ -112,7 +115,7 @@ std::vector<BodyMotion> Multibody::motion(const MultibodyState& state, Real tau)
       q[k] = state.position[3 * b + k] + tau * rate + tau * tau / 2 * acceleration;
       v[k] = rate + tau * acceleration;
     }
-    motion[b] = body_motion(q, v, impl_->system.model().bodies[b].position.z);
+    motion[b] = body_motion(q, v, impl_->system.bodies()[b].position.z);
   }
   return motion;
 }

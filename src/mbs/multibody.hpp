@@ -58,8 +58,10 @@ class Multibody {
   IterationNorms correct(const std::vector<BodyWrench>& wrench);
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
-  // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched.
-  void accept(MultibodyState& state);
+  // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench: contact
+  // wrenches at the end of the step, where they differ from those that the step was corrected with because contacts
+  // opened or closed within it; the next step starts from them.
+  void accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench);
 
   // One entry per body, at the current iterate of the open step.
   const std::vector<BodyMotion>& motion() const;

@@ -71,6 +71,12 @@ void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {
   method_.set_acceleration(solver_.solution(), state);
 }
 
+void NewtonSolver::change_end_forces(MultibodyState& state) {
+  if (!method_.change_system(state, solver_.values(), solver_.rhs())) return;
+  solve_linear(true);
+  method_.apply_change(solver_.solution(), state);
+}
+
 IterationNorms NewtonSolver::iterate() {
   method_.evaluate_residual();
   IterationNorms norms;

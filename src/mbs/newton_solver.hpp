@@ -19,6 +19,10 @@ class NewtonSolver {
   // Solves the acceleration-level system at time t and completes `state`. Throws SimulationError as iterate() does.
   void solve_acceleration(MultibodyState& state, Real t);
 
+  // Applied forces at the end of a closed step, as the system now has them, where they differ from the step's.
+  // Throws SimulationError as iterate() does.
+  void change_end_forces(MultibodyState& state);
+
   // A new step was opened.
   void begin_step();
   // One iteration. Throws SimulationError naming the joints or bodies on a singular matrix or a residual that is not

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <petscksp.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
@@ -15,6 +16,7 @@ namespace scree {
 namespace {
 
 constexpr const char* kPrefix = "mbs_";
+constexpr int kOwnWords = 5;  // of PetscSession before the user's
 
 // Factor packages in the order of their measured speed on chains of bodies.
 constexpr std::array<const char*, 5> kPackages = {MATSOLVERKLU, MATSOLVERSUPERLU, MATSOLVERUMFPACK, MATSOLVERMUMPS,
@@ -62,6 +64,7 @@ PetscSession::PetscSession(const std::string& program, const std::vector<std::st
   // A run depends on its deck and its command line, not on files in the user's home; signals belong to the program;
   // unused options are reported through unused_options().
   words_ = {program, "-skip_petscrc", "-no_signal_handler", "-options_left", "no"};
+  static_assert(kOwnWords == 5);
   words_.insert(words_.end(), options.begin(), options.end());
   for (std::string& word : words_) arguments_.push_back(word.data());
   arguments_.push_back(nullptr);
@@ -85,6 +88,8 @@ std::vector<std::string> PetscSession::unused_options() const {
   check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
   std::vector<std::string> unused;
   for (PetscInt i = 0; i < count; ++i) {
+    const bool given = std::find(words_.begin() + kOwnWords, words_.end(), fmt::format("-{}", names[i])) != words_.end();
+    if (!given) continue;
     unused.push_back(fmt::format("-{}{}{}", names[i], values[i] ? " " : "", values[i] ? values[i] : ""));
   }
   check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));

@@ -27,6 +27,22 @@ void add_planar_block(const std::array<Real, 21>& packed, int body, SparseTerm& 
   }
 }
 
+Real characteristic_length(const Model& model) {
+  Real radius = 0, reach = 0;
+  for (const Body& body : model.bodies) {
+    for (const Shape& shape : body.shapes) radius = std::max(radius, shape.radius);
+  }
+  const auto add_point = [&](int body, Vec3 point) {
+    if (body != kGround) reach = std::max(reach, norm(planar(point)));
+  };
+  for (int i = 0; i < 2; ++i) {
+    for (const Joint& joint : model.joints) add_point(joint.body[i], joint.point[i]);
+    for (const SpringDamper& element : model.spring_dampers) add_point(element.body[i], element.point[i]);
+  }
+  for (const AppliedForce& element : model.applied_forces) add_point(element.body, element.point);
+  return radius > 0 ? radius : reach > 0 ? reach : 1;
+}
+
 PointPair point_pair(const Joint& joint) {
   return {{joint.body[0], joint.body[1]}, {planar(joint.point[0]), planar(joint.point[1])}};
 }
@@ -34,40 +50,27 @@ PointPair point_pair(const Joint& joint) {
 }  // namespace
 
 PlanarSystem::PlanarSystem(const Model& model)
-    : model_(model),
+    : bodies_(model.bodies),
+      gravity_(model.gravity),
+      length_scale_(characteristic_length(model)),
       motion_(static_cast<int>(model.bodies.size())),
       scratch_(static_cast<int>(model.bodies.size())),
       wrench_(model.bodies.size()) {
-  find_length_scale();
-  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
     coordinate_scale_.insert(coordinate_scale_.end(), {length_scale_, length_scale_, 1});
   }
   std::vector<bool> driven(model.joints.size(), false);
   for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
   for (std::size_t i = 0; i < model.joints.size(); ++i) add_joint(model.joints[i], driven[i]);
-  for (const Driver& driver : model.drivers) add_driver(driver);
+  for (const Driver& driver : model.drivers) {
+    add_driver(driver, model.joints[static_cast<std::size_t>(driver.joint)], model.time.end);
+  }
   for (const SpringDamper& e : model.spring_dampers) elements_.push_back(make_force_element(e, model.time.end));
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers) elements_.push_back(make_force_element(e));
   for (const AppliedForce& e : model.applied_forces) elements_.push_back(make_force_element(e, model.time.end));
   for (const auto& element : elements_) {
     elastic_floor_ = std::max(elastic_floor_, kElasticFloor * element->elastic_scale(length_scale_));
   }
-}
-
-void PlanarSystem::find_length_scale() {
-  Real radius = 0, reach = 0;
-  for (const Body& body : model_.bodies) {
-    for (const Shape& shape : body.shapes) radius = std::max(radius, shape.radius);
-  }
-  const auto add_point = [&](int body, Vec3 point) {
-    if (body != kGround) reach = std::max(reach, norm(planar(point)));
-  };
-  for (int i = 0; i < 2; ++i) {
-    for (const Joint& joint : model_.joints) add_point(joint.body[i], joint.point[i]);
-    for (const SpringDamper& element : model_.spring_dampers) add_point(element.body[i], element.point[i]);
-  }
-  for (const AppliedForce& element : model_.applied_forces) add_point(element.body, element.point);
-  length_scale_ = radius > 0 ? radius : reach > 0 ? reach : 1;
 }
 
 // Revolute: the points coincide. Fixed: and the angle. Translational: body 2's point has no displacement across the
@@ -98,10 +101,9 @@ void PlanarSystem::add_joint(const Joint& joint, bool driven) {
   add_group(fmt::format("joint '{}'", joint.name), joint.name, std::move(parts));
 }
 
-void PlanarSystem::add_driver(const Driver& driver) {
-  const Joint& joint = model_.joints[static_cast<std::size_t>(driver.joint)];
+void PlanarSystem::add_driver(const Driver& driver, const Joint& joint, Real end) {
   const std::string title = fmt::format("driver '{}'", driver.name);
-  const ScalarFunction motion(driver.motion, title, model_.time.end);
+  const ScalarFunction motion(driver.motion, title, end);
   std::vector<std::unique_ptr<Constraint>> parts;
   switch (joint.kind) {
     case JointKind::revolute:
@@ -142,16 +144,17 @@ void PlanarSystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   motion_.set(at.position, at.velocity);
   terms.mass.begin();
   terms.force_scale = elastic_floor_;
-  for (int b = 0; b < bodies(); ++b) {
-    const Body& body = model_.bodies[static_cast<std::size_t>(b)];
+  int b = 0;
+  for (const Body& body : bodies_) {
     Real* force = &terms.applied_force[static_cast<std::size_t>(3 * b)];
-    force[0] = body.mass * model_.gravity.x;
-    force[1] = body.mass * model_.gravity.y;
+    force[0] = body.mass * gravity_.x;
+    force[1] = body.mass * gravity_.y;
     force[2] = 0;
     terms.mass.add(3 * b, 3 * b, body.mass);
     terms.mass.add(3 * b + 1, 3 * b + 1, body.mass);
     terms.mass.add(3 * b + 2, 3 * b + 2, body.inertia);
-    terms.force_scale = std::max(terms.force_scale, length_scale_ * body.mass * norm(planar(model_.gravity)));
+    terms.force_scale = std::max(terms.force_scale, length_scale_ * body.mass * norm(planar(gravity_)));
+    ++b;
   }
   for (const auto& element : elements_) {
     const Real size = element->add_force(motion_, at.time, length_scale_, terms.applied_force);
@@ -185,10 +188,10 @@ void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real
   for (const auto& element : elements_) {
     element->add_derivatives(motion_, at.time, derivatives.stiffness, derivatives.damping);
   }
-  for (int b = 0; b < bodies(); ++b) {
-    if (model_.bodies[static_cast<std::size_t>(b)].shapes.empty()) continue;
-    add_planar_block(wrench_[static_cast<std::size_t>(b)].stiffness, b, derivatives.stiffness);
-    add_planar_block(wrench_[static_cast<std::size_t>(b)].damping, b, derivatives.damping);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].shapes.empty()) continue;
+    add_planar_block(wrench_[b].stiffness, static_cast<int>(b), derivatives.stiffness);
+    add_planar_block(wrench_[b].damping, static_cast<int>(b), derivatives.damping);
   }
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->hessian(motion_, &multipliers[static_cast<std::size_t>(first_row_[i])], derivatives.stiffness);
@@ -209,7 +212,7 @@ void PlanarSystem::acceleration_rhs(const SystemInstant& at, std::vector<Real>& 
 
 std::string PlanarSystem::coordinate_name(int coordinate) const {
   const std::size_t body = static_cast<std::size_t>(coordinate / 3);
-  return fmt::format("body '{}' (id {})", model_.bodies[body].name, body);
+  return fmt::format("body '{}' (id {})", bodies_[body].name, body);
 }
 
 std::string PlanarSystem::constraint_name(int constraint) const {
@@ -227,7 +230,7 @@ Powers PlanarSystem::powers(const SystemInstant& at, const std::vector<Real>& mu
 }
 
 Real PlanarSystem::elastic_energy(const SystemInstant& at) const {
-  PlanarMotion motion(bodies());
+  PlanarMotion motion(static_cast<int>(bodies_.size()));
   motion.set(at.position, at.velocity);
   Real energy = 0;
   for (const auto& element : elements_) energy += element->elastic_energy(motion);
@@ -236,7 +239,7 @@ Real PlanarSystem::elastic_energy(const SystemInstant& at) const {
 
 std::vector<PlanarSystem::GroupReaction> PlanarSystem::reactions(const SystemInstant& at,
                                                                  const std::vector<Real>& multipliers) const {
-  PlanarMotion motion(bodies());
+  PlanarMotion motion(static_cast<int>(bodies_.size()));
   motion.set(at.position, at.velocity);
   std::vector<GroupReaction> reactions(groups_.size());
   for (std::size_t k = 0; k < groups_.size(); ++k) {

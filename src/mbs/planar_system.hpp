@@ -25,10 +25,10 @@ struct ConstraintGroup {
 // Coordinates: x, y [m] and angle [rad] of every body, in the model's order. Rows of Phi: joints, then drivers.
 class PlanarSystem final : public MechanicalSystem {
  public:
-  // The model must outlive the system. Throws InputError naming the driver or element that is refused.
+  // Throws InputError naming the joint, driver or element that is refused.
   explicit PlanarSystem(const Model& model);
 
-  int coordinates() const override { return 3 * bodies(); }
+  int coordinates() const override { return 3 * static_cast<int>(bodies_.size()); }
   int constraints() const override { return static_cast<int>(constraint_scale_.size()); }
   void evaluate(const SystemInstant& at, SystemTerms& terms) override;
   void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration,
@@ -43,8 +43,8 @@ class PlanarSystem final : public MechanicalSystem {
   // Wrenches that the next evaluate() and differentiate() use, one per body; the model starts without any.
   void set_wrenches(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
 
-  const Model& model() const { return model_; }
-  int bodies() const { return static_cast<int>(model_.bodies.size()); }
+  const std::vector<Body>& bodies() const { return bodies_; }
+  Vec3 gravity() const { return gravity_; }  // [m/s^2]
   // Characteristic length L [m]: the largest radius of a body's shape; without shapes the largest distance of a joint
   // or force element from the centre of its body; without these 1 m.
   Real length_scale() const { return length_scale_; }
@@ -63,13 +63,13 @@ class PlanarSystem final : public MechanicalSystem {
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
 
  private:
-  void find_length_scale();
   void add_joint(const Joint& joint, bool driven);
-  void add_driver(const Driver& driver);
+  void add_driver(const Driver& driver, const Joint& joint, Real end);
   void add_group(const std::string& title, const std::string& name, std::vector<std::unique_ptr<Constraint>> parts);
   void add_contact(SystemTerms& terms) const;
 
-  const Model& model_;
+  std::vector<Body> bodies_;
+  Vec3 gravity_;
   Real length_scale_ = 1;
   Real elastic_floor_ = 0;  // see SystemTerms::force_scale [J]
   PlanarMotion motion_;     // of the last evaluate()

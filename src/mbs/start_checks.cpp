@@ -78,11 +78,12 @@ void check_redundancy(const PlanarSystem& system, const SparseTerm& jacobian) {
 
 }  // namespace
 
-void check_start(PlanarSystem& system, const std::vector<Real>& position, const std::vector<Real>& velocity) {
+void check_start(const Model& model, PlanarSystem& system, const std::vector<Real>& position,
+                 const std::vector<Real>& velocity) {
   const SystemInstant start{0, position, velocity};
-  PlanarMotion motion(system.bodies());
+  PlanarMotion motion(static_cast<int>(model.bodies.size()));
   motion.set(position, velocity);
-  check_directions(system.model(), motion);
+  check_directions(model, motion);
   SystemTerms terms;
   terms.applied_force.assign(at(system.coordinates()), 0);
   terms.constraint.assign(at(system.constraints()), 0);

@@ -15,7 +15,8 @@ namespace scree {
 // one length scale (1 rad) per second, are taken as round-off. position, velocity: [coordinates]. Throws InputError
 // naming the joint or driver, its gap and what is allowed, or the joints and drivers that are redundant together, or the
 // element whose two points coincide.
-void check_start(PlanarSystem& system, const std::vector<Real>& position, const std::vector<Real>& velocity);
+void check_start(const Model& model, PlanarSystem& system, const std::vector<Real>& position,
+                 const std::vector<Real>& velocity);
 
 // For messages: the joints, drivers and bodies that take part in the singularity of a saddle-point matrix.
 std::string singular_culprits(const MechanicalSystem& system, const SparsePattern& pattern,

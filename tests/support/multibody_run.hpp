@@ -82,7 +82,7 @@ class MultibodyRun {
     } while (norms.residual > tolerance_ || norms.correction > tolerance_);
     most_iterations = std::max(most_iterations, iteration);
     iterations += iteration;
-    multibody.accept(state);
+    multibody.accept(state, wrench_);
     ++steps_;
     time = start_time_ + steps_ * h;
   }

@@ -13,7 +13,8 @@ class PetscRun {
  public:
   PetscRun() {
     MPI_Init(nullptr, nullptr);
-    session_.emplace("test", std::vector<std::string>{});
+    // Nothing asks for this option: it is what unused_options() must find.
+    session_.emplace("test", std::vector<std::string>{"-mbs_misspelt", "7"});
   }
   ~PetscRun() {
     session_.reset();

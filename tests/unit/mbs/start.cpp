@@ -1,0 +1,208 @@
+// What a multibody system refuses at its start, what it reports when it fails, and its consistent start.
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/error.hpp"
+#include "support/catch.hpp"
+#include "support/multibody_run.hpp"
+
+using namespace scree;
+
+namespace {
+
+template <class Error, class Action>
+std::string message_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+std::string refusal(const Model& model) {
+  petsc();
+  return message_of<InputError>([&] { const Multibody refused(model); });
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+Model hanging_disc() {
+  Model model = empty_model();
+  model.bodies.push_back(paper_disc("bob", 0.5, 0));
+  model.joints.push_back(ground_pin("pivot", 0, {0, 0, 0}, {-0.5, 0, 0}));
+  return model;
+}
+
+// Ground - one - two - ground: a closed chain of two discs on three pins.
+Model closed_chain() {
+  Model model = empty_model();
+  model.bodies = {paper_disc("one", 0.5, 0), paper_disc("two", 1, 0.5)};
+  model.joints.push_back(ground_pin("left", 0, {0, 0, 0}, {-0.5, 0, 0}));
+  model.joints.push_back(ground_pin("middle", 1, {0.5, 0, 0}, {0, -0.5, 0}));
+  model.joints[1].body[0] = 0;
+  model.joints.push_back(ground_pin("right", 1, {1, 1, 0}, {0, 0.5, 0}));
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("joints whose sides do not meet are named with their gap") {
+  Model model = hanging_disc();
+  model.joints[0].point[0] = {0, 0.03, 0};
+  CHECK(contains(refusal(model), "joint 'pivot'"));
+  CHECK(contains(refusal(model), "0.03 m"));
+  model = hanging_disc();
+  model.joints[0].kind = JointKind::fixed;
+  model.joints[0].angle_offset = 0.25;
+  CHECK(contains(refusal(model), "0.25 rad"));
+}
+
+TEST_CASE("start velocities that contradict a joint or driver are refused") {
+  Model model = hanging_disc();
+  model.bodies[0].velocity = {0.2, 0, 0};
+  CHECK(contains(refusal(model), "joint 'pivot'"));
+  CHECK(contains(refusal(model), "0.2 m/s"));
+  model.bodies[0].velocity = {0, 1, 0};
+  model.bodies[0].angular_velocity = 2;
+  CHECK(refusal(model) == "nothing was refused");
+  TimeFunction turn;
+  turn.kind = TimeFunction::Kind::ramp;
+  turn.rate = 2.5;
+  model.drivers.push_back({"motor", 0, turn});
+  CHECK(contains(refusal(model), "driver 'motor'"));
+  CHECK(contains(refusal(model), "0.5 rad/s"));
+  model.drivers[0].motion.rate = 2;
+  CHECK(refusal(model) == "nothing was refused");
+  model.drivers[0].motion.value = -0.1;
+  CHECK(contains(refusal(model), "0.1 rad"));
+}
+
+TEST_CASE("elements that make no sense are refused by name") {
+  Model model = hanging_disc();
+  model.joints[0].kind = JointKind::fixed;
+  model.drivers.push_back({"motor", 0, {}});
+  CHECK(contains(refusal(model), "driver 'motor': joint 'pivot' is fixed"));
+  model = hanging_disc();
+  model.joints[0].kind = JointKind::distance;
+  model.joints[0].point[1] = {0, 0, 0};
+  CHECK(contains(refusal(model), "joint 'pivot': distance 0 m"));
+  model = hanging_disc();
+  model.spring_dampers.push_back({"spring", {kGround, 0}, {{0.5, 0.1, 0}, {0, 0.1, 0}}, 10, 0, 1, {}});
+  CHECK(contains(refusal(model), "spring-damper 'spring'"));
+}
+
+TEST_CASE("redundant constraints are named") {
+  Model model = closed_chain();
+  CHECK(refusal(model) == "nothing was refused");
+  SECTION("a joint twice") {
+    model.joints.push_back(model.joints[1]);
+    model.joints[3].name = "again";
+    const std::string text = refusal(model);
+    CHECK(contains(text, "redundant"));
+    CHECK(contains(text, "joint 'middle', joint 'again'"));
+    CHECK(!contains(text, "left"));
+  }
+  SECTION("a mechanism that is fixed once more") {
+    model.joints[2].kind = JointKind::fixed;
+    CHECK(contains(refusal(model), "redundant"));
+    CHECK(contains(refusal(model), "joint 'left', joint 'middle', joint 'right'"));
+  }
+  SECTION("two drivers of one joint") {
+    model = hanging_disc();
+    model.drivers.push_back({"first", 0, {}});
+    model.drivers.push_back({"second", 0, {}});
+    CHECK(contains(refusal(model), "driver 'first', driver 'second'"));
+  }
+  SECTION("a joint from ground to ground") {
+    model.joints.push_back(ground_pin("nowhere", kGround, {1, 2, 0}, {1, 2, 0}));
+    CHECK(contains(refusal(model), "joint 'nowhere'"));
+  }
+}
+
+TEST_CASE("the start has consistent accelerations and multipliers") {
+  // A disc that swings past: moment about the pivot, and the centripetal pull.
+  Model model = hanging_disc();
+  model.bodies[0].angular_velocity = 2;
+  model.bodies[0].velocity = {0, 1, 0};
+  petsc();
+  Multibody multibody(model);
+  std::vector<BodyWrench> wrench(1);
+  wrench[0].torque.z = 0.3;
+  const MultibodyState state = multibody.initial_state(wrench);
+  const Real angular = (0.3 - kGravity * 0.5) / (0.005 + 0.25);
+  CHECK(state.acceleration[2] == Approx(angular));
+  CHECK(state.acceleration[0] == Approx(-0.5 * 4));
+  CHECK(state.acceleration[1] == Approx(0.5 * angular));
+  const std::vector<Reaction> reactions = multibody.reactions(state, 0);
+  REQUIRE(reactions.size() == 1);
+  CHECK(reactions[0].joint == "pivot");
+  CHECK(reactions[0].force.x == Approx(-2));
+  CHECK(reactions[0].force.y == Approx(0.5 * angular + kGravity));
+  CHECK(state.force[1] == Approx(0.5 * angular));
+  CHECK(state.applied[1] == Approx(-kGravity));
+}
+
+TEST_CASE("a singular matrix names the body that has no inertia") {
+  Model model = empty_model();
+  model.bodies = {paper_disc("solid", 0, 0), paper_disc("ghost", 1, 0)};
+  model.bodies[1].inertia = 0;
+  petsc();
+  Multibody multibody(model);
+  const std::string text = message_of<SimulationError>([&] { multibody.initial_state(std::vector<BodyWrench>(2)); });
+  CHECK(contains(text, "mbs_correct, rank 0"));
+  CHECK(contains(text, "singular"));
+  CHECK(contains(text, "body 'ghost' (id 1)"));
+  CHECK(!contains(text, "solid"));
+}
+
+TEST_CASE("a wrench that is not a number stops the step by the body's name, and the step can be taken again") {
+  petsc();
+  Multibody multibody(closed_chain());
+  std::vector<BodyWrench> wrench(2);
+  MultibodyState state = multibody.initial_state(wrench);
+  const MultibodyState before = state;
+  multibody.predict(state, 0, 1e-3);
+  wrench[1].force.x = std::numeric_limits<Real>::quiet_NaN();
+  CHECK(contains(message_of<SimulationError>([&] { multibody.correct(wrench); }), "body 'two' (id 1)"));
+  wrench[1] = {};
+  wrench[0].stiffness[packed6(0, 0)] = std::numeric_limits<Real>::infinity();
+  multibody.predict(state, 0, 1e-3);
+  CHECK(contains(message_of<SimulationError>([&] { multibody.correct(wrench); }), "singular"));
+  CHECK(state.position == before.position);
+  wrench[0] = {};
+  multibody.predict(state, 0, 1e-3);
+  for (int i = 0; i < 5; ++i) multibody.correct(wrench);
+  CHECK(multibody.correct(wrench).residual < 1e-12);
+}
+
+TEST_CASE("PETSc's options: words that are none, unused ones, packages") {
+  CHECK(contains(message_of<InputError>([] { const PetscSession refused("test", {"ksp_view"}); }), "'ksp_view'"));
+  CHECK(petsc().unused_options() == std::vector<std::string>{"-mbs_misspelt 7"});
+  CHECK(contains(petsc_version(), "."));
+  const auto set = [](const char* value) { PetscOptionsSetValue(nullptr, "-mbs_pc_factor_mat_solver_type", value); };
+  Multibody default_solver(paper_net());
+  const MultibodyState expected = default_solver.initial_state(std::vector<BodyWrench>(20));
+  CHECK(contains(default_solver.solver_description(), "preonly + lu ("));
+  for (const std::string package : {"klu", "superlu", "umfpack", "mumps", "petsc"}) {
+    set(package.c_str());
+    const std::string text = message_of<InputError>([&] {
+      MultibodyRun run(paper_net());
+      CHECK(contains(run.multibody.solver_description(), "(" + package + ")"));
+      for (std::size_t i = 0; i < expected.acceleration.size(); ++i) {
+        CHECK(run.state.acceleration[i] == Approx(expected.acceleration[i]).margin(1e-9));
+      }
+      run.steps(20, 1e-3);
+      CHECK(run.most_iterations <= 3);
+    });
+    // A PETSc without this package says so.
+    if (text != "nothing was refused") CHECK(contains(text, "this PETSc has no such LU"));
+  }
+  set("nonsense");
+  CHECK(contains(refusal(paper_net()), "-mbs_pc_factor_mat_solver_type nonsense"));
+  PetscOptionsClearValue(nullptr, "-mbs_pc_factor_mat_solver_type");
+}

@@ -1,0 +1,167 @@
+// The step interface: Newton's convergence, motion, error estimate, repeated steps; and the HHT core on a system of
+// another kind.
+#include <cmath>
+
+#include "mbs/newton_solver.hpp"
+#include "support/catch.hpp"
+#include "support/multibody_run.hpp"
+
+using namespace scree;
+
+namespace {
+
+// A free particle in polar coordinates (r, phi): the mass matrix diag(m, m r^2) depends on the position.
+class PolarParticle final : public MechanicalSystem {
+ public:
+  int coordinates() const override { return 2; }
+  int constraints() const override { return 0; }
+  void evaluate(const SystemInstant& at, SystemTerms& terms) override {
+    const Real r = at.position[0], rate = at.velocity[0], spin = at.velocity[1];
+    terms.applied_force = {kMass * r * spin * spin, -2 * kMass * r * rate * spin};
+    terms.force_scale = kMass;
+    terms.mass.begin();
+    terms.mass.add(0, 0, kMass);
+    terms.mass.add(1, 1, kMass * r * r);
+    terms.constraint_jacobian.begin();
+  }
+  void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration, const std::vector<Real>&,
+                     SystemDerivatives& derivatives) override {
+    const Real r = at.position[0], rate = at.velocity[0], spin = at.velocity[1];
+    derivatives.stiffness.begin();
+    derivatives.stiffness.add(0, 0, -kMass * spin * spin);
+    derivatives.stiffness.add(1, 0, 2 * kMass * rate * spin);
+    derivatives.damping.begin();
+    derivatives.damping.add(0, 1, -2 * kMass * r * spin);
+    derivatives.damping.add(1, 0, 2 * kMass * r * spin);
+    derivatives.damping.add(1, 1, 2 * kMass * r * rate);
+    derivatives.inertia_stiffness.begin();
+    derivatives.inertia_stiffness.add(1, 0, 2 * kMass * r * acceleration[1]);
+  }
+  void velocity_rhs(const SystemInstant&, std::vector<Real>&) const override {}
+  void acceleration_rhs(const SystemInstant&, std::vector<Real>&) const override {}
+  const std::vector<Real>& coordinate_scale() const override { return scale_; }
+  const std::vector<Real>& constraint_scale() const override { return no_scale_; }
+  std::string coordinate_name(int) const override { return "particle"; }
+  std::string constraint_name(int) const override { return ""; }
+
+ private:
+  static constexpr Real kMass = 2.5;
+  std::vector<Real> scale_{1, 1}, no_scale_;
+};
+
+// Error after one second of a particle that moves along the straight line x = 1, y = 0.8 t. alpha = 0: see HhtMethod.
+Real polar_error(Real h, int& most_iterations) {
+  petsc();
+  PolarParticle particle;
+  MultibodyState state;
+  state.position = {1, 0};
+  state.velocity = {0, 0.8};
+  HhtMethod method(particle, 0, state.position, state.velocity);
+  NewtonSolver newton(particle, method);
+  newton.solve_acceleration(state, 0);
+  const int steps = static_cast<int>(std::lround(1 / h));
+  for (int i = 0; i < steps; ++i) {
+    method.predict(state, i * h, h);
+    newton.begin_step();
+    int iterations = 0;
+    IterationNorms norms;
+    do {
+      norms = newton.iterate();
+      most_iterations = std::max(most_iterations, ++iterations);
+    } while ((norms.residual > 1e-11 || norms.correction > 1e-11) && iterations < 20);
+    method.close(state);
+  }
+  const Real x = state.position[0] * std::cos(state.position[1]), y = state.position[0] * std::sin(state.position[1]);
+  return std::hypot(x - 1, y - 0.8);
+}
+
+}  // namespace
+
+TEST_CASE("the HHT core integrates a system whose mass depends on the position") {
+  int most_iterations = 0;
+  const Real coarse = polar_error(1e-2, most_iterations), fine = polar_error(5e-3, most_iterations);
+  CAPTURE(coarse, fine);
+  CHECK(std::log2(coarse / fine) == Approx(2).margin(0.05));
+  CHECK(most_iterations <= 4);
+}
+
+TEST_CASE("a linear system converges in two iterations") {
+  Model model = empty_model();
+  model.bodies = {paper_disc("one", 0, 0), paper_disc("two", 1, 0)};
+  for (const int body : {0, 1}) {
+    model.joints.push_back(ground_pin("guide." + std::to_string(body), body, {1.0 * body, 0, 0}, {0, 0, 0}));
+    model.joints.back().kind = JointKind::translational;
+  }
+  model.spring_dampers.push_back({"spring", {0, 1}, {}, 1e4, 20, 0.9, {}});
+  MultibodyRun run(model);
+  run.steps(200, 1e-3);
+  CHECK(run.most_iterations == 2);
+}
+
+TEST_CASE("residuals reach 1e-8 of the forces at small steps") {
+  MultibodyRun net(paper_net(), 1e-8);
+  net.steps(50, 1e-5);
+  CHECK(net.most_iterations <= 3);
+  // At rest and without gravity: what is left is round-off of the springs' lengths, and of nothing.
+  for (const Real stiffness : {1e9, 0.0}) {
+    Model model = paper_net();
+    model.gravity = {0, 0, 0};
+    for (SpringDamper& spring : model.spring_dampers) spring.stiffness = stiffness;
+    MultibodyRun run(model, 1e-8);
+    run.steps(50, 1e-5);
+    CHECK(run.most_iterations <= 3);
+    CHECK(std::abs(run.y(9) + 0.6) < 1e-12);
+  }
+}
+
+TEST_CASE("a rejected step leaves no trace") {
+  const Model model = paper_net();
+  MultibodyRun plain(model), disturbed(model);
+  const std::vector<BodyWrench> none(20);
+  std::vector<BodyWrench> push(20);
+  push[3].force = {5, -7, 0};
+  for (int i = 0; i < 20; ++i) {
+    disturbed.multibody.predict(disturbed.state, disturbed.time, 4e-3);
+    for (int k = 0; k < 3; ++k) disturbed.multibody.correct(push);
+    plain.steps(1, 1e-3);
+    disturbed.steps(1, 1e-3);
+  }
+  CHECK(plain.state.position == disturbed.state.position);
+  CHECK(plain.state.multipliers == disturbed.state.multipliers);
+  // A system that starts from the state continues with the same bits.
+  MultibodyRun restarted(model);
+  restarted.state = plain.state;
+  restarted.time = plain.time;
+  plain.steps(20, 1e-3);
+  restarted.steps(20, 1e-3);
+  CHECK(plain.state.position == restarted.state.position);
+  CHECK(plain.state.multipliers == restarted.state.multipliers);
+  CHECK(plain.state.integrator_loss == restarted.state.integrator_loss);
+}
+
+TEST_CASE("motion, extrapolation and the error estimate") {
+  Model model = empty_model();
+  model.bodies.push_back(paper_disc("stone", 1, 2));
+  model.bodies[0].velocity = {3, 0, 0};
+  model.bodies[0].angle = 0.1;
+  model.bodies[0].angular_velocity = 4;
+  model.bodies[0].position.z = 0.7;
+  MultibodyRun run(model);
+  const std::vector<BodyMotion> ahead = run.multibody.motion(run.state, 0.5);
+  CHECK(ahead[0].position.x == Approx(2.5));
+  CHECK(ahead[0].position.y == Approx(2 - kGravity / 8));
+  CHECK(ahead[0].position.z == 0.7);
+  CHECK(ahead[0].angle == Approx(2.1));
+  CHECK(ahead[0].velocity.y == Approx(-kGravity / 2));
+  run.multibody.predict(run.state, 0, 0.5);
+  CHECK(run.multibody.motion()[0].position.y == Approx(ahead[0].position.y));
+  // Under a force that grows within the step the estimate is the coefficient times h^2 (a_1 - a_0) / radius.
+  std::vector<BodyWrench> wrench(1);
+  wrench[0].force.x = 2;
+  wrench[0].torque.z = 1e-4;
+  run.multibody.correct(wrench);
+  CHECK(run.multibody.error() == Approx(hht_coefficients(0).error_constant * 0.25 * 2 / 0.05));
+  wrench[0].torque.z = 1;
+  run.multibody.correct(wrench);
+  CHECK(run.multibody.error() == Approx(hht_coefficients(0).error_constant * 0.25 * 200));
+}
