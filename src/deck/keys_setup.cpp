@@ -84,6 +84,11 @@ const TableKeys& integrator_keys() {
            .one_of({"hht", "velocity-verlet"})
            .otherwise("\"hht\"")
            .about("Integrator of the particles: implicit, or explicit. Bodies always use HHT."),
+       text("contact_events")
+           .one_of({"resolved", "end-of-step"})
+           .otherwise("\"resolved\"")
+           .about("Hht: a contact that opens or closes within a step acts over its part of the step, or (the "
+                  "paper) with the force at the step's end over all of it."),
        integer("substeps")
            .within(1, 1000000)
            .otherwise("1")

@@ -61,7 +61,9 @@ class PrescribedConstraint : public Constraint {
  public:
   explicit PrescribedConstraint(ScalarFunction function) : function_(std::move(function)) {}
 
-  void value(const PlanarMotion& motion, Real t, Real* c) const override { *c = coordinate(motion) - function_(t).value; }
+  void value(const PlanarMotion& motion, Real t, Real* c) const override {
+    *c = coordinate(motion) - function_(t).value;
+  }
   void velocity_rhs(Real t, Real* rhs) const override { *rhs = function_(t).rate; }
   void acceleration_rhs(const PlanarMotion& motion, Real t, Real* rhs) const override {
     *rhs = function_(t).acceleration - coordinate_second(motion);
@@ -89,10 +91,14 @@ class AngleConstraint final : public PrescribedConstraint {
     out.add(row, index_[5], 1);
   }
   void hessian(const PlanarMotion&, const Real*, SparseTerm&) const override {}
-  void add_reaction(const PlanarMotion&, const Real* lambda, Vec2&, Real& torque) const override { torque -= *lambda; }
+  void add_reaction(const PlanarMotion&, const Real* lambda, Vec2&, Real& torque) const override {
+    torque -= *lambda;
+  }
 
  private:
-  Real coordinate(const PlanarMotion& motion) const override { return motion[body_[1]].angle - motion[body_[0]].angle; }
+  Real coordinate(const PlanarMotion& motion) const override {
+    return motion[body_[1]].angle - motion[body_[0]].angle;
+  }
   Real coordinate_second(const PlanarMotion&) const override { return 0; }
 
   int body_[2];
@@ -104,7 +110,8 @@ class AngleConstraint final : public PrescribedConstraint {
 // C'  = u.d' + w_1 p.d - f'
 // C_q = [-u, -u.perp(a_1) + p.d, u, u.perp(a_2)]
 // g'' without accelerations = u.d''_0 + 2 w_1 p.d' - w_1^2 u.d,  d''_0 = w_1^2 a_1 - w_2^2 a_2
-// (C_q^T lambda)_q = lambda times: -p at (r_1, theta_1), p at (r_2, theta_1), p.perp(a_2) at (theta_1, theta_2),
+// (C_q^T lambda)_q = lambda times:
+//   -p at (r_1, theta_1), p at (r_2, theta_1), p.perp(a_2) at (theta_1, theta_2),
 //   -u.d - 2 p.perp(a_1) + u.a_1 at (theta_1, theta_1), -u.a_2 at (theta_2, theta_2); symmetric
 class AxisConstraint final : public PrescribedConstraint {
  public:
@@ -185,7 +192,9 @@ class LengthConstraint final : public PrescribedConstraint {
     const Vec2 e = (1 / length) * g.gap;
     const std::array<Real, 6> across = gap_gradient(g, perp(e));
     for (std::size_t i = 0; i < 6; ++i) {
-      for (std::size_t j = 0; j < 6; ++j) out.add(index_[i], index_[j], *lambda / length * across[i] * across[j]);
+      for (std::size_t j = 0; j < 6; ++j) {
+        out.add(index_[i], index_[j], *lambda / length * across[i] * across[j]);
+      }
     }
     out.add(index_[2], index_[2], *lambda * dot(e, g.arm[0]));
     out.add(index_[5], index_[5], -*lambda * dot(e, g.arm[1]));
@@ -196,7 +205,9 @@ class LengthConstraint final : public PrescribedConstraint {
   }
 
  private:
-  Real coordinate(const PlanarMotion& motion) const override { return norm(pair_geometry(pair_, motion).gap); }
+  Real coordinate(const PlanarMotion& motion) const override {
+    return norm(pair_geometry(pair_, motion).gap);
+  }
   Real coordinate_second(const PlanarMotion& motion) const override {
     const PairGeometry g = pair_geometry(pair_, motion);
     const Real length = norm(g.gap);

@@ -1,5 +1,5 @@
-// Scalar constraints C(q, t) = g(q) - f(t) = 0 between two planar bodies. Joints and drivers are made of them: a
-// joint's f is constant, a driver's is its prescribed motion.
+// Scalar constraints C(q, t) = g(q) - f(t) = 0 between two planar bodies. Joints and drivers are made of
+// them: a joint's f is constant, a driver's is its prescribed motion.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace scree {
 
-// One or two rows of Phi that belong to one joint or driver. Notation: r_i, theta_i, w_i position, angle and spin of
-// body i; a_i, d as in PairGeometry; e = d/|d|; lambda the rows' multipliers.
+// One or two rows of Phi that belong to one joint or driver. Notation: r_i, theta_i, w_i position, angle and
+// spin of body i; a_i, d as in PairGeometry; e = d/|d|; lambda the rows' multipliers.
 class Constraint {
  public:
   virtual ~Constraint() = default;
@@ -33,7 +33,8 @@ class Constraint {
   virtual void acceleration_rhs(const PlanarMotion& motion, Real t, Real* rhs) const = 0;
   // Adds the force [N] on body 2 at its joint point, and the torque about that point [N m]: the reaction's
   // generalized force is -C_q^T lambda.
-  virtual void add_reaction(const PlanarMotion& motion, const Real* lambda, Vec2& force, Real& torque) const = 0;
+  virtual void add_reaction(const PlanarMotion& motion, const Real* lambda, Vec2& force,
+                            Real& torque) const = 0;
   // Power that the prescribed motion feeds in [W]: -lambda C_q q' = -lambda f'.
   virtual Real power(Real t, const Real* lambda) const = 0;
 };

@@ -22,8 +22,8 @@ void book_step(PlanarSystem& system, const MultibodyState& start, Real t, Real h
     const Body& body = system.bodies()[b];
     loss += integrator_loss(body.mass, translation(end.position, b) - translation(start.position, b),
                             translation(v0, b), translation(v1, b), translation(f0, b), translation(f1, b));
-    loss += integrator_loss(body.inertia, rotation(end.position, b) - rotation(start.position, b), rotation(v0, b),
-                            rotation(v1, b), rotation(f0, b), rotation(f1, b));
+    loss += integrator_loss(body.inertia, rotation(end.position, b) - rotation(start.position, b),
+                            rotation(v0, b), rotation(v1, b), rotation(f0, b), rotation(f1, b));
   }
   end.dissipated = start.dissipated + h / 2 * (p0.dissipated + p1.dissipated);
   end.driver_work = start.driver_work + driver_work + h / 2 * (p0.applied + p1.applied);
@@ -36,7 +36,8 @@ MultibodyEnergies stored_energies(const PlanarSystem& system, const MultibodySta
     const Body& body = system.bodies()[b];
     energies.kinetic += kinetic_energy(body.mass, translation(state.velocity, b)) +
                         kinetic_energy(body.inertia, rotation(state.velocity, b));
-    energies.gravitational += gravitational_energy(body.mass, system.gravity(), translation(state.position, b));
+    energies.gravitational +=
+        gravitational_energy(body.mass, system.gravity(), translation(state.position, b));
   }
   energies.elastic = system.elastic_energy({t, state.position, state.velocity});
   return energies;

@@ -6,13 +6,14 @@
 
 namespace scree {
 
-// Adds to the end state's dissipated, driver_work and integrator_loss what the step from (start, t) to (end, t + h)
-// adds to the start's. With P the power at either end [W]:
+// Adds to the end state's dissipated, driver_work and integrator_loss what the step from (start, t) to (end,
+// t + h) adds to the start's. With P the power at either end [W]:
 //   dissipated  += h/2 (P_0 + P_1) of the dampers
 //   driver_work += h/2 (P_0 + P_1) of prescribed motions, actuators and applied forces
-//   integrator_loss += 1/2 (Q_0 + Q_1).(q_1 - q_0) + work of the prescribed motions - change of the kinetic energy
-// kinetic + gravitational + elastic + dissipated + integrator_loss - driver_work - (work of the contact wrenches)
-// then stays constant up to O(h^2).
+//   integrator_loss += 1/2 (Q_0 + Q_1).(q_1 - q_0) + work of the prescribed motions - change of kinetic
+//   energy
+// kinetic + gravitational + elastic + dissipated + integrator_loss - driver_work - (work of the contact
+// wrenches) then stays constant up to O(h^2).
 void book_step(PlanarSystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end);
 
 MultibodyEnergies stored_energies(const PlanarSystem& system, const MultibodyState& state, Real t);

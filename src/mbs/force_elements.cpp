@@ -20,7 +20,8 @@ void add_at(std::vector<Real>& force, int index, Real value) {
 // Q   = -T J,  J = l_q = [-e, -e.perp(a_1), e, e.perp(a_2)],  l' = J q'
 // -Q_q  = J (k J + c l'_q)^T + T H,  l'_q = H q'
 // -Q_q' = c J J^T
-// H = l_qq = G G^T / l + diag,  G = [-p, -p.perp(a_1), p, p.perp(a_2)],  diag: e.a_1 at theta_1, -e.a_2 at theta_2
+// H = l_qq = G G^T / l + diag,  G = [-p, -p.perp(a_1), p, p.perp(a_2)],
+//   diag: e.a_1 at theta_1, -e.a_2 at theta_2
 class SpringDamperElement final : public ForceElement {
  public:
   SpringDamperElement(const SpringDamper& element, Real end)
@@ -39,11 +40,14 @@ class SpringDamperElement final : public ForceElement {
   Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const override {
     const Line line = line_at(motion, t);
     const std::array<Real, 6> gradient = gap_gradient(line.geometry, line.direction);
-    for (const std::size_t k : active_) force[static_cast<std::size_t>(index_[k])] -= line.tension * gradient[k];
+    for (const std::size_t k : active_) {
+      force[static_cast<std::size_t>(index_[k])] -= line.tension * gradient[k];
+    }
     return std::abs(line.tension) * length;
   }
 
-  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness, SparseTerm& damping) const override {
+  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
+                       SparseTerm& damping) const override {
     const Line line = line_at(motion, t);
     const PairGeometry& g = line.geometry;
     const Vec2 e = line.direction;
@@ -91,7 +95,8 @@ class SpringDamperElement final : public ForceElement {
     line.geometry = pair_geometry(pair_, motion);
     line.length = norm(line.geometry.gap);
     if (line.length == 0) {
-      throw SimulationError(fmt::format("mbs_correct, rank 0: the two points of spring-damper '{}' coincide", name_));
+      throw SimulationError(
+          fmt::format("mbs_correct, rank 0: the two points of spring-damper '{}' coincide", name_));
     }
     line.direction = (1 / line.length) * line.geometry.gap;
     line.rate = dot(line.direction, line.geometry.gap_rate);
@@ -141,7 +146,9 @@ class TorsionalElement final : public ForceElement {
   Real twist(const PlanarMotion& motion) const {
     return motion[element_.body[1]].angle - motion[element_.body[0]].angle - element_.free_angle;
   }
-  Real rate(const PlanarMotion& motion) const { return motion[element_.body[1]].spin - motion[element_.body[0]].spin; }
+  Real rate(const PlanarMotion& motion) const {
+    return motion[element_.body[1]].spin - motion[element_.body[0]].spin;
+  }
 
   TorsionalSpringDamper element_;
   int index_[2];
@@ -167,7 +174,8 @@ class AppliedForceElement final : public ForceElement {
     add_at(force, 3 * body_ + 2, moment);
     return std::max(norm(f) * length, std::abs(moment));
   }
-  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness, SparseTerm&) const override {
+  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
+                       SparseTerm&) const override {
     const int angle = 3 * body_ + 2;
     const Vec2 f = force_at(motion, t);
     if (follows_body_) {
@@ -178,11 +186,14 @@ class AppliedForceElement final : public ForceElement {
     }
   }
   void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const override {
-    powers.applied += dot(force_at(motion, t), motion[body_].velocity) + moment_at(motion, t) * motion[body_].spin;
+    powers.applied +=
+        dot(force_at(motion, t), motion[body_].velocity) + moment_at(motion, t) * motion[body_].spin;
   }
 
  private:
-  static std::string owner(const AppliedForce& element) { return fmt::format("applied force '{}'", element.name); }
+  static std::string owner(const AppliedForce& element) {
+    return fmt::format("applied force '{}'", element.name);
+  }
   Vec2 force_at(const PlanarMotion& motion, Real t) const {
     const Vec2 f{fx_(t).value, fy_(t).value};
     return follows_body_ ? motion[body_].turn(f) : f;

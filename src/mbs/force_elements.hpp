@@ -21,18 +21,19 @@ class ForceElement {
  public:
   virtual ~ForceElement() = default;
 
-  // Adds to Q [coordinates]. Returns the size of what it added: force [N] times `length` [m], or torque [N m].
+  // Adds to Q [coordinates]. Returns the size of what it added [J]: a force times `length` [m], or a torque.
   virtual Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const = 0;
   // Adds -Q_q and -Q_q' [coordinates, coordinates].
-  virtual void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness, SparseTerm& damping) const = 0;
+  virtual void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
+                               SparseTerm& damping) const = 0;
   virtual void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const = 0;
   virtual Real elastic_energy(const PlanarMotion&) const { return 0; }  // [J]
   // Elastic energy of a displacement by `length`, or by 1 rad, times two [J].
   virtual Real elastic_scale(Real) const { return 0; }
 };
 
-// Throw InputError naming the element: a table of its time functions is refused (see ScalarFunction; end: of the
-// simulated time [s]). Evaluating a spring-damper whose points coincide throws SimulationError naming it.
+// Throw InputError naming the element: a table of its time functions is refused (see ScalarFunction; end: of
+// the simulated time [s]). Evaluating a spring-damper whose points coincide throws SimulationError naming it.
 std::unique_ptr<ForceElement> make_force_element(const SpringDamper& element, Real end);
 std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& element);
 std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, Real end);

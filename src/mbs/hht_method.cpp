@@ -11,7 +11,8 @@ std::size_t count(int n) { return static_cast<std::size_t>(n); }
 // Evaluates everything once so that the terms know their patterns; the values do not matter.
 KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, SystemTerms& terms,
                          SystemDerivatives& derivatives) {
-  const std::vector<Real> acceleration(count(system.coordinates()), 0), multipliers(count(system.constraints()), 0);
+  const std::vector<Real> acceleration(count(system.coordinates()), 0),
+      multipliers(count(system.constraints()), 0);
   terms.applied_force.assign(count(system.coordinates()), 0);
   terms.constraint.assign(count(system.constraints()), 0);
   system.evaluate(at, terms);
@@ -65,13 +66,16 @@ void HhtMethod::evaluate_residual() {
     residual_[i] = scale * inertia_force_[i] + constraint_force_[i] - terms_.applied_force[i] +
                    alpha * scale * start_force_[i];
   }
-  for (std::size_t j = 0; j < terms_.constraint.size(); ++j) residual_[n + j] = terms_.constraint[j] / position_gain();
+  for (std::size_t j = 0; j < terms_.constraint.size(); ++j) {
+    residual_[n + j] = terms_.constraint[j] / position_gain();
+  }
 }
 
 void HhtMethod::newton_matrix(std::span<Real> values) {
   system_.differentiate({end_time(), position_, velocity_}, acceleration_, multipliers_, derivatives_);
   const Real scale = 1 / (1 + coefficients_.hht_alpha);
-  const KktWeights weights{scale, position_gain(), step_ * coefficients_.newmark_gamma, position_gain() * scale};
+  const KktWeights weights{scale, position_gain(), step_ * coefficients_.newmark_gamma,
+                           position_gain() * scale};
   kkt_.assemble(terms_, derivatives_, weights, values);
 }
 

@@ -1,5 +1,6 @@
 // HHT-I3 for a constrained mechanical system: coefficients, residual and Newton matrix, no policy.
-// Negrut, Rampalli, Ottarsson, Sajdak, J. Comput. Nonlinear Dyn. 2 (2007); Jung, Jun, Sohn (2013), Eqs. 1-3, 14-17.
+// Negrut, Rampalli, Ottarsson, Sajdak, J. Comput. Nonlinear Dyn. 2 (2007); Jung, Jun, Sohn (2013), Eqs. 1-3,
+// 14-17.
 #pragma once
 
 #include <span>
@@ -12,9 +13,9 @@
 
 namespace scree {
 
-// One step from t_n to t_{n+1} = t_n + h. The unknowns are q''_{n+1} and lambda_{n+1}; q and q' follow by Newmark.
-// Of second order where M is constant, as for planar bodies; where M depends on q, for alpha = 0 only, because Eq. 16
-// takes M at t_{n+1} but q'' at t_{n+1} + alpha h.
+// One step from t_n to t_{n+1} = t_n + h. The unknowns are q''_{n+1} and lambda_{n+1}; q and q' follow by
+// Newmark. Of second order where M is constant, as for planar bodies; where M depends on q, for alpha = 0
+// only, because Eq. 16 takes M at t_{n+1} but q'' at t_{n+1} + alpha h.
 class HhtMethod {
  public:
   // position, velocity: any instant at which the system can be evaluated; it gives the matrix its pattern.
@@ -47,8 +48,8 @@ class HhtMethod {
   // Sets q'', lambda from its solution, and the forces that go with them.
   void set_acceleration(std::span<const Real> solution, MultibodyState& state) const;
 
-  // The end of a step, as closed into `state`, under other applied forces than the step was made with: their change
-  // dQ changes the reactions too,
+  // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
+  // change dQ changes the reactions too,
   //   [M, Phi_q^T; Phi_q, 0] (d, d_lambda) = (dQ, 0),  q'' += (1 + alpha) d,  lambda += d_lambda.
   // Returns false, with nothing to solve, where the forces are the same.
   bool change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs);

@@ -9,7 +9,9 @@ namespace {
 using Columns = std::vector<std::vector<int>>;  // of every row
 
 void mark(const SparseTerm& term, Columns& columns) {
-  for (std::size_t i = 0; i < term.size(); ++i) columns[static_cast<std::size_t>(term.row(i))].push_back(term.column(i));
+  for (std::size_t i = 0; i < term.size(); ++i) {
+    columns[static_cast<std::size_t>(term.row(i))].push_back(term.column(i));
+  }
 }
 
 SparsePattern compress(Columns& columns) {
@@ -25,7 +27,9 @@ SparsePattern compress(Columns& columns) {
 }
 
 void scatter(const SparseTerm& term, const std::vector<int>& slots, Real weight, std::span<Real> values) {
-  for (std::size_t i = 0; i < slots.size(); ++i) values[static_cast<std::size_t>(slots[i])] += weight * term.value(i);
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    values[static_cast<std::size_t>(slots[i])] += weight * term.value(i);
+  }
 }
 
 }  // namespace
@@ -44,7 +48,9 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
     columns[static_cast<std::size_t>(column)].push_back(row);
   }
   // PETSc's own LU wants every diagonal entry to be there, zeros too.
-  for (int row = 0; row < coordinates + constraints; ++row) columns[static_cast<std::size_t>(row)].push_back(row);
+  for (int row = 0; row < coordinates + constraints; ++row) {
+    columns[static_cast<std::size_t>(row)].push_back(row);
+  }
   pattern_ = compress(columns);
   mass_ = slots_of(terms.mass, 0, false);
   stiffness_ = slots_of(derivatives.stiffness, 0, false);
@@ -66,8 +72,8 @@ std::vector<int> KktMatrix::slots_of(const SparseTerm& term, int row_offset, boo
   return slots;
 }
 
-void KktMatrix::assemble(const SystemTerms& terms, const SystemDerivatives& derivatives, const KktWeights& weights,
-                         std::span<Real> values) const {
+void KktMatrix::assemble(const SystemTerms& terms, const SystemDerivatives& derivatives,
+                         const KktWeights& weights, std::span<Real> values) const {
   std::fill(values.begin(), values.end(), 0);
   scatter(terms.mass, mass_, weights.mass, values);
   scatter(derivatives.stiffness, stiffness_, weights.stiffness, values);

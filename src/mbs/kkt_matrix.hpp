@@ -8,7 +8,8 @@
 
 namespace scree {
 
-// Compressed rows: the columns of row i, in increasing order, are column[row_start[i]] ... column[row_start[i+1]-1].
+// Compressed rows: the columns of row i, in increasing order, are column[row_start[i]] ...
+// column[row_start[i+1]-1].
 struct SparsePattern {
   std::vector<int> row_start;  // [rows + 1]
   std::vector<int> column;     // [entries]

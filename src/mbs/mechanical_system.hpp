@@ -12,7 +12,7 @@ namespace scree {
 
 // Generalized coordinates and their rates at one instant.
 struct SystemInstant {
-  Real time = 0;                     // t [s]
+  Real time = 0;                      // t [s]
   const std::vector<Real>& position;  // q
   const std::vector<Real>& velocity;  // q'
 };
@@ -23,8 +23,8 @@ struct SystemTerms {
   std::vector<Real> constraint;     // Phi [constraints]
   SparseTerm mass;                  // M [coordinates, coordinates]
   SparseTerm constraint_jacobian;   // Phi_q [constraints, coordinates]
-  // Largest single contribution to Q, times the scale of its coordinate [J]. The contributions may cancel in Q;
-  // round-off does not.
+  // Largest single contribution to Q, times the scale of its coordinate [J]. The contributions may cancel in
+  // Q; round-off does not.
   Real force_scale = 0;
 };
 
@@ -46,8 +46,8 @@ class MechanicalSystem {
   // At the instant of the last evaluate().
   virtual void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration,
                              const std::vector<Real>& multipliers, SystemDerivatives& derivatives) = 0;
-  // Phi_q q' = velocity_rhs = -Phi_t and Phi_q q'' = acceleration_rhs = -(Phi_q q')_q q' - 2 Phi_qt q' - Phi_tt,
-  // each [constraints], at the instant of the last evaluate().
+  // Phi_q q' = velocity_rhs = -Phi_t and Phi_q q'' = acceleration_rhs = -(Phi_q q')_q q' - 2 Phi_qt q' -
+  // Phi_tt, each [constraints], at the instant of the last evaluate().
   virtual void velocity_rhs(const SystemInstant& at, std::vector<Real>& rhs) const = 0;
   virtual void acceleration_rhs(const SystemInstant& at, std::vector<Real>& rhs) const = 0;
 

@@ -28,7 +28,9 @@ MultibodyState checked_start(const Model& model, PlanarSystem& system) {
   return state;
 }
 
-BodyMotion body_motion(const Real* q, const Real* v, Real z) { return {{q[0], q[1], z}, {v[0], v[1], 0}, q[2], v[2]}; }
+BodyMotion body_motion(const Real* q, const Real* v, Real z) {
+  return {{q[0], q[1], z}, {v[0], v[1], 0}, q[2], v[2]};
+}
 
 }  // namespace
 
@@ -42,7 +44,8 @@ struct Multibody::Impl {
 
   void update_motion() {
     for (std::size_t b = 0; b < motion.size(); ++b) {
-      motion[b] = body_motion(&method.position()[3 * b], &method.velocity()[3 * b], system.bodies()[b].position.z);
+      motion[b] =
+          body_motion(&method.position()[3 * b], &method.velocity()[3 * b], system.bodies()[b].position.z);
     }
   }
 
@@ -85,7 +88,8 @@ Real Multibody::error() const {
   const Real length = impl_->system.length_scale();
   Real largest = 0;
   for (std::size_t i = 0; i < a0.size(); i += 3) {
-    const Vec3 shift0{a0[i], a0[i + 1], 0}, shift1{a1[i], a1[i + 1], 0}, turn0{0, 0, a0[i + 2]}, turn1{0, 0, a1[i + 2]};
+    const Vec3 shift0{a0[i], a0[i + 1], 0}, shift1{a1[i], a1[i + 1], 0}, turn0{0, 0, a0[i + 2]},
+        turn1{0, 0, a1[i + 2]};
     for (const Real error : {hht_position_error(method.coefficients(), method.step(), shift0, shift1, length),
                              hht_position_error(method.coefficients(), method.step(), turn0, turn1, 1)}) {
       // A comparison that lets NaN through: the step must not pass as exact.
@@ -128,7 +132,8 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
   const auto groups = impl_->system.reactions({t, state.position, state.velocity}, state.multipliers);
   std::vector<Reaction> reactions;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    reactions.push_back({impl_->system.groups()[i].name, {groups[i].force.x, groups[i].force.y, 0}, groups[i].torque});
+    reactions.push_back(
+        {impl_->system.groups()[i].name, {groups[i].force.x, groups[i].force.y, 0}, groups[i].torque});
   }
   return reactions;
 }

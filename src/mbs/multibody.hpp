@@ -48,7 +48,8 @@ class Multibody {
   explicit Multibody(const Model& model);
   ~Multibody();
 
-  // Consistent start: q, q' of the model; q'' and lambda from the acceleration-level system with these wrenches.
+  // Consistent start: q, q' of the model; q'' and lambda from the acceleration-level system with these
+  // wrenches.
   MultibodyState initial_state(const std::vector<BodyWrench>& wrench);
 
   // Opens a step from `state` at time t of length h: Newmark prediction with q''_{n+1} = q''_n.
@@ -58,9 +59,9 @@ class Multibody {
   IterationNorms correct(const std::vector<BodyWrench>& wrench);
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
-  // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench: contact
-  // wrenches at the end of the step, where they differ from those that the step was corrected with because contacts
-  // opened or closed within it; the next step starts from them.
+  // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:
+  // contact wrenches at the end of the step, where they differ from those that the step was corrected with
+  // because contacts opened or closed within it; the next step starts from them.
   void accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench);
 
   // One entry per body, at the current iterate of the open step.

@@ -22,14 +22,16 @@ NewtonSolver::NewtonSolver(const MechanicalSystem& system, HhtMethod& method)
 
 void NewtonSolver::begin_step() { first_ = true; }
 
-// e1 over the largest force that takes part, each force times the scale of its coordinate; Phi over the scale of its
-// constraint. e2 itself holds the round-off of Phi over beta h^2, which grows without bound as h shrinks.
+// e1 over the largest force that takes part, each force times the scale of its coordinate; Phi over the scale
+// of its constraint. e2 itself holds the round-off of Phi over beta h^2, which grows without bound as h
+// shrinks.
 Real NewtonSolver::scaled_residual() const {
   const std::vector<Real>&residual = method_.residual(), &scale = system_.coordinate_scale();
   const std::vector<Real>&inertia = method_.inertia_force(), &reaction = method_.constraint_force();
   Real largest = method_.terms().force_scale, dynamic = 0, kinematic = 0;
   for (std::size_t i = 0; i < scale.size(); ++i) {
-    const Real force = std::max({std::abs(inertia[i]), std::abs(reaction[i]), std::abs(method_.start_force()[i])});
+    const Real force =
+        std::max({std::abs(inertia[i]), std::abs(reaction[i]), std::abs(method_.start_force()[i])});
     if (!std::isfinite(residual[i])) {
       throw SimulationError(fmt::format("mbs_correct, rank 0: the residual of {} is not finite at t = {} s",
                                         system_.coordinate_name(static_cast<int>(i)), method_.end_time()));
@@ -60,9 +62,9 @@ Real NewtonSolver::scaled_correction() const {
 
 void NewtonSolver::solve_linear(bool refactor) {
   if (solver_.solve(refactor)) return;
-  throw SimulationError(fmt::format("mbs_correct, rank 0: the matrix of the multibody system is singular at t = {} s; it "
-                                    "fails at {}",
-                                    method_.end_time(), singular_culprits(system_, method_.pattern(), solver_.values())));
+  throw SimulationError(fmt::format("mbs_correct, rank 0: at t = {} s the matrix of the multibody system {}",
+                                    method_.end_time(),
+                                    matrix_failure(system_, method_.pattern(), solver_.values())));
 }
 
 void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {

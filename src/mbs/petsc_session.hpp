@@ -6,9 +6,9 @@
 
 namespace scree {
 
-// options: the command line's words behind "--", in PETSc's syntax. Throws InputError on a word that is neither an
-// option nor its value, and on an option that PETSc refuses. PETSC_COMM_WORLD is MPI_COMM_SELF. Construct on rank 0,
-// after MPI_Init.
+// options: the command line's words behind "--", in PETSc's syntax. Throws InputError on a word that is
+// neither an option nor its value, and on an option that PETSc refuses. PETSC_COMM_WORLD is MPI_COMM_SELF.
+// Construct on rank 0, after MPI_Init.
 class PetscSession {
  public:
   PetscSession(const std::string& program, const std::vector<std::string>& options);
@@ -16,7 +16,8 @@ class PetscSession {
   PetscSession(const PetscSession&) = delete;
   PetscSession& operator=(const PetscSession&) = delete;
 
-  // The given options that nothing has asked for so far, e.g. because of a misspelt name; for a warning at the end.
+  // The given options that nothing has asked for so far, e.g. because of a misspelt name; for a warning at
+  // the end.
   std::vector<std::string> unused_options() const;
 
  private:

@@ -19,8 +19,8 @@ constexpr const char* kPrefix = "mbs_";
 constexpr int kOwnWords = 5;  // of PetscSession before the user's
 
 // Factor packages in the order of their measured speed on chains of bodies.
-constexpr std::array<const char*, 5> kPackages = {MATSOLVERKLU, MATSOLVERSUPERLU, MATSOLVERUMFPACK, MATSOLVERMUMPS,
-                                                  MATSOLVERPETSC};
+constexpr std::array<const char*, 5> kPackages = {MATSOLVERKLU, MATSOLVERSUPERLU, MATSOLVERUMFPACK,
+                                                  MATSOLVERMUMPS, MATSOLVERPETSC};
 
 // The first message of PETSc's current error; its handler reports the innermost function first.
 std::string& petsc_message() {
@@ -50,7 +50,8 @@ void check_option(PetscErrorCode code) {
 }
 
 bool is_option_name(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' && (std::isalpha(static_cast<unsigned char>(word[1])) || word[1] == '-');
+  return word.size() > 1 && word[0] == '-' &&
+         (std::isalpha(static_cast<unsigned char>(word[1])) || word[1] == '-');
 }
 
 }  // namespace
@@ -58,11 +59,12 @@ bool is_option_name(const std::string& word) {
 PetscSession::PetscSession(const std::string& program, const std::vector<std::string>& options) {
   for (std::size_t i = 0; i < options.size(); ++i) {
     if (!is_option_name(options[i]) && (i == 0 || !is_option_name(options[i - 1]))) {
-      throw InputError(fmt::format("'{}' is not a PETSc option: an option starts with '-', e.g. -mbs_ksp_view", options[i]));
+      throw InputError(fmt::format(
+          "'{}' is not a PETSc option: an option starts with '-', e.g. -mbs_ksp_view", options[i]));
     }
   }
-  // A run depends on its deck and its command line, not on files in the user's home; signals belong to the program;
-  // unused options are reported through unused_options().
+  // A run depends on its deck and its command line, not on files in the user's home; signals belong to the
+  // program; unused options are reported through unused_options().
   words_ = {program, "-skip_petscrc", "-no_signal_handler", "-options_left", "no"};
   static_assert(kOwnWords == 5);
   words_.insert(words_.end(), options.begin(), options.end());
@@ -88,7 +90,8 @@ std::vector<std::string> PetscSession::unused_options() const {
   check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
   std::vector<std::string> unused;
   for (PetscInt i = 0; i < count; ++i) {
-    const bool given = std::find(words_.begin() + kOwnWords, words_.end(), fmt::format("-{}", names[i])) != words_.end();
+    const bool given =
+        std::find(words_.begin() + kOwnWords, words_.end(), fmt::format("-{}", names[i])) != words_.end();
     if (!given) continue;
     unused.push_back(fmt::format("-{}{}{}", names[i], values[i] ? " " : "", values[i] ? values[i] : ""));
   }
@@ -106,7 +109,7 @@ struct PetscSolver::Impl {
   explicit Impl(const SparsePattern& sparse_pattern) : pattern(sparse_pattern) {}
   ~Impl();
   void create();
-  void choose_package(PC preconditioner);
+  void choose_package();
   bool is_available(const char* package);
 
   SparsePattern pattern;
@@ -114,6 +117,7 @@ struct PetscSolver::Impl {
   Mat matrix = nullptr;
   Vec rhs_vector = nullptr, solution_vector = nullptr;
   KSP solver = nullptr;
+  PC preconditioner = nullptr;  // owned by the solver
 };
 
 PetscSolver::Impl::~Impl() {
@@ -129,20 +133,22 @@ bool PetscSolver::Impl::is_available(const char* package) {
   return available == PETSC_TRUE;
 }
 
-// The user's choice is needed before KSPSetFromOptions applies it: PETSc's own LU does not pivot, and the zero block
-// needs rows put in an order with nonzeros on the diagonal, which the other packages do not expect.
-void PetscSolver::Impl::choose_package(PC preconditioner) {
+// The user's choice is needed before KSPSetFromOptions applies it: PETSc's own LU does not pivot, and the
+// zero block needs rows put in an order with nonzeros on the diagonal, which the other packages do not
+// expect.
+void PetscSolver::Impl::choose_package() {
   std::array<char, 64> chosen{};
   PetscBool given = PETSC_FALSE;
-  check_option(PetscOptionsGetString(nullptr, kPrefix, "-pc_factor_mat_solver_type", chosen.data(), chosen.size(), &given));
+  check_option(PetscOptionsGetString(nullptr, kPrefix, "-pc_factor_mat_solver_type", chosen.data(),
+                                     chosen.size(), &given));
   std::string package = chosen.data();
   if (given && !is_available(package.c_str())) {
     std::string names;
     for (const char* name : kPackages) {
       if (is_available(name)) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
     }
-    throw InputError(fmt::format("-{}pc_factor_mat_solver_type {}: this PETSc has no such LU; it has {}", kPrefix,
-                                 package, names));
+    throw InputError(fmt::format("-{}pc_factor_mat_solver_type {}: this PETSc has no such LU; it has {}",
+                                 kPrefix, package, names));
   }
   for (std::size_t i = 0; package.empty() && i < kPackages.size(); ++i) {
     if (is_available(kPackages[i])) package = kPackages[i];
@@ -160,22 +166,23 @@ void PetscSolver::Impl::create() {
   rhs.assign(static_cast<std::size_t>(n), 0);
   solution.assign(static_cast<std::size_t>(n), 0);
   // PETSc works in these arrays; nothing is copied.
-  check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, pattern.row_start.data(), pattern.column.data(), values.data(),
-                                  &matrix));
+  check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, pattern.row_start.data(), pattern.column.data(),
+                                  values.data(), &matrix));
   check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, rhs.data(), &rhs_vector));
   check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, solution.data(), &solution_vector));
   check(KSPCreate(PETSC_COMM_SELF, &solver));
   check(KSPSetOptionsPrefix(solver, kPrefix));
   check(KSPSetOperators(solver, matrix, matrix));
   check(KSPSetType(solver, KSPPREONLY));
-  PC preconditioner = nullptr;
   check(KSPGetPC(solver, &preconditioner));
   check(PCSetType(preconditioner, PCLU));
-  choose_package(preconditioner);
+  choose_package();
   check_option(KSPSetFromOptions(solver));
 }
 
-PetscSolver::PetscSolver(const SparsePattern& pattern) : impl_(std::make_unique<Impl>(pattern)) { impl_->create(); }
+PetscSolver::PetscSolver(const SparsePattern& pattern) : impl_(std::make_unique<Impl>(pattern)) {
+  impl_->create();
+}
 PetscSolver::~PetscSolver() = default;
 
 std::span<Real> PetscSolver::values() { return impl_->values; }
@@ -191,7 +198,9 @@ bool PetscSolver::solve(bool refactor) {
   }
   check(VecGetArrayWrite(impl_->rhs_vector, &array));
   check(VecRestoreArrayWrite(impl_->rhs_vector, &array));
-  const PetscErrorCode factored = KSPSetUp(impl_->solver);
+  // Factoring here, not within KSPSolve, leaves the solver usable after a matrix that cannot be factored.
+  PetscErrorCode factored = KSPSetUp(impl_->solver);
+  if (!failed(factored)) factored = PCSetUp(impl_->preconditioner);
   if (is_singular(factored)) return false;
   check(factored);
   check(KSPSolve(impl_->solver, impl_->rhs_vector, impl_->solution_vector));
@@ -205,13 +214,13 @@ bool PetscSolver::solve(bool refactor) {
 std::string PetscSolver::description() const {
   KSPType method = nullptr;
   PCType preconditioner_type = nullptr;
-  PC preconditioner = nullptr;
   check(KSPGetType(impl_->solver, &method));
-  check(KSPGetPC(impl_->solver, &preconditioner));
-  check(PCGetType(preconditioner, &preconditioner_type));
+  check(PCGetType(impl_->preconditioner, &preconditioner_type));
   std::string text = fmt::format("petsc {}, {} + {}", petsc_version(), method, preconditioner_type);
   MatSolverType package = nullptr;
-  if (std::string(preconditioner_type) == PCLU) check(PCFactorGetMatSolverType(preconditioner, &package));
+  if (std::string(preconditioner_type) == PCLU) {
+    check(PCFactorGetMatSolverType(impl_->preconditioner, &package));
+  }
   if (package != nullptr) text += fmt::format(" ({})", package);
   return text;
 }

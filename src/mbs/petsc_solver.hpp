@@ -10,8 +10,8 @@
 
 namespace scree {
 
-// KSP preonly + LU, overruled by PETSc options with the prefix mbs_. The factor package is the first one that this
-// PETSc has of: KLU, SuperLU, UMFPACK, MUMPS, PETSc's own. The symbolic factorization is done once.
+// KSP preonly + LU, overruled by PETSc options with the prefix mbs_. The factor package is the first one that
+// this PETSc has of: KLU, SuperLU, UMFPACK, MUMPS, PETSc's own. The symbolic factorization is done once.
 class PetscSolver {
  public:
   // Needs a PetscSession. Throws InputError on an mbs_ option that PETSc refuses.
@@ -20,12 +20,13 @@ class PetscSolver {
   PetscSolver(const PetscSolver&) = delete;
   PetscSolver& operator=(const PetscSolver&) = delete;
 
-  std::span<Real> values();           // of the matrix, in the pattern's order
-  std::span<Real> rhs();              // [rows]
+  std::span<Real> values();                // of the matrix, in the pattern's order
+  std::span<Real> rhs();                   // [rows]
   std::span<const Real> solution() const;  // [rows]
 
-  // Solves for rhs(). refactor: values() changed since the last call; otherwise its factors are used again. False: the
-  // matrix is singular, or the solution is not finite. Throws SimulationError on any other failure of PETSc.
+  // Solves for rhs(). refactor: values() changed since the last call; otherwise its factors are used again.
+  // False: the matrix is singular, or the solution is not finite. Throws SimulationError on any other failure
+  // of PETSc.
   bool solve(bool refactor);
 
   // e.g. "petsc 3.18.5, preonly + lu (klu)"

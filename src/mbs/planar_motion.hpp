@@ -78,8 +78,8 @@ inline std::array<Real, 6> gap_gradient(const PairGeometry& g, Vec2 w) {
   return {-w.x, -w.y, -dot(w, perp(g.arm[0])), w.x, w.y, dot(w, perp(g.arm[1]))};
 }
 
-// The six coordinates (x, y, angle of body 1, then of body 2) of a pair in the system's vector of coordinates.
-// -1: not a coordinate, because the body is the ground or because nothing can depend on it.
+// The six coordinates (x, y, angle of body 1, then of body 2) of a pair in the system's vector of
+// coordinates. -1: not a coordinate, because the body is the ground or because nothing can depend on it.
 using PairCoordinates = std::array<int, 6>;
 
 inline PairCoordinates pair_coordinates(const int (&body)[2]) {

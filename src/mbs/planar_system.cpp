@@ -11,8 +11,8 @@ namespace scree {
 
 namespace {
 
-// Positions of size 1 carry round-off of 1e-16; a force of stiffness times 1e-6 of the length scale stays far above
-// it, and a residual of 1e-8 of that force moves a body by 1e-14 of the length scale.
+// Positions of size 1 carry round-off of 1e-16; a force of stiffness times 1e-6 of the length scale stays far
+// above it, and a residual of 1e-8 of that force moves a body by 1e-14 of the length scale.
 constexpr Real kElasticFloor = 1e-6;
 
 // The planar part (x, y, rz) of a packed 6x6 block.
@@ -65,16 +65,22 @@ PlanarSystem::PlanarSystem(const Model& model)
   for (const Driver& driver : model.drivers) {
     add_driver(driver, model.joints[static_cast<std::size_t>(driver.joint)], model.time.end);
   }
-  for (const SpringDamper& e : model.spring_dampers) elements_.push_back(make_force_element(e, model.time.end));
-  for (const TorsionalSpringDamper& e : model.torsional_spring_dampers) elements_.push_back(make_force_element(e));
-  for (const AppliedForce& e : model.applied_forces) elements_.push_back(make_force_element(e, model.time.end));
+  for (const SpringDamper& e : model.spring_dampers) {
+    elements_.push_back(make_force_element(e, model.time.end));
+  }
+  for (const TorsionalSpringDamper& e : model.torsional_spring_dampers) {
+    elements_.push_back(make_force_element(e));
+  }
+  for (const AppliedForce& e : model.applied_forces) {
+    elements_.push_back(make_force_element(e, model.time.end));
+  }
   for (const auto& element : elements_) {
     elastic_floor_ = std::max(elastic_floor_, kElasticFloor * element->elastic_scale(length_scale_));
   }
 }
 
-// Revolute: the points coincide. Fixed: and the angle. Translational: body 2's point has no displacement across the
-// axis, and the angle. Distance: the length, unless a driver prescribes it.
+// Revolute: the points coincide. Fixed: and the angle. Translational: body 2's point has no displacement
+// across the axis, and the angle. Distance: the length, unless a driver prescribes it.
 void PlanarSystem::add_joint(const Joint& joint, bool driven) {
   const PointPair pair = point_pair(joint);
   std::vector<std::unique_ptr<Constraint>> parts;
@@ -92,8 +98,8 @@ void PlanarSystem::add_joint(const Joint& joint, bool driven) {
       break;
     case JointKind::distance:
       if (!(joint.distance > 0)) {
-        throw InputError(fmt::format("joint '{}': distance {} m is not allowed, it must be positive", joint.name,
-                                     joint.distance));
+        throw InputError(fmt::format("joint '{}': distance {} m is not allowed, it must be positive",
+                                     joint.name, joint.distance));
       }
       if (!driven) parts.push_back(length_constraint(pair, ScalarFunction(joint.distance)));
       break;
@@ -116,9 +122,10 @@ void PlanarSystem::add_driver(const Driver& driver, const Joint& joint, Real end
       parts.push_back(length_constraint(point_pair(joint), motion));
       break;
     case JointKind::fixed:
-      throw InputError(fmt::format("{}: joint '{}' is fixed and has nothing to drive; allowed are revolute, "
-                                   "translational and distance joints",
-                                   title, joint.name));
+      throw InputError(
+          fmt::format("{}: joint '{}' is fixed and has nothing to drive; allowed are revolute, "
+                      "translational and distance joints",
+                      title, joint.name));
   }
   add_group(title, driver.name, std::move(parts));
 }
@@ -181,8 +188,8 @@ void PlanarSystem::add_contact(SystemTerms& terms) const {
   }
 }
 
-void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real>&, const std::vector<Real>& multipliers,
-                                 SystemDerivatives& derivatives) {
+void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real>&,
+                                 const std::vector<Real>& multipliers, SystemDerivatives& derivatives) {
   derivatives.stiffness.begin();
   derivatives.damping.begin();
   for (const auto& element : elements_) {
@@ -194,7 +201,8 @@ void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real
     add_planar_block(wrench_[b].damping, static_cast<int>(b), derivatives.damping);
   }
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    constraints_[i]->hessian(motion_, &multipliers[static_cast<std::size_t>(first_row_[i])], derivatives.stiffness);
+    constraints_[i]->hessian(motion_, &multipliers[static_cast<std::size_t>(first_row_[i])],
+                             derivatives.stiffness);
   }
 }
 
@@ -245,7 +253,8 @@ std::vector<PlanarSystem::GroupReaction> PlanarSystem::reactions(const SystemIns
   for (std::size_t k = 0; k < groups_.size(); ++k) {
     for (int i = groups_[k].first; i < groups_[k].end; ++i) {
       const Real* lambda = &multipliers[static_cast<std::size_t>(first_row_[static_cast<std::size_t>(i)])];
-      constraints_[static_cast<std::size_t>(i)]->add_reaction(motion, lambda, reactions[k].force, reactions[k].torque);
+      constraints_[static_cast<std::size_t>(i)]->add_reaction(motion, lambda, reactions[k].force,
+                                                              reactions[k].torque);
     }
   }
   return reactions;

@@ -16,13 +16,14 @@ namespace scree {
 
 // A joint or a driver and its rows of Phi.
 struct ConstraintGroup {
-  std::string title;  // "joint 'pin'", "driver 'crank'"
-  std::string name;   // "pin"
+  std::string title;               // "joint 'pin'", "driver 'crank'"
+  std::string name;                // "pin"
   int first = 0, end = 0;          // of the system's constraint objects
   int first_row = 0, end_row = 0;  // of Phi
 };
 
-// Coordinates: x, y [m] and angle [rad] of every body, in the model's order. Rows of Phi: joints, then drivers.
+// Coordinates: x, y [m] and angle [rad] of every body, in the model's order. Rows of Phi: joints, then
+// drivers.
 class PlanarSystem final : public MechanicalSystem {
  public:
   // Throws InputError naming the joint, driver or element that is refused.
@@ -45,8 +46,8 @@ class PlanarSystem final : public MechanicalSystem {
 
   const std::vector<Body>& bodies() const { return bodies_; }
   Vec3 gravity() const { return gravity_; }  // [m/s^2]
-  // Characteristic length L [m]: the largest radius of a body's shape; without shapes the largest distance of a joint
-  // or force element from the centre of its body; without these 1 m.
+  // Characteristic length L [m]: the largest radius of a body's shape; without shapes the largest distance of
+  // a joint or force element from the centre of its body; without these 1 m.
   Real length_scale() const { return length_scale_; }
   const std::vector<ConstraintGroup>& groups() const { return groups_; }
   // C of one row is an angle [rad], not a length [m].
@@ -65,7 +66,8 @@ class PlanarSystem final : public MechanicalSystem {
  private:
   void add_joint(const Joint& joint, bool driven);
   void add_driver(const Driver& driver, const Joint& joint, Real end);
-  void add_group(const std::string& title, const std::string& name, std::vector<std::unique_ptr<Constraint>> parts);
+  void add_group(const std::string& title, const std::string& name,
+                 std::vector<std::unique_ptr<Constraint>> parts);
   void add_contact(SystemTerms& terms) const;
 
   std::vector<Body> bodies_;

@@ -31,8 +31,9 @@ Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entri
   return matrix;
 }
 
-// With P A^T A P^T = L D L^T and l the part of L's row k left of the diagonal, the first k columns of A P^T combine by
-// L_11^-T l to what is nearest to column k. The combination minus column k, in the order of A's columns.
+// With P A^T A P^T = L D L^T and l the part of L's row k left of the diagonal, the first k columns of A P^T
+// combine by L_11^-T l to what is nearest to column k. The combination minus column k, in the order of A's
+// columns.
 Vector combination(const Matrix& l, int k, const Eigen::SimplicialLDLT<Matrix>& factors) {
   Vector c = Vector::Zero(l.rows());
   for (int i = 0; i < k; ++i) c[i] = l.coeff(k, i);

@@ -18,9 +18,10 @@ ScalarFunction::ScalarFunction(const TimeFunction& function, const std::string& 
 void ScalarFunction::check_table(const std::string& owner, Real end) const {
   const std::vector<Real>& times = function_.times;
   if (times.size() < 2 || times.size() != function_.values.size()) {
-    throw InputError(fmt::format("{}: a table needs at least two points and as many values as times; it has {} times "
-                                 "and {} values",
-                                 owner, times.size(), function_.values.size()));
+    throw InputError(
+        fmt::format("{}: a table needs at least two points and as many values as times; it has {} times "
+                    "and {} values",
+                    owner, times.size(), function_.values.size()));
   }
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (!(times[i] > times[i - 1])) {
@@ -29,13 +30,14 @@ void ScalarFunction::check_table(const std::string& owner, Real end) const {
     }
   }
   if (times.front() > 0 || times.back() < end) {
-    throw InputError(fmt::format("{}: the table covers {} s to {} s; it must cover the whole run, 0 s to {} s", owner,
-                                 times.front(), times.back(), end));
+    throw InputError(
+        fmt::format("{}: the table covers {} s to {} s; it must cover the whole run, 0 s to {} s", owner,
+                    times.front(), times.back(), end));
   }
 }
 
 // Continuity of f' at the inner points, with d_i = t_{i+1} - t_i:
-//   d_{i-1} m_{i-1} + 2 (d_{i-1} + d_i) m_i + d_i m_{i+1} = 6 ((f_{i+1} - f_i)/d_i - (f_i - f_{i-1})/d_{i-1}),
+//   d_{i-1} m_{i-1} + 2 (d_{i-1} + d_i) m_i + d_i m_{i+1} = 6 (s_i - s_{i-1}),  s_i = (f_{i+1} - f_i)/d_i,
 // and m = 0 at both ends; the tridiagonal system is diagonally dominant and needs no pivoting.
 void ScalarFunction::find_second_derivatives() {
   const std::vector<Real>&t = function_.times, &f = function_.values;

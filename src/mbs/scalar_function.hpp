@@ -10,13 +10,13 @@
 namespace scree {
 
 // Tables are interpolated by the natural cubic spline, for drivers and forces alike: twice continuously
-// differentiable, second derivative zero at both ends. It passes through every point and may overshoot between
-// points where the slope jumps.
+// differentiable, second derivative zero at both ends. It passes through every point and may overshoot
+// between points where the slope jumps.
 class ScalarFunction {
  public:
-  // owner: what the function belongs to, e.g. "driver 'crank'"; end: of the simulated time [s]. Throws InputError
-  // naming the owner where a table has fewer than two points, unequal columns, times that do not increase, or
-  // does not cover [0, end].
+  // owner: what the function belongs to, e.g. "driver 'crank'"; end: of the simulated time [s]. Throws
+  // InputError naming the owner where a table has fewer than two points, unequal columns, times that do not
+  // increase, or does not cover [0, end].
   ScalarFunction(const TimeFunction& function, const std::string& owner, Real end);
   // The constant `value`.
   explicit ScalarFunction(Real value) { function_.value = value; }

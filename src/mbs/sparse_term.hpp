@@ -7,8 +7,9 @@
 
 namespace scree {
 
-// Filled by begin() and add() in a fixed order. The first filling records where the entries are, later ones only
-// replace the values: pattern and values come from the same code and cannot disagree. Equal positions add up.
+// Filled by begin() and add() in a fixed order. The first filling records where the entries are, later ones
+// only replace the values: pattern and values come from the same code and cannot disagree. Equal positions
+// add up.
 class SparseTerm {
  public:
   void begin() {

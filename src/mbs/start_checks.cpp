@@ -25,14 +25,16 @@ std::string list_names(const std::vector<std::string>& names) {
     if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
   }
   const std::size_t shown = std::min(once.size(), kNamesShown);
-  std::string text = fmt::format("{}", fmt::join(once.begin(), once.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  std::string text =
+      fmt::format("{}", fmt::join(once.begin(), once.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
   if (once.size() > shown) text += fmt::format(" and {} more", once.size() - shown);
   return text;
 }
 
-// A group's gap [m, rad], or its rate with per = "/s", as the length of its length rows and of its angle rows.
-void check_rows(const PlanarSystem& system, const ConstraintGroup& group, const std::vector<Real>& gap, Real limit,
-                const char* what, const char* per) {
+// A group's gap [m, rad], or its rate with per = "/s", as the length of its length rows and of its angle
+// rows.
+void check_rows(const PlanarSystem& system, const ConstraintGroup& group, const std::vector<Real>& gap,
+                Real limit, const char* what, const char* per) {
   for (const bool angle : {false, true}) {
     Real square = 0, scale = 1;
     for (int row = group.first_row; row < group.end_row; ++row) {
@@ -42,17 +44,19 @@ void check_rows(const PlanarSystem& system, const ConstraintGroup& group, const 
     }
     const Real size = std::sqrt(square);
     if (size <= limit * scale) continue;
-    throw InputError(fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what, size, angle ? "rad" : "m",
-                                 per, limit * scale));
+    throw InputError(fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what, size,
+                                 angle ? "rad" : "m", per, limit * scale));
   }
 }
 
 // The direction of a spring-damper or a distance is not defined where its points coincide.
 void check_directions(const Model& model, const PlanarMotion& motion) {
-  const auto check = [&](const int(&body)[2], const Vec3(&point)[2], const char* kind, const std::string& name) {
+  const auto check = [&](const int(&body)[2], const Vec3(&point)[2], const char* kind,
+                         const std::string& name) {
     const PointPair pair{{body[0], body[1]}, {planar(point[0]), planar(point[1])}};
     if (norm(pair_geometry(pair, motion).gap) > 0) return;
-    throw InputError(fmt::format("{} '{}': its two points coincide at t = 0, so it has no direction", kind, name));
+    throw InputError(
+        fmt::format("{} '{}': its two points coincide at t = 0, so it has no direction", kind, name));
   };
   for (const SpringDamper& element : model.spring_dampers) {
     check(element.body, element.point, "spring-damper", element.name);
@@ -72,8 +76,9 @@ void check_redundancy(const PlanarSystem& system, const SparseTerm& jacobian) {
   if (rows.empty()) return;
   std::vector<std::string> names;
   for (const int row : rows) names.push_back(system.constraint_name(row));
-  throw InputError(fmt::format("redundant constraints: {} fix the same motion more than once; remove or change one",
-                               list_names(names)));
+  throw InputError(
+      fmt::format("redundant constraints: {} fix the same motion more than once; remove or change one",
+                  list_names(names)));
 }
 
 }  // namespace
@@ -97,26 +102,33 @@ void check_start(const Model& model, PlanarSystem& system, const std::vector<Rea
     fastest = std::max(fastest, std::abs(velocity[i]) / system.coordinate_scale()[i]);
   }
   for (const ConstraintGroup& group : system.groups()) {
-    check_rows(system, group, terms.constraint, kPositionGap, "its two sides do not meet at t = 0, they miss by", "");
-    check_rows(system, group, gap_rate, kVelocityGap * (1 + fastest), "the velocities at t = 0 contradict it by", "/s");
+    check_rows(system, group, terms.constraint, kPositionGap,
+               "its two sides do not meet at t = 0, they miss by", "");
+    check_rows(system, group, gap_rate, kVelocityGap * (1 + fastest),
+               "the velocities at t = 0 contradict it by", "/s");
   }
   check_redundancy(system, terms.constraint_jacobian);
 }
 
-std::string singular_culprits(const MechanicalSystem& system, const SparsePattern& pattern,
-                              std::span<const Real> values) {
+std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& pattern,
+                           std::span<const Real> values) {
+  const auto name = [&](int index) {
+    const int constraint = index - system.coordinates();
+    return constraint < 0 ? system.coordinate_name(index) : system.constraint_name(constraint);
+  };
   std::vector<MatrixEntry> entries;
   for (int row = 0; row < pattern.rows(); ++row) {
     for (int k = pattern.row_start[at(row)]; k < pattern.row_start[at(row) + 1]; ++k) {
+      if (!std::isfinite(values[at(k)])) return fmt::format("is not finite at {}", name(row));
       entries.push_back({row, pattern.column[at(k)], values[at(k)]});
     }
   }
   std::vector<std::string> names;
   for (const int column : dependent_columns(pattern.rows(), pattern.rows(), entries)) {
-    const int constraint = column - system.coordinates();
-    names.push_back(constraint < 0 ? system.coordinate_name(column) : system.constraint_name(constraint));
+    names.push_back(name(column));
   }
-  return names.empty() ? "no single joint or body" : list_names(names);
+  if (names.empty()) return "could not be solved, though it is not singular";
+  return fmt::format("is singular: {}", list_names(names));
 }
 
 }  // namespace scree

@@ -11,15 +11,16 @@
 
 namespace scree {
 
-// Position gaps up to 1e-10 of the length scale (1e-10 rad), and velocity gaps up to 1e-8 of the largest velocity plus
-// one length scale (1 rad) per second, are taken as round-off. position, velocity: [coordinates]. Throws InputError
-// naming the joint or driver, its gap and what is allowed, or the joints and drivers that are redundant together, or the
-// element whose two points coincide.
+// Position gaps up to 1e-10 of the length scale (1e-10 rad), and velocity gaps up to 1e-8 of the largest
+// velocity plus one length scale (1 rad) per second, are taken as round-off. position, velocity:
+// [coordinates]. Throws InputError naming the joint or driver, its gap and what is allowed, or the joints and
+// drivers that are redundant together, or the element whose two points coincide.
 void check_start(const Model& model, PlanarSystem& system, const std::vector<Real>& position,
                  const std::vector<Real>& velocity);
 
-// For messages: the joints, drivers and bodies that take part in the singularity of a saddle-point matrix.
-std::string singular_culprits(const MechanicalSystem& system, const SparsePattern& pattern,
-                              std::span<const Real> values);
+// For messages: why a saddle-point matrix could not be solved, with the joints, drivers and bodies that take
+// part, e.g. "is singular: body 'link' (id 3)".
+std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& pattern,
+                           std::span<const Real> values);
 
 }  // namespace scree

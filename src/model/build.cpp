@@ -117,6 +117,7 @@ void build_time(const DeckTable& deck, Model& model) {
   integrator.hht_alpha = method.real("hht_alpha");
   integrator.particles =
       method.text("particles") == "hht" ? ParticleIntegrator::hht : ParticleIntegrator::velocity_verlet;
+  integrator.resolve_events = method.text("contact_events") == "resolved";
   integrator.substeps = static_cast<int>(method.integer("substeps"));
   integrator.residual_tolerance = method.real("residual_tolerance");
   integrator.correction_tolerance = method.real("correction_tolerance");

@@ -33,7 +33,8 @@ struct SplineSegment {
 SCREE_HD TimeValue spline_function(const SplineSegment& s, Real t) {
   const Real d = s.t1 - s.t0, a = (s.t1 - t) / d, b = (t - s.t0) / d;
   return {a * s.f0 + b * s.f1 + ((a * a * a - a) * s.m0 + (b * b * b - b) * s.m1) * (d * d / 6),
-          (s.f1 - s.f0) / d + ((1 - 3 * a * a) * s.m0 + (3 * b * b - 1) * s.m1) * (d / 6), a * s.m0 + b * s.m1};
+          (s.f1 - s.f0) / d + ((1 - 3 * a * a) * s.m0 + (3 * b * b - 1) * s.m1) * (d / 6),
+          a * s.m0 + b * s.m1};
 }
 
 }  // namespace scree

@@ -31,7 +31,8 @@ Model hanging_chain(int bodies) {
     const Real along = kSpacing * (i + 0.5);
     model.bodies.push_back(paper_disc("link." + std::to_string(i), along * c, along * s));
     model.bodies.back().angle = -M_PI / 3;
-    Joint joint = ground_pin("joint." + std::to_string(i), i, {i == 0 ? 0 : kSpacing / 2, 0, 0}, {-kSpacing / 2, 0, 0});
+    Joint joint =
+        ground_pin("joint." + std::to_string(i), i, {i == 0 ? 0 : kSpacing / 2, 0, 0}, {-kSpacing / 2, 0, 0});
     joint.body[0] = i - 1;  // the ground for the first one
     model.joints.push_back(joint);
   }
@@ -50,8 +51,9 @@ void measure(int bodies) {
   run.steps(steps, 1e-3);
   const double per_step = seconds_since(started) / steps;
   const double iterations = static_cast<double>(run.iterations) / steps;
-  fmt::print("{:7d} {:10d} {:12.2f} {:12.4f} {:14.4f} {:11.2f} {:14.4f}\n", bodies, 5 * bodies, 1e3 * construction,
-             1e3 * per_step, 1e6 * per_step / bodies, iterations, 1e3 * per_step / iterations);
+  fmt::print("{:7d} {:10d} {:12.2f} {:12.4f} {:14.4f} {:11.2f} {:14.4f}\n", bodies, 5 * bodies,
+             1e3 * construction, 1e3 * per_step, 1e6 * per_step / bodies, iterations,
+             1e3 * per_step / iterations);
   std::fflush(stdout);
 }
 
@@ -60,7 +62,7 @@ void measure(int bodies) {
 int main() {
   fmt::print("hanging chains on revolute joints, h = 1 ms, {}\n",
              MultibodyRun(hanging_chain(1)).multibody.solver_description());
-  fmt::print("{:>7} {:>10} {:>12} {:>12} {:>14} {:>11} {:>14}\n", "bodies", "unknowns", "start [ms]", "step [ms]",
-             "per body [us]", "iterations", "iteration [ms]");
+  fmt::print("{:>7} {:>10} {:>12} {:>12} {:>14} {:>11} {:>14}\n", "bodies", "unknowns", "start [ms]",
+             "step [ms]", "per body [us]", "iterations", "iteration [ms]");
   for (const int bodies : {20, 100, 1000, 10000}) measure(bodies);
 }

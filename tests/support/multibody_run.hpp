@@ -45,7 +45,9 @@ inline Joint ground_pin(const std::string& name, int body, Vec3 on_ground, Vec3 
 // Case 5.1: 20 discs in a row, joined by spring-dampers, the first and the last on revolute joints.
 inline Model paper_net(Real damping = 100) {
   Model model = empty_model();
-  for (int i = 0; i < 20; ++i) model.bodies.push_back(paper_disc("net." + std::to_string(i), -0.95 + 0.1 * i, -0.6));
+  for (int i = 0; i < 20; ++i) {
+    model.bodies.push_back(paper_disc("net." + std::to_string(i), -0.95 + 0.1 * i, -0.6));
+  }
   for (int i = 0; i < 19; ++i) {
     SpringDamper spring;
     spring.name = "spring." + std::to_string(i);
@@ -77,7 +79,9 @@ class MultibodyRun {
     IterationNorms norms;
     int iteration = 0;
     do {
-      if (++iteration > 20) throw std::runtime_error("Newton did not converge at t = " + std::to_string(time));
+      if (++iteration > 20) {
+        throw std::runtime_error("Newton did not converge at t = " + std::to_string(time));
+      }
       norms = multibody.correct(wrench_);
     } while (norms.residual > tolerance_ || norms.correction > tolerance_);
     most_iterations = std::max(most_iterations, iteration);

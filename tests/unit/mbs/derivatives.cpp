@@ -1,5 +1,5 @@
-// Analytic derivatives against central differences: every joint, driver and force element, between two bodies and
-// between body and ground.
+// Analytic derivatives against central differences: every joint, driver and force element, between two bodies
+// and between body and ground.
 #include <cmath>
 #include <functional>
 #include <string>
@@ -225,7 +225,8 @@ TEST_CASE("Newton's matrix is the derivative of the residual, contact included")
     }
     method.apply_correction(delta);
     const std::vector<Real>&q = method.position(), &v = method.velocity();
-    const Vec3 moved{q[3] - arm.y * q[5], q[4] + arm.x * q[5], 0}, rate{v[3] - arm.y * v[5], v[4] + arm.x * v[5], 0};
+    const Vec3 moved{q[3] - arm.y * q[5], q[4] + arm.x * q[5], 0},
+        rate{v[3] - arm.y * v[5], v[4] + arm.x * v[5], 0};
     const Vec3 force = -(stiffness * moved) - damping * rate;
     wrench[1] = {};
     add_point_force(wrench[1], force, arm, stiffness, damping);

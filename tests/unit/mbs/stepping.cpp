@@ -1,5 +1,5 @@
-// The step interface: Newton's convergence, motion, error estimate, repeated steps; and the HHT core on a system of
-// another kind.
+// The step interface: Newton's convergence, motion, error estimate, repeated steps; and the HHT core on a
+// system of another kind.
 #include <cmath>
 
 #include "mbs/newton_solver.hpp"
@@ -49,7 +49,8 @@ class PolarParticle final : public MechanicalSystem {
   std::vector<Real> scale_{1, 1}, no_scale_;
 };
 
-// Error after one second of a particle that moves along the straight line x = 1, y = 0.8 t. alpha = 0: see HhtMethod.
+// Error after one second of a particle that moves along the straight line x = 1, y = 0.8 t. alpha = 0: see
+// HhtMethod.
 Real polar_error(Real h, int& most_iterations) {
   petsc();
   PolarParticle particle;
@@ -71,7 +72,8 @@ Real polar_error(Real h, int& most_iterations) {
     } while ((norms.residual > 1e-11 || norms.correction > 1e-11) && iterations < 20);
     method.close(state);
   }
-  const Real x = state.position[0] * std::cos(state.position[1]), y = state.position[0] * std::sin(state.position[1]);
+  const Real x = state.position[0] * std::cos(state.position[1]),
+             y = state.position[0] * std::sin(state.position[1]);
   return std::hypot(x - 1, y - 0.8);
 }
 

@@ -1,4 +1,5 @@
-// The energy ledger closes: kinetic + gravitational + elastic + dissipated + integrator's loss - work fed in is constant.
+// The energy ledger closes: kinetic + gravitational + elastic + dissipated + integrator's loss - work fed in
+// is constant.
 #include <cmath>
 
 #include "support/catch.hpp"
@@ -17,7 +18,11 @@ Balance balance_of(const Model& model, Real h, int steps) {
   MultibodyRun run(model);
   const auto entries = [&] {
     const MultibodyEnergies e = run.multibody.energies(run.state, run.time);
-    return std::vector<Real>{e.kinetic, e.gravitational, e.elastic, run.state.dissipated, run.state.integrator_loss,
+    return std::vector<Real>{e.kinetic,
+                             e.gravitational,
+                             e.elastic,
+                             run.state.dissipated,
+                             run.state.integrator_loss,
                              -run.state.driver_work};
   };
   const std::vector<Real> start = entries();

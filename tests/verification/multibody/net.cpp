@@ -32,8 +32,8 @@ std::vector<std::vector<Real>> read_reference(const std::string& name) {
   return rows;
 }
 
-// Largest difference in x or y of bodies 4 and 5 from a reference with columns t, x4, y4, vx4, vy4, x5, y5, ... every
-// 1 ms.
+// Largest difference in x or y of bodies 4 and 5 from a reference with columns t, x4, y4, vx4, vy4, x5, y5,
+// ... every 1 ms.
 Real largest_error(Real hht_alpha, int steps_per_sample, const std::vector<std::vector<Real>>& reference) {
   Model model = paper_net();
   model.integrator.hht_alpha = hht_alpha;
@@ -42,7 +42,8 @@ Real largest_error(Real hht_alpha, int steps_per_sample, const std::vector<std::
   for (const std::vector<Real>& row : reference) {
     for (const int body : {4, 5}) {
       const std::size_t column = body == 4 ? 1 : 5;
-      largest = std::max({largest, std::abs(run.x(body) - row[column]), std::abs(run.y(body) - row[column + 1])});
+      largest =
+          std::max({largest, std::abs(run.x(body) - row[column]), std::abs(run.y(body) - row[column + 1])});
     }
     if (&row != &reference.back()) run.steps(steps_per_sample, 1e-3 / steps_per_sample);
   }
@@ -59,8 +60,12 @@ TEST_CASE("the net follows the discrete HHT solution") {
 TEST_CASE("the net's error against the truth is the method's, and of second order") {
   const auto truth = read_reference("chain51_bodies4_5.csv");
   // alpha and the error of two independent implementations at h = 1e-3 [m], known to four digits.
-  const std::array<std::array<Real, 2>, 6> known = {
-      {{0, 1.691e-4}, {-0.05, 1.931e-4}, {-0.1, 2.131e-4}, {-0.2, 2.416e-4}, {-0.3, 2.545e-4}, {-1.0 / 3, 2.554e-4}}};
+  const std::array<std::array<Real, 2>, 6> known = {{{0, 1.691e-4},
+                                                     {-0.05, 1.931e-4},
+                                                     {-0.1, 2.131e-4},
+                                                     {-0.2, 2.416e-4},
+                                                     {-0.3, 2.545e-4},
+                                                     {-1.0 / 3, 2.554e-4}}};
   for (const auto& [hht_alpha, error] : known) {
     const Real coarse = largest_error(hht_alpha, 1, truth), fine = largest_error(hht_alpha, 2, truth);
     const Real order = std::log2(coarse / fine);
@@ -72,8 +77,8 @@ TEST_CASE("the net's error against the truth is the method's, and of second orde
 }
 
 TEST_CASE("the net comes to rest in the static shape") {
-  // The springs' own dampers hardly slow the swinging. Dampers to far points of the ground do, and exert nothing on a
-  // chain at rest.
+  // The springs' own dampers hardly slow the swinging. Dampers to far points of the ground do, and exert
+  // nothing on a chain at rest.
   Model model = paper_net();
   for (int body = 1; body < 19; ++body) {
     for (const Vec3 far : {Vec3{100, -0.6, 0}, Vec3{0, 100, 0}}) {

@@ -1,4 +1,5 @@
-// Pendulums: the period of large swings, and a double pendulum against a Runge-Kutta solution in minimal coordinates.
+// Pendulums: the period of large swings, and a double pendulum against a Runge-Kutta solution in minimal
+// coordinates.
 #include <array>
 #include <cmath>
 
@@ -48,8 +49,8 @@ Real period(Real hht_alpha, Real h) {
   return passages[1] - passages[0];
 }
 
-// Two rods of masses m_i and inertias I_i about their centres, which are a_i from the upper joint; the first rod is
-// length long. Angles from the downward vertical. Lagrange's equations of the minimal coordinates.
+// Two rods of masses m_i and inertias I_i about their centres, which are a_i from the upper joint; the first
+// rod is length long. Angles from the downward vertical. Lagrange's equations of the minimal coordinates.
 struct DoublePendulum {
   Real m1 = 1.3, m2 = 0.7, i1 = 0.02, i2 = 0.01, a1 = 0.25, a2 = 0.2, length = 0.5;
 
@@ -70,7 +71,8 @@ struct DoublePendulum {
       for (std::size_t i = 0; i < 4; ++i) result[i] += factor * k[i];
       return result;
     };
-    const State k1 = rate(s), k2 = rate(moved(k1, h / 2)), k3 = rate(moved(k2, h / 2)), k4 = rate(moved(k3, h));
+    const State k1 = rate(s), k2 = rate(moved(k1, h / 2)), k3 = rate(moved(k2, h / 2)),
+                k4 = rate(moved(k3, h));
     State next = s;
     for (std::size_t i = 0; i < 4; ++i) next[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
     return next;
@@ -82,7 +84,8 @@ constexpr Real kAngle1 = 1.9, kAngle2 = 0.6;  // at the start, at rest
 Model double_pendulum(const DoublePendulum& rods, Real hht_alpha) {
   Model model = empty_model();
   model.integrator.hht_alpha = hht_alpha;
-  const Vec3 along1{std::sin(kAngle1), -std::cos(kAngle1), 0}, along2{std::sin(kAngle2), -std::cos(kAngle2), 0};
+  const Vec3 along1{std::sin(kAngle1), -std::cos(kAngle1), 0},
+      along2{std::sin(kAngle2), -std::cos(kAngle2), 0};
   Body upper, lower;
   upper.name = "upper", lower.name = "lower";
   upper.mass = rods.m1, lower.mass = rods.m2;

@@ -9,10 +9,11 @@ using namespace scree;
 namespace {
 
 constexpr Real kCrank = 0.15, kRod = 0.4, kSpeed = 9, kStartAngle = 0.7;  // [m, m, rad/s, rad]
-constexpr Real kCrankMass = 0.8, kRodMass = 1.1, kSliderMass = 0.6, kCrankInertia = 0.003, kRodInertia = 0.015;
+constexpr Real kCrankMass = 0.8, kRodMass = 1.1, kSliderMass = 0.6, kCrankInertia = 0.003,
+               kRodInertia = 0.015;
 
-// Angles of crank and rod and the slider's place with their first two derivatives, at a crank angle that grows
-// steadily: r sin(crank) + l sin(rod) = 0, x = r cos(crank) + l cos(rod).
+// Angles of crank and rod and the slider's place with their first two derivatives, at a crank angle that
+// grows steadily: r sin(crank) + l sin(rod) = 0, x = r cos(crank) + l cos(rod).
 struct Kinematics {
   explicit Kinematics(Real t) : crank(kStartAngle + kSpeed * t) {
     const Real ratio = kCrank / kRod, s = -ratio * std::sin(crank), c = std::sqrt(1 - s * s);
@@ -36,7 +37,8 @@ Real driver_torque(Real t) {
   const Real ax = k.slider_acceleration + half * (s * k.rod_acceleration + c * k.rod_rate * k.rod_rate);
   const Real ay = half * (s * k.rod_rate * k.rod_rate - c * k.rod_acceleration);
   const Real crank_rise = kCrank / 2 * std::cos(k.crank) * kSpeed;
-  const Real power = kSliderMass * k.slider_rate * k.slider_acceleration + kRodMass * (vx * ax + vy * (ay + kGravity)) +
+  const Real power = kSliderMass * k.slider_rate * k.slider_acceleration +
+                     kRodMass * (vx * ax + vy * (ay + kGravity)) +
                      kRodInertia * k.rod_rate * k.rod_acceleration + kCrankMass * kGravity * crank_rise;
   return power / kSpeed;
 }
@@ -93,10 +95,11 @@ Errors largest_errors(Real h) {
     run.steps(1, h);
     run.time = i * h;
     const Kinematics exact(run.time);
-    errors.position = std::max({errors.position, std::abs(run.x(2) - exact.slider), std::abs(run.angle(1) - exact.rod)});
+    errors.position =
+        std::max({errors.position, std::abs(run.x(2) - exact.slider), std::abs(run.angle(1) - exact.rod)});
     errors.velocity = std::max(errors.velocity, std::abs(run.state.velocity[6] - exact.slider_rate));
-    // HHT's accelerations stand for t + alpha h, the start's for t = 0: the multipliers begin with a disturbance of first
-    // order, which the method damps within a hundred steps.
+    // HHT's accelerations stand for t + alpha h, the start's for t = 0: the multipliers begin with a
+    // disturbance of first order, which the method damps within a hundred steps.
     if (run.time < 0.2) continue;
     const Real torque = run.multibody.reactions(run.state, run.time).back().torque;
     errors.torque = std::max(errors.torque, std::abs(torque - driver_torque(run.time)));
