@@ -9,6 +9,8 @@ namespace {
 
 // A list that was too short for the step is built again this many times before the step counts as failed.
 constexpr int kMostListBuilds = 4;
+// Skin of a list that had to be built for a fast step, over that step's largest displacement.
+constexpr Real kSkinPerMotion = 5;
 
 }  // namespace
 
@@ -60,15 +62,18 @@ bool CoupledStep::covered(const MultibodyState& bodies) {
   if (backend_.list_displacement() <= 1) return true;
   const Real moved = backend_.step_displacement();
   undo_step(bodies);
-  rebuild_list(std::max(model_.contact.skin, 3 * moved));
+  rebuild_list(std::max(model_.contact.skin, kSkinPerMotion * moved));
   return false;
 }
 
 StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   StepOutcome outcome;
+  const StepCounts before = counts_;
   try {
     bool done = false;
     for (int builds = 0; !done; ++builds) {
+      // Attempts that the list does not cover leave no trace, in the counts neither.
+      counts_.newton_iterations = before.newton_iterations, counts_.linear_iterations = before.linear_iterations;
       if (builds > kMostListBuilds) throw SimulationError("stage neighbors: no skin covers the step's motion");
       open_step(bodies, t, h);
       if (!covered(bodies)) continue;

@@ -1,5 +1,7 @@
 #include "mbs/multibody.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mbs/energy_ledger.hpp"
@@ -92,8 +94,8 @@ Real Multibody::error() const {
         turn1{0, 0, a1[i + 2]};
     for (const Real error : {hht_position_error(method.coefficients(), method.step(), shift0, shift1, length),
                              hht_position_error(method.coefficients(), method.step(), turn0, turn1, 1)}) {
-      // A comparison that lets NaN through: the step must not pass as exact.
-      if (!(error <= largest)) largest = error;
+      if (std::isnan(error)) return error;  // no step passes as exact because a comparison was false
+      largest = std::max(largest, error);
     }
   }
   return largest;
@@ -103,8 +105,10 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   Impl& impl = *impl_;
   impl.method.close(impl.end);
   book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
-  impl.system.set_wrenches(end_wrench);
-  impl.newton.change_end_forces(impl.end);
+  if (!impl.system.has_forces_of(end_wrench)) {
+    impl.system.set_wrenches(end_wrench);
+    impl.newton.change_end_forces(impl.end);
+  }
   std::swap(state, impl.end);
 }
 

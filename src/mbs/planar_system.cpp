@@ -175,6 +175,12 @@ void PlanarSystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   }
 }
 
+bool PlanarSystem::has_forces_of(const std::vector<BodyWrench>& wrench) const {
+  return std::equal(
+      wrench_.begin(), wrench_.end(), wrench.begin(), wrench.end(),
+      [](const BodyWrench& a, const BodyWrench& b) { return a.force == b.force && a.torque == b.torque; });
+}
+
 void PlanarSystem::add_contact(SystemTerms& terms) const {
   for (std::size_t b = 0; b < wrench_.size(); ++b) {
     const BodyWrench& wrench = wrench_[b];

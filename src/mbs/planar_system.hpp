@@ -43,6 +43,8 @@ class PlanarSystem final : public MechanicalSystem {
 
   // Wrenches that the next evaluate() and differentiate() use, one per body; the model starts without any.
   void set_wrenches(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
+  // The wrenches set last have the same forces and torques.
+  bool has_forces_of(const std::vector<BodyWrench>& wrench) const;
 
   const std::vector<Body>& bodies() const { return bodies_; }
   Vec3 gravity() const { return gravity_; }  // [m/s^2]

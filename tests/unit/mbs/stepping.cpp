@@ -167,3 +167,29 @@ TEST_CASE("motion, extrapolation and the error estimate") {
   run.multibody.correct(wrench);
   CHECK(run.multibody.error() == Approx(hht_coefficients(0).error_constant * 0.25 * 200));
 }
+
+TEST_CASE("another wrench at the step's end changes accelerations and reactions, not the motion") {
+  constexpr Real kAlpha = -0.1;
+  Model model = empty_model();
+  model.gravity = {0, 0, 0};
+  model.integrator.hht_alpha = kAlpha;
+  model.bodies = {paper_disc("free", 3, 0), paper_disc("bob", 0.5, 0)};
+  model.joints.push_back(ground_pin("pivot", 1, {0, 0, 0}, {-0.5, 0, 0}));
+  petsc();
+  Multibody multibody(model);
+  std::vector<BodyWrench> push(2);
+  push[0].force = {3, 0, 0};
+  push[1].force = {2, 0, 0};  // along the arm: the pivot takes it
+  MultibodyState state = multibody.initial_state(push);
+  multibody.predict(state, 0, 1e-3);
+  for (int i = 0; i < 3; ++i) multibody.correct(push);
+  const std::vector<BodyMotion> motion = multibody.motion();
+  multibody.accept(state, std::vector<BodyWrench>(2));
+  CHECK(state.position[0] == motion[0].position.x);
+  CHECK(state.velocity[0] == motion[0].velocity.x);
+  // q'' = (1 + alpha) H_{n+1} - alpha H_n over the mass, with H_{n+1} = 0.
+  CHECK(state.acceleration[0] == Approx(-kAlpha * 3));
+  CHECK(state.acceleration[3] == Approx(0).margin(1e-9));
+  CHECK(state.applied[0] == 0);
+  CHECK(multibody.reactions(state, 1e-3)[0].force.x == Approx(0).margin(1e-9));
+}

@@ -43,7 +43,7 @@ Balance balance_of(const Model& model, Real h, int steps) {
   return balance;
 }
 
-// Every joint but the fixed one, every force element, two drivers, and prescribed actuator, force and torque.
+// Every joint but the fixed one, every force element, a driver, and prescribed actuator, force and torque.
 Model busy_mechanism() {
   Model model = empty_model();
   model.integrator.hht_alpha = -0.1;
