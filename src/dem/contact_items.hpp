@@ -75,19 +75,22 @@ struct ContactForceItem {
     const Vec4 p = in.position[i], u = in.velocity[i];
     const int material = in.material[i];
     Vec3 f = u.w * gravity;
-    Real loss = 0;
-    for (Index k = in.offsets[i]; k < in.offsets[i + 1]; ++k) {
+    Real loss = 0, shape_loss = 0;
+    const Index end = in.offsets[i + 1];
+    for (Index k = in.offsets[i]; k < end; ++k) {
       const Index j = in.neighbors[k];
       const Vec4 q = in.position[j];
       const Vec3 r = xyz(p) - xyz(q);
-      const Real reach = p.w + q.w;
-      if (dot(r, r) >= reach * reach) continue;
-      const Overlap o = sphere_overlap(r, reach);
-      const Real rate = -dot(o.normal, xyz(u) - xyz(in.velocity[j]));
-      const ContactForce c = contact_force<Elastic>(laws.get(material, in.material[j]), o.overlap, rate);
-      f += c.force * o.normal;
-      loss += particle_share(j, in.first_shape) * c.loss;
+      const Real reach = p.w + q.w, squared_distance = dot(r, r);
+      if (squared_distance >= reach * reach) continue;
+      const Gap gap = sphere_gap(squared_distance, reach);
+      const Real rate = approach_rate(r, gap.inverse_distance, xyz(u) - xyz(in.velocity[j]));
+      const ContactForce c = contact_force<Elastic>(laws.get(material, in.material[j]), gap.overlap, rate);
+      f += (c.force * gap.inverse_distance) * r;
+      loss += c.loss;
+      if (j >= in.first_shape) shape_loss += c.loss;
     }
+    loss = Real(0.5) * (loss + shape_loss);  // the particle's share: half with particles, all with shapes
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
       const Overlap o = wall_overlap(p, wall);

@@ -30,6 +30,23 @@ SCREE_HD Overlap sphere_overlap(Vec3 r, Real radius_sum) {
   return {radius_sum - distance, distance, inverse * r};
 }
 
+// The same without the normal, for loops where its components are not needed one by one.
+struct Gap {
+  Real overlap;           // d [m]
+  Real inverse_distance;  // 1 / |r| [1/m]
+};
+
+// squared_distance: |r|^2 [m^2].
+SCREE_HD Gap sphere_gap(Real squared_distance, Real radius_sum) {
+  const Real distance = std::sqrt(squared_distance);
+  return {radius_sum - distance, 1 / distance};
+}
+
+// Overlap rate d_dot [m/s] of a pair: minus the normal part of the velocity of i relative to j.
+SCREE_HD Real approach_rate(Vec3 r, Real inverse_distance, Vec3 relative_velocity) {
+  return -inverse_distance * dot(r, relative_velocity);
+}
+
 // The force of one contact and its derivatives with respect to overlap and overlap rate.
 struct ContactForce {
   Real force;      // F [N]

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# From a bare Debian 12 to the paper's net and particles as files and pictures: sets up, builds, runs
+# input/paper/net_400.toml, draws. Run again, it does only what is out of date.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+deck=input/paper/net_400.toml
+results=results/net_400
+scree=build/release/scree
+python=.venv/bin/python
+
+# Whether the file is there and none of the others is newer.
+is_fresh() {
+  local file=$1 source
+  [[ -e "$file" ]] || return 1
+  for source in "${@:2}"; do [[ "$source" -nt "$file" ]] && return 1; done
+  return 0
+}
+
+# Whether the run with this program and this deck has been finished.
+is_run_done() {
+  is_fresh "$results/run_record.json" "$scree" "$deck" && grep -Eq '"status" *: *"done"' "$results/run_record.json"
+}
+
+jobs/build.sh release scree
+
+if is_run_done; then
+  echo "$results is up to date"
+else
+  "$scree" run "$deck" --output "$results"
+fi
+
+animation() { find "$results" -maxdepth 1 -name 'animation.*' | head -n 1; }
+
+if ! is_fresh "$results/final.png" "$results/run_record.json" postprocess/*.py || [[ -z "$(animation)" ]]; then
+  echo "drawing the final state and an animation"
+  "$python" postprocess/render.py "$results"
+fi
+if ! is_fresh "$results/history.png" "$results/run_record.json" postprocess/*.py; then
+  "$python" postprocess/plot_history.py "$results"
+fi
+
+cat <<END
+
+The net and 400 particles are in $results:
+  picture     $results/final.png
+  animation   $(animation)
+  energies    $results/history.png (history.h5 holds them, with counts and joint reactions)
+  fields      $results/particles.vtkhdf and bodies.vtkhdf for ParaView 5.13 and newer,
+              $results/particles.xdmf and bodies.xdmf for older ones
+In ParaView open both files, press Apply, then choose the representation "Point Gaussian" or add the filter Glyph
+(glyph type Sphere, radius 1, scale array radius, scale factor 1, glyph mode All Points).
+
+Run a deck of your own:  $scree run DECK      every key of a deck:  $scree keys
+END

@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
+#
+#     jobs/setup.sh [--paraview]
+#
+# --paraview adds Debian's ParaView, for the reader test that opens the .xdmf files in it.
+# With nothing to install it changes nothing; what it must not install it names.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+packages=(
+  g++ cmake ninja-build pkg-config git ca-certificates
+  libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libpetsc-real-dev libeigen3-dev
+  libtomlplusplus-dev libcli11-dev libfmt-dev catch2
+  python3 python3-venv ffmpeg     # pictures, animations and reader tests
+  libegl1 libgl1 libxrender1      # what PyPI's vtk draws with, off screen
+)
+paraview_packages=(paraview xvfb xauth python3-h5py)
+requirements=postprocess/requirements.txt
+
+fail() {
+  echo "set-up: $*" >&2
+  exit 1
+}
+
+is_installed() { [[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
+
+install_packages() {
+  local package missing=() as_root=()
+  for package in "$@"; do is_installed "$package" || missing+=("$package"); done
+  ((${#missing[@]} > 0)) || return 0
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null || fail "not root and no sudo here; as root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  echo "set-up: installing Debian packages: ${missing[*]}"
+  "${as_root[@]}" apt-get -q update || fail "apt-get update failed; needed: ${missing[*]}"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends "${missing[@]}" ||
+    fail "apt-get could not install: ${missing[*]}"
+}
+
+install_python_packages() {
+  cmp -s "$requirements" .venv/installed.txt && return 0
+  echo "set-up: installing Python packages into .venv: $(tr '\n' ' ' <"$requirements")"
+  /usr/bin/python3 -m venv .venv || fail "/usr/bin/python3 -m venv .venv failed"
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check -r "$requirements" ||
+    fail "pip could not install $requirements"
+  cp "$requirements" .venv/installed.txt
+}
+
+case "$*" in
+  "") ;;
+  --paraview) packages+=("${paraview_packages[@]}") ;;
+  *) fail "unknown arguments: $*; allowed: --paraview" ;;
+esac
+if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
+  install_packages "${packages[@]}"
+else
+  echo "set-up: this is not Debian; Scree needs what these Debian packages hold: ${packages[*]}"
+fi
+install_python_packages

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Measures what the README's performance table says, on one core; prints CPU seconds.
+#   tests/performance/run.sh [BUILD_DIR]      (default build/release; takes about three minutes)
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+build=${1:-build/release}
+cmake --build "$build" --target scree chain_scaling dense_bed
+results=$(mktemp -d)
+trap 'rm -rf "$results"' EXIT
+
+echo "machine: $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2-), commit $(git rev-parse --short HEAD 2>/dev/null || echo unknown)"
+echo
+echo "Table 4, N = 900, one simulated second:"
+net_900() {
+  local name=$1 cpu=()
+  shift
+  for repeat in 1 2 3; do
+    "$build/scree" run input/paper/table4.toml --set particles.block.count=900 --output "$results/run" "$@" \
+      >"$results/log" 2>&1
+    cpu+=("$(sed -n 's/.* s wall, \([0-9.]*\) s CPU.*/\1/p' "$results/log")")
+  done
+  printf '  %-62s %s s CPU (%s)\n' "$name" "$(printf '%s\n' "${cpu[@]}" | sort -n | sed -n 2p)" "${cpu[*]}"
+  sed -n 's/^t = .* after/    /p' "$results/log"
+}
+net_900 "implicit HHT, h = 1e-3" --set time.step=1e-3
+explicit=(--set integrator.particles=velocity-verlet)
+net_900 "explicit, h = 1e-5, bodies every 1e-4" --set time.step=1e-4 --set integrator.substeps=10 "${explicit[@]}"
+net_900 "explicit, h = 1e-5, bodies every 1e-5" --set time.step=1e-5 "${explicit[@]}"
+echo
+echo "Explicit steps on a settled 2D bed of frictionless discs:"
+"$build/tests/performance/dense_bed"
+echo
+echo "Hanging chain of planar bodies on revolute joints:"
+"$build/tests/performance/chain_scaling"

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Sets up, builds, and runs all tests that need no GPU.
+#
+#     tests/run.sh [--paraview] [CTEST OPTIONS]
+#
+# --paraview adds the test that opens the results in Debian's ParaView, and installs that. CTEST OPTIONS select
+# tests, for instance -L unit or -R verification.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+selection=(--label-exclude paraview)
+if [[ "${1:-}" == --paraview ]]; then
+  jobs/setup.sh --paraview
+  selection=()
+  shift
+fi
+jobs/build.sh release
+
+status=0
+ctest --test-dir build/release --output-on-failure --no-tests=error --parallel "$(nproc)" "${selection[@]}" "$@" ||
+  status=$?
+if ((status == 0)); then
+  echo "tests/run.sh: all tests passed in $SECONDS s, set-up and build included"
+else
+  echo "tests/run.sh: tests FAILED; their output is above and in build/release/Testing/Temporary/LastTest.log"
+fi
+exit "$status"

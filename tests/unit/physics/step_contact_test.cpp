@@ -1,0 +1,226 @@
+// A contact over a step that opens or closes it: continuity, energy, derivatives.
+#include <cmath>
+
+#include "physics/contact_law.hpp"
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kStep = 1e-3;       // [s]
+constexpr Real kReach = 2e-4;      // typical overlap at the start or end of a step [m]
+constexpr Real kRoundOff = 1e-12;  // relative
+
+struct StepLaw {
+  const char* name;
+  KelvinVoigt law;
+  ContactForce (*over_step)(const KelvinVoigt&, const ContactStep&);
+  ContactForce (*at_instant)(const KelvinVoigt&, Real, Real);
+  Real (*energy)(const KelvinVoigt&, Real);
+
+  // [J]; 0 across a gap.
+  Real stored(Real overlap) const { return overlap > 0 ? energy(law, overlap) : 0; }
+  // Force at the start of the step [N], and what it takes out [W].
+  ContactForce start(const ContactStep& c) const {
+    return c.overlap0 > 0 ? at_instant(law, c.overlap0, c.rate0) : ContactForce{0, 0, 0, 0};
+  }
+};
+
+template <class Elastic>
+StepLaw step_law(const char* name, Real stiffness, Real damping, Real exponent, bool tension) {
+  return {name, {stiffness, damping, exponent, tension}, step_contact_force<Elastic>, contact_force<Elastic>,
+          Elastic::energy};
+}
+
+const StepLaw kLaws[] = {
+    step_law<LinearElastic>("linear, cut", 1e6, 40, 1, false),
+    step_law<LinearElastic>("linear, tension", 1e6, 40, 1, true),
+    step_law<PowerElastic>("n = 1.5, cut", 1e8, 40, 1.5, false),
+    step_law<PowerElastic>("n = 1.5, tension", 1e8, 40, 1.5, true),
+    step_law<LinearElastic>("linear, cut, undamped", 1e6, 0, 1, false),
+    step_law<LinearElastic>("linear, tension, undamped", 1e6, 0, 1, true),
+    step_law<PowerElastic>("n = 1.5, cut, undamped", 1e8, 0, 1.5, false),
+    step_law<PowerElastic>("n = 1.5, tension, undamped", 1e8, 0, 1.5, true),
+};
+
+// A step from overlap0 to overlap1 whose rates fit the straight line and the trapezoidal rule, as those of HHT with
+// hht_alpha = 0 do: (rate0 + rate1) / 2 = (overlap1 - overlap0) / h.
+ContactStep step_between(Real overlap0, Real overlap1, Real rate0) {
+  return {overlap0, rate0, overlap1, 2 * (overlap1 - overlap0) / kStep - rate0, kStep};
+}
+
+Real slope_by_difference(const StepLaw& law, ContactStep c, Real ContactStep::*variable, Real difference) {
+  ContactStep up = c, down = c;
+  up.*variable += difference, down.*variable -= difference;
+  return (law.over_step(law.law, up).force - law.over_step(law.law, down).force) / (2 * difference);
+}
+
+// Steps of each kind: touching, releasing slowly and fast.
+const ContactStep kTouching[] = {step_between(-kReach, kReach, 0.3), step_between(-0.01 * kReach, kReach, 0.2),
+                                 step_between(-kReach, 0.01 * kReach, 0.25), step_between(0, kReach, 0.2)};
+const ContactStep kReleasing[] = {step_between(kReach, -kReach, -0.3), step_between(0.1 * kReach, -kReach, -0.2),
+                                  step_between(kReach, -0.1 * kReach, -0.1), step_between(kReach, 0, -0.1)};
+// The cut force of a damped contact is zero before the overlap is.
+const ContactStep kFading = step_between(kReach, 0.01 * kReach, 0);
+
+bool fades_early(const StepLaw& law) { return !law.law.tension && law.law.normal_damping > 0; }
+
+}  // namespace
+
+TEST_CASE("a contact that stays open has no force") {
+  for (const StepLaw& law : kLaws) {
+    CAPTURE(law.name);
+    const ContactForce f = law.over_step(law.law, step_between(-kReach, -0.5 * kReach, 0.1));
+    CHECK((f.force == 0 && f.stiffness == 0 && f.damping == 0 && f.loss == 0));
+  }
+}
+
+TEST_CASE("a contact that stays closed and pushes has the force at the end of the step") {
+  for (const StepLaw& law : kLaws) {
+    CAPTURE(law.name);
+    const ContactStep c = step_between(kReach, 1.2 * kReach, 0.05);
+    const ContactForce f = law.over_step(law.law, c), end = law.at_instant(law.law, c.overlap1, c.rate1);
+    CHECK(f.force == end.force);
+    CHECK(f.stiffness == end.stiffness);
+    CHECK(f.damping == end.damping);
+    CHECK(f.loss == end.loss);
+  }
+}
+
+TEST_CASE("the force is continuous where a contact touches at the end of the step") {
+  for (const StepLaw& law : kLaws)
+    for (const Real gap : {kReach, 0.1 * kReach}) {
+      CAPTURE(law.name, gap);
+      const Real tiny = 1e-9 * kReach;
+      const ContactForce f = law.over_step(law.law, step_between(-gap, tiny, 0.2));
+      // No more than its slope allows.
+      CHECK(f.force >= 0);
+      CHECK(f.force <= 2 * (law.law.normal_stiffness + 2 * law.law.normal_damping / kStep) * tiny);
+    }
+}
+
+// For n = 1 only: the trapezoidal work of another exponent's end forces is not the change of its energy.
+TEST_CASE("the force is continuous where a pulling contact releases at the end of the step") {
+  for (const StepLaw& law : kLaws) {
+    if (!law.law.tension || law.law.exponent != 1) continue;
+    for (const Real rate0 : {-0.4, -0.1, 0.2}) {
+      CAPTURE(law.name, rate0);
+      const Real tiny = 1e-9 * kReach;
+      const Real closed = law.over_step(law.law, step_between(kReach, tiny, rate0)).force;
+      const Real open = law.over_step(law.law, step_between(kReach, -tiny, rate0)).force;
+      const Real largest_slope = 4 * (law.law.normal_stiffness + law.law.normal_damping / kStep);
+      CHECK(std::abs(closed - open) <= largest_slope * tiny);
+    }
+  }
+}
+
+TEST_CASE("the force is continuous where a contact that only pushes lets go") {
+  for (const StepLaw& law : kLaws) {
+    if (law.law.tension) continue;
+    for (const Real overlap1 : {0.3 * kReach, 0.0, -0.2 * kReach}) {
+      CAPTURE(law.name, overlap1);
+      ContactStep c{kReach, -0.1, overlap1, 0, kStep};
+      // The rate at which the law's force is zero at the end, or that force grows with overlap1 alone.
+      if (law.law.normal_damping > 0) {
+        const Real slope0 = law.at_instant(law.law, kReach, 0).stiffness;
+        const Real elastic = overlap1 > 0 ? law.at_instant(law.law, overlap1, 0).force : slope0 * overlap1;
+        c.rate1 = -elastic / law.law.normal_damping;
+      } else {
+        c.overlap1 = 0;
+      }
+      ContactStep above = c, below = c;
+      const Real tiny = 1e-9;
+      above.rate1 += tiny, below.rate1 -= tiny;
+      above.overlap1 += tiny * kReach, below.overlap1 -= tiny * kReach;
+      const Real largest_slope = 4 * law.at_instant(law.law, kReach, 0).stiffness;
+      const Real allowed = 2 * tiny * (law.law.normal_damping + largest_slope * kReach);
+      CHECK(std::abs(law.over_step(law.law, above).force - law.over_step(law.law, below).force) <= allowed);
+    }
+  }
+}
+
+// For the linear law the energy that a cut contact leaves is exact too.
+TEST_CASE("without damping, the step's work is the change of the elastic energy") {
+  for (const StepLaw& law : kLaws) {
+    if (law.law.normal_damping > 0) continue;
+    const bool releases_exactly = law.law.tension || law.law.exponent == 1;
+    const auto check = [&](const ContactStep& c) {
+      CAPTURE(law.name, c.overlap0, c.overlap1);
+      const Real force = (law.start(c).force + law.over_step(law.law, c).force) / 2;
+      const Real change = law.stored(c.overlap1) - law.stored(c.overlap0);
+      CHECK(force * (c.overlap1 - c.overlap0) == Approx(change).epsilon(kRoundOff));
+    };
+    for (const ContactStep& c : kTouching) check(c);
+    if (!releases_exactly) continue;
+    for (const ContactStep& c : kReleasing) check(c);
+  }
+}
+
+TEST_CASE("the step's work is the change of the elastic energy and what is booked as lost") {
+  for (const StepLaw& law : kLaws) {
+    const auto check = [&](const ContactStep& c) {
+      CAPTURE(law.name, c.overlap0, c.overlap1, c.rate0);
+      const ContactForce start = law.start(c), end = law.over_step(law.law, c);
+      const Real work = (start.force + end.force) / 2 * (c.overlap1 - c.overlap0);
+      const Real lost = c.h / 2 * (start.loss + end.loss);
+      const Real scale = law.stored(kReach) + std::abs(lost);
+      CHECK(work - lost == Approx(law.stored(c.overlap1) - law.stored(c.overlap0)).margin(kRoundOff * scale));
+    };
+    for (const ContactStep& c : kTouching) check(c);
+    for (const ContactStep& c : kReleasing) check(c);
+    if (fades_early(law)) check(kFading);
+  }
+}
+
+TEST_CASE("a contact that closes or releases with tension dissipates what the damper takes on its way") {
+  for (const StepLaw& law : kLaws) {
+    const auto lost = [&](const ContactStep& c) {
+      return c.h / 2 * (law.start(c).loss + law.over_step(law.law, c).loss);
+    };
+    for (const ContactStep& c : kTouching) {
+      CAPTURE(law.name, c.overlap0, c.overlap1);
+      // Force C rate over the closed part of the straight path.
+      const Real rate = (c.overlap1 - c.overlap0) / c.h;
+      CHECK(lost(c) == Approx(law.law.normal_damping * rate * c.overlap1).margin(1e-15));
+    }
+    if (!law.law.tension) continue;
+    for (const ContactStep& c : kReleasing) {
+      CAPTURE(law.name, c.overlap0, c.overlap1);
+      const Real rate = (c.overlap1 - c.overlap0) / c.h;
+      CHECK(lost(c) == Approx(-law.law.normal_damping * rate * c.overlap0).margin(1e-15));
+    }
+  }
+}
+
+TEST_CASE("derivatives of the step's force are not negative and exact") {
+  for (const StepLaw& law : kLaws) {
+    const auto check = [&](const ContactStep& c) {
+      CAPTURE(law.name, c.overlap0, c.overlap1);
+      const ContactForce f = law.over_step(law.law, c);
+      CHECK(f.stiffness >= 0);
+      CHECK(f.damping >= 0);
+      if (c.overlap1 == 0) return;  // a kink: no derivative to compare with
+      const Real truncation = 1e-6;
+      const Real stiffness = slope_by_difference(law, c, &ContactStep::overlap1, 1e-6 * std::abs(c.overlap1));
+      CHECK(f.stiffness == Approx(stiffness).epsilon(truncation).margin(truncation));
+      const Real damping = slope_by_difference(law, c, &ContactStep::rate1, 1e-6);
+      CHECK(f.damping == Approx(damping).epsilon(truncation).margin(truncation));
+    };
+    for (const ContactStep& c : kTouching) check(c);
+    for (const ContactStep& c : kReleasing) check(c);
+    if (fades_early(law) && law.law.exponent == 1) check(kFading);
+  }
+}
+
+TEST_CASE("a pair of materials without stiffness and damping feels nothing") {
+  for (const bool tension : {false, true}) {
+    const KelvinVoigt nothing{0, 0, 1, tension};
+    for (const ContactStep& c : {kTouching[0], kReleasing[0], step_between(kReach, 0.5 * kReach, 0.1)}) {
+      CAPTURE(tension, c.overlap0, c.overlap1);
+      CHECK(step_contact_force<LinearElastic>(nothing, c).force == 0);
+    }
+  }
+}
+
+}  // namespace scree

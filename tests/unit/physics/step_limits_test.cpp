@@ -1,0 +1,53 @@
+// The step limits against the oscillators that they are made for.
+#include "physics/step_limits.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "physics/time_stepping.hpp"
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+// Largest |x| that velocity Verlet reaches from x = 1 on a damped oscillator, damping on the predicted velocity.
+Real largest_swing(Real stiffness, Real damping, Real mass, Real h) {
+  const auto acceleration = [&](Vec3 x, Vec3 v) { return (-1 / mass) * (stiffness * x + damping * v); };
+  Vec3 x{1, 0, 0}, v, a = acceleration(x, v);
+  Real largest = 1;
+  for (int step = 0; step < 2000; ++step) {
+    x += verlet_displacement(h, v, a);
+    const Vec3 predicted = verlet_predicted_velocity(h, v, a);
+    const Vec3 a1 = acceleration(x, predicted);
+    v = verlet_velocity(h, predicted, a, a1), a = a1;
+    largest = std::max(largest, std::abs(x.x));
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("velocity Verlet is stable below its limit and not above") {
+  const Real stiffness = 1e4, mass = 0.5;
+  const Real frequency = contact_frequency(stiffness, mass);
+  for (const Real damping : {0.0, 5.0, 40.0, 200.0}) {
+    CAPTURE(damping);
+    const Real limit = verlet_step_limit(frequency, stiffness, damping);
+    CHECK(largest_swing(stiffness, damping, mass, 0.99 * limit) < 10);
+    CHECK(largest_swing(stiffness, damping, mass, 1.01 * limit) > 1e6);
+  }
+  CHECK(verlet_step_limit(frequency, stiffness, 0) == Approx(2 / frequency).epsilon(1e-15));
+}
+
+TEST_CASE("contact time and typical stiffness") {
+  CHECK(reduced_mass(2, 2) == 1);
+  CHECK(reduced_mass(1, 1e12) == Approx(1).epsilon(1e-11));
+  CHECK(contact_time(100, 1) == Approx(std::numbers::pi / 10).epsilon(1e-15));
+  CHECK(typical_stiffness({5e3, 0, 1, false}, 0.1) == 5e3);
+  CHECK(typical_stiffness({5e3, 0, 1.5, false}, 0.01) == Approx(5e3 * 1.5 * 0.01).epsilon(1e-12));
+  CHECK(dense_frequency(6, 1, 2) == 6);
+  CHECK(dense_frequency(2, 1, 3) == 4);
+}
+
+}  // namespace scree

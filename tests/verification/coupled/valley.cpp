@@ -1,0 +1,74 @@
+// Case 5.2 of Jung, Jun, Sohn (2013): five particles fall into a valley of pinned bodies.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "support/catch.hpp"
+#include "support/reference.hpp"
+#include "support/simulation_run.hpp"
+
+using namespace scree;
+
+namespace {
+
+using Rows = std::vector<std::vector<Real>>;
+
+// Largest distance [m] of the particles from the reference at its row for time t; samples are 1 ms apart.
+Real distance(const SimulationRun& run, const Rows& truth) {
+  const auto sample = static_cast<std::size_t>(std::lround(run.time() / 1e-3));
+  const std::vector<Real>& row = truth.at(sample);
+  REQUIRE(std::abs(row[0] - run.time()) < 1e-9);
+  const std::vector<ParticleRecord> particles = run.particles();
+  Real largest = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const Vec3 p = particles[i].position;
+    largest = std::max(largest, std::hypot(p.x - row[1 + 4 * i], p.y - row[2 + 4 * i]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("5.2 at h = 1e-5 follows the truth, and its energy never rises") {
+  // Physical: perturbations grow by 2e3 in the first second (METHOD.md 4).
+  constexpr Real kPhysical070 = 1e-5, kPhysical080 = 4e-4, kPhysical100 = 5e-3;  // [m]
+  constexpr Real kEnergyRise = 1e-9;                                             // [J], METHOD.md 5
+  constexpr Real kBalance = 1e-4;
+  const Rows truth = reference_rows("coll52_tensile.csv"), energies = reference_rows("coll52_tensile_energy.csv");
+  const Model model = input_model("paper/valley.toml", {"time.control=fixed", "time.step=1e-5"});
+  SimulationRun run(model);
+  Real total = run.ledger().mechanical(), largest_rise = 0;
+  const auto watch_energy = [&] {
+    const Real now = run.ledger().mechanical();
+    largest_rise = std::max(largest_rise, now - total);
+    total = now;
+  };
+  std::vector<Real> error;
+  for (const Real t : {0.7, 0.8, 1.0}) {
+    run.run_until(t - 5e-6, watch_energy);
+    error.push_back(distance(run, truth));
+  }
+  std::cout << fmt::format("5.2, h = 1e-5: off by {:.2e}, {:.2e}, {:.2e} m at 0.7, 0.8, 1 s; energy rises by {:.1e} J; "
+                           "balance error {:.1e} J of {:.4g} J exchanged\n",
+                           error[0], error[1], error[2], largest_rise, run.balance_error(), run.exchanged());
+  CHECK(error[0] < kPhysical070);
+  CHECK(error[1] < kPhysical080);
+  CHECK(error[2] < kPhysical100);
+  CHECK(largest_rise < kEnergyRise);
+  CHECK(std::abs(run.balance_error()) < kBalance * run.exchanged());
+  const std::vector<Real>& end = energies.back();
+  CHECK(std::abs(run.ledger().dissipated_contacts - end[5]) < 1e-3 * end[5]);
+}
+
+TEST_CASE("5.2 with adaptive steps at the default tolerance") {
+  constexpr Real kPhysical = 1e-2;  // [m]
+  constexpr std::int64_t kMostSteps = 20000;
+  const Model model = input_model("paper/valley.toml");
+  SimulationRun run(model);
+  run.run();
+  const Real error = distance(run, reference_rows("coll52_tensile.csv"));
+  std::cout << fmt::format("5.2, adaptive: off by {:.2e} m at 1 s after {} steps\n", error, run.counts().steps);
+  CHECK(error < kPhysical);
+  CHECK(run.counts().steps <= kMostSteps);
+}
