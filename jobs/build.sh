@@ -9,5 +9,5 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=${1:-release} target=${2:-all}
 jobs/setup.sh
-cmake --preset "$preset" --log-level=WARNING
+cmake --preset "$preset" >/dev/null
 cmake --build "build/$preset" --target "$target"

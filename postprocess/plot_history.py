@@ -33,7 +33,7 @@ def style(panel, label):
 
 def plot_columns(panel, columns, names):
     """One line per column, all of one unit."""
-    time = columns["time"][0]
+    time = columns["step/time"][0]
     styles = itertools.product(["-", "--", ":", "-."], COLORS)
     for name, (dash, color) in zip(names, styles):
         label = name.split("/", 1)[-1].replace("_", " ") if name.startswith("energy/") else name
@@ -43,7 +43,7 @@ def plot_columns(panel, columns, names):
 
 def plot_balance(panel, columns, name):
     """The balance error, its largest value above."""
-    time, balance = columns["time"][0], columns[name][0]
+    time, balance = columns["step/time"][0], columns[name][0]
     panel.plot(time, balance, color=COLORS[0], linewidth=1.4)
     panel.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3))
     finite = balance[np.isfinite(balance)]
@@ -76,8 +76,8 @@ def main():
         for name, (_, unit, description) in columns.items():
             print(f"{name} [{unit}]: {description}")
         return
-    if "time" not in columns:
-        fail(f"{arguments.result_directory}: the history has no column time")
+    if "step/time" not in columns:
+        fail(f"{arguments.result_directory}: the history has no column step/time")
     energies = [name for name in columns if name.startswith("energy/") and "balance" not in name]
     balances = [name for name in columns if name.startswith("energy/") and "balance" in name]
     others = chosen_columns(columns, arguments.columns)

@@ -128,12 +128,23 @@ SCREE_HD ContactForce fading_force(const KelvinVoigt& law, const ContactStep& c,
           2 * lost / c.h - start.loss};
 }
 
+// d0, d1 > 0, the force F1 at the end not cut. The loss makes the trapezoidal rule give the work of the damping force,
+// (C d_dot0 + C d_dot1) / 2 (d1 - d0).
+SCREE_HD ContactForce lasting_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start,
+                                    ContactForce end) {
+  if (start.force != 0) end.loss = law.normal_damping * (c.rate0 + c.rate1) * (c.overlap1 - c.overlap0) / c.h - start.loss;
+  return end;
+}
+
 // The contact over a step that may open or close within it.
 template <class Elastic>
 SCREE_HD ContactForce step_contact_force(const KelvinVoigt& law, const ContactStep& c) {
   if (c.overlap0 <= 0) return c.overlap1 > 0 ? touching_force<Elastic>(law, c) : ContactForce{0, 0, 0, 0};
-  if (c.overlap1 > 0 && law.tension) return contact_force<Elastic>(law, c.overlap1, c.rate1);
   const ContactForce start = contact_force<Elastic>(law, c.overlap0, c.rate0);
+  if (c.overlap1 > 0) {
+    const ContactForce end = contact_force<Elastic>(law, c.overlap1, c.rate1);
+    if (end.force > 0 || law.tension) return lasting_force(law, c, start, end);
+  }
   if (law.tension) return releasing_force<Elastic>(law, c, start);
   const Real stiffness = c.overlap1 > 0 ? Elastic::stiffness(law, c.overlap1) : Elastic::stiffness(law, c.overlap0);
   const Real elastic = c.overlap1 > 0 ? Elastic::force(law, c.overlap1) : stiffness * c.overlap1;

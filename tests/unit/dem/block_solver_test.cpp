@@ -1,0 +1,143 @@
+// The particles' linear solve against Gaussian elimination of the same matrix.
+#include "dem/block_solver.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "model/random.hpp"
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Index kParticles = 12;
+constexpr Real kInverseScale = 1 / 0.7;  // 1 / (1 + hht_alpha)
+
+// A random contact graph in the solver's sparse form and as a dense matrix of 3 x 3 blocks.
+struct ContactProblem {
+  ContactProblem(Real stiffness, bool ghosts) : dense(9 * kParticles * kParticles) {
+    RandomNumbers random(static_cast<std::uint64_t>(stiffness) + ghosts);
+    std::vector<std::vector<std::pair<Index, Vec3>>> rows(kParticles);
+    for (Index i = 0; i < kParticles; ++i) {
+      velocity.push_back({0, 0, 0, random.uniform(0.5, 2)});
+      const Real mass = velocity.back().w * kInverseScale;
+      add(i, i, {mass, 0, 0, mass, 0, mass}, 1);
+    }
+    diagonal.resize(kParticles);
+    for (Index i = 0; i < kParticles; ++i)
+      for (Index j = 0; j < i; ++j)
+        if (random.uniform() < 0.4) add_pair(i, j, std::sqrt(stiffness) * vector(random), ghosts && j % 2 == 0, rows);
+    for (Index i = 0; i < kParticles; i += 3) add_to_diagonal(i, std::sqrt(stiffness) * vector(random));  // walls
+    flatten(rows);
+    for (Index i = 0; i < kParticles; ++i) {
+      Sym3 block = diagonal[static_cast<std::size_t>(i)];
+      const Real mass = velocity[static_cast<std::size_t>(i)].w * kInverseScale;
+      // Sum over a symmetric matrix's entries bounds its norm.
+      const Real bound = block.xx + block.yy + block.zz;
+      largest_stiffening = std::max(largest_stiffening, bound / mass);
+      block += Sym3{mass, 0, 0, mass, 0, mass};
+      inverse_block.push_back(inverse(block));
+      right_hand_side.push_back(vector(random));
+    }
+  }
+
+  static Vec3 vector(RandomNumbers& random) {
+    const Real x = random.normal(), y = random.normal(), z = random.normal();
+    return {x, y, z};
+  }
+  void add(Index i, Index j, Sym3 block, Real sign) {
+    const Real entries[9] = {block.xx, block.xy, block.xz, block.xy, block.yy, block.yz, block.xz, block.yz, block.zz};
+    for (int k = 0; k < 9; ++k) dense[entry(3 * i + k / 3, 3 * j + k % 3)] += sign * entries[k];
+  }
+  static std::size_t entry(Index row, Index column) { return static_cast<std::size_t>(row * 3 * kParticles + column); }
+  void add_to_diagonal(Index i, Vec3 b) {
+    diagonal[static_cast<std::size_t>(i)] += outer(1, b);
+    add(i, i, outer(1, b), 1);
+  }
+  // through_ghosts: each sees the other as a ghost across a periodic side.
+  void add_pair(Index i, Index j, Vec3 b, bool through_ghosts, std::vector<std::vector<std::pair<Index, Vec3>>>& rows) {
+    add_to_diagonal(i, b), add_to_diagonal(j, b);
+    add(i, j, outer(1, b), -1), add(j, i, outer(1, b), -1);
+    for (const auto& [row, partner, sign] : {std::tuple{i, j, 1.0}, std::tuple{j, i, -1.0}}) {
+      Index seen = partner;
+      if (through_ghosts) {
+        seen = kParticles + static_cast<Index>(ghosts.size());
+        ghosts.push_back({partner, {}, 0});
+      }
+      rows[static_cast<std::size_t>(row)].emplace_back(seen, sign * b);
+    }
+  }
+  // Rows with an unused slot at their end, as in a neighbour list whose pairs do not all touch.
+  void flatten(const std::vector<std::vector<std::pair<Index, Vec3>>>& rows) {
+    for (const auto& row : rows) {
+      offsets.push_back(static_cast<Index>(neighbor.size())), count.push_back(static_cast<Index>(row.size()));
+      for (const auto& [j, vector] : row) neighbor.push_back(j), b.push_back(vector);
+      neighbor.push_back(0), b.push_back({1e30, 1e30, 1e30});
+    }
+    offsets.push_back(static_cast<Index>(neighbor.size()));
+  }
+
+  // Gaussian elimination with pivoting.
+  std::vector<Real> gauss() const {
+    std::vector<Real> a = dense, x;
+    for (const Vec3& v : right_hand_side) x.insert(x.end(), {v.x, v.y, v.z});
+    const Index n = 3 * kParticles;
+    const auto at = [&](Index i, Index j) -> Real& { return a[entry(i, j)]; };
+    const auto value = [&](Index i) -> Real& { return x[static_cast<std::size_t>(i)]; };
+    for (Index k = 0; k < n; ++k) {
+      Index pivot = k;
+      for (Index i = k; i < n; ++i) pivot = std::abs(at(i, k)) > std::abs(at(pivot, k)) ? i : pivot;
+      for (Index j = 0; j < n; ++j) std::swap(at(k, j), at(pivot, j));
+      std::swap(value(k), value(pivot));
+      for (Index i = k + 1; i < n; ++i) {
+        const Real factor = at(i, k) / at(k, k);
+        for (Index j = k; j < n; ++j) at(i, j) -= factor * at(k, j);
+        value(i) -= factor * value(k);
+      }
+    }
+    for (Index k = n - 1; k >= 0; --k) {
+      for (Index j = k + 1; j < n; ++j) value(k) -= at(k, j) * value(j);
+      value(k) /= at(k, k);
+    }
+    return x;
+  }
+
+  std::vector<Real> dense;
+  std::vector<Vec4> velocity;
+  std::vector<Sym3> diagonal, inverse_block;
+  std::vector<Index> offsets, count, neighbor;
+  std::vector<Vec3> b, right_hand_side;
+  std::vector<Ghost> ghosts;
+  Real largest_stiffening = 0;
+};
+
+}  // namespace
+
+TEST_CASE("the matrix-free solve finds the solution of the dense one") {
+  for (const Real stiffness : {0.0, 1.0, 10.0, 100.0})
+    for (const bool ghosts : {false, true}) {
+      CAPTURE(stiffness, ghosts);
+      ContactProblem p(stiffness, ghosts);
+      std::vector<Vec3> residual = p.right_hand_side, solution(kParticles);
+      std::vector<Vec4> d(kParticles + p.ghosts.size());
+      const Real tolerance = 1e-11;
+      const BlockSolver::System system{{{p.count.data(), p.neighbor.data(), p.b.data(), p.diagonal.data()},
+                                        p.offsets.data(), p.velocity.data(), kInverseScale, nullptr, nullptr},
+                                       p.inverse_block, residual, p.ghosts, p.largest_stiffening, tolerance};
+      const int products = BlockSolver().solve(system, d, solution);
+      const std::vector<Real> expected = p.gauss();
+      // The smallest eigenvalue is at least the lightest particle's mass.
+      const Real truncation = tolerance * std::sqrt(kParticles) / 0.5;
+      for (std::size_t i = 0; i < kParticles; ++i) {
+        CHECK(norm(residual[i]) <= tolerance);
+        const Vec3 x{expected[3 * i], expected[3 * i + 1], expected[3 * i + 2]};
+        CHECK(norm(solution[i] - x) <= truncation);
+      }
+      // Chebyshev's bound: the error falls by (sqrt(c) - 1) / (sqrt(c) + 1) per product, c <= 2 (1 + stiffening).
+      CHECK(products <= 5 + 20 * std::sqrt(2 * (1 + p.largest_stiffening)));
+    }
+}
+
+}  // namespace scree

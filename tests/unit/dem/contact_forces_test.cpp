@@ -1,0 +1,181 @@
+// Contact forces, wrenches and sums of the CPU backend against a sum over all pairs.
+#include <cmath>
+
+#include "random_box.hpp"
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kRoundOff = 1e-12;  // relative to the sum of magnitudes
+constexpr int kParticles = 120;
+
+struct BruteContacts {
+  std::vector<Vec3> force;      // per item [N]
+  std::vector<int> contacts;    // per item
+  Real elastic = 0;             // of all contacts [J]
+  Real magnitude = 0;           // sum of |force| over all contacts [N]
+  int count = 0;
+};
+
+bool interact(const BodyShapes& shapes, const BruteItem& a, const BruteItem& b) {
+  return a.body < 0 || b.body < 0 || shapes.may_touch(a.body, b.body);
+}
+
+void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal, std::size_t i) {
+  const ContactForce c = contact_force<PowerElastic>(law, overlap, rate);
+  sum.force[i] += c.force * normal;
+  sum.magnitude += std::abs(c.force);
+  ++sum.contacts[i];
+}
+
+// Every ordered pair and image: forces once per item, energies and counts half from either side.
+BruteContacts brute_contacts(const LoadedBox& box) {
+  const std::vector<BruteItem> items = brute_items(box);
+  const BodyShapes shapes(box.model);
+  BruteContacts sum{std::vector<Vec3>(items.size()), std::vector<int>(items.size())};
+  Real pairs = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const BruteItem& a = items[i];
+    for (std::size_t j = 0; j < items.size(); ++j)
+      for_each_image(Subdomain(box.model.space).period(), [&](Vec3 shift, int image) {
+        const BruteItem& b = items[j];
+        if ((i == j && image == kNoShift) || !interact(shapes, a, b)) return;
+        const Vec3 r = a.position - b.position - shift;
+        const Real overlap = a.radius + b.radius - norm(r);
+        if (overlap <= 0) return;
+        const Vec3 normal = (1 / norm(r)) * r;
+        const KelvinVoigt& law = box.model.contact.law(a.material, b.material);
+        add_contact(sum, law, overlap, -dot(normal, a.velocity - b.velocity), normal, i);
+        sum.elastic += PowerElastic::energy(law, overlap) / 2, pairs += 0.5;
+      });
+    for (const Wall& wall : box.model.walls) {
+      const Real overlap = a.radius - dot(a.position - wall.point, wall.normal);
+      if (overlap <= 0) continue;
+      const KelvinVoigt& law = box.model.contact.law(a.material, wall.material);
+      add_contact(sum, law, overlap, -dot(wall.normal, a.velocity), wall.normal, i);
+      sum.elastic += PowerElastic::energy(law, overlap), pairs += 1;
+    }
+  }
+  sum.count = static_cast<int>(std::lround(pairs));
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("contact forces on particles and shapes are those of all pairs and walls") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    LoadedBox box(random_box(c, kParticles, 11));
+    const BruteContacts expected = brute_contacts(box);
+    REQUIRE(expected.count > 20);
+    const ParticlePack particles = box.backend->pack_particles();
+    for (std::size_t i = 0; i < particles.global_id.size(); ++i) {
+      const auto id = static_cast<std::size_t>(particles.global_id[i]);
+      CHECK(norm(particles.force[i] - expected.force[id]) <= kRoundOff * expected.magnitude);
+      CHECK(particles.contacts[i] == expected.contacts[id]);
+    }
+    const ShapePack shapes = box.backend->pack_shapes();
+    for (std::size_t s = 0; s < shapes.force.size(); ++s) {
+      CHECK(norm(shapes.force[s] - expected.force[kParticles + s]) <= kRoundOff * expected.magnitude);
+      CHECK(shapes.contacts[s] == expected.contacts[kParticles + s]);
+    }
+  }
+}
+
+TEST_CASE("the wrench on a body is the sum over its shapes, with their arms") {
+  for (const BoxCase& c : kBoxes) {
+    if (!c.bodies) continue;
+    CAPTURE(c.name);
+    LoadedBox box(random_box(c, kParticles, 12));
+    const BruteContacts contacts = brute_contacts(box);
+    std::vector<BodyWrench> step(box.motion.size()), end = step;
+    box.backend->reduce_wrench(step, end);
+    std::size_t item = kParticles;
+    for (std::size_t b = 0; b < box.motion.size(); ++b) {
+      Vec3 force, torque;
+      for (const Shape& shape : box.model.bodies[b].shapes) {
+        const Vec3 arm = point_motion(box.motion[b], shape.offset).position - box.motion[b].position;
+        force += contacts.force[item], torque += cross(arm, contacts.force[item]);
+        ++item;
+      }
+      CHECK(norm(end[b].force - force) <= kRoundOff * contacts.magnitude);
+      CHECK(norm(end[b].torque - torque) <= kRoundOff * contacts.magnitude);
+      CHECK(end[b].force == step[b].force);  // at one instant nothing opens or closes
+    }
+  }
+}
+
+TEST_CASE("particles and bodies push each other with opposite forces and torques") {
+  for (const BoxCase& c : kBoxes) {
+    Model model = random_box(c, kParticles, 13);
+    model.walls.clear();
+    CAPTURE(c.name);
+    LoadedBox box(model);
+    Vec3 force, torque;
+    Real magnitude = 0;
+    const ParticlePack particles = box.backend->pack_particles();
+    for (std::size_t i = 0; i < particles.force.size(); ++i) {
+      force += particles.force[i], torque += cross(particles.position[i], particles.force[i]);
+      magnitude += norm(particles.force[i]);
+    }
+    std::vector<BodyWrench> step(box.motion.size()), end = step;
+    box.backend->reduce_wrench(step, end);
+    for (std::size_t b = 0; b < end.size(); ++b) {
+      force += end[b].force, torque += end[b].torque + cross(box.motion[b].position, end[b].force);
+    }
+    CHECK(norm(force) <= kRoundOff * magnitude);
+    if (c.periodic_axes == 0) CHECK(norm(torque) <= kRoundOff * magnitude);  // images have other arms
+  }
+}
+
+TEST_CASE("the ledger sums over all particles and contacts") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    LoadedBox box(random_box(c, kParticles, 14));
+    const BruteContacts contacts = brute_contacts(box);
+    Real kinetic = 0, gravitational = 0, scale = 0;
+    Vec3 momentum, angular;
+    for (std::size_t i = 0; i < kParticles; ++i) {
+      const ParticleRecord& r = box.records[i];
+      const Real mass = box.model.particles.mass[i];
+      kinetic += mass / 2 * dot(r.velocity, r.velocity);
+      gravitational -= mass * dot(box.model.gravity, r.position);
+      scale += mass * norm(box.model.gravity) * norm(r.position);
+      momentum += mass * r.velocity, angular += mass * cross(r.position, r.velocity);
+    }
+    const ParticleLedger ledger = box.backend->ledger(0);
+    CHECK(ledger.kinetic == Approx(kinetic).epsilon(kRoundOff));
+    CHECK(ledger.gravitational == Approx(gravitational).margin(kRoundOff * scale));
+    CHECK(ledger.contact_elastic == Approx(contacts.elastic).epsilon(kRoundOff));
+    CHECK(ledger.contacts == contacts.count);
+    CHECK(norm(ledger.momentum - momentum) <= kRoundOff * kParticles);
+    CHECK(norm(ledger.angular_momentum - angular) <= kRoundOff * kParticles);
+    CHECK((ledger.contact_loss == 0 && ledger.integrator_loss == 0 && ledger.drifting == 0));
+  }
+}
+
+TEST_CASE("the ledger adds what particles and shapes have lost so far, and Verlet's shift") {
+  LoadedBox box(random_box(kBoxes[2], kParticles, 15));
+  Real lost = 0, integrator = 0;
+  for (std::size_t i = 0; i < box.records.size(); ++i) {
+    box.records[i].contact_loss = 0.25 * static_cast<Real>(i), lost += box.records[i].contact_loss;
+    box.records[i].integrator_loss = 2 - static_cast<Real>(i), integrator += box.records[i].integrator_loss;
+    box.records[i].acceleration = {1, 2, 0};
+  }
+  box.records[3].drifting = true;
+  box.backend->load(box.records, {7, 0});
+  box.backend->place_bodies(box.motion);
+  box.backend->build_list(0.02, box.timers);
+  const ParticleLedger ledger = box.backend->ledger(0);
+  CHECK(ledger.contact_loss == Approx(lost + 7).epsilon(kRoundOff));
+  CHECK(ledger.integrator_loss == Approx(integrator).epsilon(kRoundOff));
+  CHECK(ledger.drifting == 1);
+  Real mass = 0;
+  for (const Real m : box.model.particles.mass) mass += m;
+  const Real h = 0.01, shift = mass * h * h / 8 * 5;
+  CHECK(box.backend->ledger(h).integrator_loss == Approx(integrator - shift).epsilon(kRoundOff));
+}
+
+}  // namespace scree

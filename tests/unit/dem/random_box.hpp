@@ -1,0 +1,168 @@
+// Boxes of particles and bodies at random places for tests, and their contacts found by brute force.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dem/backend.hpp"
+#include "dem/body_shapes.hpp"
+#include "model/model.hpp"
+#include "model/random.hpp"
+#include "partition/halo.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+struct BoxCase {
+  const char* name;
+  int dimension;
+  int periodic_axes;    // that many, x first
+  Real smallest_radius; // over the largest
+  bool walls;           // two planes
+  bool bodies;
+  int materials;
+  Real exponent;
+  bool tension;
+};
+
+inline const BoxCase kBoxes[] = {{"2D, equal, open", 2, 0, 1.0, false, false, 1, 1, false},
+                                 {"2D, polydisperse, periodic", 2, 2, 0.2, false, false, 2, 1, true},
+                                 {"2D, bodies and walls", 2, 0, 0.4, true, true, 2, 1.5, false},
+                                 {"2D, bodies, periodic in x", 2, 1, 0.4, true, true, 1, 1, true},
+                                 {"3D, equal, periodic", 3, 3, 1.0, false, false, 1, 1.5, false},
+                                 {"3D, polydisperse, bodies, periodic", 3, 3, 0.3, false, true, 2, 1, false},
+                                 {"3D, polydisperse, walls", 3, 0, 0.3, true, false, 1, 1, false}};
+
+inline constexpr Real kLargestRadius = 0.1;
+
+inline Vec3 random_point(RandomNumbers& random, const Space& space) {
+  const Real x = random.uniform(space.min.x, space.max.x), y = random.uniform(space.min.y, space.max.y);
+  return {x, y, space.dimension == 3 ? random.uniform(space.min.z, space.max.z) : 0};
+}
+
+inline Vec3 random_velocity(RandomNumbers& random, int dimension) {
+  const Real x = random.normal(), y = random.normal();
+  return {x, y, dimension == 3 ? random.normal() : 0};
+}
+
+inline Space random_space(const BoxCase& box) {
+  Space space;
+  space.dimension = box.dimension;
+  space.min = {-1.1, -0.7, box.dimension == 3 ? 0.3 : 0.0}, space.max = {0.9, 0.8, box.dimension == 3 ? 1.6 : 0.0};
+  for (int side = 0; side < 2 * box.periodic_axes; ++side)
+    space.boundary[static_cast<std::size_t>(side)] = Boundary::periodic;
+  space.leaving = Leaving::drift;
+  return space;
+}
+
+inline Body random_body(RandomNumbers& random, const BoxCase& box, const Space& space, int shapes) {
+  Body body;
+  body.mass = 2, body.inertia = 0.01;
+  body.position = random_point(random, space), body.velocity = random_velocity(random, box.dimension);
+  body.angle = random.uniform(-3, 3), body.angular_velocity = random.normal();
+  for (int s = 0; s < shapes; ++s)
+    body.shapes.push_back({{0.08 * s, -0.05 * s, 0}, kLargestRadius * random.uniform(0.5, 1), s % box.materials});
+  return body;
+}
+
+// Five bodies: the first three in a chain of a spring and a joint, one of them with three shapes.
+inline void add_bodies(RandomNumbers& random, const BoxCase& box, Model& model) {
+  for (const int shapes : {1, 2, 1, 3, 1}) model.bodies.push_back(random_body(random, box, model.space, shapes));
+  model.bodies[1].position = model.bodies[0].position + Vec3{0.1, 0, 0};
+  model.bodies[3].position = model.bodies[2].position + Vec3{0, 0.1, 0};
+  SpringDamper spring;
+  spring.body[0] = 0, spring.body[1] = 1;
+  model.spring_dampers.push_back(spring);
+  Joint joint;
+  joint.body[0] = 2, joint.body[1] = 1;
+  model.joints.push_back(joint);
+}
+
+// Particles overlap at random: a contact everywhere, of every size.
+inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
+  RandomNumbers random(seed);
+  Model model;
+  model.space = random_space(box);
+  model.gravity = {0.5, -9.8, box.dimension == 3 ? 0.3 : 0.0};
+  model.contact.material_names.assign(static_cast<std::size_t>(box.materials), "material");
+  for (int k = 0; k < box.materials * box.materials; ++k) {
+    const int i = k / box.materials, j = k % box.materials;
+    model.contact.laws.push_back({1e3 * (1 + i + j), 5.0 + i * j, box.exponent, box.tension});
+  }
+  for (int i = 0; i < particles; ++i) {
+    const Real radius = kLargestRadius * random.uniform(box.smallest_radius, 1);
+    model.particles.position.push_back(random_point(random, model.space));
+    model.particles.velocity.push_back(random_velocity(random, box.dimension));
+    model.particles.radius.push_back(radius);
+    model.particles.mass.push_back(1e3 * radius * radius * radius);
+    model.particles.material.push_back(i % box.materials);
+  }
+  if (box.walls) {
+    model.walls.push_back({"slope", {0, -0.6, 0}, {0.6, 0.8, 0}, 0});
+    model.walls.push_back({"side", {0.85, 0, 0}, {-1, 0, 0}, box.materials - 1});
+  }
+  if (box.bodies) add_bodies(random, box, model);
+  return model;
+}
+
+inline std::vector<BodyMotion> motion_of(const std::vector<Body>& bodies) {
+  std::vector<BodyMotion> motion;
+  for (const Body& b : bodies) motion.push_back({b.position, b.velocity, b.angle, b.angular_velocity});
+  return motion;
+}
+
+// A model on a backend with its list built and its first forces known.
+struct LoadedBox {
+  explicit LoadedBox(const Model& of, Real skin = 0.02)
+      : model(of), records(initial_records(model.particles, Subdomain(model.space))), motion(motion_of(model.bodies)) {
+    backend->load(records, {});
+    backend->place_bodies(motion);
+    backend->build_list(skin, timers);
+    backend->initial_forces();
+  }
+  LoadedBox(const LoadedBox&) = delete;
+  LoadedBox& operator=(const LoadedBox&) = delete;
+
+  Model model;
+  std::vector<ParticleRecord> records;
+  std::vector<BodyMotion> motion;
+  std::unique_ptr<Backend> backend = make_cpu_backend(model);
+  StageTimers timers;
+};
+
+// A particle or a shape for the search by brute force.
+struct BruteItem {
+  Vec3 position, velocity;
+  Real radius;
+  int material;
+  int body;  // -1: a particle
+};
+
+inline std::vector<BruteItem> brute_items(const LoadedBox& box) {
+  std::vector<BruteItem> items;
+  for (std::size_t i = 0; i < box.records.size(); ++i)
+    items.push_back({box.records[i].position, box.records[i].velocity, box.model.particles.radius[i],
+                     box.model.particles.material[i], -1});
+  const Subdomain subdomain(box.model.space);
+  for (std::size_t b = 0; b < box.motion.size(); ++b)
+    for (const Shape& shape : box.model.bodies[b].shapes) {
+      const PointMotion point = point_motion(box.motion[b], shape.offset);
+      ImageCount unused;
+      items.push_back({subdomain.wrap(snap(point.position, subdomain.snap_constant()), unused), point.velocity,
+                       shape.radius, shape.material, static_cast<int>(b)});
+    }
+  return items;
+}
+
+// Calls visit(shift [m], number of the image) for the 27 neighbouring boxes; those of axes without period once.
+template <class Visit>
+void for_each_image(Vec3 period, const Visit& visit) {
+  for (int image = 0; image < 27; ++image) {
+    const int sx = image % 3 - 1, sy = image / 3 % 3 - 1, sz = image / 9 - 1;
+    if ((sx != 0 && period.x == 0) || (sy != 0 && period.y == 0) || (sz != 0 && period.z == 0)) continue;
+    visit(Vec3{sx * period.x, sy * period.y, sz * period.z}, image);
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,224 @@
+// Steps of the CPU backend: undone without a trace, the same bits for every list and for fused substeps; particles
+// that leave.
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "random_box.hpp"
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr int kParticles = 60;
+
+// Bit for bit, signs of zeros included.
+bool same_bits(Vec3 a, Vec3 b) { return std::memcmp(&a, &b, sizeof(Vec3)) == 0; }
+
+bool same_bits(const std::vector<ParticleRecord>& a, const std::vector<ParticleRecord>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const ParticleRecord &p = a[i], &q = b[i];
+    const bool same = p.global_id == q.global_id && same_bits(p.position, q.position) &&
+                      same_bits(p.velocity, q.velocity) && same_bits(p.acceleration, q.acceleration) &&
+                      same_bits(p.force, q.force) && p.contact_loss == q.contact_loss &&
+                      p.loss_power == q.loss_power && p.integrator_loss == q.integrator_loss &&
+                      p.image.x == q.image.x && p.image.y == q.image.y && p.image.z == q.image.z &&
+                      p.drifting == q.drifting;
+    if (!same) return false;
+  }
+  return true;
+}
+
+Model soft_box(const BoxCase& box, ParticleIntegrator integrator) {
+  Model model = random_box(box, kParticles, 21);
+  model.integrator.particles = integrator;
+  return model;
+}
+
+// The particles' own Newton loop with the bodies held.
+void hht_step(Backend& backend, Real h) {
+  backend.begin_step(h);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const ParticleNorms norms = backend.contact_force();
+    if (norms.overshoot) {
+      backend.shorten_correction();
+      continue;
+    }
+    if (norms.residual <= 1e-12) return backend.accept();
+    backend.particle_correct();
+  }
+  FAIL("no convergence");
+}
+
+void verlet_step(LoadedBox& box, Real h) {
+  box.backend->verlet_start(h);
+  box.backend->place_bodies(box.motion);
+  box.backend->verlet_finish(h);
+}
+
+}  // namespace
+
+TEST_CASE("a rolled-back step leaves no trace") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    LoadedBox box(soft_box(c, ParticleIntegrator::hht), 0.2);
+    hht_step(*box.backend, 1e-4);
+    const std::vector<ParticleRecord> before = box.backend->records();
+    box.backend->begin_step(1e-3);
+    box.backend->contact_force();
+    box.backend->particle_correct();
+    CHECK_FALSE(same_bits(box.backend->records(), before));
+    box.backend->rollback();
+    CHECK(same_bits(box.backend->records(), before));
+    // The next step is the one that would have followed.
+    hht_step(*box.backend, 1e-4);
+    const std::vector<ParticleRecord> after = box.backend->records();
+    LoadedBox other(soft_box(c, ParticleIntegrator::hht), 0.2);
+    hht_step(*other.backend, 1e-4), hht_step(*other.backend, 1e-4);
+    CHECK(same_bits(other.backend->records(), after));
+  }
+}
+
+TEST_CASE("the list's skin and age do not change a bit") {
+  for (const BoxCase& c : kBoxes)
+    for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+      CAPTURE(c.name, static_cast<int>(integrator));
+      LoadedBox often(soft_box(c, integrator), 0.05), seldom(soft_box(c, integrator), 0.3);
+      for (int step = 0; step < 10; ++step) {
+        for (LoadedBox* box : {&often, &seldom}) {
+          if (integrator == ParticleIntegrator::hht)
+            hht_step(*box->backend, 2e-4);
+          else
+            verlet_step(*box, 2e-4);
+        }
+        often.backend->build_list(0.02 + 0.01 * step, often.timers);
+      }
+      REQUIRE(seldom.backend->list_displacement() <= 1);
+      CHECK(same_bits(often.backend->records(), seldom.backend->records()));
+    }
+}
+
+TEST_CASE("fused explicit steps give the bits of single ones") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    const Model model = soft_box(c, ParticleIntegrator::velocity_verlet);
+    LoadedBox fused(model, 0.3), single(model, 0.3);
+    const Real h = 1e-4;
+    fused.backend->verlet_start(h);
+    for (int step = 0; step < 8; ++step) {
+      fused.backend->place_bodies(fused.motion);
+      fused.backend->verlet_advance(h);
+    }
+    fused.backend->place_bodies(fused.motion);
+    fused.backend->verlet_finish(h);
+    for (int step = 0; step < 9; ++step) verlet_step(single, h);
+    CHECK(same_bits(fused.backend->records(), single.backend->records()));
+  }
+}
+
+TEST_CASE("steps conserve momentum without gravity, walls and bodies") {
+  for (const BoxCase& c : kBoxes)
+    for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+      if (c.bodies || c.walls) continue;
+      CAPTURE(c.name, static_cast<int>(integrator));
+      Model model = soft_box(c, integrator);
+      model.gravity = {};
+      LoadedBox box(model, 0.3);
+      const ParticleLedger start = box.backend->ledger(0);
+      for (int step = 0; step < 10; ++step) {
+        if (integrator == ParticleIntegrator::hht)
+          hht_step(*box.backend, 1e-4);
+        else
+          verlet_step(box, 1e-4);
+      }
+      // HHT's is exact to its residual of 1e-12 of the largest force.
+      CHECK(norm(box.backend->ledger(0).momentum - start.momentum) <= 1e-11 * kParticles);
+    }
+}
+
+TEST_CASE("the list expires when an item has moved by half the skin") {
+  LoadedBox box(soft_box(kBoxes[2], ParticleIntegrator::hht), 0.1);
+  CHECK(box.backend->list_displacement() == 0);
+  box.motion[4].position.x += 0.04;
+  box.backend->begin_step(1e-9);
+  box.backend->place_bodies(box.motion);
+  CHECK(box.backend->list_displacement() == Approx(0.8).epsilon(1e-6));
+  box.motion[4].position.x += 0.02;
+  box.backend->place_bodies(box.motion);
+  CHECK(box.backend->list_displacement() == Approx(1.2).epsilon(1e-6));
+}
+
+TEST_CASE("particles outside leave once, ordered by global id, and drift or are removed") {
+  for (const Leaving leaving : {Leaving::error, Leaving::remove, Leaving::drift}) {
+    CAPTURE(static_cast<int>(leaving));
+    Model model = soft_box(kBoxes[0], ParticleIntegrator::velocity_verlet);
+    model.space.leaving = leaving;
+    const Real h = 1e-3;
+    for (const std::size_t id : {41, 7, 23}) {
+      model.particles.position[id].x = model.space.max.x - 1e-6;
+      model.particles.velocity[id] = {100, 0, 0};
+    }
+    LoadedBox box(model, 0.5);
+    verlet_step(box, h);
+    const ParticleLedger before = box.backend->ledger(0);
+    const std::vector<Leaver> leavers = box.backend->collect_leavers();
+    REQUIRE(leavers.size() == 3);
+    CHECK((leavers[0].global_id == 7 && leavers[1].global_id == 23 && leavers[2].global_id == 41));
+    for (const Leaver& l : leavers) CHECK((l.position.x > model.space.max.x && !l.lost));
+    if (leaving == Leaving::error) {
+      CHECK(box.backend->collect_leavers().size() == 3);
+      continue;
+    }
+    CHECK(box.backend->list_displacement() > 1);
+    box.backend->build_list(0.1, box.timers);
+    CHECK(box.backend->collect_leavers().empty());
+    const ParticleLedger after = box.backend->ledger(0);
+    const bool removed = leaving == Leaving::remove;
+    CHECK(box.backend->records().size() == static_cast<std::size_t>(removed ? kParticles - 3 : kParticles));
+    CHECK(after.drifting == (removed ? 0 : 3));
+    Real taken = 0;
+    for (const Leaver& l : leavers) taken += l.energy;
+    const Real energy = after.kinetic + after.gravitational + (removed ? taken : 0);
+    CHECK(energy == Approx(before.kinetic + before.gravitational).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a particle that drifts feels gravity alone") {
+  Model model = soft_box(kBoxes[0], ParticleIntegrator::velocity_verlet);
+  LoadedBox box(model);
+  // Three of a kind at one place outside.
+  for (const std::size_t id : {3, 4, 5}) {
+    box.records[id].position = {2 + 0.01 * static_cast<Real>(id), 0, 0};
+    box.records[id].drifting = true;
+  }
+  box.backend->load(box.records, {});
+  box.backend->build_list(0.02, box.timers);
+  box.backend->initial_forces();
+  const ParticlePack pack = box.backend->pack_particles();
+  for (std::size_t i = 0; i < pack.global_id.size(); ++i) {
+    if (pack.global_id[i] < 3 || pack.global_id[i] > 5) continue;
+    CHECK(norm(pack.force[i]) == 0);
+    CHECK(pack.contacts[i] == 0);
+  }
+}
+
+TEST_CASE("a force that is not finite names the stage and the particle") {
+  LoadedBox box(soft_box(kBoxes[0], ParticleIntegrator::hht));
+  box.records[17].velocity.x = std::nan("");
+  box.backend->load(box.records, {});
+  box.backend->build_list(0.02, box.timers);
+  box.backend->initial_forces();
+  std::string message;
+  try {
+    box.backend->begin_step(1e-4);
+    box.backend->contact_force();
+  } catch (const SimulationError& error) {
+    message = error.what();
+  }
+  CHECK(message.find("contact_force") != std::string::npos);
+  CHECK(message.find("particle") != std::string::npos);
+}
+
+}  // namespace scree

@@ -1,0 +1,70 @@
+// Short runs that between them use every part of the state.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "support/models.hpp"
+#include "support/reference.hpp"
+
+namespace scree {
+
+struct RestartCase {
+  std::string name;
+  Model model;
+  bool leaves;  // particles leave the space
+};
+
+// Discs that collide over a floor and fly out through the open sides.
+inline const std::string kLeavingDiscs = R"(
+gravity = [0.0, -9.8066]
+[space]
+dimension = 2
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+y_min = "wall"
+[time]
+end = 0.2
+step = 1e-4
+[[contact.pairs]]
+stiffness = 1e5
+damping = 10.0
+[[particles]]
+name = "discs"
+kind = "random"
+count = 60
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+radius = { kind = "uniform", min = 0.03, max = 0.04 }
+mass = 1.0
+random_velocity = 2.0
+seed = 5
+[output]
+history_interval = 3.3e-3
+)";
+
+// Each case with each integrator and step control that it can have.
+inline std::vector<RestartCase> restart_cases() {
+  const std::vector<std::vector<std::string>> ways = {{"integrator.particles=hht"},
+                                                      {"integrator.particles=hht", "integrator.hht_alpha=-0.1"},
+                                                      {"integrator.particles=hht", "time.control=adaptive"},
+                                                      {"integrator.particles=velocity-verlet", "integrator.substeps=3"}};
+  std::vector<RestartCase> cases;
+  for (const std::vector<std::string>& way : ways) {
+    const auto with = [&](std::vector<std::string> overrides) {
+      overrides.insert(overrides.end(), way.begin(), way.end());
+      return overrides;
+    };
+    const std::string how = ", " + way.front() + (way.size() > 1 ? ", " + way[1] : "");
+    cases.push_back({"net and particles" + how, input_model("paper/net_9.toml", with({"time.end=0.36"})), false});
+    cases.push_back({"valley" + how,
+                     input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
+    for (const std::string policy : {"remove", "drift"})
+      cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
+    cases.push_back({"periodic gas" + how,
+                     input_model("examples/gas_periodic.toml", with({"time.end=0.02", "particles.gas.count=1000"})), false});
+  }
+  return cases;
+}
+
+}  // namespace scree

@@ -1,0 +1,58 @@
+// The program itself: a run continued with --restart leaves the files of the uninterrupted run.
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "output/checkpoint.hpp"
+#include "output/hdf5_file.hpp"
+#include "run/simulation.hpp"
+#include "support/bits.hpp"
+#include "support/catch.hpp"
+#include "unit/output/scratch.hpp"
+#include "verification/restart/cases.hpp"
+
+using namespace scree;
+
+namespace {
+
+void run_to(Model model, Real end, const std::string& directory, const std::string& restart) {
+  model.time.end = end;
+  RunOptions options;
+  options.output_directory = directory;
+  options.restart = restart;
+  options.fingerprint = "restart test";
+  petsc();
+  Log log(true);
+  REQUIRE(run_simulation(model, options, log) == ExitCode::done);
+}
+
+// Names of the history's columns that differ in a bit.
+std::string differing_columns(const std::string& path_a, const std::string& path_b) {
+  const Hdf5File a(path_a, Hdf5Access::read), b(path_b, Hdf5Access::read);
+  const std::vector<std::string> names = a.dataset_names("/");
+  REQUIRE(names.size() > 20);
+  REQUIRE(names == b.dataset_names("/"));
+  std::string differing;
+  for (const std::string& name : names)
+    if (!same_bits(a.read_array<Real>("/" + name), b.read_array<Real>("/" + name))) differing += name + " ";
+  return differing;
+}
+
+}  // namespace
+
+TEST_CASE("a run continued with --restart leaves the same history and the same last checkpoint") {
+  for (const RestartCase& restart_case : restart_cases()) {
+    CAPTURE(restart_case.name);
+    const ScratchDirectory whole, parts;
+    Model model = restart_case.model;
+    const Real end = model.time.end;
+    model.output.checkpoint_interval = model.output.snapshot_interval = end / 2;
+    model.output.history_interval = end / 20;
+    run_to(model, end, whole.path(), "");
+    run_to(model, end / 2, parts.path(), "");
+    run_to(model, end, parts.path(), parts / "checkpoint.h5");
+    CHECK(differing_columns(whole / "history.h5", parts / "history.h5") == "");
+    CHECK(differing_arrays(read_checkpoint(whole / "checkpoint.h5"), read_checkpoint(parts / "checkpoint.h5")) == "");
+  }
+}

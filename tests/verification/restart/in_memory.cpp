@@ -1,0 +1,83 @@
+// A run continued from a checkpoint, and one with another neighbour list, have the uninterrupted run's bits.
+#include <string>
+#include <vector>
+
+#include "output/checkpoint.hpp"
+#include "support/bits.hpp"
+#include "support/catch.hpp"
+#include "unit/output/scratch.hpp"
+#include "verification/restart/cases.hpp"
+
+using namespace scree;
+
+namespace {
+
+struct Result {
+  Checkpoint state;
+  std::vector<std::vector<Real>> rows;
+  std::int64_t left = 0;
+  Real contact_loss = 0;
+};
+
+Result result_of(SimulationRun& run, std::vector<std::vector<Real>> rows) {
+  const State& state = run.complete_state();
+  return {pack(state), std::move(rows), state.carried_out.left, run.particle_ledger().contact_loss};
+}
+
+Result whole_run(const Model& model) {
+  SimulationRun run(model);
+  std::vector<std::vector<Real>> rows;
+  run.run([&] { rows.push_back(history_row(run)); });
+  return result_of(run, std::move(rows));
+}
+
+// Stops at the first step past `share` of the time, writes a checkpoint, and goes on from the file.
+Result interrupted_run(const Model& model, Real share) {
+  const ScratchDirectory directory;
+  std::vector<std::vector<Real>> rows;
+  {
+    SimulationRun first(model);
+    first.run_until(share * model.time.end, [&] { rows.push_back(history_row(first)); });
+    REQUIRE(first.time() < model.time.end);
+    write_checkpoint(directory / "checkpoint.h5", pack(first.complete_state()));
+  }
+  SimulationRun second(model, unpack(read_checkpoint(directory / "checkpoint.h5")));
+  second.run([&] { rows.push_back(history_row(second)); });
+  return result_of(second, std::move(rows));
+}
+
+void check_same(const Result& a, const Result& b) {
+  CHECK(differing_arrays(a.state, b.state) == "");
+  REQUIRE(a.rows.size() == b.rows.size());
+  std::size_t same = 0;
+  while (same < a.rows.size() && same_bits(a.rows[same], b.rows[same])) ++same;
+  CHECK(same == a.rows.size());
+}
+
+}  // namespace
+
+TEST_CASE("a restarted run continues bit for bit") {
+  for (const RestartCase& restart_case : restart_cases()) {
+    CAPTURE(restart_case.name);
+    const Result whole = whole_run(restart_case.model);
+    // Something happens that a restart can spoil.
+    CHECK(whole.rows.size() > 5);
+    CHECK((whole.contact_loss > 0 || restart_case.model.contact.law(0, 0).normal_damping == 0));
+    CHECK((whole.left > 0) == restart_case.leaves);
+    check_same(whole, interrupted_run(restart_case.model, 0.5));
+    check_same(whole, interrupted_run(restart_case.model, 0.93));
+  }
+}
+
+TEST_CASE("the neighbour list's skin does not change a bit") {
+  for (const RestartCase& restart_case : restart_cases()) {
+    CAPTURE(restart_case.name);
+    const Result whole = whole_run(restart_case.model);
+    for (const Real factor : {0.2, 2.3}) {
+      Model other = restart_case.model;
+      other.contact.skin *= factor;
+      CAPTURE(factor);
+      check_same(whole, whole_run(other));
+    }
+  }
+}
