@@ -56,7 +56,7 @@ inline std::vector<RestartCase> restart_cases() {
       return overrides;
     };
     const std::string how = ", " + way.front() + (way.size() > 1 ? ", " + way[1] : "");
-    cases.push_back({"net and particles" + how, input_model("paper/net_9.toml", with({"time.end=0.36"})), false});
+    cases.push_back({"net and particles" + how, input_model("paper/net_9.toml", with({"time.end=0.42"})), false});
     cases.push_back({"valley" + how,
                      input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
     for (const std::string policy : {"remove", "drift"})
