@@ -176,6 +176,10 @@ const TableKeys& output_keys() {
            .about("Simulated time between checkpoints; 0: only on failure and on a signal."),
        boolean("history_csv").otherwise("false").about("Whether the history is also written as CSV."),
        texts("history_bodies").otherwise("[]").about("Bodies, or rows of bodies, whose motion is recorded."),
+       integer("history_reactions")
+           .at_least(0)
+           .otherwise("100")
+           .about("Joints and drivers whose reactions are recorded: the first so many of the deck."),
        integers("history_particles")
            .at_least(0)
            .otherwise("[]")

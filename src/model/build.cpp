@@ -140,6 +140,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.history_interval = table.real("history_interval");
   output.checkpoint_interval = table.real("checkpoint_interval");
   output.history_csv = table.boolean("history_csv");
+  output.history_reactions = table.integer("history_reactions");
   for (const std::string& name : table.texts("history_bodies")) {
     const auto single = names.bodies.find(name);
     const std::vector<int> bodies = single != names.bodies.end()

@@ -69,8 +69,13 @@ Columns history_columns(const Model& model, const std::vector<Reaction>& reactio
   return out;
 }
 
-std::vector<Reaction> reactions_of(const BodyLink& link, const State& state) {
-  return link.multibody() ? link.multibody()->reactions(state.bodies, state.clock.time) : std::vector<Reaction>{};
+// The ones that the deck wants recorded.
+std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, const State& state) {
+  if (link.multibody() == nullptr || model.output.history_reactions == 0) return {};
+  std::vector<Reaction> reactions = link.multibody()->reactions(state.bodies, state.clock.time);
+  const auto wanted = static_cast<std::size_t>(model.output.history_reactions);
+  if (reactions.size() > wanted) reactions.resize(wanted);
+  return reactions;
 }
 
 void append(std::vector<Real>& row, Vec3 v) { row.insert(row.end(), {v.x, v.y, v.z}); }
@@ -90,7 +95,7 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
     : model_(model),
       backend_(backend),
       link_(link),
-      history_(directory, history_columns(model, reactions_of(link, state)), model.output.history_csv,
+      history_(directory, history_columns(model, reactions_of(model, link, state)), model.output.history_csv,
                state.history_rows),
       snapshots_(directory, model.title, static_cast<int>(state.snapshots)) {}
 
@@ -127,7 +132,7 @@ void Recorder::energy_row(State& state, std::vector<Real>& row) {
 
 void Recorder::body_row(const State& state, std::vector<Real>& row) const {
   if (link_.multibody() == nullptr) return;
-  for (const Reaction& reaction : reactions_of(link_, state))
+  for (const Reaction& reaction : reactions_of(model_, link_, state))
     row.insert(row.end(), {reaction.force.x, reaction.force.y, reaction.torque});
   if (model_.output.history_bodies.empty()) return;
   const std::vector<BodyMotion> motion = link_.multibody()->motion(state.bodies);

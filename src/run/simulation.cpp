@@ -124,6 +124,9 @@ void Simulation::progress(const State& state, Real h) {
 
 ExitCode Simulation::run() {
   write_record("running", ExitCode::done);
+  log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}", model_.particles.size(),
+                        model_.bodies.size(), backend_->description(),
+                        link_.multibody() ? link_.multibody()->solver_description() : "none"));
   const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
   StepLoop loop(parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
                 [this](const State& s, Real h) { progress(s, h); });

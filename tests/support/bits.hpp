@@ -28,11 +28,13 @@ inline std::string differing_arrays(const Checkpoint& a, const Checkpoint& b) {
 inline std::vector<Real> history_row(SimulationRun& run) {
   const StepCounts& n = run.counts();
   std::vector<Real> row{run.time(), run.balance_error(), run.exchanged()};
-  for (const std::int64_t count : {n.steps, n.newton_iterations, n.linear_iterations, n.rejected_error, n.rejected_newton})
+  for (const std::int64_t count :
+       {n.steps, n.newton_iterations, n.linear_iterations, n.rejected_error, n.rejected_newton})
     row.push_back(static_cast<Real>(count));
   for (const Real entry : run.ledger().entries()) row.push_back(entry);
   const ParticleLedger particles = run.particle_ledger();
-  for (const Vec3& v : {particles.momentum, particles.angular_momentum}) row.insert(row.end(), {v.x, v.y, v.z});
+  for (const Vec3& v : {particles.momentum, particles.angular_momentum})
+    row.insert(row.end(), {v.x, v.y, v.z});
   return row;
 }
 

@@ -56,7 +56,8 @@ class SimulationRun {
     while (!clock_.done()) step_and_sample(at_history);
   }
   // As run(), until the step that reaches time t [s].
-  void run_until(Real t, const std::function<void()>& at_history = [] {}) {
+  void run_until(
+      Real t, const std::function<void()>& at_history = [] {}) {
     while (clock_.time() < t) step_and_sample(at_history);
   }
 
@@ -67,7 +68,8 @@ class SimulationRun {
   std::vector<ParticleRecord> particles() const { return backend_->records(); }  // ordered by global id
   ParticleLedger particle_ledger() { return backend_->ledger(verlet_step()); }
   Ledger ledger() {
-    return make_ledger(particle_ledger(), state_.carried_out, link_.multibody(), state_.bodies, clock_.time());
+    return make_ledger(particle_ledger(), state_.carried_out, link_.multibody(), state_.bodies,
+                       clock_.time());
   }
   // Of the samples so far: what the ledger fails to account for, and what has changed its place [J].
   Real balance_error() const { return state_.balance.last.accounted() - state_.balance.start; }

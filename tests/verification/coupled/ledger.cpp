@@ -26,7 +26,8 @@ void check_balance(const std::string& what, const Model& model, Real least_excha
   CHECK(std::abs(run.balance_error()) < kTruncation * run.exchanged());
 }
 
-// A disc of 1 kg that the floor y = 0 already bears at half of its weight: it swings without leaving the floor.
+// A disc of 1 kg that the floor y = 0 already bears at half of its weight: it swings without leaving the
+// floor.
 const std::string kOnFloor = R"(
 gravity = [0.0, -9.8066]
 [space]
@@ -54,8 +55,8 @@ history_interval = 1e-3
 
 TEST_CASE("the ledger closes for particles in free fall") {
   for (const std::string integrator : {"hht", "velocity-verlet"}) {
-    const Model model = input_model("paper/net_9.toml", {"time.end=0.1", "time.step=1e-5",
-                                                         "integrator.particles=" + integrator});
+    const Model model = input_model("paper/net_9.toml",
+                                    {"time.end=0.1", "time.step=1e-5", "integrator.particles=" + integrator});
     check_balance("free fall over the net, " + integrator, model, 1);
   }
 }
@@ -63,10 +64,13 @@ TEST_CASE("the ledger closes for particles in free fall") {
 TEST_CASE("the ledger closes for the net of case 5.1") {
   for (const std::string hht_alpha : {"0.0", "-0.3"})
     check_balance("net, alpha = " + hht_alpha,
-                  input_model("paper/net.toml", {"time.end=0.2", "time.step=1e-5", "integrator.hht_alpha=" + hht_alpha}), 1);
+                  input_model("paper/net.toml",
+                              {"time.end=0.2", "time.step=1e-5", "integrator.hht_alpha=" + hht_alpha}),
+                  1);
 }
 
 TEST_CASE("the ledger closes for a disc that swings on a floor") {
   for (const std::string integrator : {"hht", "velocity-verlet"})
-    check_balance("disc on a floor, " + integrator, model_of(kOnFloor, {"integrator.particles=" + integrator}), 1e-2);
+    check_balance("disc on a floor, " + integrator,
+                  model_of(kOnFloor, {"integrator.particles=" + integrator}), 1e-2);
 }

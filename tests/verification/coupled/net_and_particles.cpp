@@ -48,8 +48,9 @@ TEST_CASE("5.3 with 9 particles at h = 1e-5 follows the truth to 0.45 s") {
     largest = std::max(largest, largest_distance(positions(run), nine_of(row)));
   });
   CHECK(sample == 450);
-  std::cout << fmt::format("5.3, N = 9, h = 1e-5: off by {:.2e} m; balance error {:.1e} J of {:.4g} J exchanged\n",
-                           largest, run.balance_error(), run.exchanged());
+  std::cout << fmt::format(
+      "5.3, N = 9, h = 1e-5: off by {:.2e} m; balance error {:.1e} J of {:.4g} J exchanged\n", largest,
+      run.balance_error(), run.exchanged());
   CHECK(largest < kPhysical);
   CHECK(std::abs(run.balance_error()) < kBalance * run.exchanged());
 }
@@ -64,7 +65,8 @@ TEST_CASE("5.3 with 9 particles converges with second order through the first im
     return largest_distance(positions(run), nine_of(truth.at(430)));
   };
   const Real coarse = error("4e-5"), fine = error("2e-5"), order = std::log2(coarse / fine);
-  std::cout << fmt::format("5.3, N = 9 at 0.43 s: off by {:.2e} m at h = 4e-5, order {:.3f}\n", coarse, order);
+  std::cout << fmt::format("5.3, N = 9 at 0.43 s: off by {:.2e} m at h = 4e-5, order {:.3f}\n", coarse,
+                           order);
   CAPTURE(coarse, fine);
   CHECK(std::abs(order - 2) < kTruncationOrder);
 }
@@ -76,10 +78,10 @@ TEST_CASE("5.3 with 400 particles has the ensemble's energies at 0.4 s") {
   run.run();
   const Ledger ledger = run.ledger();
   const Real dissipated = ledger.dissipated_contacts + ledger.dissipated_force_elements;
-  std::cout << fmt::format("5.3, N = 400 at 0.4 s: kinetic {:.2f}, gravitational {:.2f}, springs {:.4f}, dissipated "
-                           "{:.4f}, total {:.3f} J\n",
-                           ledger.kinetic, ledger.gravitational, ledger.elastic_force_elements, dissipated,
-                           ledger.mechanical());
+  std::cout << fmt::format(
+      "5.3, N = 400 at 0.4 s: kinetic {:.2f}, gravitational {:.2f}, springs {:.4f}, dissipated "
+      "{:.4f}, total {:.3f} J\n",
+      ledger.kinetic, ledger.gravitational, ledger.elastic_force_elements, dissipated, ledger.mechanical());
   CHECK(ledger.kinetic == Approx(2905.1).epsilon(kPhysical));
   CHECK(ledger.gravitational == Approx(1287.2).epsilon(kPhysical));
   CHECK(ledger.elastic_force_elements == Approx(75.845).epsilon(kPhysical));

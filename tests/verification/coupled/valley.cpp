@@ -35,7 +35,8 @@ TEST_CASE("5.2 at h = 1e-5 follows the truth, and its energy never rises") {
   constexpr Real kPhysical070 = 1e-5, kPhysical080 = 4e-4, kPhysical100 = 5e-3;  // [m]
   constexpr Real kEnergyRise = 1e-9;                                             // [J], METHOD.md 5
   constexpr Real kBalance = 1e-4;
-  const Rows truth = reference_rows("coll52_tensile.csv"), energies = reference_rows("coll52_tensile_energy.csv");
+  const Rows truth = reference_rows("coll52_tensile.csv"),
+             energies = reference_rows("coll52_tensile_energy.csv");
   const Model model = input_model("paper/valley.toml", {"time.control=fixed", "time.step=1e-5"});
   SimulationRun run(model);
   Real total = run.ledger().mechanical(), largest_rise = 0;
@@ -49,9 +50,10 @@ TEST_CASE("5.2 at h = 1e-5 follows the truth, and its energy never rises") {
     run.run_until(t - 5e-6, watch_energy);
     error.push_back(distance(run, truth));
   }
-  std::cout << fmt::format("5.2, h = 1e-5: off by {:.2e}, {:.2e}, {:.2e} m at 0.7, 0.8, 1 s; energy rises by {:.1e} J; "
-                           "balance error {:.1e} J of {:.4g} J exchanged\n",
-                           error[0], error[1], error[2], largest_rise, run.balance_error(), run.exchanged());
+  std::cout << fmt::format(
+      "5.2, h = 1e-5: off by {:.2e}, {:.2e}, {:.2e} m at 0.7, 0.8, 1 s; energy rises by {:.1e} J; "
+      "balance error {:.1e} J of {:.4g} J exchanged\n",
+      error[0], error[1], error[2], largest_rise, run.balance_error(), run.exchanged());
   CHECK(error[0] < kPhysical070);
   CHECK(error[1] < kPhysical080);
   CHECK(error[2] < kPhysical100);
@@ -68,7 +70,8 @@ TEST_CASE("5.2 with adaptive steps at the default tolerance") {
   SimulationRun run(model);
   run.run();
   const Real error = distance(run, reference_rows("coll52_tensile.csv"));
-  std::cout << fmt::format("5.2, adaptive: off by {:.2e} m at 1 s after {} steps\n", error, run.counts().steps);
+  std::cout << fmt::format("5.2, adaptive: off by {:.2e} m at 1 s after {} steps\n", error,
+                           run.counts().steps);
   CHECK(error < kPhysical);
   CHECK(run.counts().steps <= kMostSteps);
 }

@@ -14,7 +14,7 @@ using namespace scree;
 
 namespace {
 
-constexpr Real kSpeed = 6.7;                                      // [m/s]
+constexpr Real kSpeed = 6.7;                                                 // [m/s]
 const ClosedImpact kExact{10 / (2 * std::sqrt(1e7)), std::sqrt(1e7), true};  // K = 1e7, C = 10, m* = 1
 
 const std::string kPinnedDisc = R"(
@@ -46,7 +46,8 @@ struct ReboundError {
   Real rms = 0, largest = 0;
 };
 
-// The impact at `phases` equally spaced instants within a step of length h [s], the step of the model's control.
+// The impact at `phases` equally spaced instants within a step of length h [s], the step of the model's
+// control.
 template <class Change>
 ReboundError rebound_error(Obstacle obstacle, Real h, int phases, const Change& change) {
   ReboundError error;
@@ -140,18 +141,20 @@ TEST_CASE("resolved contact events keep the rebound at any step") {
 
 TEST_CASE("resolved contact events converge with second order") {
   constexpr Real kTruncationOrder = 0.1;
-  const Real coarse = fixed_step_error(5e-5, 50, 0, true).rms, fine = fixed_step_error(1.25e-5, 50, 0, true).rms;
+  const Real coarse = fixed_step_error(5e-5, 50, 0, true).rms,
+             fine = fixed_step_error(1.25e-5, 50, 0, true).rms;
   const Real order = std::log2(coarse / fine) / 2;
-  std::cout << fmt::format("resolved, alpha = 0: rebound error {:.2e} % at h = 5e-5, order {:.3f}\n", 100 * coarse,
-                           order);
+  std::cout << fmt::format("resolved, alpha = 0: rebound error {:.2e} % at h = 5e-5, order {:.3f}\n",
+                           100 * coarse, order);
   CAPTURE(coarse, fine);
   CHECK(std::abs(order - 2) < kTruncationOrder);
 }
 
-// HHT weighs the force at the start of a step by -alpha; with events within the steps the weights of consecutive
-// steps no longer add up to one, which leaves a small error of first order in C.
+// HHT weighs the force at the start of a step by -alpha; with events within the steps the weights of
+// consecutive steps no longer add up to one, which leaves a small error of first order in C.
 TEST_CASE("resolved contact events with numerical damping stay below the errors of the paper's method") {
-  const Real coarse = fixed_step_error(1e-4, 50, -0.3, true).rms, fine = fixed_step_error(1e-5, 50, -0.3, true).rms;
+  const Real coarse = fixed_step_error(1e-4, 50, -0.3, true).rms,
+             fine = fixed_step_error(1e-5, 50, -0.3, true).rms;
   CHECK(coarse < fixed_step_error(1e-4, 50, -0.3, false).rms);
   CHECK(fine < fixed_step_error(1e-5, 50, -0.3, false).rms);
 }

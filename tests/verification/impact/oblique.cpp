@@ -73,7 +73,8 @@ TEST_CASE("an oblique impact keeps momentum and, in velocity-verlet, angular mom
   CHECK(verlet.momentum < kRoundOff);
   CHECK(verlet.angular_momentum < kRoundOff);
   for (const std::string hht_alpha : {"0.0", "-0.3"}) {
-    const Conserved hht = changes({"integrator.hht_alpha=" + hht_alpha, "integrator.residual_tolerance=1e-13"});
+    const Conserved hht =
+        changes({"integrator.hht_alpha=" + hht_alpha, "integrator.residual_tolerance=1e-13"});
     CAPTURE(hht_alpha, hht.momentum);
     CHECK(hht.momentum < kRoundOff);
   }
@@ -85,12 +86,14 @@ TEST_CASE("an oblique impact keeps angular momentum to second order in hht") {
   constexpr Real kTruncationOrder = 0.1, kTruncation = 1e-5;
   for (const std::string hht_alpha : {"0.0", "-0.3"}) {
     const auto change = [&](const std::string& h) {
-      return changes({"integrator.hht_alpha=" + hht_alpha, "integrator.residual_tolerance=1e-12", "time.step=" + h})
+      return changes({"integrator.hht_alpha=" + hht_alpha, "integrator.residual_tolerance=1e-12",
+                      "time.step=" + h})
           .angular_momentum;
     };
     const Real coarse = change("8e-6"), fine = change("2e-6"), order = std::log2(coarse / fine) / 2;
-    std::cout << fmt::format("oblique impact, alpha = {}: angular momentum errs by {:.2e} at h = 8e-6, order {:.3f}\n",
-                             hht_alpha, coarse, order);
+    std::cout << fmt::format(
+        "oblique impact, alpha = {}: angular momentum errs by {:.2e} at h = 8e-6, order {:.3f}\n", hht_alpha,
+        coarse, order);
     CAPTURE(hht_alpha, coarse, fine);
     CHECK(coarse < kTruncation);
     CHECK(std::abs(order - 2) < kTruncationOrder);

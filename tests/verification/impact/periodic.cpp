@@ -1,11 +1,12 @@
 // Impacts across periodic sides.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "support/catch.hpp"
-#include "support/reference.hpp"
 #include "support/models.hpp"
+#include "support/reference.hpp"
 #include "support/simulation_run.hpp"
 
 using namespace scree;
@@ -35,7 +36,8 @@ radius = 0.05
 mass = 1.0
 )";
 
-// The left particle hits the right one; both drift by `drift` [m/s]. Everything stands `shift` [m] further right.
+// The left particle hits the right one; both drift by `drift` [m/s]. Everything stands `shift` [m] further
+// right.
 std::vector<ParticleRecord> after_impact(Real shift, Vec3 drift, const std::string& integrator) {
   Model model = model_of(kPair, {"integrator.particles=" + integrator});
   for (Vec3& position : model.particles.position) position.x = std::fmod(position.x + shift, 1);

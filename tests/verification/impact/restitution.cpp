@@ -1,4 +1,5 @@
-// Restitution and contact time against closed forms, and for n = 1.5 against quadrature and a fine Runge-Kutta.
+// Restitution and contact time against closed forms, and for n = 1.5 against quadrature and a fine
+// Runge-Kutta.
 #include <array>
 #include <cmath>
 #include <string>
@@ -56,8 +57,8 @@ Model impact_model(Real damping, bool tension, Real exponent, const std::string&
                   {"integrator.particles=" + integrator, "time.step=1e-7"});
 }
 
-// Largest overlap and duration without damping, from the energy: v(d)^2 = v0^2 - 2 K d^(n+1) / (m (n + 1)). With
-// d = D (1 - s^2) the integrand of the duration 2 int dd / v(d) is smooth where v = 0; Simpson's rule.
+// Largest overlap and duration without damping, from the energy: v(d)^2 = v0^2 - 2 K d^(n+1) / (m (n + 1)).
+// With d = D (1 - s^2) the integrand of the duration 2 int dd / v(d) is smooth where v = 0; Simpson's rule.
 Impact energy_quadrature(Real n) {
   constexpr int kIntervals = 20000;
   Impact impact;
@@ -105,7 +106,8 @@ TEST_CASE("restitution and contact time follow the closed forms") {
       for (const std::string& integrator : integrators()) {
         const ClosedImpact exact{ratio, std::sqrt(kStiffness / kMass), tension};
         const Real damping = 2 * ratio * std::sqrt(kStiffness * kMass);
-        const Impact impact = floor_impact(impact_model(damping, tension, 1, integrator), exact.duration(), kSteps);
+        const Impact impact =
+            floor_impact(impact_model(damping, tension, 1, integrator), exact.duration(), kSteps);
         CAPTURE(ratio, tension, integrator);
         CHECK(std::abs(impact.rebound / (exact.restitution() * kSpeed) - 1) < kTruncation);
         CHECK(std::abs(impact.duration / exact.duration() - 1) < kTruncation);
@@ -115,7 +117,8 @@ TEST_CASE("restitution and contact time follow the closed forms") {
 }
 
 TEST_CASE("the closed forms give METHOD.md's values") {
-  const std::array<std::array<Real, 2>, 4> known = {{{0.05, 0.854468}, {0.1, 0.729248}, {0.2, 0.526621}, {0.5, 0.163034}}};
+  const std::array<std::array<Real, 2>, 4> known = {
+      {{0.05, 0.854468}, {0.1, 0.729248}, {0.2, 0.526621}, {0.5, 0.163034}}};
   for (const auto& [ratio, restitution] : known)
     CHECK(std::abs(ClosedImpact{ratio, 1, true}.restitution() - restitution) < 5e-7);
 }

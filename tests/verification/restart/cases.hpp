@@ -45,10 +45,11 @@ history_interval = 3.3e-3
 
 // Each case with each integrator and step control that it can have.
 inline std::vector<RestartCase> restart_cases() {
-  const std::vector<std::vector<std::string>> ways = {{"integrator.particles=hht"},
-                                                      {"integrator.particles=hht", "integrator.hht_alpha=-0.1"},
-                                                      {"integrator.particles=hht", "time.control=adaptive"},
-                                                      {"integrator.particles=velocity-verlet", "integrator.substeps=3"}};
+  const std::vector<std::vector<std::string>> ways = {
+      {"integrator.particles=hht"},
+      {"integrator.particles=hht", "integrator.hht_alpha=-0.1"},
+      {"integrator.particles=hht", "time.control=adaptive"},
+      {"integrator.particles=velocity-verlet", "integrator.substeps=3"}};
   std::vector<RestartCase> cases;
   for (const std::vector<std::string>& way : ways) {
     const auto with = [&](std::vector<std::string> overrides) {
@@ -56,13 +57,16 @@ inline std::vector<RestartCase> restart_cases() {
       return overrides;
     };
     const std::string how = ", " + way.front() + (way.size() > 1 ? ", " + way[1] : "");
-    cases.push_back({"net and particles" + how, input_model("paper/net_9.toml", with({"time.end=0.42"})), false});
+    cases.push_back(
+        {"net and particles" + how, input_model("paper/net_9.toml", with({"time.end=0.42"})), false});
     cases.push_back({"valley" + how,
                      input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
     for (const std::string policy : {"remove", "drift"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
-    cases.push_back({"periodic gas" + how,
-                     input_model("examples/gas_periodic.toml", with({"time.end=0.02", "particles.gas.count=1000"})), false});
+    cases.push_back(
+        {"periodic gas" + how,
+         input_model("examples/gas_periodic.toml", with({"time.end=0.02", "particles.gas.count=1000"})),
+         false});
   }
   return cases;
 }

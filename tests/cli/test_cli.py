@@ -1,0 +1,337 @@
+"""The command line: exit codes, messages, restart, signals. Usage: SCREE=path/to/scree python3 test_cli.py"""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+
+SCREE = os.environ["SCREE"]
+LIMIT = 60  # [s] for any one run: past it, the run hangs
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+DONE, BAD_INPUT, FAILED, IO_FAILED, STOPPED = 0, 2, 3, 4, 5
+
+# Six discs fall on a disc that hangs on a spring, in a box that is periodic in x and open at its bottom.
+DECK = """title = "test"
+gravity = [0.0, -9.8]
+
+[space]
+dimension = 2
+min = [-0.3, -1.0]
+max = [0.3, 1.0]
+x_min = "periodic"
+x_max = "periodic"
+leaving = "drift"
+
+[time]
+end = 0.4
+step = 1e-4
+
+[[contact.pairs]]
+stiffness = 1e5
+damping = 3.0
+
+[[bodies]]
+name = "pad"
+position = [0.0, -0.2]
+mass = 1.0
+inertia = 0.005
+shapes = [{ radius = 0.15 }]
+
+[[spring_dampers]]
+name = "spring"
+bodies = ["ground", "pad"]
+points = [[0.0, -0.9], [0.0, 0.0]]
+stiffness = 1e3
+damping = 1.0
+free_length = 0.7
+
+[[particles]]
+name = "discs"
+kind = "lattice"
+origin = [-0.1, 0.1]
+spacing = [0.13, 0.13]
+size = [2, 3]
+radius = 0.05
+mass = 1.0
+velocity = [0.5, -1.0]
+
+[output]
+history_csv = true
+history_bodies = ["pad"]
+history_particles = [0, 5]
+"""
+EXPLICIT = ["--set", "integrator.particles=velocity-verlet", "--set", "integrator.substeps=10"]
+
+
+class CommandLineTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="scree_cli_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.deck = self.write("deck.toml", DECK)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def scree(self, *words, launcher=()):
+        return subprocess.run(
+            [*launcher, SCREE, *map(str, words)],
+            cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+
+    def expect(self, code, *words, launcher=()):
+        result = self.scree(*words, launcher=launcher)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def run_deck(self, code, output, *words):
+        return self.expect(code, "run", self.deck, "--output", self.folder / output, *words)
+
+    def history(self, output):
+        return (self.folder / output / "history.csv").read_text().splitlines()
+
+    def assert_same_results(self, output, reference):
+        self.assertEqual(self.history(output), self.history(reference))
+        if shutil.which("h5diff"):
+            for name in ("history.h5", "checkpoint.h5"):
+                files = [str(self.folder / folder / name) for folder in (output, reference)]
+                compared = subprocess.run(["h5diff", *files], capture_output=True, text=True)
+                self.assertEqual(compared.returncode, 0, compared.stdout)
+
+    def start(self, output, *words):
+        """A run in the background, handed back once it has reported progress."""
+        run = subprocess.Popen(
+            [SCREE, "run", str(self.deck), "--output", str(self.folder / output), *map(str, words)],
+            cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(run.stdout.close)
+        self.addCleanup(run.kill)
+        for line in run.stdout:
+            if line.startswith("t = "):
+                return run
+        self.fail("the run ended without reporting progress")
+
+
+class UsageTest(CommandLineTest):
+    def test_help_lists_commands_and_exit_codes(self):
+        text = self.expect(DONE, "--help").stdout
+        for word in ("run", "check", "keys", "--version", "Exit codes", "0 done", "2 bad usage", "3 the simulation",
+                     "4 a file", "5 stopped by a signal", "-mbs_ksp_view"):
+            self.assertIn(word, text)
+        text = self.expect(DONE, "run", "--help").stdout
+        for word in ("--set", "--output", "--backend", "--restart", "auto", "cpu", "cuda", "Exit codes"):
+            self.assertIn(word, text)
+
+    def test_version_names_commit_compiler_and_libraries(self):
+        text = self.expect(DONE, "--version").stdout
+        for word in ("scree ", "commit", "compiler", "flags", "HDF5", "MPI", "PETSc", "fmt", "toml++"):
+            self.assertIn(word, text)
+
+    def test_keys_are_the_manual(self):
+        text = self.expect(DONE, "keys").stdout
+        for key in ("time", "step", "hht_alpha", "stiffness", "tension", "leaving", "history_csv", "max_start_overlap",
+                    "spring_dampers", "drivers", "min_step"):
+            self.assertIn(key, text)
+        for word in ("[s]", "[N/m^n]", "default", "required"):
+            self.assertIn(word, text)
+
+    def test_wrong_words_are_bad_usage(self):
+        for words in ((), ("walk",), ("run",), ("check",), ("run", self.deck, "--speed", "9"),
+                      ("run", self.deck, "--backend", "abacus"), ("run", self.deck, "--set"),
+                      ("run", self.deck, self.deck)):
+            with self.subTest(words=words):
+                self.assertNotEqual(self.expect(BAD_INPUT, *words).stderr, "")
+
+    def test_check_reports_and_runs_nothing(self):
+        text = self.expect(DONE, "check", self.deck).stdout
+        for word in ("particles      6", "bodies         1", "degrees of freedom", "contact", "resolved at steps",
+                     "fixed step 0.0001 s (4000 steps)", "memory", "petsc"):
+            self.assertIn(word, text)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["deck.toml"])
+
+    def test_several_ranks_are_refused_once(self):
+        if not shutil.which("mpirun"):
+            self.skipTest("no mpirun")
+        launcher = ("mpirun", "--oversubscribe", "-n", "2")
+        result = self.expect(BAD_INPUT, "run", self.deck, "--output", "two", launcher=launcher)
+        self.assertEqual(result.stderr.count("error: mpirun -n 2"), 1)
+        self.assertFalse((self.folder / "two").exists())
+
+
+class DeckErrorTest(CommandLineTest):
+    def test_errors_name_file_line_key_and_value(self):
+        # Replacement in the deck; what the message holds behind file and line.
+        cases = (("step = 1e-4", "stp = 1e-4", "time.stp", "did you mean"),
+                 ("step = 1e-4", "step = -1e-4", "time.step = -0.0001", "above 0"),
+                 ("step = 1e-4", 'step = "fast"', 'time.step = "fast"', "number"),
+                 ("dimension = 2", "dimension = 5", "space.dimension = 5", "from 2 to 3"),
+                 ('leaving = "drift"', 'leaving = "fly"', 'space.leaving = "fly"', "remove"),
+                 ("damping = 3.0", "damping = [3.0]", "contact.pairs.0.damping", "number"),
+                 ('bodies = ["ground", "pad"]', 'bodies = ["ground", "pod"]', "pod", "pad"),
+                 ('x_max = "periodic"', 'x_max = "wall"', "x_max", "periodic"),
+                 ("mass = 1.0\ninertia", "mass = 0.0\ninertia", "mass = 0", "above 0"),
+                 ("[[particles]]", "[[particles]", "not TOML", ""))
+        for old, new, *parts in cases:
+            with self.subTest(new=new):
+                self.assertIn(old, DECK)
+                deck = self.write("bad.toml", DECK.replace(old, new, 1))
+                for command in ("check", "run"):
+                    message = self.expect(BAD_INPUT, command, deck).stderr
+                    self.assertRegex(message, r"^error: \S*bad\.toml:\d+:\d+: ")
+                    for part in parts:
+                        self.assertIn(part, message)
+                line = int(re.search(r"bad\.toml:(\d+)", message).group(1))
+                self.assertIn(new.splitlines()[0].split("=")[0].strip(), deck.read_text().splitlines()[line - 1])
+
+    def test_a_deck_that_cannot_be_read(self):
+        for path in ("absent.toml", self.folder):
+            self.assertIn(str(path), self.expect(IO_FAILED, "run", path).stderr)
+
+    def test_set_replaces_and_is_checked(self):
+        result = self.run_deck(DONE, "short", "--set", "time.end=0.001", "--set", "time.step=1e-3")
+        self.assertIn("after 1 steps", result.stdout)
+        self.assertIn("time.stp", self.run_deck(BAD_INPUT, "none", "--set", "time.stp=1").stderr)
+        self.assertIn("time.step", self.run_deck(BAD_INPUT, "none", "--set", "time.step=-1").stderr)
+        self.run_deck(BAD_INPUT, "none", "--set", "time.step")
+        self.assertFalse((self.folder / "none").exists())
+
+    def test_an_unstable_explicit_step_is_refused(self):
+        message = self.run_deck(BAD_INPUT, "none", *EXPLICIT, "--set", "time.step=0.1").stderr
+        self.assertIn("must be at most", message)
+
+
+class RunTest(CommandLineTest):
+    SHORT = ("--set", "time.end=0.02")
+
+    def test_a_run_writes_its_files_and_a_second_one_replaces_them(self):
+        for _ in range(2):
+            result = self.run_deck(DONE, "out", *self.SHORT)
+            self.assertIn("results in", result.stdout)
+            self.assertEqual(result.stderr, "")
+        names = {path.name for path in (self.folder / "out").iterdir()}
+        for name in ("history.h5", "history.csv", "particles.vtkhdf", "bodies.vtkhdf"):
+            self.assertIn(name, names)
+        self.assertFalse([name for name in names if name.endswith(".tmp")])
+        rows = self.history("out")
+        self.assertEqual(len(rows), 1 + 201)  # header, start, every step
+        self.assertEqual(float(rows[-1].split(",")[0]), 0.02)
+
+    def test_a_rerun_gives_the_same_bits(self):
+        for words in ((), EXPLICIT, ("--set", "time.control=adaptive")):
+            with self.subTest(words=words):
+                self.run_deck(DONE, "first", "--set", "time.end=0.1", *words)
+                self.run_deck(DONE, "second", "--set", "time.end=0.1", *words)
+                self.assertEqual(self.history("first"), self.history("second"))
+
+    def test_words_behind_the_dashes_go_to_petsc(self):
+        result = self.run_deck(DONE, "out", "--set", "time.end=0.001", "--", "-mbs_ksp_view", "-mbs_misspelt", "1")
+        self.assertIn("KSP Object: (mbs_)", result.stdout)
+        self.assertIn("mbs_misspelt", result.stderr)
+
+    def test_an_absent_backend_is_bad_usage(self):
+        self.assertIn("allowed", self.run_deck(BAD_INPUT, "out", "--backend", "cuda").stderr)
+
+    def test_output_that_cannot_be_written(self):
+        self.write("file", "not a folder")
+        self.assertIn("file", self.run_deck(IO_FAILED, "file", *self.SHORT).stderr)
+        self.assertEqual((self.folder / "file").read_text(), "not a folder")
+
+    def test_checkpoints_that_cannot_be_read(self):
+        self.run_deck(DONE, "out", *self.SHORT, "--set", "output.checkpoint_interval=0.01")
+        whole = (self.folder / "out" / "checkpoint.h5").read_bytes()
+        (self.folder / "truncated.h5").write_bytes(whole[: len(whole) // 2])
+        self.write("empty.h5", "")
+        self.write("text.h5", "no checkpoint")
+        for name in ("absent.h5", "truncated.h5", "empty.h5", "text.h5", "out/history.h5"):
+            with self.subTest(name=name):
+                message = self.run_deck(IO_FAILED, "out", *self.SHORT, "--restart", self.folder / name).stderr
+                self.assertIn(name, message)
+
+
+class FailureTest(CommandLineTest):
+    def failure(self, *words):
+        """The message of a failed run; a restart from its last good state fails alike."""
+        message = self.run_deck(FAILED, "failed", *words).stderr
+        checkpoint = self.folder / "failed" / "checkpoint_failed.h5"
+        self.assertTrue(checkpoint.exists())
+        again = self.run_deck(FAILED, "failed", "--restart", checkpoint, *words).stderr
+        self.assertEqual(again, message)
+        return message
+
+    def test_a_particle_that_leaves(self):
+        for words in ((), EXPLICIT):
+            with self.subTest(words=words):
+                message = self.failure("--set", "space.leaving=error", "--set", "particles.0.velocity=[0, 30]", *words)
+                self.assertRegex(message, r"stage migrate: particle [45] is outside the space")
+                self.assertIn("space.leaving", message)
+
+    def test_the_smallest_step(self):
+        message = self.failure("--set", "integrator.max_iterations=1")
+        self.assertIn("stage ", message)
+        self.assertIn("no convergence in 1 iterations", message)
+        self.assertIn("time.min_step", message)
+
+    def test_a_force_that_is_not_finite(self):
+        message = self.failure("--set", "contact.pairs.0.stiffness=1e300")
+        self.assertIn("stage contact_force", message)
+        self.assertRegex(message, r"particle \d is not finite|residual")
+
+    def test_materials_that_do_not_feel_each_other(self):
+        self.run_deck(DONE, "ghosts", "--set", "contact.pairs.0.stiffness=0", "--set", "contact.pairs.0.damping=0")
+
+
+class RestartTest(CommandLineTest):
+    VARIANTS = {"hht": (), "velocity-verlet": EXPLICIT, "adaptive": ("--set", "time.control=adaptive"),
+                "periodic history": ("--set", "output.history_interval=0.0007")}
+    AT_END = ("--set", "output.checkpoint_interval=0.4")
+
+    def test_a_restarted_run_ends_with_the_same_bits(self):
+        for name, words in self.VARIANTS.items():
+            with self.subTest(name=name):
+                self.run_deck(DONE, "whole", *words, *self.AT_END)
+                self.run_deck(DONE, "parts", *words, "--set", "output.checkpoint_interval=0.15")
+                self.run_deck(DONE, "parts", *words, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
+                self.assert_same_results("parts", "whole")
+
+    def test_a_signal_stops_the_run_and_a_restart_completes_it(self):
+        longer = ("--set", "time.step=1e-5", "--set", "output.history_interval=0.001")
+        self.run_deck(DONE, "whole", *longer, *self.AT_END)
+        for number in (signal.SIGTERM, signal.SIGUSR1):
+            with self.subTest(signal=number.name):
+                run = self.start("parts", *longer, *self.AT_END)
+                run.send_signal(number)
+                text = run.stdout.read()
+                self.assertEqual(run.wait(LIMIT), STOPPED, text)
+                self.assertIn("continue with --restart", text)
+                self.run_deck(DONE, "parts", *longer, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
+                self.assert_same_results("parts", "whole")
+
+    def test_a_killed_run_leaves_files_to_restart_from(self):
+        longer = ("--set", "time.step=1e-5", "--set", "output.history_interval=0.001")
+        frequent = ("--set", "output.checkpoint_interval=0.002")
+        self.run_deck(DONE, "whole", *longer, *self.AT_END)
+        run = self.start("parts", *longer, *frequent)
+        run.kill()
+        self.assertEqual(run.wait(LIMIT), -signal.SIGKILL)
+        self.run_deck(DONE, "parts", *longer, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
+        self.assert_same_results("parts", "whole")
+
+    def test_another_deck_is_refused_but_a_later_end_is_not(self):
+        self.run_deck(DONE, "out", "--set", "time.end=0.01", "--set", "output.checkpoint_interval=0.01")
+        restart = ("--restart", self.folder / "out/checkpoint.h5")
+        for key in ("contact.pairs.0.damping=4.0", "time.step=2e-4", "particles.0.mass=2.0"):
+            message = self.run_deck(BAD_INPUT, "out", *restart, "--set", key).stderr
+            self.assertIn("another deck", message)
+            self.assertIn("time.end", message)
+        self.run_deck(DONE, "out", *restart, "--set", "time.end=0.02")
+        self.run_deck(DONE, "whole", "--set", "time.end=0.02")
+        self.assertEqual(self.history("out"), self.history("whole"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,152 @@
+// Steps of both sides: refused ones leave no trace, and what the neighbour list covers changes nothing.
+#include "coupling/coupled_step.hpp"
+
+#include <memory>
+
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/petsc_run.hpp"
+
+namespace scree {
+
+namespace {
+
+// Two discs that fall on a disc on a spring, in a box that is periodic in x; contacts from the start on.
+const std::string kDeck = kSmallDeck + R"(
+[[contact.pairs]]
+stiffness = 1e5
+damping = 5.0
+[[bodies]]
+name = "pad"
+position = [0.0, -0.2]
+mass = 1.0
+inertia = 0.005
+shapes = [{ radius = 0.1, offset = [0.02, 0.0] }]
+[[spring_dampers]]
+name = "spring"
+bodies = ["ground", "pad"]
+points = [[0.0, -0.9], [0.0, 0.0]]
+stiffness = 1e3
+damping = 1.0
+free_length = 0.7
+[[particles]]
+name = "falling"
+kind = "lattice"
+origin = [-0.03, -0.02]
+spacing = [0.12, 0.2]
+size = [1, 3]
+radius = 0.085
+mass = 1.0
+velocity = [0.0, -1.0]
+)";
+
+// Both sides at the start of a run.
+struct Coupled {
+  explicit Coupled(const std::vector<std::string>& overrides = {}) {
+    petsc();
+    std::vector<std::string> all{"contact.max_start_overlap=1.0"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    model = model_of(kDeck, all);
+    backend = make_cpu_backend(model);
+    link = std::make_unique<BodyLink>(model);
+    step = std::make_unique<CoupledStep>(model, *backend, *link, timers);
+    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+    step->start(bodies);
+  }
+
+  Model model;
+  StageTimers timers;
+  std::unique_ptr<Backend> backend;
+  std::unique_ptr<BodyLink> link;
+  std::unique_ptr<CoupledStep> step;
+  MultibodyState bodies;
+};
+
+// Bit for bit, as far as the next step can see.
+bool same(const Coupled& a, const Coupled& b) {
+  const std::vector<ParticleRecord> p = a.backend->records(), q = b.backend->records();
+  bool equal = p.size() == q.size() && a.bodies.position == b.bodies.position &&
+               a.bodies.velocity == b.bodies.velocity && a.bodies.acceleration == b.bodies.acceleration &&
+               a.bodies.multipliers == b.bodies.multipliers && a.bodies.force == b.bodies.force;
+  for (std::size_t i = 0; equal && i < p.size(); ++i)
+    equal = p[i].position == q[i].position && p[i].velocity == q[i].velocity &&
+            p[i].acceleration == q[i].acceleration && p[i].force == q[i].force &&
+            p[i].contact_loss == q[i].contact_loss && p[i].integrator_loss == q[i].integrator_loss;
+  return equal;
+}
+
+constexpr Real kStep = 1e-3;
+
+void take_steps(Coupled& coupled, int count) {
+  for (int n = 0; n < count; ++n) {
+    const StepOutcome outcome = coupled.step->implicit_step(coupled.bodies, n * kStep, kStep);
+    INFO(outcome.trouble);
+    REQUIRE(outcome.verdict == Verdict::accepted);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a step that does not converge leaves both sides as they were and says why") {
+  Coupled tight({"integrator.max_iterations=1"}), same_start({"integrator.max_iterations=1"});
+  const StepOutcome outcome = tight.step->implicit_step(tight.bodies, 0, kStep);
+  CHECK(outcome.verdict == Verdict::not_converged);
+  CHECK(contains(outcome.trouble, "no convergence in 1 iterations"));
+  CHECK(same(tight, same_start));
+  CHECK(tight.step->counts().steps == 0);
+  CHECK(tight.step->counts().rejected_newton == 1);
+}
+
+TEST_CASE("a step that is not accurate enough leaves both sides as they were") {
+  const std::vector<std::string> adaptive{"time.control=adaptive", "time.tolerance=1e-12"};
+  Coupled refused(adaptive), same_start(adaptive);
+  const StepOutcome outcome = refused.step->implicit_step(refused.bodies, 0, kStep);
+  CHECK(outcome.verdict == Verdict::inaccurate);
+  CHECK(outcome.error > 1);
+  CHECK(same(refused, same_start));
+  CHECK(refused.step->counts().rejected_error == 1);
+}
+
+TEST_CASE("the step after a refused one is the step that would have come without it") {
+  const std::vector<std::string> adaptive{"time.control=adaptive", "time.tolerance=1.0"};
+  Coupled with(adaptive), without(adaptive);
+  with.model.time.tolerance = 1e-12;
+  CHECK(with.step->implicit_step(with.bodies, 0, 2 * kStep).verdict == Verdict::inaccurate);
+  with.model.time.tolerance = 1;
+  take_steps(with, 3), take_steps(without, 3);
+  CHECK(same(with, without));
+}
+
+TEST_CASE("a list that is too short is built anew without changing the result") {
+  Coupled shortest({"contact.skin=1e-9"}), longest({"contact.skin=0.2"});
+  take_steps(shortest, 50), take_steps(longest, 50);
+  CHECK(shortest.step->counts().list_builds > longest.step->counts().list_builds);
+  CHECK(shortest.step->counts().newton_iterations == longest.step->counts().newton_iterations);
+  CHECK(same(shortest, longest));
+}
+
+TEST_CASE("a run resumed from its state goes on with the same bits") {
+  for (const std::string particles : {"hht", "velocity-verlet"}) {
+    CAPTURE(particles);
+    std::vector<std::string> choice{"integrator.particles=" + particles};
+    if (particles == "velocity-verlet") choice.push_back("integrator.substeps=20");
+    Coupled whole(choice), second(choice);
+    const auto advance = [&](Coupled& coupled, int from, int to) {
+      for (int n = from; n < to; ++n) {
+        if (particles == "hht")
+          REQUIRE(coupled.step->implicit_step(coupled.bodies, n * kStep, kStep).verdict == Verdict::accepted);
+        else
+          coupled.step->explicit_step(coupled.bodies, n * kStep, kStep);
+      }
+    };
+    advance(whole, 0, 10);
+    second.bodies = whole.bodies;
+    second.backend->load(whole.backend->records(), whole.backend->shape_losses());
+    second.step->resume(second.bodies);
+    advance(whole, 10, 30), advance(second, 10, 30);
+    CHECK(same(whole, second));
+    CHECK(whole.backend->shape_losses().contact_loss == second.backend->shape_losses().contact_loss);
+  }
+}
+
+}  // namespace scree
