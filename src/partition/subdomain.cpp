@@ -6,6 +6,8 @@
 namespace scree {
 namespace {
 
+constexpr Real kMostPeriods = 1e6;
+
 // Twice the largest coordinate of the axis, halo included, fits into 2^52 quanta.
 Real rounding_constant(Real min, Real max) {
   int exponent = 0;
@@ -41,8 +43,12 @@ bool Subdomain::beyond_wall(Vec3 p) const {
 }
 
 Vec3 Subdomain::wrap(Vec3 p, ImageCount& image) const {
+  // Coordinates that no particle of a sound run has stay as they are; the cell sort then reports them.
   const auto axis = [](Real& x, Real min, Real period, std::int32_t& count) {
-    if (period == 0) return;
+    if (period == 0 || !(std::abs(x - min) < kMostPeriods * period)) return;
+    const Real periods = std::floor((x - min) / period);
+    x -= periods * period;
+    count += static_cast<std::int32_t>(periods);
     while (x < min) x += period, --count;
     while (x >= min + period) x -= period, ++count;
   };

@@ -118,7 +118,7 @@ void Recorder::energy_row(State& state, std::vector<Real>& row) {
   const ParticleLedger particles = backend_.ledger(verlet ? model_.time.step / model_.integrator.substeps : 0);
   const Ledger ledger = make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   BalanceState& balance = state.balance;
-  if (state.history_rows == 0) balance = {ledger.accounted(), 0, ledger};
+  if (!balance.open) balance = {true, ledger.accounted(), 0, ledger};
   balance.exchanged += energy_exchanged(balance.last, ledger);
   balance.last = ledger;
 

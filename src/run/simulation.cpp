@@ -18,6 +18,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double kProgressSeconds = 0.25;  // between progress lines on a terminal
+constexpr double kFlushSeconds = 5;        // between writes of the history, besides snapshots and checkpoints
+
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 double cpu_seconds() {
@@ -80,7 +83,7 @@ class Simulation {
   CoupledStep step_;
   std::unique_ptr<Recorder> recorder_;
   std::string started_ = utc_now();
-  Clock::time_point start_ = Clock::now(), last_progress_ = start_;
+  Clock::time_point start_ = Clock::now(), last_progress_ = start_, last_flush_ = start_;
   double start_cpu_ = cpu_seconds();
   Real start_time_ = 0;
   int tenths_reported_ = 0;
@@ -94,6 +97,8 @@ void Simulation::start_or_resume() {
   } else {
     backend_->load(state_.particles, state_.shapes);
     step_.counts() = state_.counts;
+    // Into another folder: new files, which begin here.
+    if (!std::filesystem::exists(options_.output_directory + "/history.h5")) state_.history_rows = state_.snapshots = 0;
     step_.resume(state_.bodies);
   }
   start_time_ = state_.clock.time;
@@ -112,8 +117,10 @@ void Simulation::progress(const State& state, Real h) {
   const double since = std::chrono::duration<double>(Clock::now() - last_progress_).count();
   const Real share = (state.clock.time - start_time_) / (model_.time.end - start_time_);
   const int tenths = static_cast<int>(10 * share);
-  if (since < 0.25 && tenths == tenths_reported_) return;
-  if (since >= 0.25) last_progress_ = Clock::now(), recorder_->flush();
+  if (since < kProgressSeconds && tenths == tenths_reported_) return;
+  last_progress_ = Clock::now();
+  if (std::chrono::duration<double>(last_progress_ - last_flush_).count() > kFlushSeconds)
+    last_flush_ = last_progress_, recorder_->flush();
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   log_.progress(fmt::format("t = {:.4f} of {:g} s, {} steps, h = {:.2e} s, {:.1f} s elapsed, {:.1f} s to go",
                             state.clock.time, model_.time.end, state.counts.steps, h, elapsed,
@@ -137,6 +144,9 @@ ExitCode Simulation::run() {
     log_.warning(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
     log_.info("last good state: " + options_.output_directory + "/checkpoint_failed.h5");
     return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
+  } catch (const IoError& error) {
+    write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
+    throw;
   }
   checkpoint(loop.complete_state(), "checkpoint.h5");
   const std::string signal = strsignal(signal_received());

@@ -90,6 +90,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("carried_out/energy", state.carried_out.energy);
   visit("carried_out/contact_loss", state.carried_out.contact_loss);
   visit("carried_out/integrator_loss", state.carried_out.integrator_loss);
+  visit("balance/open", state.balance.open);
   visit("balance/start", state.balance.start);
   visit("balance/exchanged", state.balance.exchanged);
   visit_ledger(visit, state.balance.last);

@@ -15,6 +15,7 @@ namespace scree {
 
 // Energy balance since t = 0.
 struct BalanceState {
+  bool open = false;   // whether the first sample was taken
   Real start = 0;      // Ledger::accounted() at t = 0 [J]
   Real exchanged = 0;  // energy that changed its place so far, from sample to sample of the history [J]
   Ledger last;         // at the last sample

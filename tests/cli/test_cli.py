@@ -21,8 +21,8 @@ gravity = [0.0, -9.8]
 
 [space]
 dimension = 2
-min = [-0.3, -1.0]
-max = [0.3, 1.0]
+min = [-0.35, -1.0]
+max = [0.35, 1.0]
 x_min = "periodic"
 x_max = "periodic"
 leaving = "drift"
@@ -40,7 +40,7 @@ name = "pad"
 position = [0.0, -0.2]
 mass = 1.0
 inertia = 0.005
-shapes = [{ radius = 0.15 }]
+shapes = [{ radius = 0.1 }]
 
 [[spring_dampers]]
 name = "spring"
