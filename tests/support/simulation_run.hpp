@@ -19,7 +19,7 @@ class SimulationRun {
     state_.clock = clock_.state();
     backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
-    state_.balance = {ledger().accounted(), 0, ledger()};
+    state_.balance = {true, ledger().accounted(), 0, ledger()};
   }
   // Continues from a state that complete_state() returned, of this model.
   SimulationRun(const Model& model, const State& state) : SimulationRun(model, true) {
