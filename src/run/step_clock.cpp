@@ -17,13 +17,22 @@ constexpr Real kSameTime = 1e-6;
 }  // namespace
 
 StepClock::StepClock(const Model& model) : time_(model.time), output_(model.output) {
+  // An end that is an output time but for round-off becomes it: a run that goes on from there has the same times.
+  for (const Real interval : {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval}) {
+    const Real output_time = interval > 0 ? std::round(time_.end / interval) * interval : 0;
+    if (std::abs(output_time - time_.end) <= same_time_margin()) time_.end = output_time;
+  }
   state_.next_step = time_.step;
   open_segment();
 }
 
+Real StepClock::same_time_margin() const {
+  return kSameTime * (time_.control == StepControl::fixed ? time_.step : time_.min_step);
+}
+
 Real StepClock::next_output() const {
   Real next = time_.end;
-  const Real margin = kSameTime * (time_.control == StepControl::fixed ? time_.step : time_.min_step);
+  const Real margin = same_time_margin();
   const auto consider = [&](std::int64_t count, Real interval) {
     if (interval <= 0) return;
     const Real time = static_cast<Real>(count + 1) * interval;
@@ -103,8 +112,7 @@ void StepClock::rejected_for_convergence(const std::string& reason) {
 
 bool StepClock::reached(std::int64_t& count, Real interval) {
   if (interval <= 0 || state_.time != state_.end) return false;
-  const Real margin = kSameTime * (time_.control == StepControl::fixed ? time_.step : time_.min_step);
-  if (static_cast<Real>(count + 1) * interval > state_.time + margin) return false;
+  if (static_cast<Real>(count + 1) * interval > state_.time + same_time_margin()) return false;
   ++count;
   return true;
 }

@@ -49,6 +49,7 @@ class StepClock {
   Real step() const;
   void open_segment();
   Real next_output() const;
+  Real same_time_margin() const;  // times closer than this are one [s]
   bool reached(std::int64_t& count, Real interval);
   void shrink(Real factor, const std::string& reason);
 

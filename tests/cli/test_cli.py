@@ -179,18 +179,16 @@ class DeckErrorTest(CommandLineTest):
                  ('leaving = "drift"', 'leaving = "fly"', 'space.leaving = "fly"', "remove"),
                  ("damping = 3.0", "damping = [3.0]", "contact.pairs.0.damping", "number"),
                  ('bodies = ["ground", "pad"]', 'bodies = ["ground", "pod"]', "pod", "pad"),
-                 ('x_max = "periodic"', 'x_max = "wall"', "x_max", "periodic"),
                  ("mass = 1.0\ninertia", "mass = 0.0\ninertia", "mass = 0", "above 0"),
                  ("[[particles]]", "[[particles]", "not TOML", ""))
         for old, new, *parts in cases:
             with self.subTest(new=new):
                 self.assertIn(old, DECK)
                 deck = self.write("bad.toml", DECK.replace(old, new, 1))
-                for command in ("check", "run"):
-                    message = self.expect(BAD_INPUT, command, deck).stderr
-                    self.assertRegex(message, r"^error: \S*bad\.toml:\d+:\d+: ")
-                    for part in parts:
-                        self.assertIn(part, message)
+                message = self.expect(BAD_INPUT, "check", deck).stderr
+                self.assertRegex(message, r"^error: \S*bad\.toml:\d+:\d+: ")
+                for part in parts:
+                    self.assertIn(part, message)
                 line = int(re.search(r"bad\.toml:(\d+)", message).group(1))
                 self.assertIn(new.splitlines()[0].split("=")[0].strip(), deck.read_text().splitlines()[line - 1])
 

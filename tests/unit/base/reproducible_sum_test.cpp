@@ -56,7 +56,8 @@ TEST_CASE("a sum is exact to a quantum per term and the last rounding") {
     long double exact = 0;  // its own rounding: 1000 terms of at most 1 at 2^-64
     for (const Real term : terms) exact += term;
     const Real sum = sum_of(terms);
-    CHECK(std::abs(static_cast<Real>(sum - exact)) <= std::ldexp(1000.0, -61) + std::ldexp(std::abs(sum), -53));
+    CHECK(std::abs(static_cast<Real>(sum - exact)) <=
+          std::ldexp(1000.0, -61) + std::ldexp(std::abs(sum), -53));
   }
 }
 

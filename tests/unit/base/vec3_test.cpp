@@ -10,7 +10,9 @@ namespace scree {
 
 namespace {
 
-Real number(std::mt19937_64& random) { return std::ldexp(static_cast<Real>(static_cast<std::int64_t>(random())), -63); }
+Real number(std::mt19937_64& random) {
+  return std::ldexp(static_cast<Real>(static_cast<std::int64_t>(random())), -63);
+}
 
 Vec3 vector(std::mt19937_64& random) {
   const Real x = number(random), y = number(random), z = number(random);
@@ -61,7 +63,8 @@ TEST_CASE("the inverse of a positive definite matrix times the matrix is the uni
     const Sym3 b = inverse(a);
     // A relative error of each entry of the inverse, times the condition number.
     const Real round_off = 1e-15 * (1 + 10 * stiffness);
-    for (const Vec3 unit : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) CHECK(norm(b * (a * unit) - unit) <= round_off);
+    for (const Vec3 unit : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      CHECK(norm(b * (a * unit) - unit) <= round_off);
   }
 }
 

@@ -28,8 +28,10 @@ struct ContactProblem {
     diagonal.resize(kParticles);
     for (Index i = 0; i < kParticles; ++i)
       for (Index j = 0; j < i; ++j)
-        if (random.uniform() < 0.4) add_pair(i, j, std::sqrt(stiffness) * vector(random), ghosts && j % 2 == 0, rows);
-    for (Index i = 0; i < kParticles; i += 3) add_to_diagonal(i, std::sqrt(stiffness) * vector(random));  // walls
+        if (random.uniform() < 0.4)
+          add_pair(i, j, std::sqrt(stiffness) * vector(random), ghosts && j % 2 == 0, rows);
+    for (Index i = 0; i < kParticles; i += 3)
+      add_to_diagonal(i, std::sqrt(stiffness) * vector(random));  // walls
     flatten(rows);
     for (Index i = 0; i < kParticles; ++i) {
       Sym3 block = diagonal[static_cast<std::size_t>(i)];
@@ -48,16 +50,20 @@ struct ContactProblem {
     return {x, y, z};
   }
   void add(Index i, Index j, Sym3 block, Real sign) {
-    const Real entries[9] = {block.xx, block.xy, block.xz, block.xy, block.yy, block.yz, block.xz, block.yz, block.zz};
+    const Real entries[9] = {block.xx, block.xy, block.xz, block.xy, block.yy,
+                             block.yz, block.xz, block.yz, block.zz};
     for (int k = 0; k < 9; ++k) dense[entry(3 * i + k / 3, 3 * j + k % 3)] += sign * entries[k];
   }
-  static std::size_t entry(Index row, Index column) { return static_cast<std::size_t>(row * 3 * kParticles + column); }
+  static std::size_t entry(Index row, Index column) {
+    return static_cast<std::size_t>(row * 3 * kParticles + column);
+  }
   void add_to_diagonal(Index i, Vec3 b) {
     diagonal[static_cast<std::size_t>(i)] += outer(1, b);
     add(i, i, outer(1, b), 1);
   }
   // through_ghosts: each sees the other as a ghost across a periodic side.
-  void add_pair(Index i, Index j, Vec3 b, bool through_ghosts, std::vector<std::vector<std::pair<Index, Vec3>>>& rows) {
+  void add_pair(Index i, Index j, Vec3 b, bool through_ghosts,
+                std::vector<std::vector<std::pair<Index, Vec3>>>& rows) {
     add_to_diagonal(i, b), add_to_diagonal(j, b);
     add(i, j, outer(1, b), -1), add(j, i, outer(1, b), -1);
     for (const auto& [row, partner, sign] : {std::tuple{i, j, 1.0}, std::tuple{j, i, -1.0}}) {
@@ -124,8 +130,16 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
       std::vector<Vec4> d(kParticles + p.ghosts.size());
       const Real tolerance = 1e-11;
       const BlockSolver::System system{{{p.count.data(), p.neighbor.data(), p.b.data(), p.diagonal.data()},
-                                        p.offsets.data(), p.velocity.data(), kInverseScale, nullptr, nullptr},
-                                       p.inverse_block, residual, p.ghosts, p.largest_stiffening, tolerance};
+                                        p.offsets.data(),
+                                        p.velocity.data(),
+                                        kInverseScale,
+                                        nullptr,
+                                        nullptr},
+                                       p.inverse_block,
+                                       residual,
+                                       p.ghosts,
+                                       p.largest_stiffening,
+                                       tolerance};
       const int products = BlockSolver().solve(system, d, solution);
       const std::vector<Real> expected = p.gauss();
       // The smallest eigenvalue is at least the lightest particle's mass.
@@ -135,7 +149,8 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
         const Vec3 x{expected[3 * i], expected[3 * i + 1], expected[3 * i + 2]};
         CHECK(norm(solution[i] - x) <= truncation);
       }
-      // Chebyshev's bound: the error falls by (sqrt(c) - 1) / (sqrt(c) + 1) per product, c <= 2 (1 + stiffening).
+      // Chebyshev's bound: the error falls by (sqrt(c) - 1) / (sqrt(c) + 1) per product, c <= 2 (1 +
+      // stiffening).
       CHECK(products <= 5 + 20 * std::sqrt(2 * (1 + p.largest_stiffening)));
     }
 }

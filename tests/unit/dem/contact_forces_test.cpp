@@ -12,10 +12,10 @@ constexpr Real kRoundOff = 1e-12;  // relative to the sum of magnitudes
 constexpr int kParticles = 120;
 
 struct BruteContacts {
-  std::vector<Vec3> force;      // per item [N]
-  std::vector<int> contacts;    // per item
-  Real elastic = 0;             // of all contacts [J]
-  Real magnitude = 0;           // sum of |force| over all contacts [N]
+  std::vector<Vec3> force;    // per item [N]
+  std::vector<int> contacts;  // per item
+  Real elastic = 0;           // of all contacts [J]
+  Real magnitude = 0;         // sum of |force| over all contacts [N]
   int count = 0;
 };
 
@@ -23,7 +23,8 @@ bool interact(const BodyShapes& shapes, const BruteItem& a, const BruteItem& b) 
   return a.body < 0 || b.body < 0 || shapes.may_touch(a.body, b.body);
 }
 
-void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal, std::size_t i) {
+void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal,
+                 std::size_t i) {
   const ContactForce c = contact_force<PowerElastic>(law, overlap, rate);
   sum.force[i] += c.force * normal;
   sum.magnitude += std::abs(c.force);

@@ -81,7 +81,9 @@ std::vector<Entry> expected_row(const Items& items, const BodyShapes& shapes, Ve
   std::vector<Entry> row;
   const ItemLayout& layout = items.layout;
   const bool is_shape = i >= layout.first_shape;
-  const auto body = [&](Index item) { return shapes.items()[static_cast<std::size_t>(layout.shape_of(item))].body; };
+  const auto body = [&](Index item) {
+    return shapes.items()[static_cast<std::size_t>(layout.shape_of(item))].body;
+  };
   const auto sees = [&](Index j, int image) {
     if (j < layout.active) return !is_shape ? !(j == i && image == kNoShift) : image == kNoShift;
     if (!is_shape) return true;
@@ -103,7 +105,8 @@ std::vector<Entry> expected_row(const Items& items, const BodyShapes& shapes, Ve
 
 std::vector<Entry> found_row(const Items& items, const NeighborList& list, Index i) {
   std::vector<Entry> row;
-  for (Index k = list.offsets[static_cast<std::size_t>(i)]; k < list.offsets[static_cast<std::size_t>(i) + 1]; ++k) {
+  for (Index k = list.offsets[static_cast<std::size_t>(i)]; k < list.offsets[static_cast<std::size_t>(i) + 1];
+       ++k) {
     const Index j = list.neighbors[static_cast<std::size_t>(k)];
     row.emplace_back(items.global_id(j), items.image_of(j));
   }
@@ -117,7 +120,10 @@ std::vector<Index> found_walls(const NeighborList& list, Index i) {
 
 struct BuiltList {
   explicit BuiltList(const BoxCase& box, std::uint64_t seed)
-      : model(random_box(box, kParticles, seed)), shapes(model), builder(model, shapes), items(model, shapes, builder) {
+      : model(random_box(box, kParticles, seed)),
+        shapes(model),
+        builder(model, shapes),
+        items(model, shapes, builder) {
     builder.build(items.store, items.layout, kSkin, list);
   }
   Model model;
@@ -152,9 +158,11 @@ TEST_CASE("the boxes of these tests have every kind of entry") {
   for (const BoxCase& box : kBoxes) {
     const BuiltList built(box, 1);
     const ItemLayout& layout = built.items.layout;
-    ghosts += layout.ghosts.size(), shape_images += layout.shape_images.size(), walls += built.list.walls.size();
+    ghosts += layout.ghosts.size(), shape_images += layout.shape_images.size(),
+        walls += built.list.walls.size();
     for (Index i = layout.first_shape; i < layout.first_shape + layout.shapes; ++i)
-      for (const Entry& entry : found_row(built.items, built.list, i)) shape_pairs += entry.first >= kParticles;
+      for (const Entry& entry : found_row(built.items, built.list, i))
+        shape_pairs += entry.first >= kParticles;
   }
   CHECK(ghosts > 100);
   CHECK(shape_images > 0);
@@ -166,7 +174,8 @@ TEST_CASE("particles that drift outside the space are in no row") {
   for (const BoxCase& box : kBoxes) {
     const BuiltList built(box, 4);
     CAPTURE(box.name);
-    for (const Index j : built.list.neighbors) CHECK((j < built.items.layout.active || j >= built.items.layout.owned));
+    for (const Index j : built.list.neighbors)
+      CHECK((j < built.items.layout.active || j >= built.items.layout.owned));
     for (Index i = kParticles - kDrifting; i < kParticles; ++i) {
       CHECK(found_row(built.items, built.list, i).empty());
       CHECK(found_walls(built.list, i).empty());

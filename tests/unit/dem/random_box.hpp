@@ -17,9 +17,9 @@ namespace scree {
 struct BoxCase {
   const char* name;
   int dimension;
-  int periodic_axes;    // that many, x first
-  Real smallest_radius; // over the largest
-  bool walls;           // two planes
+  int periodic_axes;     // that many, x first
+  Real smallest_radius;  // over the largest
+  bool walls;            // two planes
   bool bodies;
   int materials;
   Real exponent;
@@ -49,7 +49,8 @@ inline Vec3 random_velocity(RandomNumbers& random, int dimension) {
 inline Space random_space(const BoxCase& box) {
   Space space;
   space.dimension = box.dimension;
-  space.min = {-1.1, -0.7, box.dimension == 3 ? 0.3 : 0.0}, space.max = {0.9, 0.8, box.dimension == 3 ? 1.6 : 0.0};
+  space.min = {-1.1, -0.7, box.dimension == 3 ? 0.3 : 0.0},
+  space.max = {0.9, 0.8, box.dimension == 3 ? 1.6 : 0.0};
   for (int side = 0; side < 2 * box.periodic_axes; ++side)
     space.boundary[static_cast<std::size_t>(side)] = Boundary::periodic;
   space.leaving = Leaving::drift;
@@ -62,13 +63,15 @@ inline Body random_body(RandomNumbers& random, const BoxCase& box, const Space& 
   body.position = random_point(random, space), body.velocity = random_velocity(random, box.dimension);
   body.angle = random.uniform(-3, 3), body.angular_velocity = random.normal();
   for (int s = 0; s < shapes; ++s)
-    body.shapes.push_back({{0.08 * s, -0.05 * s, 0}, kLargestRadius * random.uniform(0.5, 1), s % box.materials});
+    body.shapes.push_back(
+        {{0.08 * s, -0.05 * s, 0}, kLargestRadius * random.uniform(0.5, 1), s % box.materials});
   return body;
 }
 
 // Five bodies: the first three in a chain of a spring and a joint, one of them with three shapes.
 inline void add_bodies(RandomNumbers& random, const BoxCase& box, Model& model) {
-  for (const int shapes : {1, 2, 1, 3, 1}) model.bodies.push_back(random_body(random, box, model.space, shapes));
+  for (const int shapes : {1, 2, 1, 3, 1})
+    model.bodies.push_back(random_body(random, box, model.space, shapes));
   model.bodies[1].position = model.bodies[0].position + Vec3{0.1, 0, 0};
   model.bodies[3].position = model.bodies[2].position + Vec3{0, 0.1, 0};
   SpringDamper spring;
@@ -115,7 +118,9 @@ inline std::vector<BodyMotion> motion_of(const std::vector<Body>& bodies) {
 // A model on a backend with its list built and its first forces known.
 struct LoadedBox {
   explicit LoadedBox(const Model& of, Real skin = 0.02)
-      : model(of), records(initial_records(model.particles, Subdomain(model.space))), motion(motion_of(model.bodies)) {
+      : model(of),
+        records(initial_records(model.particles, Subdomain(model.space))),
+        motion(motion_of(model.bodies)) {
     backend->load(records, {});
     backend->place_bodies(motion);
     backend->build_list(skin, timers);
@@ -149,13 +154,14 @@ inline std::vector<BruteItem> brute_items(const LoadedBox& box) {
     for (const Shape& shape : box.model.bodies[b].shapes) {
       const PointMotion point = point_motion(box.motion[b], shape.offset);
       ImageCount unused;
-      items.push_back({subdomain.wrap(snap(point.position, subdomain.snap_constant()), unused), point.velocity,
-                       shape.radius, shape.material, static_cast<int>(b)});
+      items.push_back({subdomain.wrap(snap(point.position, subdomain.snap_constant()), unused),
+                       point.velocity, shape.radius, shape.material, static_cast<int>(b)});
     }
   return items;
 }
 
-// Calls visit(shift [m], number of the image) for the 27 neighbouring boxes; those of axes without period once.
+// Calls visit(shift [m], number of the image) for the 27 neighbouring boxes; those of axes without period
+// once.
 template <class Visit>
 void for_each_image(Vec3 period, const Visit& visit) {
   for (int image = 0; image < 27; ++image) {

@@ -1,5 +1,5 @@
-// Steps of the CPU backend: undone without a trace, the same bits for every list and for fused substeps; particles
-// that leave.
+// Steps of the CPU backend: undone without a trace, the same bits for every list and for fused substeps;
+// particles that leave.
 #include <cmath>
 #include <cstring>
 
@@ -86,7 +86,8 @@ TEST_CASE("a rolled-back step leaves no trace") {
 
 TEST_CASE("the list's skin and age do not change a bit") {
   for (const BoxCase& c : kBoxes)
-    for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+    for (const ParticleIntegrator integrator :
+         {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
       CAPTURE(c.name, static_cast<int>(integrator));
       LoadedBox often(soft_box(c, integrator), 0.05), seldom(soft_box(c, integrator), 0.3);
       for (int step = 0; step < 10; ++step) {
@@ -123,7 +124,8 @@ TEST_CASE("fused explicit steps give the bits of single ones") {
 
 TEST_CASE("steps conserve momentum without gravity, walls and bodies") {
   for (const BoxCase& c : kBoxes)
-    for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+    for (const ParticleIntegrator integrator :
+         {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
       if (c.bodies || c.walls) continue;
       CAPTURE(c.name, static_cast<int>(integrator));
       Model model = soft_box(c, integrator);

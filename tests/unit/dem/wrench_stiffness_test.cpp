@@ -18,7 +18,8 @@ constexpr Real kGeometric = 1e-5;  // that, and the differences' error, relative
 Model touched_body(int dimension) {
   Model model;
   model.space.dimension = dimension;
-  model.space.min = {-2, -2, dimension == 3 ? -2.0 : 0.0}, model.space.max = {2, 2, dimension == 3 ? 2.0 : 0.0};
+  model.space.min = {-2, -2, dimension == 3 ? -2.0 : 0.0},
+  model.space.max = {2, 2, dimension == 3 ? 2.0 : 0.0};
   model.contact.material_names = {"material"};
   model.contact.laws = {{kStiffness, kDamping, 1, true}};
   Body body;

@@ -15,16 +15,21 @@ struct GridCase {
   Index max_cells;
 };
 
-const GridCase kGrids[] = {
-    {{-3, -3, 0}, {3, 3, 0}, 2, 0.105, 100000},        {{0, 0, 0}, {1, 2, 3}, 3, 0.13, 100000},
-    {{-1, -1, 0}, {1, 1, 0}, 2, 5, 100000},            {{-1e3, 0, 0}, {1e3, 1, 0}, 2, 0.01, 5000},
-    {{-10, -10, -10}, {10, 10, 10}, 3, 0.01, 20000},   {{0.1, 0.1, 0.1}, {0.4, 0.7, 0.2}, 3, 0.1, 100000},
-    {{-0.95, -0.6, 0}, {0.95, 0.3, 0}, 2, 0.3, 100000}};
+const GridCase kGrids[] = {{{-3, -3, 0}, {3, 3, 0}, 2, 0.105, 100000},
+                           {{0, 0, 0}, {1, 2, 3}, 3, 0.13, 100000},
+                           {{-1, -1, 0}, {1, 1, 0}, 2, 5, 100000},
+                           {{-1e3, 0, 0}, {1e3, 1, 0}, 2, 0.01, 5000},
+                           {{-10, -10, -10}, {10, 10, 10}, 3, 0.01, 20000},
+                           {{0.1, 0.1, 0.1}, {0.4, 0.7, 0.2}, 3, 0.1, 100000},
+                           {{-0.95, -0.6, 0}, {0.95, 0.3, 0}, 2, 0.3, 100000}};
 
-CellGrid grid_of(const GridCase& c) { return make_cell_grid(c.min, c.max, c.dimension, c.min_cell, c.max_cells); }
+CellGrid grid_of(const GridCase& c) {
+  return make_cell_grid(c.min, c.max, c.dimension, c.min_cell, c.max_cells);
+}
 
 Vec3 point_in(RandomNumbers& random, Vec3 min, Vec3 max) {
-  const Real x = random.uniform(min.x, max.x), y = random.uniform(min.y, max.y), z = random.uniform(min.z, max.z);
+  const Real x = random.uniform(min.x, max.x), y = random.uniform(min.y, max.y),
+             z = random.uniform(min.z, max.z);
   return {x, y, z};
 }
 
@@ -54,7 +59,8 @@ TEST_CASE("the corners of the space lie inside, with a margin of a cell around t
     const CellGrid grid = grid_of(c);
     CHECK(grid.cell(c.min) >= 0);
     CHECK(grid.cell(c.max) >= 0);
-    const Vec3 edge{1 / grid.inverse_size.x, 1 / grid.inverse_size.y, c.dimension == 3 ? 1 / grid.inverse_size.z : 0};
+    const Vec3 edge{1 / grid.inverse_size.x, 1 / grid.inverse_size.y,
+                    c.dimension == 3 ? 1 / grid.inverse_size.z : 0};
     CHECK(grid.cell(c.min - 0.999 * edge) >= 0);
     CHECK(grid.cell(c.max + 0.999 * edge) >= 0);
     CHECK(grid.cell(c.min - Vec3{1.001 * edge.x, 0, 0}) == -1);

@@ -28,7 +28,9 @@ Vec3 point_in(RandomNumbers& random, const Space& s) {
   return {x, y, s.dimension == 3 ? random.uniform(s.min.z, s.max.z) : 0};
 }
 
-Vec3 times(const ImageCount& image, Vec3 period) { return {image.x * period.x, image.y * period.y, image.z * period.z}; }
+Vec3 times(const ImageCount& image, Vec3 period) {
+  return {image.x * period.x, image.y * period.y, image.z * period.z};
+}
 
 }  // namespace
 
@@ -54,7 +56,8 @@ TEST_CASE("a point moved out by periods is wrapped back to the same bits and cou
     for (int trial = 0; trial < 200; ++trial) {
       ImageCount none;
       const Vec3 p = subdomain.wrap(snap(point_in(random, s), subdomain.snap_constant()), none);
-      for (const ImageCount moved : {ImageCount{1, 0, 0}, ImageCount{-1, 1, 0}, ImageCount{1, -1, s.dimension == 3}}) {
+      for (const ImageCount moved :
+           {ImageCount{1, 0, 0}, ImageCount{-1, 1, 0}, ImageCount{1, -1, s.dimension == 3}}) {
         ImageCount image;
         CHECK(subdomain.wrap(p + times(moved, period), image) == p);
         CHECK((image.x == moved.x && image.y == moved.y && image.z == moved.z));
@@ -122,10 +125,11 @@ TEST_CASE("points are inside between sides that are not periodic, and beyond wal
     Vec3 p;
     bool inside, beyond_wall;
   };
-  for (const Place& place : {Place{{0.5, 0.5, 0.5}, true, false}, Place{{0, 0, 0}, true, false},
-                             Place{{-0.1, 0.5, 0.5}, false, false}, Place{{1.1, 0.5, 0.5}, false, false},
-                             Place{{0.5, -0.1, 0.5}, false, true}, Place{{0.5, 1.1, 0.5}, false, false},
-                             Place{{0.5, 0.5, 7}, true, false}, Place{{std::nan(""), 0.5, 0.5}, false, false}}) {
+  for (const Place& place :
+       {Place{{0.5, 0.5, 0.5}, true, false}, Place{{0, 0, 0}, true, false},
+        Place{{-0.1, 0.5, 0.5}, false, false}, Place{{1.1, 0.5, 0.5}, false, false},
+        Place{{0.5, -0.1, 0.5}, false, true}, Place{{0.5, 1.1, 0.5}, false, false},
+        Place{{0.5, 0.5, 7}, true, false}, Place{{std::nan(""), 0.5, 0.5}, false, false}}) {
     CAPTURE(place.p.x, place.p.y, place.p.z);
     CHECK(subdomain.inside(place.p) == place.inside);
     CHECK(subdomain.beyond_wall(place.p) == place.beyond_wall);

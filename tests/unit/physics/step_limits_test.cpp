@@ -11,7 +11,8 @@ namespace scree {
 
 namespace {
 
-// Largest |x| that velocity Verlet reaches from x = 1 on a damped oscillator, damping on the predicted velocity.
+// Largest |x| that velocity Verlet reaches from x = 1 on a damped oscillator, damping on the predicted
+// velocity.
 Real largest_swing(Real stiffness, Real damping, Real mass, Real h) {
   const auto acceleration = [&](Vec3 x, Vec3 v) { return (-1 / mass) * (stiffness * x + damping * v); };
   Vec3 x{1, 0, 0}, v, a = acceleration(x, v);

@@ -106,7 +106,8 @@ TEST_CASE("the integrator's loss is the energy that an oscillator misses") {
 
 TEST_CASE("velocity Verlet: the displacement is found again from the predicted velocity") {
   const Vec3 predicted = verlet_predicted_velocity(kStep, kVelocity, kStart);
-  CHECK(near(verlet_last_displacement(kStep, predicted, kStart), verlet_displacement(kStep, kVelocity, kStart)));
+  CHECK(near(verlet_last_displacement(kStep, predicted, kStart),
+             verlet_displacement(kStep, kVelocity, kStart)));
   CHECK(near(verlet_velocity(kStep, predicted, kStart, kEnd), kVelocity + (kStep / 2) * (kStart + kEnd)));
 }
 

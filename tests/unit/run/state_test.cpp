@@ -43,11 +43,19 @@ State awkward_state() {
     for (int k = 0; k < 6; ++k) v->push_back(n.real());
   s.bodies.dissipated = n.real(), s.bodies.integrator_loss = n.real(), s.bodies.driver_work = n.real();
   for (int i = 0; i < 9; ++i)
-    s.particles.push_back({n.integer(), n.vector(), n.vector(), n.vector(), n.vector(), n.real(), n.real(), n.real(),
-                           {n.small_integer(), n.small_integer(), n.small_integer()}, i % 3 == 0});
+    s.particles.push_back({n.integer(),
+                           n.vector(),
+                           n.vector(),
+                           n.vector(),
+                           n.vector(),
+                           n.real(),
+                           n.real(),
+                           n.real(),
+                           {n.small_integer(), n.small_integer(), n.small_integer()},
+                           i % 3 == 0});
   s.shapes = {n.real(), n.real()};
   s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real()};
-  s.balance = {n.real(), n.real(), {}};
+  s.balance.open = true, s.balance.start = n.real(), s.balance.exchanged = n.real();
   s.balance.last = {n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real()};
   s.history_rows = n.integer(), s.snapshots = n.integer();
   return s;
@@ -96,6 +104,7 @@ TEST_CASE("what a checkpoint holds is the state") {
   }
   CHECK(after.shapes.loss_power == before.shapes.loss_power);
   CHECK(after.carried_out.removed == before.carried_out.removed);
+  CHECK(after.balance.open);
   CHECK(after.balance.last.entries() == before.balance.last.entries());
   CHECK(after.snapshots == before.snapshots);
 }

@@ -190,7 +190,8 @@ TEST_CASE("a step cut short to land on an output time does not make the next one
   model.output.history_interval = 2.1;
   const ClockRun run(model);
   CHECK(run.steps.size() <= 16);
-  CHECK(*std::min_element(run.steps.begin(), run.steps.end()) > 0.3);  // the last stretch is halved, not crumbled
+  CHECK(*std::min_element(run.steps.begin(), run.steps.end()) >
+        0.3);  // the last stretch is halved, not crumbled
 }
 
 TEST_CASE("a step that cannot be shortened says why, when and which key") {
@@ -220,7 +221,8 @@ TEST_CASE("a clock made from a state goes on where it stood") {
     Model model = timed_model(1, 0.01, control);
     model.output.history_interval = 0.1 / 3;
     StepClock clock(model);
-    for (int k = 0; k < 7; ++k) clock.begin_step(), clock.accepted(0.5), clock.take_history(), clock.take_snapshot();
+    for (int k = 0; k < 7; ++k)
+      clock.begin_step(), clock.accepted(0.5), clock.take_history(), clock.take_snapshot();
     clock.begin_step(), clock.rejected_for_convergence("no");
     StepClock copy(model, clock.state());
     while (!clock.done()) {
