@@ -32,7 +32,7 @@ fi
 
 animation() { find "$results" -maxdepth 1 -name 'animation.*' | head -n 1; }
 
-if ! is_fresh "$results/final.png" "$results/run_record.json" postprocess/*.py || [[ -z "$(animation)" ]]; then
+if ! is_fresh "$(animation)" "$results/run_record.json" postprocess/*.py; then
   echo "drawing the final state and an animation"
   "$python" postprocess/render.py "$results"
 fi
