@@ -1,5 +1,7 @@
 #include "coupling/coupled_step.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error.hpp"
@@ -98,10 +100,29 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
       return outcome;
     }
   }
+  try {
+    check_inside();
+  } catch (const SimulationError&) {
+    undo_step(bodies);
+    throw;
+  }
   backend_.accept();
   if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
   ++counts_.steps;
   return outcome;
+}
+
+std::vector<Leaver> CoupledStep::check_inside() const {
+  const Leaving policy = model_.space.leaving;
+  std::vector<Leaver> leavers = backend_.outside();
+  for (const Leaver& l : leavers) {
+    if (!l.lost && policy != Leaving::error) continue;
+    throw SimulationError(fmt::format("stage accept: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}",
+                                      l.global_id, l.position.x, l.position.y, l.position.z,
+                                      l.lost ? "beyond a side that is a wall"
+                                             : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
+  }
+  return leavers;
 }
 
 bool CoupledStep::iterate() {

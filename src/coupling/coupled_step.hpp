@@ -35,10 +35,14 @@ class CoupledStep {
   void start(MultibodyState& bodies);
   // After a restart: the same without recomputing what the state holds.
   void resume(const MultibodyState& bodies);
-  // Advances both sides from t by h, or leaves both as they were.
+  // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they were, where
+  // a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
   // Advances both sides by h, the particles in substeps.
   void explicit_step(MultibodyState& bodies, Real t, Real h);
+  // The particles outside the space now. Throws SimulationError naming the first that is beyond a wall, or outside at
+  // all where the deck calls that an error.
+  std::vector<Leaver> check_inside() const;
   // Brings the neighbour list up to date with the particles and bodies as they are.
   void rebuild_list(Real skin);
 

@@ -59,7 +59,7 @@ const TableKeys& time_keys() {
            .about("Fixed step, or steps that keep the estimated local error within tolerance."),
        real("min_step", "s")
            .above(0)
-           .left_out("step / 1e6")
+           .left_out("step / 1e3 if fixed; step / 1e6 if adaptive")
            .about("The run fails where a step would have to be smaller, also when a step is retried."),
        real("max_step", "s")
            .above(0)

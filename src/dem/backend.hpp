@@ -36,9 +36,10 @@ struct ParticleLedger {
   std::int64_t drifting = 0;                                 // particles outside that drift on
 };
 
-// A particle found outside the space at the end of a step.
+// A particle outside the space.
 struct Leaver {
   GlobalId global_id;
+  Index local_index;
   Vec3 position;  // [m]
   bool lost;      // beyond a side that is a wall, which no particle can leave through
   Real energy;           // kinetic and gravitational [J]
@@ -106,9 +107,11 @@ class Backend {
   virtual void verlet_advance(Real h) = 0;
   virtual void verlet_finish(Real h) = 0;
 
-  // The particles that have left the space since the last call, ordered by global id. Unless leaving is an error
-  // in the deck, they drift from now on or are removed, and the list must be built anew.
-  virtual std::vector<Leaver> collect_leavers() = 0;
+  // The particles in the search that are outside the space now, ordered by global id.
+  virtual std::vector<Leaver> outside() const = 0;
+  // Takes them out of the search: they drift from now on or are removed, as the deck says. The list must then be
+  // built anew.
+  virtual void take_out(const std::vector<Leaver>& leavers) = 0;
   // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s].
   virtual ParticleLedger ledger(Real verlet_step) = 0;
   virtual ParticlePack pack_particles() = 0;

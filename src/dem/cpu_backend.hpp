@@ -45,7 +45,8 @@ class CpuBackend : public Backend {
   void verlet_advance(Real h) override;
   void verlet_finish(Real h) override;
 
-  std::vector<Leaver> collect_leavers() override;
+  std::vector<Leaver> outside() const override;
+  void take_out(const std::vector<Leaver>& leavers) override;
   ParticleLedger ledger(Real verlet_step) override;
   ParticlePack pack_particles() override;
   ShapePack pack_shapes() override;

@@ -50,6 +50,7 @@ void CpuBackend::rollback() {
   std::copy(start_velocity_.begin(), start_velocity_.begin() + layout_.owned, store_.velocity.begin());
   store_.acceleration = start_acceleration_;
   store_.force = start_force_;
+  refresh_ghosts();
   in_implicit_step_ = false;
 }
 

@@ -27,26 +27,26 @@ Vec3 CpuBackend::unwrapped(Index i) const {
   return xyz(store_.position[i]) + Vec3{image.x * period.x, image.y * period.y, image.z * period.z};
 }
 
-std::vector<Leaver> CpuBackend::collect_leavers() {
+std::vector<Leaver> CpuBackend::outside() const {
   std::vector<Leaver> leavers;
-  const bool error = model_.space.leaving == Leaving::error;
   for (Index i = 0; i < store_.active; ++i) {
     const Vec3 p = xyz(store_.position[i]);
     if (store_.drifting[i] || subdomain_.inside(p)) continue;
-    leavers.push_back({store_.global_id[i], p, subdomain_.beyond_wall(p), energy_of(i), store_.contact_loss[i],
+    leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy_of(i), store_.contact_loss[i],
                        store_.integrator_loss[i]});
-    store_.drifting[i] = !error;
   }
-  if (leavers.empty() || error) return leavers;
   std::sort(leavers.begin(), leavers.end(), [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
-  layout_changed_ = true;
-  if (model_.space.leaving == Leaving::remove) {
-    std::vector<Index> staying;
-    for (Index i = 0; i < store_.owned; ++i)
-      if (!store_.drifting[i]) staying.push_back(i);
-    store_.reorder(staying);
-  }
   return leavers;
+}
+
+void CpuBackend::take_out(const std::vector<Leaver>& leavers) {
+  for (const Leaver& leaver : leavers) store_.drifting[leaver.local_index] = 1;
+  layout_changed_ = true;
+  if (model_.space.leaving != Leaving::remove) return;
+  std::vector<Index> staying;
+  for (Index i = 0; i < store_.owned; ++i)
+    if (!store_.drifting[i]) staying.push_back(i);
+  store_.reorder(staying);
 }
 
 ParticleLedger CpuBackend::ledger(Real verlet_step) {

@@ -103,7 +103,8 @@ void build_time(const DeckTable& deck, Model& model) {
   time.step = table.real("step");
   time.control = table.text("control") == "adaptive" ? StepControl::adaptive : StepControl::fixed;
   const bool adaptive = time.control == StepControl::adaptive;
-  time.min_step = table.has("min_step") ? table.real("min_step") : time.step / 1e6;
+  time.min_step = table.has("min_step") ? table.real("min_step")
+                                         : time.step / (time.control == StepControl::fixed ? 1e3 : 1e6);
   time.max_step = adaptive ? std::max(time.step, time.end / 100) : time.step;
   if (table.has("max_step")) time.max_step = table.real("max_step");
   time.tolerance = table.real("tolerance");

@@ -121,7 +121,7 @@ SCREE_HD ContactForce releasing_force(const KelvinVoigt& law, const ContactStep&
 template <class Elastic>
 SCREE_HD ContactForce fading_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start,
                                    Real end_force) {
-  const Real share = start.force / (start.force - end_force), impulse = share * start.force / 2;
+  const Real share = end_force < 0 ? start.force / (start.force - end_force) : 1, impulse = share * start.force / 2;
   const Real energy1 = c.overlap1 > 0 ? Elastic::energy(law, c.overlap1) : 0;
   const Real lost = Elastic::energy(law, c.overlap0) - energy1 - impulse * (c.overlap0 - c.overlap1);
   return {2 * impulse - start.force, share * share * start.stiffness, share * share * start.damping,

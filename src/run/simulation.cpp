@@ -30,6 +30,13 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+void make_directory(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw IoError(fmt::format("output folder {}: {}", path, error.message()));
+  if (!std::filesystem::is_directory(path)) throw IoError(fmt::format("output folder {}: is a file", path));
+}
+
 std::unique_ptr<Backend> make_backend(const Model& model, const std::string& name) {
   if (name == "cuda")
     throw InputError("--backend cuda: this version computes on the CPU only; allowed: auto, cpu");
@@ -54,7 +61,7 @@ class Simulation {
         backend_(make_backend(model, options.backend)),
         link_(model),
         step_(model, *backend_, link_, timers_) {
-    std::filesystem::create_directories(options.output_directory);
+    make_directory(options.output_directory);
     start_or_resume();
     recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
     if (options.restart.empty()) {

@@ -1,7 +1,5 @@
 #include "run/step_loop.hpp"
 
-#include <fmt/format.h>
-
 #include <chrono>
 
 #include "base/error.hpp"
@@ -58,17 +56,11 @@ void StepLoop::take_step() {
 // Particles outside the space: an error, or out of the pair search from the next step on.
 void StepLoop::leave() {
   const auto scope = parts_.timers.time(Stage::migrate);
-  const std::vector<Leaver> leavers = parts_.backend.collect_leavers();
-  const Leaving policy = parts_.model.space.leaving;
-  for (const Leaver& l : leavers) {
-    if (!l.lost && policy != Leaving::error) continue;
-    throw SimulationError(fmt::format("stage migrate: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}",
-                                      l.global_id, l.position.x, l.position.y, l.position.z,
-                                      l.lost ? "beyond a side that is a wall"
-                                             : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
-  }
-  book_leavers(leavers, policy, state_.carried_out);
-  if (!leavers.empty()) parts_.step.rebuild_list(parts_.model.contact.skin);
+  const std::vector<Leaver> leavers = parts_.step.check_inside();
+  if (leavers.empty()) return;
+  book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
+  parts_.backend.take_out(leavers);
+  parts_.step.rebuild_list(parts_.model.contact.skin);
 }
 
 void StepLoop::output(Real h) {

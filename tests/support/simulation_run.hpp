@@ -96,10 +96,10 @@ class SimulationRun {
     return verlet ? model_.time.step / model_.integrator.substeps : 0;
   }
   void leave() {
-    const std::vector<Leaver> leavers = backend_->collect_leavers();
+    const std::vector<Leaver> leavers = step_.check_inside();
     if (leavers.empty()) return;
-    if (model_.space.leaving == Leaving::error) throw SimulationError("a particle has left the space");
     book_leavers(leavers, model_.space.leaving, state_.carried_out);
+    backend_->take_out(leavers);
     step_.rebuild_list(model_.contact.skin);
   }
   void step_and_sample(const std::function<void()>& at_history) {

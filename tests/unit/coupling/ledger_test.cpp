@@ -9,8 +9,8 @@ namespace scree {
 
 namespace {
 
-const std::vector<Leaver> kLeavers = {{3, {1, 2, 0}, false, 10, 0.5, 0.25},
-                                      {8, {1, 3, 0}, false, -4, 0.25, -0.125}};
+const std::vector<Leaver> kLeavers = {{3, 0, {1, 2, 0}, false, 10, 0.5, 0.25},
+                                      {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125}};
 
 }  // namespace
 
