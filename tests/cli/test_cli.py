@@ -271,7 +271,7 @@ class FailureTest(CommandLineTest):
         for words in ((), EXPLICIT):
             with self.subTest(words=words):
                 message = self.failure("--set", "space.leaving=error", "--set", "particles.0.velocity=[0, 30]", *words)
-                self.assertRegex(message, r"stage migrate: particle [45] is outside the space")
+                self.assertRegex(message, r"stage accept: particle [45] is outside the space")
                 self.assertIn("space.leaving", message)
 
     def test_the_smallest_step(self):
