@@ -69,6 +69,17 @@ std::string output_directory(const Arguments& arguments, const Model& model) {
   return "results/" + std::filesystem::path(arguments.deck).stem().string();
 }
 
+// What the multibody room refuses it names by joint or body; this adds the deck.
+template <class Action>
+auto naming_deck(const std::string& deck, const Action& action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    throw InputError(message.starts_with(deck) || message.starts_with("--") ? message : deck + ": " + message);
+  }
+}
+
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
   Log log(mpi_value(MPI_Comm_rank) != 0);
   const Deck deck = load_deck(arguments.deck, arguments.overrides);
@@ -79,7 +90,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const PetscSession petsc("scree", line.petsc_words);
   RunOptions options{arguments.backend,    output_directory(arguments, model), arguments.restart, arguments.deck,
                      deck.resolved_text(), deck.fingerprint(),                 line.text};
-  const ExitCode code = run_simulation(model, options, log);
+  const ExitCode code = naming_deck(arguments.deck, [&] { return run_simulation(model, options, log); });
   for (const std::string& option : petsc.unused_options()) log.warning("PETSc option " + option + " was not used");
   return code;
 }
@@ -91,8 +102,7 @@ ExitCode check(const Arguments& arguments) {
   std::string constraints = "";
   if (!model.bodies.empty()) {
     const PetscSession petsc("scree", {});
-    const Multibody bodies(model);
-    constraints = "multibody solver     " + bodies.solver_description();
+    constraints = naming_deck(arguments.deck, [&] { return "solver         " + Multibody(model).solver_description(); });
   }
   log.info(check_report(model) + constraints);
   return ExitCode::done;

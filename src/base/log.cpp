@@ -18,13 +18,19 @@ void Log::info(const std::string& message) {
   std::fflush(stdout);
 }
 
-void Log::warning(const std::string& message) {
-  warnings_.push_back(message);
+void Log::complain(const char* kind, const std::string& message) {
   if (quiet_) return;
   end_progress_line();
   std::fflush(stdout);
-  std::fprintf(stderr, "warning: %s\n", message.c_str());
+  std::fprintf(stderr, "%s: %s\n", kind, message.c_str());
 }
+
+void Log::warning(const std::string& message) {
+  warnings_.push_back(message);
+  complain("warning", message);
+}
+
+void Log::error(const std::string& message) { complain("error", message); }
 
 void Log::progress(const std::string& line, bool force) {
   if (quiet_) return;

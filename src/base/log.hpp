@@ -13,12 +13,14 @@ class Log {
 
   void info(const std::string& message);     // to standard output
   void warning(const std::string& message);  // to standard error, and kept
+  void error(const std::string& message);    // to standard error
   // Rewrites the progress line in place on a terminal; prints nothing elsewhere unless `force`.
   void progress(const std::string& line, bool force = false);
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   void end_progress_line();
+  void complain(const char* kind, const std::string& message);
 
   bool quiet_ = false;
   bool progress_line_open_ = false;

@@ -18,6 +18,8 @@ constexpr Real kSkinPerMotion = 5;
 
 struct CoupledStep::Iteration {
   Real correction = 1;  // of the particles
+  Real residual = 0;
+  GlobalId worst = -1;  // particle
 };
 
 CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
@@ -79,8 +81,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
       if (builds > kMostListBuilds) throw SimulationError("stage neighbors: no skin covers the step's motion");
       open_step(bodies, t, h);
       if (!covered(bodies)) continue;
-      if (!iterate()) throw SimulationError("stage particle_correct: no convergence in " +
-                                            std::to_string(model_.integrator.max_iterations) + " iterations");
+      iterate();
       done = covered(bodies);
     }
   } catch (const SimulationError& error) {
@@ -125,13 +126,15 @@ std::vector<Leaver> CoupledStep::check_inside() const {
   return leavers;
 }
 
-bool CoupledStep::iterate() {
+void CoupledStep::iterate() {
   Iteration last;
   for (int iteration = 0; iteration < model_.integrator.max_iterations; ++iteration) {
     ++counts_.newton_iterations;
-    if (iterate_once(last)) return true;
+    if (iterate_once(last)) return;
   }
-  return false;
+  throw SimulationError(fmt::format("stage particle_correct: no convergence in {} iterations; the largest residual, {:.2e} "
+                                    "of the largest force, is that of particle {}",
+                                    model_.integrator.max_iterations, last.residual, last.worst));
 }
 
 // One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
@@ -142,6 +145,7 @@ bool CoupledStep::iterate_once(Iteration& last) {
   {
     const auto scope = timers_.time(Stage::contact_force);
     particles = backend_.contact_force();
+    last.residual = particles.residual, last.worst = particles.worst;
     if (particles.overshoot) {
       backend_.shorten_correction();
       return false;

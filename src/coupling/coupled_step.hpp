@@ -54,7 +54,7 @@ class CoupledStep {
   void open_step(const MultibodyState& bodies, Real t, Real h);
   void undo_step(const MultibodyState& bodies);
   bool covered(const MultibodyState& bodies);
-  bool iterate();
+  void iterate();
   bool iterate_once(Iteration& last);
   void solve_bodies();
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -42,7 +43,8 @@ Deck parse_deck(const std::string& text, const std::string& path, const std::vec
 Deck load_deck(const std::string& path, const std::vector<std::string>& overrides) {
   std::ifstream file(path);
   std::stringstream text;
-  if (!file || !(text << file.rdbuf())) throw IoError("deck " + path + ": cannot be read, or is empty");
+  if (!file || std::filesystem::is_directory(path)) throw IoError("deck " + path + ": cannot be read");
+  text << file.rdbuf();
   return parse_deck(text.str(), path, overrides);
 }
 

@@ -168,7 +168,7 @@ const TableKeys& time_function_keys() {
            .required()
            .about("Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
                   "phase). "
-                  "Table: a smooth curve through the given points."),
+                  "Table: drivers follow the natural cubic spline through the points, forces straight lines."),
        real("value", "unit of the function").only_for(started).otherwise("0.0").about("Constant part."),
        real("rate", "unit/s").only_for({"ramp"}).required().about("Slope."),
        real("amplitude", "unit of the function").only_for({"sine"}).required().about("Amplitude."),

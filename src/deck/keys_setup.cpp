@@ -62,14 +62,16 @@ const TableKeys& time_keys() {
            .left_out("step / 1e3 if fixed; step / 1e6 if adaptive")
            .about("The run fails where a step would have to be smaller, also when a step is retried."),
        real("max_step", "s")
+           .only_for({"adaptive"})
            .above(0)
-           .left_out("step if fixed; end / 100 but at least step if adaptive")
+           .left_out("end / 100, but at least step")
            .about("Largest step."),
        real("tolerance", "")
+           .only_for({"adaptive"})
            .above(0)
            .otherwise("2e-8")
-           .about("Adaptive: allowed local error of a position per step, over the particle's radius.")},
-      ""};
+           .about("Allowed local error of a position per step, over the particle's radius.")},
+      "control"};
   return keys;
 }
 

@@ -18,6 +18,7 @@ namespace scree {
 struct ParticleNorms {
   Real residual = 0;            // over the largest force on a particle, at the iterate and at the start of the step
   Real correction_bound = 0;    // of the position correction that the residual can still cause, over the radius
+  GlobalId worst = -1;          // the particle with the largest residual
   bool overshoot = false;       // the last correction went too far along its direction
 };
 

@@ -88,7 +88,7 @@ ParticleNorms CpuBackend::contact_force() {
     if (!std::isfinite(r))
       throw SimulationError("stage contact_force: the force on particle " + std::to_string(store_.global_id[i]) +
                             " is not finite");
-    residual = std::max(residual, r);
+    if (r > residual) residual = r, norms.worst = store_.global_id[i];
     bound = std::max(bound, weights.stiffness * r * (1 + hht_.hht_alpha) / (store_.velocity[i].w * store_.position[i].w));
     const Real at_start = norm(start_force_[i]) + store_.velocity[i].w * norm(start_acceleration_[i]);
     force_scale_ = std::max(force_scale_, force_magnitude_[i] + at_start);

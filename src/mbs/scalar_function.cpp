@@ -8,11 +8,12 @@
 
 namespace scree {
 
-ScalarFunction::ScalarFunction(const TimeFunction& function, const std::string& owner, Real end)
-    : function_(function) {
+ScalarFunction::ScalarFunction(const TimeFunction& function, const std::string& owner, Real end,
+                               Interpolation interpolation)
+    : function_(function), second_derivatives_(function.times.size(), 0) {
   if (function.kind != TimeFunction::Kind::table) return;
   check_table(owner, end);
-  find_second_derivatives();
+  if (interpolation == Interpolation::spline) find_second_derivatives();
 }
 
 void ScalarFunction::check_table(const std::string& owner, Real end) const {
@@ -43,7 +44,6 @@ void ScalarFunction::find_second_derivatives() {
   const std::vector<Real>&t = function_.times, &f = function_.values;
   const std::size_t n = t.size();
   std::vector<Real> upper(n, 0);
-  second_derivatives_.assign(n, 0);
   std::vector<Real>& m = second_derivatives_;
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const Real left = t[i] - t[i - 1], right = t[i + 1] - t[i];

@@ -9,15 +9,17 @@
 
 namespace scree {
 
-// Tables are interpolated by the natural cubic spline, for drivers and forces alike: twice continuously
-// differentiable, second derivative zero at both ends. It passes through every point and may overshoot
-// between points where the slope jumps.
+// How a table is read between its points. Drivers need the natural cubic spline: twice continuously differentiable,
+// second derivative zero at both ends; it may overshoot between points where the slope jumps. Forces are linear.
+enum class Interpolation { spline, linear };
+
 class ScalarFunction {
  public:
   // owner: what the function belongs to, e.g. "driver 'crank'"; end: of the simulated time [s]. Throws
   // InputError naming the owner where a table has fewer than two points, unequal columns, times that do not
   // increase, or does not cover [0, end].
-  ScalarFunction(const TimeFunction& function, const std::string& owner, Real end);
+  ScalarFunction(const TimeFunction& function, const std::string& owner, Real end,
+                 Interpolation interpolation = Interpolation::spline);
   // The constant `value`.
   explicit ScalarFunction(Real value) { function_.value = value; }
 
@@ -30,7 +32,7 @@ class ScalarFunction {
   TimeValue table_value(Real t) const;
 
   TimeFunction function_;
-  std::vector<Real> second_derivatives_;  // of the spline at the table's times
+  std::vector<Real> second_derivatives_;  // at the table's times; 0 where it is read linearly
 };
 
 }  // namespace scree

@@ -10,6 +10,9 @@ namespace scree {
 
 namespace {
 
+// More cannot be meant, and counts of them must stay exact.
+constexpr Real kMostSteps = 1e12, kMostOutputs = 1e9;
+
 // One side of the space; axis 0, 1, 2.
 Boundary boundary_of(const DeckTable& space, const std::string& key) {
   const std::string& text = space.text(key);
@@ -107,7 +110,10 @@ void build_time(const DeckTable& deck, Model& model) {
                                          : time.step / (time.control == StepControl::fixed ? 1e3 : 1e6);
   time.max_step = adaptive ? std::max(time.step, time.end / 100) : time.step;
   if (table.has("max_step")) time.max_step = table.real("max_step");
-  time.tolerance = table.real("tolerance");
+  if (adaptive) time.tolerance = table.real("tolerance");
+  if (time.step > time.end) table.fail("step", fmt::format("must be at most time.end = {}", time.end));
+  if (time.end / time.step > kMostSteps)
+    table.fail("step", fmt::format("must be at least time.end / {:g} = {:g}", kMostSteps, time.end / kMostSteps));
   if (time.min_step > time.step)
     table.fail("min_step", fmt::format("must be at most time.step = {}", time.step));
   if (time.max_step < time.step)
@@ -133,6 +139,11 @@ void build_time(const DeckTable& deck, Model& model) {
   }
 }
 
+template <class T>
+void add_once(std::vector<T>& list, T value) {
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model) {
   const DeckTable& table = deck.table("output");
   Output& output = model.output;
@@ -142,12 +153,18 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.checkpoint_interval = table.real("checkpoint_interval");
   output.history_csv = table.boolean("history_csv");
   output.history_reactions = table.integer("history_reactions");
+  for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
+    const Real interval = table.real(key);
+    if (interval > 0 && interval * kMostOutputs < model.time.end)
+      table.fail(key, fmt::format("must be 0 or at least time.end / {:g} = {:g}", kMostOutputs,
+                                  model.time.end / kMostOutputs));
+  }
   for (const std::string& name : table.texts("history_bodies")) {
     const auto single = names.bodies.find(name);
     const std::vector<int> bodies = single != names.bodies.end()
                                         ? std::vector{single->second}
                                         : find_row(names, name, table, "history_bodies");
-    output.history_bodies.insert(output.history_bodies.end(), bodies.begin(), bodies.end());
+    for (const int body : bodies) add_once(output.history_bodies, body);
   }
   const auto count = static_cast<std::int64_t>(model.particles.size());
   for (const std::int64_t id : table.integers("history_particles")) {
@@ -156,7 +173,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
           "history_particles",
           fmt::format("there is no particle {}; the deck has {} particles, counted from 0", id, count));
     }
-    output.history_particles.push_back(id);
+    add_once(output.history_particles, id);
   }
 }
 

@@ -60,7 +60,7 @@ struct TimeControl {
   Real step = 0;                            // h, fixed or first [s]
   StepControl control = StepControl::fixed;
   Real min_step = 0, max_step = 0;          // [s]; min_step also bounds the retries of a fixed step
-  Real tolerance = 0;                       // adaptive: local position error per step over the particle's radius
+  Real tolerance = 2e-8;                    // adaptive: local position error per step over the particle's radius
 };
 
 struct Integrator {

@@ -7,11 +7,15 @@
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
+#include "physics/step_limits.hpp"
 #include "model/point_bins.hpp"
 
 namespace scree {
 
 namespace {
+
+// Phase that a body on one contact may turn in a step of a staggered run, and should.
+constexpr Real kMostBodyPhase = 0.7, kGoodBodyPhase = 0.3;
 
 // Particles and the bodies' shapes at t = 0, in this order.
 struct StartItems {
@@ -45,8 +49,11 @@ std::string item_name(const Model& model, const StartItems& items, std::size_t i
 }
 
 bool is_inside(const Space& space, Vec3 p) {
-  const bool in_plane = p.x >= space.min.x && p.x <= space.max.x && p.y >= space.min.y && p.y <= space.max.y;
-  return in_plane && (space.dimension == 2 || (p.z >= space.min.z && p.z <= space.max.z));
+  const auto within = [&](Side side, Real x, Real min, Real max) {
+    return space.boundary[side] == Boundary::periodic || (x >= min && x <= max);
+  };
+  return within(kXMin, p.x, space.min.x, space.max.x) && within(kYMin, p.y, space.min.y, space.max.y) &&
+         (space.dimension == 2 || within(kZMin, p.z, space.min.z, space.max.z));
 }
 
 void check_inside(const DeckTable& deck, const Model& model, const StartItems& items) {
@@ -143,6 +150,29 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
   log.warning("time.step: " + problem + " (estimated for an overlap of 1 % of the radius)");
 }
 
+// The bodies see the contact force at the end of their step, while the particles take substeps: staggered, and stable
+// only while the step is short against the oscillation of a body on its contacts.
+void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet || model.particles.size() == 0) return;
+  const std::vector<MaterialUse> uses = material_uses(model);
+  Real fastest = 0;
+  for (int a = 0; a < model.contact.materials(); ++a) {
+    for (int b = 0; b < model.contact.materials(); ++b) {
+      const Real mass = uses[static_cast<std::size_t>(a)].smallest_body_mass;
+      if (mass > 0 && uses[static_cast<std::size_t>(b)].particles > 0)
+        fastest = std::max(fastest, contact_frequency(model.contact.law(a, b).normal_stiffness, mass));
+    }
+  }
+  const Real phase = fastest * model.time.step;
+  const std::string finding = fmt::format(
+      "a body on a contact oscillates with {:.4g} rad/s; with velocity-verlet particles the bodies' step must be at "
+      "most {:.3g} s",
+      fastest, kMostBodyPhase / fastest);
+  if (phase > kMostBodyPhase) deck.table("time").fail("step", finding);
+  if (phase > kGoodBodyPhase)
+    log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s", finding, kGoodBodyPhase / fastest));
+}
+
 }  // namespace
 
 void check_start_positions(const DeckTable& deck, const Model& model, Log& log) {
@@ -165,6 +195,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, Log& log) 
 
 void check_steps(const DeckTable& deck, const Model& model, Log& log) {
   const std::vector<PairLimit> limits = pair_limits(model);
+  check_body_step(deck, model, log);
   const std::optional<PairLimit> shortest = shortest_contact(limits);
   if (!shortest || model.time.control == StepControl::adaptive) return;
   const bool is_explicit = model.integrator.particles == ParticleIntegrator::velocity_verlet;

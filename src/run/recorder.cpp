@@ -176,6 +176,7 @@ void Recorder::snapshot(State& state) {
   snapshots_.append(state.clock.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
                     {s.body, s.radius, s.position, s.velocity, angle, angular_velocity, s.force, s.contacts});
   ++state.snapshots;
+  history_.flush();
 }
 
 }  // namespace scree

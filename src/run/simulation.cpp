@@ -19,7 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kProgressSeconds = 0.25;  // between progress lines on a terminal
-constexpr double kFlushSeconds = 5;        // between writes of the history, besides snapshots and checkpoints
+constexpr double kFlushSeconds = 5;        // between writes of the history, besides those with snapshots and checkpoints
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
@@ -74,6 +74,7 @@ class Simulation {
 
  private:
   void start_or_resume();
+  bool continues_files() const;
   void checkpoint(const State& state, const std::string& name);
   void progress(const State& state, Real h);
   ExitCode finish(const std::string& status, ExitCode code);
@@ -104,11 +105,20 @@ void Simulation::start_or_resume() {
   } else {
     backend_->load(state_.particles, state_.shapes);
     step_.counts() = state_.counts;
-    // Into another folder: new files, which begin here.
-    if (!std::filesystem::exists(options_.output_directory + "/history.h5")) state_.history_rows = state_.snapshots = 0;
+    if (state_.clock.time > model_.time.end)
+      throw InputError(fmt::format("--restart {}: the checkpoint is at t = {:.9g} s, past time.end = {:g} s",
+                                   options_.restart, state_.clock.time, model_.time.end));
+    if (!continues_files()) state_.history_rows = state_.snapshots = 0;
     step_.resume(state_.bodies);
   }
   start_time_ = state_.clock.time;
+}
+
+// A restart in the checkpoint's own folder goes on with its files; in another folder new files begin.
+bool Simulation::continues_files() const {
+  const std::filesystem::path folder = std::filesystem::path(options_.restart).parent_path();
+  return std::filesystem::equivalent(folder.empty() ? "." : folder, options_.output_directory) &&
+         std::filesystem::exists(options_.output_directory + "/history.h5");
 }
 
 void Simulation::checkpoint(const State& state, const std::string& name) {
@@ -145,10 +155,13 @@ ExitCode Simulation::run() {
   StepLoop loop(parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
                 [this](const State& s, Real h) { progress(s, h); });
   try {
-    if (loop.run() == LoopEnd::done) return finish("done", ExitCode::done);
+    if (loop.run() == LoopEnd::done) {
+      checkpoint(loop.complete_state(), "checkpoint_end.h5");
+      return finish("done", ExitCode::done);
+    }
   } catch (const SimulationError& error) {
     checkpoint(loop.last_good_state(), "checkpoint_failed.h5");
-    log_.warning(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
+    log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
     log_.info("last good state: " + options_.output_directory + "/checkpoint_failed.h5");
     return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
   } catch (const IoError& error) {

@@ -27,7 +27,10 @@ StepClock::StepClock(const Model& model) : time_(model.time), output_(model.outp
 }
 
 Real StepClock::same_time_margin() const {
-  return kSameTime * (time_.control == StepControl::fixed ? time_.step : time_.min_step);
+  Real shortest = time_.control == StepControl::fixed ? time_.step : time_.min_step;
+  for (const Real interval : {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval})
+    if (interval > 0) shortest = std::min(shortest, interval);
+  return kSameTime * shortest;
 }
 
 Real StepClock::next_output() const {

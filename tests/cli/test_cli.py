@@ -300,7 +300,7 @@ class RestartTest(CommandLineTest):
                 words = (*words, "--set", "output.checkpoint_interval=0.15")
                 self.run_deck(DONE, "whole", *words)
                 shutil.copytree(self.folder / "whole", self.folder / "parts", dirs_exist_ok=True)
-                restarted = self.run_deck(DONE, "parts", *words, "--restart", self.folder / "whole/checkpoint.h5")
+                restarted = self.run_deck(DONE, "parts", *words, "--restart", self.folder / "parts/checkpoint.h5")
                 self.assertNotIn("t = 0.2", restarted.stdout)  # it went on from 0.3 s
                 self.assert_same_results("parts", "whole")
 

@@ -36,7 +36,7 @@ std::string fingerprint(const std::vector<std::string>& overrides) {
 }  // namespace
 
 TEST_CASE("the resolved deck holds the defaults and loads to itself") {
-  const Deck deck = parse_deck(kDeck, "deck.toml", {"time.end=2"});
+  const Deck deck = parse_deck(kDeck, "deck.toml", {"time.end=2", "time.control=adaptive"});
   const std::string text = deck.resolved_text();
   CHECK(contains(text, "tolerance = 2e-08"));
   CHECK(contains(text, "leaving = \"error\""));
