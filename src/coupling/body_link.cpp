@@ -41,4 +41,12 @@ void BodyLink::reduce_wrench(Backend& backend) {
   if (has_bodies()) backend.reduce_wrench(step_wrench_, end_wrench_);
 }
 
+void BodyLink::set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum, int substeps) {
+  for (std::size_t b = 0; b < step_wrench_.size(); ++b) {
+    step_wrench_[b] = {};
+    step_wrench_[b].force = (Real(2) / substeps) * sum[b].force - start[b].force;
+    step_wrench_[b].torque = (Real(2) / substeps) * sum[b].torque - start[b].torque;
+  }
+}
+
 }  // namespace scree

@@ -13,6 +13,22 @@ namespace {
 constexpr int kMostListBuilds = 4;
 // Skin of a list that had to be built for a fast step, over that step's largest displacement.
 constexpr Real kSkinPerMotion = 5;
+// But no wider than this, over the largest radius: one fast particle must not make every particle a neighbour of every
+// other. A step that needs more is shortened.
+constexpr Real kMostSkin = 4;
+
+}  // namespace
+
+namespace {
+
+// sum += weight * wrenches; an empty sum counts as zero.
+void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
+  sum.resize(wrenches.size());
+  for (std::size_t b = 0; b < wrenches.size(); ++b) {
+    sum[b].force += weight * wrenches[b].force;
+    sum[b].torque += weight * wrenches[b].torque;
+  }
+}
 
 }  // namespace
 
@@ -23,7 +39,11 @@ struct CoupledStep::Iteration {
 };
 
 CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
-    : model_(model), backend_(backend), link_(link), timers_(timers) {}
+    : model_(model), backend_(backend), link_(link), timers_(timers) {
+  for (const Real radius : model.particles.radius) largest_radius_ = std::max(largest_radius_, radius);
+  for (const Body& body : model.bodies)
+    for (const Shape& shape : body.shapes) largest_radius_ = std::max(largest_radius_, shape.radius);
+}
 
 void CoupledStep::rebuild_list(Real skin) {
   backend_.build_list(skin, timers_);
@@ -66,7 +86,7 @@ bool CoupledStep::covered(const MultibodyState& bodies) {
   if (backend_.list_displacement() <= 1) return true;
   const Real moved = backend_.step_displacement();
   undo_step(bodies);
-  rebuild_list(std::max(model_.contact.skin, kSkinPerMotion * moved));
+  rebuild_list(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, kMostSkin * largest_radius_)));
   return false;
 }
 
@@ -84,6 +104,8 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
       iterate();
       done = covered(bodies);
     }
+    for (const Leaver& l : backend_.outside())
+      if (l.lost) check_inside();  // through a wall: a shorter step may not
   } catch (const SimulationError& error) {
     undo_step(bodies);
     ++counts_.rejected_newton;
@@ -180,6 +202,13 @@ bool CoupledStep::iterate_once(Iteration& last) {
 void CoupledStep::explicit_step(MultibodyState& bodies, Real t, Real h) {
   const int substeps = model_.integrator.substeps;
   const Real substep = h / substeps;
+  std::vector<BodyWrench> start, sum;
+  if (link_.has_bodies()) {
+    backend_.shape_contacts();
+    link_.reduce_wrench(backend_);
+    start = link_.end_wrench();
+    add_wrenches(sum, start, 0.5);
+  }
   {
     const auto scope = timers_.time(Stage::predict);
     backend_.verlet_start(substep);
@@ -190,38 +219,45 @@ void CoupledStep::explicit_step(MultibodyState& bodies, Real t, Real h) {
       link_.broadcast_motion(backend_, bodies, h * s / substeps);
     }
     if (backend_.list_displacement() > 1) rebuild_list(model_.contact.skin);
-    const auto scope = timers_.time(Stage::contact_force);
-    if (s < substeps)
-      backend_.verlet_advance(substep);
-    else
-      backend_.verlet_finish(substep);
+    {
+      const auto scope = timers_.time(Stage::contact_force);
+      if (s < substeps)
+        backend_.verlet_advance(substep);
+      else
+        backend_.verlet_finish(substep);
+    }
+    const auto scope = timers_.time(Stage::reduce_wrench);
+    link_.reduce_wrench(backend_);
+    add_wrenches(sum, link_.end_wrench(), s < substeps ? 1 : 0.5);
   }
-  if (link_.multibody()) {
-    link_.multibody()->predict(bodies, t, h);
-    solve_bodies();
-    link_.multibody()->accept(bodies, link_.end_wrench());
+  if (link_.has_bodies()) {
+    link_.set_mean_wrench(start, sum, substeps);
+    solve_bodies(bodies, t, h);
   }
-  link_.broadcast_motion(backend_, bodies, 0);
   ++counts_.steps;
 }
 
-// The bodies' own Newton loop with the contact wrenches at the end of the particles' substeps.
-void CoupledStep::solve_bodies() {
-  std::vector<BodyWrench> wrench;
-  {
-    const auto scope = timers_.time(Stage::reduce_wrench);
-    link_.reduce_wrench(backend_);
-    wrench = link_.end_wrench();
-  }
-  const auto scope = timers_.time(Stage::mbs_correct);
+// The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next begins, with the
+// contacts at the bodies' corrected place.
+void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
   const Integrator& limits = model_.integrator;
-  for (int iteration = 0; iteration < limits.max_iterations; ++iteration) {
-    ++counts_.newton_iterations;
-    const IterationNorms norms = link_.multibody()->correct(wrench);
-    if (norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance) return;
+  if (link_.multibody()) {
+    const auto scope = timers_.time(Stage::mbs_correct);
+    link_.multibody()->predict(bodies, t, h);
+    IterationNorms norms;
+    int iteration = 0;
+    do {
+      if (++iteration > limits.max_iterations)
+        throw SimulationError(fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations",
+                                          limits.max_iterations));
+      ++counts_.newton_iterations;
+      norms = link_.multibody()->correct(link_.step_wrench());
+    } while (norms.residual > limits.residual_tolerance || norms.correction > limits.correction_tolerance);
   }
-  throw SimulationError("stage mbs_correct: the bodies' motion did not converge in " +
-                        std::to_string(limits.max_iterations) + " iterations");
+  link_.broadcast_motion(backend_);
+  backend_.shape_contacts();
+  link_.reduce_wrench(backend_);
+  if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
 }
 
 }  // namespace scree

@@ -56,12 +56,13 @@ class CoupledStep {
   bool covered(const MultibodyState& bodies);
   void iterate();
   bool iterate_once(Iteration& last);
-  void solve_bodies();
+  void solve_bodies(MultibodyState& bodies, Real t, Real h);
 
   const Model& model_;
   Backend& backend_;
   BodyLink& link_;
   StageTimers& timers_;
+  Real largest_radius_ = 0;  // of particles and shapes [m]
   StepCounts counts_;
 };
 

@@ -107,8 +107,10 @@ class Backend {
   virtual void verlet_start(Real h) = 0;
   virtual void verlet_advance(Real h) = 0;
   virtual void verlet_finish(Real h) = 0;
+  // Contacts of the bodies' shapes as everything stands, for reduce_wrench.
+  virtual void shape_contacts() = 0;
 
-  // The particles in the search that are outside the space now, ordered by global id.
+  // The particles that are outside the space now and not known to drift, ordered by global id.
   virtual std::vector<Leaver> outside() const = 0;
   // Takes them out of the search: they drift from now on or are removed, as the deck says. The list must then be
   // built anew.

@@ -15,9 +15,9 @@ class CpuContactKernels : public ContactKernels {
   void forces(const ContactViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power) const override {
     for_each(Serial{}, n, ContactForceItem<Elastic, Laws>{in, laws_, gravity, force, loss_power});
   }
-  void verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
+  Real verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
                      Vec3* force) const override {
-    for_each(Serial{}, n, VerletFinishItem<Elastic, Laws>{{in, laws_, gravity, force, state.loss_power}, state});
+    return max_over(Serial{}, n, VerletFinishItem<Elastic, Laws>{{in, laws_, gravity, force, state.loss_power}, state});
   }
   Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const override {
     return max_over(Serial{}, n, VerletAdvanceItem<Elastic, Laws>{{in, laws_, gravity, nullptr, nullptr}, state});

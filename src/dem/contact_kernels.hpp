@@ -19,7 +19,8 @@ class ContactKernels {
  public:
   virtual ~ContactKernels() = default;
   virtual void forces(const ContactViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power) const = 0;
-  virtual void verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
+  // The square of the largest acceleration; a NaN if one is not finite.
+  virtual Real verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
                              Vec3* force) const = 0;
   // The square of the largest displacement.
   virtual Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const = 0;

@@ -70,12 +70,19 @@ void CpuBackend::book_shape_losses(Real h) {
   shape_losses_.loss_power = end_power;
 }
 
+void CpuBackend::report_not_finite(const std::vector<Vec3>& force) const {
+  for (Index i = 0; i < layout_.owned; ++i)
+    if (!is_finite(force[i]))
+      throw SimulationError("stage contact_force: the force on particle " + std::to_string(store_.global_id[i]) +
+                            " is not finite");
+}
+
 void CpuBackend::refresh_ghosts() {
   update_halo_positions(layout_.ghosts, store_.position, layout_.owned);
   update_halo(layout_.ghosts, store_.velocity, layout_.owned);
 }
 
-// Owned particles in the order of their cells; those that drift outside at the end.
+// Owned particles in the order of their cells; those outside at the end.
 void CpuBackend::sort_cells(Real skin) {
   const CellGrid grid = builder_.grid(skin, store_.owned + shapes_.size());
   const Index outside = grid.count();
@@ -84,9 +91,10 @@ void CpuBackend::sort_cells(Real skin) {
   for (Index i = 0; i < store_.owned; ++i) {
     store_.position[i] = vec4(subdomain_.wrap(xyz(store_.position[i]), store_.image[i]), store_.position[i].w);
     cell[i] = store_.drifting[i] ? outside : grid.cell(xyz(store_.position[i]));
-    if (cell[i] < 0)
-      throw SimulationError("stage sort_cells: particle " + std::to_string(store_.global_id[i]) +
-                            " is outside the space or not finite");
+    if (!is_finite(xyz(store_.position[i])))
+      throw SimulationError("stage sort_cells: the position of particle " + std::to_string(store_.global_id[i]) +
+                            " is not finite");
+    if (cell[i] < 0) cell[i] = outside;  // has left; whether it may is asked at the end of the step
     store_.active += cell[i] != outside;
     ++start[cell[i] + 1];
   }

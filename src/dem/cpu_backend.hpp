@@ -44,6 +44,7 @@ class CpuBackend : public Backend {
   void verlet_start(Real h) override;
   void verlet_advance(Real h) override;
   void verlet_finish(Real h) override;
+  void shape_contacts() override;
 
   std::vector<Leaver> outside() const override;
   void take_out(const std::vector<Leaver>& leavers) override;
@@ -56,12 +57,13 @@ class CpuBackend : public Backend {
   StepViews step_views();
   VerletViews verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity);
   StepForces step_forces();
-  void shape_forces(Real h);
   Real slope(const std::vector<Vec3>& residual) const;
   // Sizes all item arrays, fills in ghosts and shapes.
   void lay_out_items(Real skin);
   void sort_cells(Real skin);
   void refresh_ghosts();
+  // Throws SimulationError naming the first particle whose force is not finite.
+  void report_not_finite(const std::vector<Vec3>& force) const;
   void place_shapes();
   void book_shape_losses(Real h);
   Vec3 unwrapped(Index i) const;  // position without the periodic box [m]

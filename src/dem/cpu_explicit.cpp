@@ -22,14 +22,14 @@ void CpuBackend::verlet_start(Real h) {
   step_bound_ = std::sqrt(max_over(Serial{}, layout_.owned, item));
 }
 
-void CpuBackend::shape_forces(Real h) {
+void CpuBackend::shape_contacts() {
   kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
-  book_shape_losses(h);
 }
 
 void CpuBackend::verlet_advance(Real h) {
   refresh_ghosts();
-  shape_forces(h);
+  shape_contacts();
+  book_shape_losses(h);
   step_bound_ = std::sqrt(kernels_->verlet_advance(views(), model_.gravity, layout_.owned,
                                                    verlet_views(h, spare_position_, spare_velocity_)));
   std::swap(store_.position, spare_position_);
@@ -38,9 +38,11 @@ void CpuBackend::verlet_advance(Real h) {
 
 void CpuBackend::verlet_finish(Real h) {
   refresh_ghosts();
-  shape_forces(h);
-  kernels_->verlet_finish(views(), model_.gravity, layout_.owned,
-                          verlet_views(h, spare_position_, spare_velocity_), store_.force.data());
+  shape_contacts();
+  book_shape_losses(h);
+  const Real squared = kernels_->verlet_finish(views(), model_.gravity, layout_.owned,
+                                               verlet_views(h, spare_position_, spare_velocity_), store_.force.data());
+  if (!std::isfinite(squared)) report_not_finite(store_.force);
   std::swap(store_.velocity, spare_velocity_);
   refresh_ghosts();
 }

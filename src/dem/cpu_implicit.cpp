@@ -46,6 +46,7 @@ void CpuBackend::begin_step(Real h) {
 }
 
 void CpuBackend::rollback() {
+  if (!in_implicit_step_) return;
   std::copy(start_position_.begin(), start_position_.begin() + layout_.owned, store_.position.begin());
   std::copy(start_velocity_.begin(), start_velocity_.begin() + layout_.owned, store_.velocity.begin());
   store_.acceleration = start_acceleration_;
@@ -85,9 +86,7 @@ ParticleNorms CpuBackend::contact_force() {
   force_scale_ = largest_stiffening_ = 0;
   for (Index i = 0; i < n; ++i) {
     const Real r = norm(residual_[i]);
-    if (!std::isfinite(r))
-      throw SimulationError("stage contact_force: the force on particle " + std::to_string(store_.global_id[i]) +
-                            " is not finite");
+    if (!std::isfinite(r)) report_not_finite(residual_);
     if (r > residual) residual = r, norms.worst = store_.global_id[i];
     bound = std::max(bound, weights.stiffness * r * (1 + hht_.hht_alpha) / (store_.velocity[i].w * store_.position[i].w));
     const Real at_start = norm(start_force_[i]) + store_.velocity[i].w * norm(start_acceleration_[i]);

@@ -29,7 +29,7 @@ Vec3 CpuBackend::unwrapped(Index i) const {
 
 std::vector<Leaver> CpuBackend::outside() const {
   std::vector<Leaver> leavers;
-  for (Index i = 0; i < store_.active; ++i) {
+  for (Index i = 0; i < store_.owned; ++i) {
     const Vec3 p = xyz(store_.position[i]);
     if (store_.drifting[i] || subdomain_.inside(p)) continue;
     leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy_of(i), store_.contact_loss[i],

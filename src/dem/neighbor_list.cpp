@@ -1,6 +1,9 @@
 #include "dem/neighbor_list.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include "base/error.hpp"
 
 namespace scree {
 
@@ -99,6 +102,8 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
     const bool has_row = i < layout.active || i >= layout.first_shape;
     if (has_row && cell_of_[i] >= 0) collect_row(store, layout, cells, i, list);
     order_row(store, layout, list.neighbors.data() + begin, list.neighbors.data() + list.neighbors.size());
+    if (list.neighbors.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+      throw SimulationError("stage neighbors: more neighbours than one rank can count");
     list.offsets[i + 1] = static_cast<Index>(list.neighbors.size());
   }
   collect_walls(store, layout, list);

@@ -136,13 +136,15 @@ struct VerletFinishItem {
   ContactForceItem<Elastic, Laws> contacts;
   VerletViews state;
 
-  SCREE_HD void operator()(Index i) const {
+  // Returns |a|^2, so that a force that is not finite does not pass unseen.
+  SCREE_HD Real operator()(Index i) const {
     contacts(i);
     const Vec4 v = contacts.in.velocity[i];
     const Vec3 a = (1 / v.w) * contacts.force[i];
     state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
     state.acceleration[i] = a;
     if (contacts.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * contacts.loss_power[i];
+    return dot(a, a);
   }
 };
 

@@ -26,8 +26,19 @@ StepClock::StepClock(const Model& model) : time_(model.time), output_(model.outp
   open_segment();
 }
 
+StepClock::StepClock(const Model& model, const ClockState& state) : StepClock(model) {
+  state_ = state;
+  const auto recount = [&](std::int64_t& count, Real interval) {
+    if (interval > 0) count = static_cast<std::int64_t>(std::floor((state_.time + same_time_margin()) / interval));
+  };
+  recount(state_.histories, output_.history_interval);
+  recount(state_.snapshots, output_.snapshot_interval);
+  recount(state_.checkpoints, output_.checkpoint_interval);
+  if (state_.time < state_.end && state_.end != next_output()) open_segment();
+}
+
 Real StepClock::same_time_margin() const {
-  Real shortest = time_.control == StepControl::fixed ? time_.step : time_.min_step;
+  Real shortest = time_.step;
   for (const Real interval : {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval})
     if (interval > 0) shortest = std::min(shortest, interval);
   return kSameTime * shortest;

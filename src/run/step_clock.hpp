@@ -25,7 +25,8 @@ struct ClockState {
 class StepClock {
  public:
   explicit StepClock(const Model& model);
-  StepClock(const Model& model, const ClockState& state) : StepClock(model) { state_ = state; }
+  // Goes on from a state, of a run whose output times and end may have been others.
+  StepClock(const Model& model, const ClockState& state);
 
   const ClockState& state() const { return state_; }
   Real time() const { return state_.time; }
