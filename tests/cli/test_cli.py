@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 SCREE = os.environ["SCREE"]
-LIMIT = 60  # [s] for any one run: past it, the run hangs
+LIMIT = 300  # [s] for any one run: past it, the run hangs
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
 DONE, BAD_INPUT, FAILED, IO_FAILED, STOPPED = 0, 2, 3, 4, 5
