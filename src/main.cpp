@@ -21,7 +21,8 @@ namespace scree {
 namespace {
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 2 bad usage or deck, 3 the simulation failed, 4 a file could not be read or written,\n"
+    "Exit codes: 0 done, 2 bad usage or deck, 3 the simulation failed, 4 a file could not be read or "
+    "written,\n"
     "5 stopped by a signal (SIGTERM, SIGINT, SIGUSR1) after writing a checkpoint.\n"
     "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
 
@@ -57,8 +58,8 @@ int mpi_value(int (*query)(MPI_Comm, int*)) {
 }
 
 std::string version_text() {
-  std::string text = fmt::format("scree {} (commit {})\ncompiler {}\nflags {}\n", version(), commit(), compiler(),
-                                 compile_flags());
+  std::string text = fmt::format("scree {} (commit {})\ncompiler {}\nflags {}\n", version(), commit(),
+                                 compiler(), compile_flags());
   for (const auto& [library, number] : library_versions()) text += fmt::format("{} {}\n", library, number);
   return text + fmt::format("PETSc {}\n", petsc_version());
 }
@@ -76,7 +77,8 @@ auto naming_deck(const std::string& deck, const Action& action) {
     return action();
   } catch (const InputError& error) {
     const std::string message = error.what();
-    throw InputError(message.starts_with(deck) || message.starts_with("--") ? message : deck + ": " + message);
+    throw InputError(message.starts_with(deck) || message.starts_with("--") ? message
+                                                                            : deck + ": " + message);
   }
 }
 
@@ -88,10 +90,16 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
     throw InputError(fmt::format("mpirun -n {}: this version runs on one rank; start it with -n 1",
                                  mpi_value(MPI_Comm_size)));
   const PetscSession petsc("scree", line.petsc_words);
-  RunOptions options{arguments.backend,    output_directory(arguments, model), arguments.restart, arguments.deck,
-                     deck.resolved_text(), deck.fingerprint(),                 line.text};
+  RunOptions options{arguments.backend,
+                     output_directory(arguments, model),
+                     arguments.restart,
+                     arguments.deck,
+                     deck.resolved_text(),
+                     deck.fingerprint(),
+                     line.text};
   const ExitCode code = naming_deck(arguments.deck, [&] { return run_simulation(model, options, log); });
-  for (const std::string& option : petsc.unused_options()) log.warning("PETSc option " + option + " was not used");
+  for (const std::string& option : petsc.unused_options())
+    log.warning("PETSc option " + option + " was not used");
   return code;
 }
 
@@ -102,7 +110,8 @@ ExitCode check(const Arguments& arguments) {
   std::string constraints = "";
   if (!model.bodies.empty()) {
     const PetscSession petsc("scree", {});
-    constraints = naming_deck(arguments.deck, [&] { return "solver         " + Multibody(model).solver_description(); });
+    constraints = naming_deck(arguments.deck,
+                              [&] { return "solver         " + Multibody(model).solver_description(); });
   }
   log.info(check_report(model) + constraints);
   return ExitCode::done;
@@ -125,7 +134,8 @@ ExitCode dispatch(const CommandLine& line) {
 
   CLI::App* run_command = app.add_subcommand("run", "run a deck; results go to HDF5 files");
   declare_deck(*run_command, arguments);
-  run_command->add_option("--output", arguments.output, "folder for the results (default: results/DECK's name)")
+  run_command
+      ->add_option("--output", arguments.output, "folder for the results (default: results/DECK's name)")
       ->type_name("DIR");
   run_command->add_option("--backend", arguments.backend, "auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));

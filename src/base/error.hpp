@@ -7,7 +7,13 @@
 namespace scree {
 
 // Exit codes of the program; listed in --help and in the README.
-enum class ExitCode : int { done = 0, bad_input = 2, simulation_failed = 3, io_failed = 4, stopped_by_signal = 5 };
+enum class ExitCode : int {
+  done = 0,
+  bad_input = 2,
+  simulation_failed = 3,
+  io_failed = 4,
+  stopped_by_signal = 5
+};
 
 // The user's: bad usage or deck. The message names file, line, key, value and what is allowed.
 struct InputError : std::runtime_error {

@@ -10,13 +10,26 @@
 namespace scree {
 
 enum class Stage {
-  predict, migrate, sort_cells, exchange_halo, neighbors, update_halo, broadcast_motion, contact_force,
-  reduce_wrench, mbs_correct, particle_correct, accept, output, count
+  predict,
+  migrate,
+  sort_cells,
+  exchange_halo,
+  neighbors,
+  update_halo,
+  broadcast_motion,
+  contact_force,
+  reduce_wrench,
+  mbs_correct,
+  particle_correct,
+  accept,
+  output,
+  count
 };
 
 inline constexpr std::array<const char*, static_cast<int>(Stage::count)> kStageNames = {
-    "predict",       "migrate",       "sort_cells",  "exchange_halo",    "neighbors", "update_halo", "broadcast_motion",
-    "contact_force", "reduce_wrench", "mbs_correct", "particle_correct", "accept",    "output"};
+    "predict",          "migrate",          "sort_cells",    "exchange_halo", "neighbors",
+    "update_halo",      "broadcast_motion", "contact_force", "reduce_wrench", "mbs_correct",
+    "particle_correct", "accept",           "output"};
 
 class StageTimers {
  public:

@@ -52,7 +52,8 @@ SCREE_HD Vec3 operator*(const Sym3& a, Vec3 v) {
 }
 // Inverse of a positive definite matrix.
 SCREE_HD Sym3 inverse(const Sym3& a) {
-  const Real cxx = a.yy * a.zz - a.yz * a.yz, cxy = a.xz * a.yz - a.xy * a.zz, cxz = a.xy * a.yz - a.xz * a.yy;
+  const Real cxx = a.yy * a.zz - a.yz * a.yz, cxy = a.xz * a.yz - a.xy * a.zz,
+             cxz = a.xy * a.yz - a.xz * a.yy;
   const Real r = 1 / (a.xx * cxx + a.xy * cxy + a.xz * cxz);
   return {r * cxx,
           r * cxy,

@@ -15,13 +15,15 @@ bool is_root() {
 
 }  // namespace
 
-BodyLink::BodyLink(const Model& model) : motion_(model.bodies.size()), step_wrench_(model.bodies.size()), end_wrench_(model.bodies.size()) {
+BodyLink::BodyLink(const Model& model)
+    : motion_(model.bodies.size()), step_wrench_(model.bodies.size()), end_wrench_(model.bodies.size()) {
   if (!model.bodies.empty() && is_root()) multibody_ = std::make_unique<Multibody>(model);
 }
 
 void BodyLink::broadcast(Backend& backend) {
   static_assert(std::is_trivially_copyable_v<BodyMotion>);
-  MPI_Bcast(motion_.data(), static_cast<int>(motion_.size() * sizeof(BodyMotion)), MPI_BYTE, 0, MPI_COMM_WORLD);
+  MPI_Bcast(motion_.data(), static_cast<int>(motion_.size() * sizeof(BodyMotion)), MPI_BYTE, 0,
+            MPI_COMM_WORLD);
   backend.place_bodies(motion_);
 }
 
@@ -41,7 +43,8 @@ void BodyLink::reduce_wrench(Backend& backend) {
   if (has_bodies()) backend.reduce_wrench(step_wrench_, end_wrench_);
 }
 
-void BodyLink::set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum, int substeps) {
+void BodyLink::set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
+                               int substeps) {
   for (std::size_t b = 0; b < step_wrench_.size(); ++b) {
     step_wrench_[b] = {};
     step_wrench_[b].force = (Real(2) / substeps) * sum[b].force - start[b].force;

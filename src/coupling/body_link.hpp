@@ -25,9 +25,11 @@ class BodyLink {
   void broadcast_motion(Backend& backend, const MultibodyState& state, Real tau);
   // All -> rank 0: contact wrench and contact stiffness per body, as Backend::reduce_wrench.
   void reduce_wrench(Backend& backend);
-  // Replaces the step's wrench by the one whose trapezoidal impulse over `substeps` equal parts is their sum: twice the
-  // mean force less the force at the start. sum: of the forces at the parts' ends, the outer two halved.
-  void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum, int substeps);
+  // Replaces the step's wrench by the one whose trapezoidal impulse over `substeps` equal parts is their sum:
+  // twice the mean force less the force at the start. sum: of the forces at the parts' ends, the outer two
+  // halved.
+  void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
+                       int substeps);
   const std::vector<BodyWrench>& step_wrench() const { return step_wrench_; }
   const std::vector<BodyWrench>& end_wrench() const { return end_wrench_; }
   const std::vector<BodyMotion>& motion() const { return motion_; }

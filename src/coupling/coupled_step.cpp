@@ -13,8 +13,8 @@ namespace {
 constexpr int kMostListBuilds = 4;
 // Skin of a list that had to be built for a fast step, over that step's largest displacement.
 constexpr Real kSkinPerMotion = 5;
-// But no wider than this, over the largest radius: one fast particle must not make every particle a neighbour of every
-// other. A step that needs more is shortened.
+// But no wider than this, over the largest radius: one fast particle must not make every particle a neighbour
+// of every other. A step that needs more is shortened.
 constexpr Real kMostSkin = 4;
 
 }  // namespace
@@ -79,9 +79,9 @@ void CoupledStep::undo_step(const MultibodyState& bodies) {
   link_.broadcast_motion(backend_, bodies, 0);
 }
 
-// Whether the neighbour list sees every pair that the iterate can bring to touch. If not, the step is undone and
-// the list built with a skin that covers it: the step is then repeated with the same h, so that what the list
-// happens to cover never changes the result.
+// Whether the neighbour list sees every pair that the iterate can bring to touch. If not, the step is undone
+// and the list built with a skin that covers it: the step is then repeated with the same h, so that what the
+// list happens to cover never changes the result.
 bool CoupledStep::covered(const MultibodyState& bodies) {
   if (backend_.list_displacement() <= 1) return true;
   const Real moved = backend_.step_displacement();
@@ -97,8 +97,10 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     bool done = false;
     for (int builds = 0; !done; ++builds) {
       // Attempts that the list does not cover leave no trace, in the counts neither.
-      counts_.newton_iterations = before.newton_iterations, counts_.linear_iterations = before.linear_iterations;
-      if (builds > kMostListBuilds) throw SimulationError("stage neighbors: no skin covers the step's motion");
+      counts_.newton_iterations = before.newton_iterations,
+      counts_.linear_iterations = before.linear_iterations;
+      if (builds > kMostListBuilds)
+        throw SimulationError("stage neighbors: no skin covers the step's motion");
       open_step(bodies, t, h);
       if (!covered(bodies)) continue;
       iterate();
@@ -140,10 +142,11 @@ std::vector<Leaver> CoupledStep::check_inside() const {
   std::vector<Leaver> leavers = backend_.outside();
   for (const Leaver& l : leavers) {
     if (!l.lost && policy != Leaving::error) continue;
-    throw SimulationError(fmt::format("stage accept: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}",
-                                      l.global_id, l.position.x, l.position.y, l.position.z,
-                                      l.lost ? "beyond a side that is a wall"
-                                             : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
+    throw SimulationError(
+        fmt::format("stage accept: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}", l.global_id,
+                    l.position.x, l.position.y, l.position.z,
+                    l.lost ? "beyond a side that is a wall"
+                           : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
   }
   return leavers;
 }
@@ -154,9 +157,10 @@ void CoupledStep::iterate() {
     ++counts_.newton_iterations;
     if (iterate_once(last)) return;
   }
-  throw SimulationError(fmt::format("stage particle_correct: no convergence in {} iterations; the largest residual, {:.2e} "
-                                    "of the largest force, is that of particle {}",
-                                    model_.integrator.max_iterations, last.residual, last.worst));
+  throw SimulationError(
+      fmt::format("stage particle_correct: no convergence in {} iterations; the largest residual, {:.2e} "
+                  "of the largest force, is that of particle {}",
+                  model_.integrator.max_iterations, last.residual, last.worst));
 }
 
 // One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
@@ -182,7 +186,8 @@ bool CoupledStep::iterate_once(Iteration& last) {
     {
       const auto scope = timers_.time(Stage::mbs_correct);
       const IterationNorms bodies = link_.multibody()->correct(link_.step_wrench());
-      bodies_done = bodies.residual <= limits.residual_tolerance && bodies.correction <= limits.correction_tolerance;
+      bodies_done =
+          bodies.residual <= limits.residual_tolerance && bodies.correction <= limits.correction_tolerance;
     }
     const auto scope = timers_.time(Stage::broadcast_motion);
     link_.broadcast_motion(backend_);
@@ -237,8 +242,8 @@ void CoupledStep::explicit_step(MultibodyState& bodies, Real t, Real h) {
   ++counts_.steps;
 }
 
-// The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next begins, with the
-// contacts at the bodies' corrected place.
+// The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
+// begins, with the contacts at the bodies' corrected place.
 void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
   const Integrator& limits = model_.integrator;
   if (link_.multibody()) {
@@ -248,8 +253,9 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
     int iteration = 0;
     do {
       if (++iteration > limits.max_iterations)
-        throw SimulationError(fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations",
-                                          limits.max_iterations));
+        throw SimulationError(
+            fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations",
+                        limits.max_iterations));
       ++counts_.newton_iterations;
       norms = link_.multibody()->correct(link_.step_wrench());
     } while (norms.residual > limits.residual_tolerance || norms.correction > limits.correction_tolerance);

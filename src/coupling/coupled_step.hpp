@@ -16,15 +16,15 @@ enum class Verdict { accepted, not_converged, inaccurate };
 
 struct StepOutcome {
   Verdict verdict = Verdict::accepted;
-  Real error = 0;        // local error over the tolerance, both sides
-  std::string trouble;   // why the step did not converge: stage, id
+  Real error = 0;       // local error over the tolerance, both sides
+  std::string trouble;  // why the step did not converge: stage, id
 };
 
 // Counted over the run; part of the state.
 struct StepCounts {
   std::int64_t steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::int64_t rejected_error = 0, rejected_newton = 0;
-  std::int64_t list_builds = 0;          // neighbour list; not part of the state
+  std::int64_t list_builds = 0;  // neighbour list; not part of the state
 };
 
 class CoupledStep {
@@ -35,13 +35,13 @@ class CoupledStep {
   void start(MultibodyState& bodies);
   // After a restart: the same without recomputing what the state holds.
   void resume(const MultibodyState& bodies);
-  // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they were, where
-  // a particle would be outside the space and must not (see check_inside).
+  // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they
+  // were, where a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
   // Advances both sides by h, the particles in substeps.
   void explicit_step(MultibodyState& bodies, Real t, Real h);
-  // The particles outside the space now. Throws SimulationError naming the first that is beyond a wall, or outside at
-  // all where the deck calls that an error.
+  // The particles outside the space now. Throws SimulationError naming the first that is beyond a wall, or
+  // outside at all where the deck calls that an error.
   std::vector<Leaver> check_inside() const;
   // Brings the neighbour list up to date with the particles and bodies as they are.
   void rebuild_list(Real skin);

@@ -19,18 +19,25 @@ struct Ledger {
 
   Real mechanical() const { return kinetic + gravitational + elastic_force_elements + elastic_contacts; }
   Real accounted() const {
-    return mechanical() + dissipated_force_elements + dissipated_contacts + dissipated_integrator + carried_out -
-           driver_work;
+    return mechanical() + dissipated_force_elements + dissipated_contacts + dissipated_integrator +
+           carried_out - driver_work;
   }
   std::array<Real, 9> entries() const {
-    return {kinetic, gravitational, elastic_force_elements, elastic_contacts, dissipated_force_elements,
-            dissipated_contacts, dissipated_integrator, driver_work, carried_out};
+    return {kinetic,
+            gravitational,
+            elastic_force_elements,
+            elastic_contacts,
+            dissipated_force_elements,
+            dissipated_contacts,
+            dissipated_integrator,
+            driver_work,
+            carried_out};
   }
 };
 
 // What removed particles took along, booked when they left; part of the state.
 struct CarriedOut {
-  std::int64_t left = 0;     // particles that have left, drifting or removed
+  std::int64_t left = 0;  // particles that have left, drifting or removed
   std::int64_t removed = 0;
   Real energy = 0, contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
 };

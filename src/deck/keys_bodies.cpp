@@ -166,9 +166,10 @@ const TableKeys& time_function_keys() {
       {text("kind")
            .one_of({"constant", "ramp", "sine", "table"})
            .required()
-           .about("Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
-                  "phase). "
-                  "Table: drivers follow the natural cubic spline through the points, forces straight lines."),
+           .about(
+               "Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
+               "phase). "
+               "Table: drivers follow the natural cubic spline through the points, forces straight lines."),
        real("value", "unit of the function").only_for(started).otherwise("0.0").about("Constant part."),
        real("rate", "unit/s").only_for({"ramp"}).required().about("Slope."),
        real("amplitude", "unit of the function").only_for({"sine"}).required().about("Amplitude."),

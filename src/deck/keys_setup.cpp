@@ -81,7 +81,8 @@ const TableKeys& integrator_keys() {
       {real("hht_alpha", "")
            .within(-1.0 / 3, 0)
            .otherwise("-0.05")
-           .about("HHT's numerical damping of bodies and particles. 0 has none, is the most accurate at impacts and can "
+           .about("HHT's numerical damping of bodies and particles. 0 has none, is the most accurate at "
+                  "impacts and can "
                   "fail in long runs of chains of joints."),
        text("particles")
            .one_of({"hht", "velocity-verlet"})

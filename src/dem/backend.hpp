@@ -16,10 +16,10 @@ namespace scree {
 
 // Norms of one Newton iteration of the particles, scaled and dimensionless, maxima over all particles.
 struct ParticleNorms {
-  Real residual = 0;            // over the largest force on a particle, at the iterate and at the start of the step
-  Real correction_bound = 0;    // of the position correction that the residual can still cause, over the radius
-  GlobalId worst = -1;          // the particle with the largest residual
-  bool overshoot = false;       // the last correction went too far along its direction
+  Real residual = 0;  // over the largest force on a particle, at the iterate and at the start of the step
+  Real correction_bound = 0;  // of the position correction that the residual can still cause, over the radius
+  GlobalId worst = -1;        // the particle with the largest residual
+  bool overshoot = false;     // the last correction went too far along its direction
 };
 
 struct ParticleCorrection {
@@ -41,9 +41,9 @@ struct ParticleLedger {
 struct Leaver {
   GlobalId global_id;
   Index local_index;
-  Vec3 position;  // [m]
-  bool lost;      // beyond a side that is a wall, which no particle can leave through
-  Real energy;           // kinetic and gravitational [J]
+  Vec3 position;                       // [m]
+  bool lost;                           // beyond a side that is a wall, which no particle can leave through
+  Real energy;                         // kinetic and gravitational [J]
   Real contact_loss, integrator_loss;  // booked on it so far [J]
 };
 
@@ -78,8 +78,8 @@ class Backend {
   virtual std::vector<ParticleRecord> records() const = 0;  // ordered by global id
   virtual ShapeLosses shape_losses() const = 0;
 
-  // Neighbour list. Displacement: of any item since the list was built, over half the skin that the list covers;
-  // past 1 the list has expired.
+  // Neighbour list. Displacement: of any item since the list was built, over half the skin that the list
+  // covers; past 1 the list has expired.
   virtual void place_bodies(std::span<const BodyMotion> motion) = 0;
   virtual Real list_displacement() = 0;
   virtual void build_list(Real skin, StageTimers& timers) = 0;
@@ -93,17 +93,17 @@ class Backend {
   virtual void rollback() = 0;
   virtual Real step_displacement() = 0;  // largest of a particle or shape since the step's start [m]
   virtual ParticleNorms contact_force() = 0;
-  // Contact wrenches on the bodies: what the step needs, and at the end of the step; equal unless contacts open or
-  // close within it.
+  // Contact wrenches on the bodies: what the step needs, and at the end of the step; equal unless contacts
+  // open or close within it.
   virtual void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) = 0;
   virtual ParticleCorrection particle_correct() = 0;
   // Takes part of the last correction back, after contact_force has reported an overshoot.
   virtual void shorten_correction() = 0;
-  virtual Real error() = 0;              // local position error of the step over the radius
+  virtual Real error() = 0;  // local position error of the step over the radius
   virtual void accept() = 0;
 
-  // Explicit steps: verlet_start, then for each step place_bodies, list, and verlet_advance, which closes it and
-  // opens the next; verlet_finish instead closes the last.
+  // Explicit steps: verlet_start, then for each step place_bodies, list, and verlet_advance, which closes it
+  // and opens the next; verlet_finish instead closes the last.
   virtual void verlet_start(Real h) = 0;
   virtual void verlet_advance(Real h) = 0;
   virtual void verlet_finish(Real h) = 0;
@@ -112,8 +112,8 @@ class Backend {
 
   // The particles that are outside the space now and not known to drift, ordered by global id.
   virtual std::vector<Leaver> outside() const = 0;
-  // Takes them out of the search: they drift from now on or are removed, as the deck says. The list must then be
-  // built anew.
+  // Takes them out of the search: they drift from now on or are removed, as the deck says. The list must then
+  // be built anew.
   virtual void take_out(const std::vector<Leaver>& leavers) = 0;
   // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s].
   virtual ParticleLedger ledger(Real verlet_step) = 0;

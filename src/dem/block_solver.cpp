@@ -30,7 +30,8 @@ int BlockSolver::solve(const System& system, std::vector<Vec4>& d, std::vector<V
   int products = 0;
   while (products < kMostProducts) {
     for (Index i = 0; i < n; ++i) {
-      const Vec3 step = from_last * xyz(d[i]) + from_residual * (system.inverse_block[i] * system.residual[i]);
+      const Vec3 step =
+          from_last * xyz(d[i]) + from_residual * (system.inverse_block[i] * system.residual[i]);
       d[i] = vec4(step, 0);
       solution[i] += step;
     }

@@ -31,15 +31,15 @@ struct LawTable {
 
 // Read-only views of items and neighbour list.
 struct ContactViews {
-  const Vec4* position;   // x, y, z, radius
-  const Vec4* velocity;   // x, y, z, mass
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;  // x, y, z, mass
   const int* material;
-  const Index* offsets;   // neighbour list rows
+  const Index* offsets;  // neighbour list rows
   const Index* neighbors;
   const Index* wall_offsets;
   const Index* walls;
   const WallPlane* planes;
-  Index first_shape;      // items from here on are shapes of bodies
+  Index first_shape;  // items from here on are shapes of bodies
 };
 
 // Wall as a partner: overlap with its plane along its normal.
@@ -105,7 +105,8 @@ struct ContactForceItem {
 };
 
 // Newton matrix of the touching pairs: row i is sum over its entries of b (b . (x_i - x_j)), with
-// b = sqrt(beta h^2 dF/dd + h gamma dF/d(d_dot)) n. Entries stand at the neighbour list's slots, packed to the front of a row.
+// b = sqrt(beta h^2 dF/dd + h gamma dF/d(d_dot)) n. Entries stand at the neighbour list's slots, packed to
+// the front of a row.
 struct ContactMatrix {
   Index* count;     // entries of row i
   Index* neighbor;  // [slots of the list]
@@ -126,12 +127,12 @@ struct NewtonWeights {
   Real damping;    // h gamma [s]
 };
 
-// Where a step started, all items, and whether contacts that open or close within it are resolved; else the force at
-// its end counts for the whole step, as in the paper.
+// Where a step started, all items, and whether contacts that open or close within it are resolved; else the
+// force at its end counts for the whole step, as in the paper.
 struct StepStart {
   const Vec4* position;  // x, y, z, radius
   const Vec4* velocity;
-  Real h;                // [s]
+  Real h;  // [s]
   bool resolve_events;
 };
 
@@ -152,7 +153,8 @@ SCREE_HD StepContact step_contact(const KelvinVoigt& law, const StepStart& start
   return {step_contact_force<Elastic>(law, {overlap0, rate0, overlap1, rate1, start.h}), end.force, end.loss};
 }
 
-// Visits the contacts of item i over a step: visit(StepContact, normal at the end, slot of the neighbour or -1 for a wall, partner).
+// Visits the contacts of item i over a step: visit(StepContact, normal at the end, slot of the neighbour or
+// -1 for a wall, partner).
 template <class Elastic, class Laws>
 struct StepContacts {
   ContactViews in;
@@ -235,12 +237,12 @@ struct ContactSystemItem {
 
 // What the contacts of one shape of a body sum to. Every contact force passes through the shape's centre.
 struct ShapeContact {
-  Vec3 force;                // for the step: see StepContact [N]
-  Vec3 end_force;            // at the end of the step [N]
-  Sym3 stiffness, damping;   // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
+  Vec3 force;               // for the step: see StepContact [N]
+  Vec3 end_force;           // at the end of the step [N]
+  Sym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
   Real step_loss = 0, end_loss = 0;  // the shape's share [W]
-  Real energy = 0;           // the shape's share of the contacts' elastic energy [J]
-  Real pairs = 0;            // the shape's share of the number of contacts
+  Real energy = 0;                   // the shape's share of the contacts' elastic energy [J]
+  Real pairs = 0;                    // the shape's share of the number of contacts
   Index contacts = 0;
 };
 
@@ -280,7 +282,8 @@ struct ShapeContactItem {
   Laws laws;
   ShapeContact* out;  // [shape items], indexed from first_shape
 
-  SCREE_HD void add(ShapeContact& sum, const KelvinVoigt& law, const Overlap& o, Real rate, Real share) const {
+  SCREE_HD void add(ShapeContact& sum, const KelvinVoigt& law, const Overlap& o, Real rate,
+                    Real share) const {
     const ContactForce c = contact_force<Elastic>(law, o.overlap, rate);
     sum.force += c.force * o.normal;
     sum.end_loss += share * c.loss;
@@ -315,9 +318,9 @@ template <class Elastic, class Laws>
 struct ContactEnergyItem {
   ContactViews in;
   Laws laws;
-  Real* energy;     // [J]
+  Real* energy;  // [J]
   Index* contacts;
-  Real* pairs;      // half of each contact with another particle, all of any other
+  Real* pairs;  // half of each contact with another particle, all of any other
 
   SCREE_HD void operator()(Index i) const {
     const Vec4 p = in.position[i];

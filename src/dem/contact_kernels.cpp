@@ -17,14 +17,18 @@ class CpuContactKernels : public ContactKernels {
   }
   Real verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
                      Vec3* force) const override {
-    return max_over(Serial{}, n, VerletFinishItem<Elastic, Laws>{{in, laws_, gravity, force, state.loss_power}, state});
+    return max_over(Serial{}, n,
+                    VerletFinishItem<Elastic, Laws>{{in, laws_, gravity, force, state.loss_power}, state});
   }
-  Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const override {
-    return max_over(Serial{}, n, VerletAdvanceItem<Elastic, Laws>{{in, laws_, gravity, nullptr, nullptr}, state});
+  Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n,
+                      const VerletViews& state) const override {
+    return max_over(Serial{}, n,
+                    VerletAdvanceItem<Elastic, Laws>{{in, laws_, gravity, nullptr, nullptr}, state});
   }
   void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, const StepStart& start,
               const StepForces& out, const ContactMatrix& matrix) const override {
-    for_each(Serial{}, n, ContactSystemItem<Elastic, Laws>{{in, laws_, start}, gravity, weights, out, matrix});
+    for_each(Serial{}, n,
+             ContactSystemItem<Elastic, Laws>{{in, laws_, start}, gravity, weights, out, matrix});
   }
   void shapes(const ContactViews& in, Index n, const StepStart& start, ShapeContact* out) const override {
     for_each(Serial{}, n, ShapeStepItem<Elastic, Laws>{{in, laws_, start}, out});
@@ -42,15 +46,17 @@ class CpuContactKernels : public ContactKernels {
 
 template <class Elastic>
 std::unique_ptr<ContactKernels> with_elastic(const Contact& contact) {
-  if (contact.laws.size() == 1) return std::make_unique<CpuContactKernels<Elastic, OneLaw>>(OneLaw{contact.laws[0]});
-  return std::make_unique<CpuContactKernels<Elastic, LawTable>>(LawTable{contact.laws.data(), contact.materials()});
+  if (contact.laws.size() == 1)
+    return std::make_unique<CpuContactKernels<Elastic, OneLaw>>(OneLaw{contact.laws[0]});
+  return std::make_unique<CpuContactKernels<Elastic, LawTable>>(
+      LawTable{contact.laws.data(), contact.materials()});
 }
 
 }  // namespace
 
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact) {
-  const bool linear =
-      std::all_of(contact.laws.begin(), contact.laws.end(), [](const KelvinVoigt& l) { return l.exponent == 1; });
+  const bool linear = std::all_of(contact.laws.begin(), contact.laws.end(),
+                                  [](const KelvinVoigt& l) { return l.exponent == 1; });
   return linear ? with_elastic<LinearElastic>(contact) : with_elastic<PowerElastic>(contact);
 }
 

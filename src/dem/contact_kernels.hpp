@@ -23,9 +23,10 @@ class ContactKernels {
   virtual Real verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state,
                              Vec3* force) const = 0;
   // The square of the largest displacement.
-  virtual Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state) const = 0;
-  virtual void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, const StepStart& start,
-                      const StepForces& out, const ContactMatrix& matrix) const = 0;
+  virtual Real verlet_advance(const ContactViews& in, Vec3 gravity, Index n,
+                              const VerletViews& state) const = 0;
+  virtual void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights,
+                      const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const = 0;
   // Contacts of shapes over an implicit step, and at one instant.
   virtual void shapes(const ContactViews& in, Index n, const StepStart& start, ShapeContact* out) const = 0;
   virtual void shapes(const ContactViews& in, Index n, ShapeContact* out) const = 0;

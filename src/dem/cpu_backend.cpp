@@ -34,9 +34,9 @@ std::vector<ParticleRecord> CpuBackend::records() const {
 }
 
 ContactViews CpuBackend::views() const {
-  return {store_.position.data(),    store_.velocity.data(),    store_.material.data(),
-          list_.offsets.data(),      list_.neighbors.data(),    list_.wall_offsets.data(),
-          list_.walls.data(),        planes_.data(),            layout_.first_shape};
+  return {store_.position.data(), store_.velocity.data(), store_.material.data(),
+          list_.offsets.data(),   list_.neighbors.data(), list_.wall_offsets.data(),
+          list_.walls.data(),     planes_.data(),         layout_.first_shape};
 }
 
 void CpuBackend::place_bodies(std::span<const BodyMotion> motion) {
@@ -65,7 +65,8 @@ void CpuBackend::place_shapes() {
 // Trapezoidal in time, like the particles' losses.
 void CpuBackend::book_shape_losses(Real h) {
   Real step_power = 0, end_power = 0;
-  for (const ShapeContact& contact : shape_contacts_) step_power += contact.step_loss, end_power += contact.end_loss;
+  for (const ShapeContact& contact : shape_contacts_)
+    step_power += contact.step_loss, end_power += contact.end_loss;
   shape_losses_.contact_loss += h / 2 * (shape_losses_.loss_power + step_power);
   shape_losses_.loss_power = end_power;
 }
@@ -73,8 +74,8 @@ void CpuBackend::book_shape_losses(Real h) {
 void CpuBackend::report_not_finite(const std::vector<Vec3>& force) const {
   for (Index i = 0; i < layout_.owned; ++i)
     if (!is_finite(force[i]))
-      throw SimulationError("stage contact_force: the force on particle " + std::to_string(store_.global_id[i]) +
-                            " is not finite");
+      throw SimulationError("stage contact_force: the force on particle " +
+                            std::to_string(store_.global_id[i]) + " is not finite");
 }
 
 void CpuBackend::refresh_ghosts() {
@@ -89,11 +90,12 @@ void CpuBackend::sort_cells(Real skin) {
   std::vector<Index> cell(store_.owned), start(outside + 2, 0), from(store_.owned);
   store_.active = 0;
   for (Index i = 0; i < store_.owned; ++i) {
-    store_.position[i] = vec4(subdomain_.wrap(xyz(store_.position[i]), store_.image[i]), store_.position[i].w);
+    store_.position[i] =
+        vec4(subdomain_.wrap(xyz(store_.position[i]), store_.image[i]), store_.position[i].w);
     cell[i] = store_.drifting[i] ? outside : grid.cell(xyz(store_.position[i]));
     if (!is_finite(xyz(store_.position[i])))
-      throw SimulationError("stage sort_cells: the position of particle " + std::to_string(store_.global_id[i]) +
-                            " is not finite");
+      throw SimulationError("stage sort_cells: the position of particle " +
+                            std::to_string(store_.global_id[i]) + " is not finite");
     if (cell[i] < 0) cell[i] = outside;  // has left; whether it may is asked at the end of the step
     store_.active += cell[i] != outside;
     ++start[cell[i] + 1];
@@ -106,7 +108,8 @@ void CpuBackend::sort_cells(Real skin) {
 void CpuBackend::lay_out_items(Real skin) {
   layout_.owned = store_.owned, layout_.active = store_.active, layout_.shapes = shapes_.size();
   const Real width = builder_.cutoff(skin);
-  layout_.ghosts = exchange_halo(subdomain_, model_.space, {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
+  layout_.ghosts = exchange_halo(subdomain_, model_.space,
+                                 {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
   layout_.first_shape = layout_.owned + static_cast<Index>(layout_.ghosts.size());
 
   std::vector<Vec4> centers(shapes_.items().size());
@@ -159,13 +162,15 @@ void CpuBackend::build_list(Real skin, StageTimers& timers) {
   matrix_neighbor_.resize(slots), matrix_b_.resize(slots), direction_.resize(layout_.items);
   step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
   force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
-  residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned), matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
+  residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned),
+      matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
 }
 
 Real CpuBackend::list_displacement() {
   if (layout_changed_) return 2;
   const Real half_skin = list_.skin / 2;
-  if (!in_implicit_step_) {  // the sum of the steps' largest displacements is cheap; the exact value follows past it
+  if (!in_implicit_step_) {  // the sum of the steps' largest displacements is cheap; the exact value follows
+                             // past it
     displacement_bound_ += std::max(step_bound_, shape_bound_);
     step_bound_ = shape_bound_ = 0;
     if (displacement_bound_ < half_skin) return displacement_bound_ / half_skin;

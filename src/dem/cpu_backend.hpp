@@ -82,11 +82,12 @@ class CpuBackend : public Backend {
   ShapeLosses shape_losses_;
   NeighborList list_;
   ItemLayout layout_;
-  std::vector<Vec3> shape_shift_;      // brings each shape into the periodic box [m]
-  std::vector<Vec4> list_position_;    // of all items when the list was built
-  bool layout_changed_ = true;         // particles left since the list was built
+  std::vector<Vec3> shape_shift_;    // brings each shape into the periodic box [m]
+  std::vector<Vec4> list_position_;  // of all items when the list was built
+  bool layout_changed_ = true;       // particles left since the list was built
 
-  // Workspace of the implicit step: start of the step (begin_step), then contact_force, then particle_correct.
+  // Workspace of the implicit step: start of the step (begin_step), then contact_force, then
+  // particle_correct.
   Real h_ = 0;
   std::vector<Vec4> start_position_, start_velocity_;
   std::vector<Vec3> start_acceleration_, start_force_;
@@ -96,18 +97,18 @@ class CpuBackend : public Backend {
   std::vector<Vec3> matrix_b_, residual_, right_hand_side_, correction_;
   std::vector<Sym3> matrix_diagonal_, inverse_block_;
   std::vector<Vec4> direction_;
-  std::vector<Vec3> placed_;      // position of each shape item as last placed [m]
-  std::vector<Vec3> shape_step_;  // its displacement by the last place_bodies [m]
+  std::vector<Vec3> placed_;                           // position of each shape item as last placed [m]
+  std::vector<Vec3> shape_step_;                       // its displacement by the last place_bodies [m]
   std::vector<Vec4> spare_position_, spare_velocity_;  // explicit steps write here while neighbours are read
   std::vector<ShapeContact> shape_contacts_;
   Real largest_stiffening_ = 0, force_scale_ = 0;
-  // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at its
-  // start and at the iterate.
+  // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at
+  // its start and at the iterate.
   Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;
   bool in_implicit_step_ = false;
-  Real displacement_bound_ = 0;   // of any item since the list was built, at most [m]
-  Real step_bound_ = 0;           // of any particle in the open explicit step [m]
-  Real shape_bound_ = 0;          // of any shape since list_displacement was last asked, at most [m]
+  Real displacement_bound_ = 0;  // of any item since the list was built, at most [m]
+  Real step_bound_ = 0;          // of any particle in the open explicit step [m]
+  Real shape_bound_ = 0;         // of any shape since list_displacement was last asked, at most [m]
   BlockSolver solver_;
 };
 

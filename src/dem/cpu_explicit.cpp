@@ -40,8 +40,9 @@ void CpuBackend::verlet_finish(Real h) {
   refresh_ghosts();
   shape_contacts();
   book_shape_losses(h);
-  const Real squared = kernels_->verlet_finish(views(), model_.gravity, layout_.owned,
-                                               verlet_views(h, spare_position_, spare_velocity_), store_.force.data());
+  const Real squared =
+      kernels_->verlet_finish(views(), model_.gravity, layout_.owned,
+                              verlet_views(h, spare_position_, spare_velocity_), store_.force.data());
   if (!std::isfinite(squared)) report_not_finite(store_.force);
   std::swap(store_.velocity, spare_velocity_);
   refresh_ghosts();

@@ -18,9 +18,15 @@ constexpr Real kLeastShare = 0.05;
 }  // namespace
 
 StepViews CpuBackend::step_views() {
-  return {store_.position.data(),     store_.velocity.data(),     store_.acceleration.data(),
-          start_position_.data(),     start_velocity_.data(),     start_acceleration_.data(),
-          start_force_.data(),        hht_,                       h_,
+  return {store_.position.data(),
+          store_.velocity.data(),
+          store_.acceleration.data(),
+          start_position_.data(),
+          start_velocity_.data(),
+          start_acceleration_.data(),
+          start_force_.data(),
+          hht_,
+          h_,
           subdomain_.snap_constant()};
 }
 
@@ -67,7 +73,8 @@ Real CpuBackend::step_displacement() {
 }
 
 StepForces CpuBackend::step_forces() {
-  return {step_force_.data(), end_force_.data(), step_loss_.data(), end_loss_.data(), force_magnitude_.data()};
+  return {step_force_.data(), end_force_.data(), step_loss_.data(), end_loss_.data(),
+          force_magnitude_.data()};
 }
 
 ParticleNorms CpuBackend::contact_force() {
@@ -78,8 +85,9 @@ ParticleNorms CpuBackend::contact_force() {
                              matrix_diagonal_.data()};
   kernels_->system(views(), model_.gravity, n, weights, start, step_forces(), matrix);
   kernels_->shapes(views(), layout_.items - layout_.first_shape, start, shape_contacts_.data());
-  for_each(Serial{}, n, ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(),
-                                     inverse_block_.data(), stiffening_.data()});
+  for_each(Serial{}, n,
+           ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
+                        stiffening_.data()});
 
   ParticleNorms norms;
   Real residual = 0, bound = 0;
@@ -88,7 +96,8 @@ ParticleNorms CpuBackend::contact_force() {
     const Real r = norm(residual_[i]);
     if (!std::isfinite(r)) report_not_finite(residual_);
     if (r > residual) residual = r, norms.worst = store_.global_id[i];
-    bound = std::max(bound, weights.stiffness * r * (1 + hht_.hht_alpha) / (store_.velocity[i].w * store_.position[i].w));
+    bound = std::max(
+        bound, weights.stiffness * r * (1 + hht_.hht_alpha) / (store_.velocity[i].w * store_.position[i].w));
     const Real at_start = norm(start_force_[i]) + store_.velocity[i].w * norm(start_acceleration_[i]);
     force_scale_ = std::max(force_scale_, force_magnitude_[i] + at_start);
     largest_stiffening_ = std::max(largest_stiffening_, stiffening_[i]);
@@ -111,7 +120,8 @@ Real CpuBackend::slope(const std::vector<Vec3>& residual) const {
 void CpuBackend::shorten_correction() {
   const Real full = std::abs(start_slope_) / (std::abs(start_slope_) + slope_);
   const Real share = applied_share_ * std::clamp(full, Real(0.1), Real(0.8));
-  for (Index i = 0; i < layout_.owned; ++i) store_.acceleration[i] += (share - applied_share_) * correction_[i];
+  for (Index i = 0; i < layout_.owned; ++i)
+    store_.acceleration[i] += (share - applied_share_) * correction_[i];
   applied_share_ = share;
   for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
   refresh_ghosts();
@@ -134,12 +144,13 @@ void CpuBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWr
 ParticleCorrection CpuBackend::particle_correct() {
   const Index n = layout_.owned;
   const Real weight = hht_.newmark_beta * h_ * h_;
-  const SubtractMatrixItem matrix{{matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(), matrix_diagonal_.data()},
-                                  list_.offsets.data(),
-                                  store_.velocity.data(),
-                                  1 / (1 + hht_.hht_alpha),
-                                  direction_.data(),
-                                  residual_.data()};
+  const SubtractMatrixItem matrix{
+      {matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(), matrix_diagonal_.data()},
+      list_.offsets.data(),
+      store_.velocity.data(),
+      1 / (1 + hht_.hht_alpha),
+      direction_.data(),
+      residual_.data()};
   // The bodies have already taken their correction: as a known part of the solution it moves to the right.
   if (layout_.items > layout_.first_shape) {
     std::fill(direction_.begin(), direction_.end(), Vec4{});
@@ -152,8 +163,9 @@ ParticleCorrection CpuBackend::particle_correct() {
   Real right_hand_side = 0;
   for (Index i = 0; i < n; ++i) right_hand_side = std::max(right_hand_side, norm(residual_[i]));
   const Real goal = Real(0.1) * model_.integrator.residual_tolerance * force_scale_;
-  const BlockSolver::System system{matrix,          inverse_block_,      residual_,
-                                   layout_.ghosts, largest_stiffening_, std::max(goal, Real(0.01) * right_hand_side)};
+  const BlockSolver::System system{
+      matrix,         inverse_block_,      residual_,
+      layout_.ghosts, largest_stiffening_, std::max(goal, Real(0.01) * right_hand_side)};
   ParticleCorrection out;
   if (right_hand_side > 0) {
     out.iterations = solver_.solve(system, direction_, correction_);

@@ -10,7 +10,8 @@ namespace {
 
 template <class Term>
 Vec3 vector_sum(Index n, const Term& term) {
-  return {reproducible_sum(n, [&](Index i) { return term(i).x; }), reproducible_sum(n, [&](Index i) { return term(i).y; }),
+  return {reproducible_sum(n, [&](Index i) { return term(i).x; }),
+          reproducible_sum(n, [&](Index i) { return term(i).y; }),
           reproducible_sum(n, [&](Index i) { return term(i).z; })};
 }
 
@@ -32,10 +33,11 @@ std::vector<Leaver> CpuBackend::outside() const {
   for (Index i = 0; i < store_.owned; ++i) {
     const Vec3 p = xyz(store_.position[i]);
     if (store_.drifting[i] || subdomain_.inside(p)) continue;
-    leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy_of(i), store_.contact_loss[i],
-                       store_.integrator_loss[i]});
+    leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy_of(i),
+                       store_.contact_loss[i], store_.integrator_loss[i]});
   }
-  std::sort(leavers.begin(), leavers.end(), [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
+  std::sort(leavers.begin(), leavers.end(),
+            [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
   return leavers;
 }
 
@@ -60,12 +62,14 @@ ParticleLedger CpuBackend::ledger(Real verlet_step) {
   const auto mass = [&](Index i) { return store_.velocity[i].w; };
   const auto velocity = [&](Index i) { return xyz(store_.velocity[i]); };
   out.kinetic = reproducible_sum(n, [&](Index i) { return kinetic_energy(mass(i), velocity(i)); });
-  out.gravitational =
-      reproducible_sum(n, [&](Index i) { return gravitational_energy(mass(i), model_.gravity, unwrapped(i)); });
+  out.gravitational = reproducible_sum(
+      n, [&](Index i) { return gravitational_energy(mass(i), model_.gravity, unwrapped(i)); });
   Real shapes_elastic = 0, body_pairs = 0;
-  for (const ShapeContact& contact : shape_contacts_) shapes_elastic += contact.energy, body_pairs += contact.pairs;
+  for (const ShapeContact& contact : shape_contacts_)
+    shapes_elastic += contact.energy, body_pairs += contact.pairs;
   out.contact_elastic = reproducible_sum(n, [&](Index i) { return elastic[i]; }) + shapes_elastic;
-  out.contact_loss = reproducible_sum(n, [&](Index i) { return store_.contact_loss[i]; }) + shape_losses_.contact_loss;
+  out.contact_loss =
+      reproducible_sum(n, [&](Index i) { return store_.contact_loss[i]; }) + shape_losses_.contact_loss;
   out.integrator_loss = reproducible_sum(n, [&](Index i) {
     return store_.integrator_loss[i] - verlet_energy_shift(verlet_step, mass(i), store_.acceleration[i]);
   });

@@ -7,16 +7,19 @@
 
 namespace scree {
 
-NeighborBuilder::NeighborBuilder(const Model& model, const BodyShapes& shapes) : model_(model), shapes_(shapes) {
+NeighborBuilder::NeighborBuilder(const Model& model, const BodyShapes& shapes)
+    : model_(model), shapes_(shapes) {
   for (const Real r : model.particles.radius) largest_radius_ = std::max(largest_radius_, r);
   for (const ShapeItem& s : shapes.items()) largest_radius_ = std::max(largest_radius_, s.radius);
 }
 
 CellGrid NeighborBuilder::grid(Real skin, Index items) const {
-  return make_cell_grid(model_.space.min, model_.space.max, model_.space.dimension, cutoff(skin), 4 * items + 4096);
+  return make_cell_grid(model_.space.min, model_.space.max, model_.space.dimension, cutoff(skin),
+                        4 * items + 4096);
 }
 
-void NeighborBuilder::sort_into_cells(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid) {
+void NeighborBuilder::sort_into_cells(const ParticleStore& store, const ItemLayout& layout,
+                                      const CellGrid& grid) {
   cell_start_.assign(static_cast<std::size_t>(grid.count()) + 1, 0);
   cell_of_.resize(static_cast<std::size_t>(layout.items));
   for (Index i = 0; i < layout.items; ++i) {
@@ -41,7 +44,8 @@ bool NeighborBuilder::excluded(const ItemLayout& layout, Index i, Index j) const
   if (i < layout.first_shape) return false;
   if (j < layout.owned) return false;
   if (j < layout.first_shape || layout.is_shape_image(i)) return true;
-  return !shapes_.may_touch(shapes_.items()[layout.shape_of(i)].body, shapes_.items()[layout.shape_of(j)].body);
+  return !shapes_.may_touch(shapes_.items()[layout.shape_of(i)].body,
+                            shapes_.items()[layout.shape_of(j)].body);
 }
 
 void NeighborBuilder::collect_row(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid,
@@ -68,7 +72,8 @@ void NeighborBuilder::order_row(const ParticleStore& store, const ItemLayout& la
   const auto image = [&](Index j) {
     if (j < layout.owned) return kNoShift;
     if (j < layout.first_shape) return layout.ghosts[j - layout.owned].image;
-    return layout.is_shape_image(j) ? layout.shape_images[j - layout.first_shape - layout.shapes].image : kNoShift;
+    return layout.is_shape_image(j) ? layout.shape_images[j - layout.first_shape - layout.shapes].image
+                                    : kNoShift;
   };
   std::sort(first, last, [&](Index a, Index b) {
     const GlobalId ia = store.global_id[a], ib = store.global_id[b];
@@ -76,7 +81,8 @@ void NeighborBuilder::order_row(const ParticleStore& store, const ItemLayout& la
   });
 }
 
-void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout& layout, NeighborList& list) const {
+void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout& layout,
+                                    NeighborList& list) const {
   list.walls.clear();
   list.wall_offsets.assign(static_cast<std::size_t>(layout.items) + 1, 0);
   const Index last_shape = layout.first_shape + layout.shapes;
@@ -91,7 +97,8 @@ void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout
   }
 }
 
-void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, Real skin, NeighborList& list) {
+void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, Real skin,
+                            NeighborList& list) {
   const CellGrid cells = grid(skin, layout.items);
   list.skin = skin;
   list.neighbors.clear();

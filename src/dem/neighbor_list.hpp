@@ -14,22 +14,22 @@
 
 namespace scree {
 
-// Row i holds every item that can touch item i before the list expires. Rows of ghosts and of particles outside
-// the search are empty. A second list of the same form holds the walls near each item.
+// Row i holds every item that can touch item i before the list expires. Rows of ghosts and of particles
+// outside the search are empty. A second list of the same form holds the walls near each item.
 struct NeighborList {
-  std::vector<Index> offsets, neighbors;     // [items + 1], [entries]
-  std::vector<Index> wall_offsets, walls;    // [items + 1], [entries]: indices into Model::walls
-  Real skin = 0;                             // reach past touching that this list covers [m]
+  std::vector<Index> offsets, neighbors;   // [items + 1], [entries]
+  std::vector<Index> wall_offsets, walls;  // [items + 1], [entries]: indices into Model::walls
+  Real skin = 0;                           // reach past touching that this list covers [m]
 };
 
 // Where items of each kind stand in the store, and the body shapes' images across periodic sides.
 struct ItemLayout {
-  Index owned = 0, active = 0;        // owned particles, and those of them in the search
-  Index first_shape = 0;              // after owned and ghosts
+  Index owned = 0, active = 0;  // owned particles, and those of them in the search
+  Index first_shape = 0;        // after owned and ghosts
   Index items = 0;
-  std::vector<Ghost> ghosts;          // of owned particles
-  std::vector<Ghost> shape_images;    // of shapes: source counts from 0 within the shapes
-  Index shapes = 0;                   // originals, before their images
+  std::vector<Ghost> ghosts;        // of owned particles
+  std::vector<Ghost> shape_images;  // of shapes: source counts from 0 within the shapes
+  Index shapes = 0;                 // originals, before their images
   // Shape of an item >= first_shape, and whether the item is an image of it.
   Index shape_of(Index item) const {
     const Index s = item - first_shape;

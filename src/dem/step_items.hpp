@@ -12,8 +12,8 @@ namespace scree {
 
 // Unknowns of an implicit step: iterate in position, velocity, acceleration; start of the step beside them.
 struct StepViews {
-  Vec4 *position, *velocity;              // iterate at t_{n+1}
-  Vec3* acceleration;                     // iterate a_{n+1} [m/s^2]
+  Vec4 *position, *velocity;  // iterate at t_{n+1}
+  Vec3* acceleration;         // iterate a_{n+1} [m/s^2]
   const Vec4 *start_position, *start_velocity;
   const Vec3 *start_acceleration, *start_force;
   HhtCoefficients hht;
@@ -39,9 +39,9 @@ struct ResidualItem {
   StepViews step;
   const Vec3* force;  // at the iterate [N]
   ContactMatrix matrix;
-  Vec3* residual;     // [N]
+  Vec3* residual;  // [N]
   Sym3* inverse_block;
-  Real* stiffening;   // norm of the contacts' part of the block over the mass part
+  Real* stiffening;  // norm of the contacts' part of the block over the mass part
 
   SCREE_HD void operator()(Index i) const {
     const Real mass = step.velocity[i].w, scaled_mass = mass / (1 + step.hht.hht_alpha);
@@ -50,8 +50,8 @@ struct ResidualItem {
     const Real rows[3] = {std::abs(block.xx) + std::abs(block.xy) + std::abs(block.xz),
                           std::abs(block.xy) + std::abs(block.yy) + std::abs(block.yz),
                           std::abs(block.xz) + std::abs(block.yz) + std::abs(block.zz)};
-    const Real largest = rows[0] > rows[1] ? (rows[0] > rows[2] ? rows[0] : rows[2])
-                                           : (rows[1] > rows[2] ? rows[1] : rows[2]);
+    const Real largest =
+        rows[0] > rows[1] ? (rows[0] > rows[2] ? rows[0] : rows[2]) : (rows[1] > rows[2] ? rows[1] : rows[2]);
     stiffening[i] = largest / scaled_mass;
     block += Sym3{scaled_mass, 0, 0, scaled_mass, 0, scaled_mass};
     inverse_block[i] = inverse(block);
@@ -78,22 +78,22 @@ struct SubtractMatrixItem {
   }
 };
 
-// Closes an implicit step: dissipation and the integrator's loss from the step's forces; force, acceleration and
-// dissipation at its end are what the next step starts from.
+// Closes an implicit step: dissipation and the integrator's loss from the step's forces; force, acceleration
+// and dissipation at its end are what the next step starts from.
 struct AcceptItem {
   StepViews step;
   StepForces forces;
-  Vec3* force;             // [N]
-  Real* loss_power;        // at the step's start, then at its end [W]
-  Real* contact_loss;      // [J]
-  Real* integrator_loss;   // [J]
+  Vec3* force;            // [N]
+  Real* loss_power;       // at the step's start, then at its end [W]
+  Real* contact_loss;     // [J]
+  Real* integrator_loss;  // [J]
 
   SCREE_HD void operator()(Index i) const {
     const Vec4 v0 = step.start_velocity[i];
     const Vec3 dx = xyz(step.position[i]) - xyz(step.start_position[i]);
     contact_loss[i] += step.h / 2 * (loss_power[i] + forces.step_loss[i]);
-    integrator_loss[i] += ::scree::integrator_loss(v0.w, dx, xyz(v0), xyz(step.velocity[i]), step.start_force[i],
-                                          forces.step_force[i]);
+    integrator_loss[i] += ::scree::integrator_loss(v0.w, dx, xyz(v0), xyz(step.velocity[i]),
+                                                   step.start_force[i], forces.step_force[i]);
     step.acceleration[i] += hht_event_acceleration(step.hht, v0.w, forces.step_force[i], forces.end_force[i]);
     force[i] = forces.end_force[i];
     loss_power[i] = forces.end_loss[i];
@@ -104,14 +104,14 @@ struct AcceptItem {
 struct VerletViews {
   Vec4 *position, *velocity;  // velocity within a step: what the contact law sees, v + h a_n
   Vec3* acceleration;
-  Real* contact_loss;         // [J]
-  Real* loss_power;           // at the last time level [W]
-  Real h;                     // [s]
-  Vec3 snap;                  // Subdomain::snap_constant
+  Real* contact_loss;  // [J]
+  Real* loss_power;    // at the last time level [W]
+  Real h;              // [s]
+  Vec3 snap;           // Subdomain::snap_constant
 };
 
-// Position at the end of a step and the velocity that the contact law sees there, to second order. Returns the
-// square of the displacement.
+// Position at the end of a step and the velocity that the contact law sees there, to second order. Returns
+// the square of the displacement.
 SCREE_HD Real verlet_open(const VerletViews& out, Index i, Vec4 x, Vec4 v, Vec3 a) {
   const Vec3 dx = snap(verlet_displacement(out.h, xyz(v), a), out.snap);
   out.position[i] = vec4(xyz(x) + dx, x.w);
@@ -129,8 +129,8 @@ struct VerletStartItem {
   }
 };
 
-// Closes a step: velocity and acceleration at its end from the force there. `state.velocity` is not the array that
-// the contacts read: other particles need the velocities as they were.
+// Closes a step: velocity and acceleration at its end from the force there. `state.velocity` is not the array
+// that the contacts read: other particles need the velocities as they were.
 template <class Elastic, class Laws>
 struct VerletFinishItem {
   ContactForceItem<Elastic, Laws> contacts;
@@ -148,7 +148,8 @@ struct VerletFinishItem {
   }
 };
 
-// Closes a step and opens the next of the same length: the two items above in one pass over memory, bit for bit.
+// Closes a step and opens the next of the same length: the two items above in one pass over memory, bit for
+// bit.
 template <class Elastic, class Laws>
 struct VerletAdvanceItem {
   ContactForceItem<Elastic, Laws> contacts;

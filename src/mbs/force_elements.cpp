@@ -31,7 +31,8 @@ class SpringDamperElement final : public ForceElement {
         stiffness_(element.stiffness),
         damping_(element.damping),
         free_length_(element.free_length),
-        actuator_(element.actuator, fmt::format("spring-damper '{}'", element.name), end, Interpolation::linear) {
+        actuator_(element.actuator, fmt::format("spring-damper '{}'", element.name), end,
+                  Interpolation::linear) {
     for (std::size_t k = 0; k < 6; ++k) {
       if (index_[k] >= 0) active_.push_back(k);
     }

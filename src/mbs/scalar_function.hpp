@@ -9,8 +9,9 @@
 
 namespace scree {
 
-// How a table is read between its points. Drivers need the natural cubic spline: twice continuously differentiable,
-// second derivative zero at both ends; it may overshoot between points where the slope jumps. Forces are linear.
+// How a table is read between its points. Drivers need the natural cubic spline: twice continuously
+// differentiable, second derivative zero at both ends; it may overshoot between points where the slope jumps.
+// Forces are linear.
 enum class Interpolation { spline, linear };
 
 class ScalarFunction {

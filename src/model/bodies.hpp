@@ -21,11 +21,11 @@ struct Shape {
 // Moves in its plane z = position.z; turns about z.
 struct Body {
   std::string name;
-  Real mass = 0;     // [kg]
-  Real inertia = 0;  // about the centre of mass, z axis [kg m^2]
-  Vec3 position;     // of the centre of mass at t = 0 [m]
-  Real angle = 0;    // [rad]
-  Vec3 velocity;     // [m/s]
+  Real mass = 0;              // [kg]
+  Real inertia = 0;           // about the centre of mass, z axis [kg m^2]
+  Vec3 position;              // of the centre of mass at t = 0 [m]
+  Real angle = 0;             // [rad]
+  Vec3 velocity;              // [m/s]
   Real angular_velocity = 0;  // [rad/s]
   std::vector<Shape> shapes;
 };
@@ -42,25 +42,25 @@ struct Joint {
   std::string name;
   JointKind kind = JointKind::revolute;
   int body[2] = {kGround, kGround};
-  Vec3 point[2];           // [m]
-  Vec3 axis{1, 0, 0};      // translational: unit vector in the frame of body[0]
-  Real distance = 0;       // distance joint [m]
-  Real angle_offset = 0;   // fixed, translational: angle of body[1] minus angle of body[0] at t = 0 [rad]
+  Vec3 point[2];          // [m]
+  Vec3 axis{1, 0, 0};     // translational: unit vector in the frame of body[0]
+  Real distance = 0;      // distance joint [m]
+  Real angle_offset = 0;  // fixed, translational: angle of body[1] minus angle of body[0] at t = 0 [rad]
 };
 
 // A scalar function of time with two continuous derivatives where a driver needs them.
 struct TimeFunction {
   enum class Kind { constant, ramp, sine, table } kind = Kind::constant;
-  Real value = 0;      // constant, and the start of ramp and sine
-  Real rate = 0;       // ramp: value + rate t [1/s]
-  Real amplitude = 0;  // sine: value + amplitude sin(2 pi frequency t + phase)
-  Real frequency = 0;  // [Hz]
-  Real phase = 0;      // [rad]
+  Real value = 0;                   // constant, and the start of ramp and sine
+  Real rate = 0;                    // ramp: value + rate t [1/s]
+  Real amplitude = 0;               // sine: value + amplitude sin(2 pi frequency t + phase)
+  Real frequency = 0;               // [Hz]
+  Real phase = 0;                   // [rad]
   std::vector<Real> times, values;  // table
 };
 
-// Prescribes a joint coordinate: the relative angle of a revolute joint [rad], the displacement along the axis
-// of a translational joint or the length of a distance joint [m].
+// Prescribes a joint coordinate: the relative angle of a revolute joint [rad], the displacement along the
+// axis of a translational joint or the length of a distance joint [m].
 struct Driver {
   std::string name;
   int joint = 0;
@@ -71,14 +71,15 @@ struct Driver {
 struct SpringDamper {
   std::string name;
   int body[2] = {kGround, kGround};
-  Vec3 point[2];           // in the body frames [m]
-  Real stiffness = 0;      // k [N/m]
-  Real damping = 0;        // c [N s/m]
-  Real free_length = 0;    // [m]
-  TimeFunction actuator;   // [N], positive pulls the points together
+  Vec3 point[2];          // in the body frames [m]
+  Real stiffness = 0;     // k [N/m]
+  Real damping = 0;       // c [N s/m]
+  Real free_length = 0;   // [m]
+  TimeFunction actuator;  // [N], positive pulls the points together
 };
 
-// Torque on body[1] = -(k (theta - free_angle) + c dtheta/dt), theta = angle[1] - angle[0]; opposite on body[0].
+// Torque on body[1] = -(k (theta - free_angle) + c dtheta/dt), theta = angle[1] - angle[0]; opposite on
+// body[0].
 struct TorsionalSpringDamper {
   std::string name;
   int body[2] = {kGround, kGround};
@@ -91,7 +92,7 @@ struct TorsionalSpringDamper {
 struct AppliedForce {
   std::string name;
   int body = 0;
-  Vec3 point;                 // in the body frame [m]
+  Vec3 point;                   // in the body frame [m]
   TimeFunction fx, fy, torque;  // [N], [N], [N m]
   bool follows_body = false;
 };

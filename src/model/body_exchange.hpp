@@ -11,10 +11,10 @@ namespace scree {
 
 // Motion of one body at one instant, global frame.
 struct BodyMotion {
-  Vec3 position;               // of the centre of mass [m]
-  Vec3 velocity;               // [m/s]
-  Real angle = 0;              // about z [rad]
-  Real angular_velocity = 0;   // about z [rad/s]
+  Vec3 position;              // of the centre of mass [m]
+  Vec3 velocity;              // [m/s]
+  Real angle = 0;             // about z [rad]
+  Real angular_velocity = 0;  // about z [rad/s]
 };
 
 // Position [m] and velocity [m/s] of a point fixed to a body.
@@ -44,7 +44,8 @@ constexpr int packed6(int row, int column) { return row * 6 - row * (row - 1) / 
 
 // Adds J^T block J to a packed 6x6 matrix, J = [1, -arm x] the motion of a point at `arm` from the centre.
 inline void add_point_block(std::array<Real, 21>& packed, const Sym3& block, Vec3 arm) {
-  const Vec3 rows[6] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -arm.z, arm.y}, {arm.z, 0, -arm.x}, {-arm.y, arm.x, 0}};
+  const Vec3 rows[6] = {{1, 0, 0},          {0, 1, 0},          {0, 0, 1},
+                        {0, -arm.z, arm.y}, {arm.z, 0, -arm.x}, {-arm.y, arm.x, 0}};
   for (int i = 0; i < 6; ++i) {
     const Vec3 image = block * rows[i];
     for (int j = i; j < 6; ++j) packed[static_cast<std::size_t>(packed6(i, j))] += dot(image, rows[j]);
@@ -52,8 +53,10 @@ inline void add_point_block(std::array<Real, 21>& packed, const Sym3& block, Vec
 }
 
 // Adds a force that acts at `arm` [m] from the centre of mass, with minus its derivatives with respect to the
-// point's position and velocity. The change of the arm under the force itself is left out: it is not definite.
-inline void add_point_force(BodyWrench& wrench, Vec3 force, Vec3 arm, const Sym3& stiffness, const Sym3& damping) {
+// point's position and velocity. The change of the arm under the force itself is left out: it is not
+// definite.
+inline void add_point_force(BodyWrench& wrench, Vec3 force, Vec3 arm, const Sym3& stiffness,
+                            const Sym3& damping) {
   wrench.force += force;
   wrench.torque += cross(arm, force);
   add_point_block(wrench.stiffness, stiffness, arm);

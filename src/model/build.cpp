@@ -107,13 +107,14 @@ void build_time(const DeckTable& deck, Model& model) {
   time.control = table.text("control") == "adaptive" ? StepControl::adaptive : StepControl::fixed;
   const bool adaptive = time.control == StepControl::adaptive;
   time.min_step = table.has("min_step") ? table.real("min_step")
-                                         : time.step / (time.control == StepControl::fixed ? 1e3 : 1e6);
+                                        : time.step / (time.control == StepControl::fixed ? 1e3 : 1e6);
   time.max_step = adaptive ? std::max(time.step, time.end / 100) : time.step;
   if (table.has("max_step")) time.max_step = table.real("max_step");
   if (adaptive) time.tolerance = table.real("tolerance");
   if (time.step > time.end) table.fail("step", fmt::format("must be at most time.end = {}", time.end));
   if (time.end / time.step > kMostSteps)
-    table.fail("step", fmt::format("must be at least time.end / {:g} = {:g}", kMostSteps, time.end / kMostSteps));
+    table.fail("step",
+               fmt::format("must be at least time.end / {:g} = {:g}", kMostSteps, time.end / kMostSteps));
   if (time.min_step > time.step)
     table.fail("min_step", fmt::format("must be at most time.step = {}", time.step));
   if (time.max_step < time.step)

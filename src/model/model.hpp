@@ -26,8 +26,8 @@ enum class Leaving {
 enum Side { kXMin, kXMax, kYMin, kYMax, kZMin, kZMax, kSides };
 
 struct Space {
-  int dimension = 3;  // 2: every z stays 0 and the z sides do not exist
-  Vec3 min, max;      // [m]; in 2D min.z = max.z = 0
+  int dimension = 3;                        // 2: every z stays 0 and the z sides do not exist
+  Vec3 min, max;                            // [m]; in 2D min.z = max.z = 0
   std::array<Boundary, kSides> boundary{};  // periodic comes in pairs
   int wall_material = 0;                    // of the sides that are walls
   Leaving leaving = Leaving::error;
@@ -56,23 +56,23 @@ enum class StepControl { fixed, adaptive };
 enum class ParticleIntegrator { hht, velocity_verlet };
 
 struct TimeControl {
-  Real end = 0;                             // [s]
-  Real step = 0;                            // h, fixed or first [s]
+  Real end = 0;   // [s]
+  Real step = 0;  // h, fixed or first [s]
   StepControl control = StepControl::fixed;
-  Real min_step = 0, max_step = 0;          // [s]; min_step also bounds the retries of a fixed step
-  Real tolerance = 2e-8;                    // adaptive: local position error per step over the particle's radius
+  Real min_step = 0, max_step = 0;  // [s]; min_step also bounds the retries of a fixed step
+  Real tolerance = 2e-8;            // adaptive: local position error per step over the particle's radius
 };
 
 struct Integrator {
   Real hht_alpha = 0;
   ParticleIntegrator particles = ParticleIntegrator::hht;
-  // hht: a contact that opens or closes within a step acts over the part of the step that it is closed; else the
-  // force at the end of the step stands for all of it, as in the paper.
+  // hht: a contact that opens or closes within a step acts over the part of the step that it is closed; else
+  // the force at the end of the step stands for all of it, as in the paper.
   bool resolve_events = true;
-  int substeps = 1;                 // of velocity-verlet per multibody step
-  Real residual_tolerance = 1e-8;   // scaled, both sides
-  Real correction_tolerance = 1e-8; // scaled by radius (particles) or length scale (bodies)
-  int max_iterations = 50;          // of the Newton-like loop
+  int substeps = 1;                  // of velocity-verlet per multibody step
+  Real residual_tolerance = 1e-8;    // scaled, both sides
+  Real correction_tolerance = 1e-8;  // scaled by radius (particles) or length scale (bodies)
+  int max_iterations = 50;           // of the Newton-like loop
 };
 
 struct Output {

@@ -7,8 +7,8 @@
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
-#include "physics/step_limits.hpp"
 #include "model/point_bins.hpp"
+#include "physics/step_limits.hpp"
 
 namespace scree {
 
@@ -150,10 +150,11 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
   log.warning("time.step: " + problem + " (estimated for an overlap of 1 % of the radius)");
 }
 
-// The bodies see the contact force at the end of their step, while the particles take substeps: staggered, and stable
-// only while the step is short against the oscillation of a body on its contacts.
+// The bodies see the contact force at the end of their step, while the particles take substeps: staggered,
+// and stable only while the step is short against the oscillation of a body on its contacts.
 void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
-  if (model.integrator.particles != ParticleIntegrator::velocity_verlet || model.particles.size() == 0) return;
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet || model.particles.size() == 0)
+    return;
   const std::vector<MaterialUse> uses = material_uses(model);
   Real fastest = 0;
   for (int a = 0; a < model.contact.materials(); ++a) {
@@ -165,12 +166,14 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
   }
   const Real phase = fastest * model.time.step;
   const std::string finding = fmt::format(
-      "a body on a contact oscillates with {:.4g} rad/s; with velocity-verlet particles the bodies' step must be at "
+      "a body on a contact oscillates with {:.4g} rad/s; with velocity-verlet particles the bodies' step "
+      "must be at "
       "most {:.3g} s",
       fastest, kMostBodyPhase / fastest);
   if (phase > kMostBodyPhase) deck.table("time").fail("step", finding);
   if (phase > kGoodBodyPhase)
-    log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s", finding, kGoodBodyPhase / fastest));
+    log.warning(
+        fmt::format("time.step: {}, and should be at most {:.3g} s", finding, kGoodBodyPhase / fastest));
 }
 
 }  // namespace

@@ -12,10 +12,10 @@ namespace scree {
 
 // Cells are numbered x fastest, so that three neighbours in x are contiguous.
 struct CellGrid {
-  Vec3 origin;            // lower corner of cell (0, 0, 0) [m]
-  Vec3 inverse_size;      // 1 / edge length per axis [1/m]
+  Vec3 origin;        // lower corner of cell (0, 0, 0) [m]
+  Vec3 inverse_size;  // 1 / edge length per axis [1/m]
   Index cells[3] = {1, 1, 1};
-  bool layer = false;     // 2D: one layer of cells
+  bool layer = false;  // 2D: one layer of cells
 
   Index count() const { return cells[0] * cells[1] * cells[2]; }
   SCREE_HD Index index(Index x, Index y, Index z) const { return (z * cells[1] + y) * cells[0] + x; }
@@ -29,8 +29,8 @@ struct CellGrid {
   }
 };
 
-// A grid over [min, max] with a margin of one cell on every side for halo copies and body shapes. Cells are at
-// least min_cell wide [m] and at most max_cells in number: a large, sparse space gets larger cells.
+// A grid over [min, max] with a margin of one cell on every side for halo copies and body shapes. Cells are
+// at least min_cell wide [m] and at most max_cells in number: a large, sparse space gets larger cells.
 inline CellGrid make_cell_grid(Vec3 min, Vec3 max, int dimension, Real min_cell, Index max_cells) {
   const Vec3 extent = max - min;
   const auto cells_along = [](Real length, Real size) { return std::max(1.0, std::floor(length / size)); };

@@ -15,8 +15,8 @@ int axis_shifts(Real x, Real min, Real max, Real period, Real width, int (&out)[
 
 }  // namespace
 
-std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space, std::span<const Vec4> position,
-                                 Real width) {
+std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
+                                 std::span<const Vec4> position, Real width) {
   std::vector<Ghost> ghosts;
   const Vec3 period = subdomain.period();
   if (period == Vec3{}) return ghosts;
@@ -31,8 +31,8 @@ std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
         for (int c = 0; c < nx; ++c) {
           const int image = (sz[a] + 1) * 9 + (sy[b] + 1) * 3 + sx[c] + 1;
           if (image == kNoShift) continue;
-          ghosts.push_back({i, {sx[c] * period.x, sy[b] * period.y, sz[a] * period.z},
-                            static_cast<std::int8_t>(image)});
+          ghosts.push_back(
+              {i, {sx[c] * period.x, sy[b] * period.y, sz[a] * period.z}, static_cast<std::int8_t>(image)});
         }
   }
   return ghosts;

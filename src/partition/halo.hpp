@@ -20,8 +20,8 @@ struct Ghost {
 inline constexpr std::int8_t kNoShift = 13;
 
 // exchange_halo: finds the ghosts that lie within `width` [m] of the box, for originals at `position`.
-std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space, std::span<const Vec4> position,
-                                 Real width);
+std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
+                                 std::span<const Vec4> position, Real width);
 
 // update_halo: refreshes the ghosts' copies of a field; ghosts stand at field[first_ghost ...].
 void update_halo(std::span<const Ghost> ghosts, std::span<Vec4> field, Index first_ghost);

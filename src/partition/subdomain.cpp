@@ -29,14 +29,17 @@ Subdomain::Subdomain(const Space& space) : space_(space) {
 }
 
 bool Subdomain::inside(Vec3 p) const {
-  const auto within = [](Real x, Real min, Real max, Real period) { return period > 0 || (x >= min && x <= max); };
-  return within(p.x, space_.min.x, space_.max.x, period_.x) && within(p.y, space_.min.y, space_.max.y, period_.y) &&
+  const auto within = [](Real x, Real min, Real max, Real period) {
+    return period > 0 || (x >= min && x <= max);
+  };
+  return within(p.x, space_.min.x, space_.max.x, period_.x) &&
+         within(p.y, space_.min.y, space_.max.y, period_.y) &&
          (space_.dimension == 2 || within(p.z, space_.min.z, space_.max.z, period_.z));
 }
 
 bool Subdomain::beyond_wall(Vec3 p) const {
-  const bool beyond[kSides] = {p.x < space_.min.x, p.x > space_.max.x, p.y < space_.min.y,
-                               p.y > space_.max.y, p.z < space_.min.z, p.z > space_.max.z};
+  const bool beyond[kSides] = {p.x<space_.min.x, p.x> space_.max.x, p.y<space_.min.y, p.y> space_.max.y,
+                               p.z<space_.min.z, p.z> space_.max.z};
   for (std::size_t side = 0; side < (space_.dimension == 3 ? kSides : kZMin); ++side)
     if (beyond[side] && space_.boundary[side] == Boundary::wall) return true;
   return false;

@@ -13,7 +13,7 @@ struct KelvinVoigt {
   Real normal_stiffness = 0;  // K [N/m^n]
   Real normal_damping = 0;    // C [N s/m]
   Real exponent = 1;          // n [-]
-  bool tension = false;       // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
+  bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
 };
 
 // Overlap and normal of a pair at one instant. r = r_i - r_j.
@@ -59,11 +59,15 @@ struct ContactForce {
 struct LinearElastic {
   SCREE_HD static Real force(const KelvinVoigt& law, Real d) { return law.normal_stiffness * d; }
   SCREE_HD static Real stiffness(const KelvinVoigt& law, Real) { return law.normal_stiffness; }
-  SCREE_HD static Real energy(const KelvinVoigt& law, Real d) { return Real(0.5) * law.normal_stiffness * d * d; }
+  SCREE_HD static Real energy(const KelvinVoigt& law, Real d) {
+    return Real(0.5) * law.normal_stiffness * d * d;
+  }
 };
 
 struct PowerElastic {
-  SCREE_HD static Real force(const KelvinVoigt& law, Real d) { return law.normal_stiffness * std::pow(d, law.exponent); }
+  SCREE_HD static Real force(const KelvinVoigt& law, Real d) {
+    return law.normal_stiffness * std::pow(d, law.exponent);
+  }
   SCREE_HD static Real stiffness(const KelvinVoigt& law, Real d) {
     return law.normal_stiffness * law.exponent * std::pow(d, law.exponent - 1);
   }
@@ -85,17 +89,17 @@ SCREE_HD ContactForce contact_force(const KelvinVoigt& law, Real d, Real d_dot) 
 struct ContactStep {
   Real overlap0, rate0;  // [m], [m/s]
   Real overlap1, rate1;
-  Real h;                // [s]
+  Real h;  // [s]
 };
 
-// What the trapezoidal rule must find at the end of the step, in place of the force there, for the step's impulse
-// and work to be right although the contact opens or closes within the step:
+// What the trapezoidal rule must find at the end of the step, in place of the force there, for the step's
+// impulse and work to be right although the contact opens or closes within the step:
 //   impulse h (F0 + F) / 2 = force summed over the part of the step that is spent in contact.
-// With that part from the straight line between the overlaps, the elastic work (F0 + F) / 2 (d1 - d0) is exactly
-// the change of the elastic energy: no step size creates energy at impacts. This is the discrete gradient of
-// LaBudde and Greenspan (1974) and of Simo, Tarnow and Wong (1992). F is continuous at d1 = 0, where the force itself
-// jumps by C d_dot: a Newton loop cannot cycle between open and closed.
-// stiffness and damping are dF/d(overlap1) and dF/d(rate1), cut at 0; loss is made for the trapezoidal rule alike.
+// With that part from the straight line between the overlaps, the elastic work (F0 + F) / 2 (d1 - d0) is
+// exactly the change of the elastic energy: no step size creates energy at impacts. This is the discrete
+// gradient of LaBudde and Greenspan (1974) and of Simo, Tarnow and Wong (1992). F is continuous at d1 = 0,
+// where the force itself jumps by C d_dot: a Newton loop cannot cycle between open and closed. stiffness and
+// damping are dF/d(overlap1) and dF/d(rate1), cut at 0; loss is made for the trapezoidal rule alike.
 
 // d0 <= 0 < d1: in contact over the share d1 / (d1 - d0), at the rate (d1 - d0) / h.
 template <class Elastic>
@@ -108,31 +112,34 @@ SCREE_HD ContactForce touching_force(const KelvinVoigt& law, const ContactStep& 
 
 // d1 <= 0 < d0 with tension: in contact over the share d0 / (d0 - d1).
 template <class Elastic>
-SCREE_HD ContactForce releasing_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start) {
+SCREE_HD ContactForce releasing_force(const KelvinVoigt& law, const ContactStep& c,
+                                      const ContactForce& start) {
   const Real travel = c.overlap0 - c.overlap1, rate = -travel / c.h, twice_damping = 2 * law.normal_damping;
   const Real elastic = 2 * Elastic::energy(law, c.overlap0) / travel;
   const Real lost = -twice_damping * rate * c.overlap0 / c.h;
   return {elastic - twice_damping * c.overlap0 / c.h - start.force, elastic / travel, 0, lost - start.loss};
 }
 
-// d0 > 0 without tension, the law's force F1 at the end negative (end_force, beyond release along the slope at the
-// start): the force falls to zero in a straight line over the share F0 / (F0 - F1). What elastic energy is left
-// then is lost.
+// d0 > 0 without tension, the law's force F1 at the end negative (end_force, beyond release along the slope
+// at the start): the force falls to zero in a straight line over the share F0 / (F0 - F1). What elastic
+// energy is left then is lost.
 template <class Elastic>
 SCREE_HD ContactForce fading_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start,
                                    Real end_force) {
-  const Real share = end_force < 0 ? start.force / (start.force - end_force) : 1, impulse = share * start.force / 2;
+  const Real share = end_force < 0 ? start.force / (start.force - end_force) : 1,
+             impulse = share * start.force / 2;
   const Real energy1 = c.overlap1 > 0 ? Elastic::energy(law, c.overlap1) : 0;
   const Real lost = Elastic::energy(law, c.overlap0) - energy1 - impulse * (c.overlap0 - c.overlap1);
   return {2 * impulse - start.force, share * share * start.stiffness, share * share * start.damping,
           2 * lost / c.h - start.loss};
 }
 
-// d0, d1 > 0, the force F1 at the end not cut. The loss makes the trapezoidal rule give the work of the damping force,
-// (C d_dot0 + C d_dot1) / 2 (d1 - d0).
+// d0, d1 > 0, the force F1 at the end not cut. The loss makes the trapezoidal rule give the work of the
+// damping force, (C d_dot0 + C d_dot1) / 2 (d1 - d0).
 SCREE_HD ContactForce lasting_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start,
                                     ContactForce end) {
-  if (start.force != 0) end.loss = law.normal_damping * (c.rate0 + c.rate1) * (c.overlap1 - c.overlap0) / c.h - start.loss;
+  if (start.force != 0)
+    end.loss = law.normal_damping * (c.rate0 + c.rate1) * (c.overlap1 - c.overlap0) / c.h - start.loss;
   return end;
 }
 
@@ -146,10 +153,12 @@ SCREE_HD ContactForce step_contact_force(const KelvinVoigt& law, const ContactSt
     if (end.force > 0 || law.tension) return lasting_force(law, c, start, end);
   }
   if (law.tension) return releasing_force<Elastic>(law, c, start);
-  const Real stiffness = c.overlap1 > 0 ? Elastic::stiffness(law, c.overlap1) : Elastic::stiffness(law, c.overlap0);
+  const Real stiffness =
+      c.overlap1 > 0 ? Elastic::stiffness(law, c.overlap1) : Elastic::stiffness(law, c.overlap0);
   const Real elastic = c.overlap1 > 0 ? Elastic::force(law, c.overlap1) : stiffness * c.overlap1;
   const Real end_force = elastic + law.normal_damping * c.rate1;
-  if (end_force > 0) return {end_force, stiffness, law.normal_damping, law.normal_damping * c.rate1 * c.rate1};
+  if (end_force > 0)
+    return {end_force, stiffness, law.normal_damping, law.normal_damping * c.rate1 * c.rate1};
   return fading_force<Elastic>(law, c, start, end_force);
 }
 

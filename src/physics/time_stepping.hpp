@@ -43,7 +43,8 @@ SCREE_HD Vec3 hht_residual(const HhtCoefficients& c, Real mass, Vec3 a1, Vec3 f1
   return (mass * scale) * a1 - f1 + (c.hht_alpha * scale) * f0;
 }
 
-// From the acceleration that a step needed at its end to the one there, where a contact opened or closed within it.
+// From the acceleration that a step needed at its end to the one there, where a contact opened or closed
+// within it.
 SCREE_HD Vec3 hht_event_acceleration(const HhtCoefficients& c, Real mass, Vec3 step_force, Vec3 end_force) {
   return ((1 + c.hht_alpha) / mass) * (end_force - step_force);
 }
@@ -61,10 +62,14 @@ SCREE_HD Vec3 verlet_displacement(Real h, Vec3 v, Vec3 a0) { return h * v + (h *
 SCREE_HD Vec3 verlet_predicted_velocity(Real h, Vec3 v, Vec3 a0) { return v + h * a0; }
 
 // The displacement that led to a predicted velocity.
-SCREE_HD Vec3 verlet_last_displacement(Real h, Vec3 predicted, Vec3 a0) { return h * predicted - (h * h / 2) * a0; }
+SCREE_HD Vec3 verlet_last_displacement(Real h, Vec3 predicted, Vec3 a0) {
+  return h * predicted - (h * h / 2) * a0;
+}
 
 // Velocity at the end of the step from the predicted one.
-SCREE_HD Vec3 verlet_velocity(Real h, Vec3 predicted, Vec3 a0, Vec3 a1) { return predicted + (h / 2) * (a1 - a0); }
+SCREE_HD Vec3 verlet_velocity(Real h, Vec3 predicted, Vec3 a0, Vec3 a1) {
+  return predicted + (h / 2) * (a1 - a0);
+}
 
 // Verlet's energy error is the difference of a function of state: this function [J].
 SCREE_HD Real verlet_energy_shift(Real h, Real mass, Vec3 a) { return mass * h * h / 8 * dot(a, a); }

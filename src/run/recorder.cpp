@@ -10,7 +10,9 @@ namespace {
 using Columns = std::vector<HistoryColumn>;
 
 void step_columns(Columns& out) {
-  const auto add = [&](const char* name, const char* unit, const char* text) { out.push_back({"step", name, unit, text}); };
+  const auto add = [&](const char* name, const char* unit, const char* text) {
+    out.push_back({"step", name, unit, text});
+  };
   add("time", "s", "simulated time");
   add("length", "s", "length of the last step");
   add("steps", "1", "accepted steps so far");
@@ -42,7 +44,8 @@ void momentum_columns(Columns& out) {
   for (const char* axis : {"x", "y", "z"})
     out.push_back({"momentum", std::string("linear_") + axis, "kg m/s", "momentum of the particles"});
   for (const char* axis : {"x", "y", "z"})
-    out.push_back({"momentum", std::string("angular_") + axis, "kg m^2/s", "angular momentum of the particles about the origin"});
+    out.push_back({"momentum", std::string("angular_") + axis, "kg m^2/s",
+                   "angular momentum of the particles about the origin"});
 }
 
 void motion_columns(Columns& out, const std::string& group, bool body) {
@@ -64,8 +67,10 @@ Columns history_columns(const Model& model, const std::vector<Reaction>& reactio
     out.push_back({group, "fy", "N", "reaction on the joint's second body at its joint point"});
     out.push_back({group, "torque", "N m", "reaction torque on the joint's second body"});
   }
-  for (const int body : model.output.history_bodies) motion_columns(out, "bodies/" + model.bodies[body].name, true);
-  for (const GlobalId id : model.output.history_particles) motion_columns(out, "particles/" + std::to_string(id), false);
+  for (const int body : model.output.history_bodies)
+    motion_columns(out, "bodies/" + model.bodies[body].name, true);
+  for (const GlobalId id : model.output.history_particles)
+    motion_columns(out, "particles/" + std::to_string(id), false);
   return out;
 }
 
@@ -102,9 +107,12 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
 void Recorder::history(State& state, Real h) {
   const auto real = [](std::int64_t n) { return static_cast<Real>(n); };
   const StepCounts& n = state.counts;
-  std::vector<Real> row{state.clock.time,           h,
-                        real(n.steps),              real(n.newton_iterations),
-                        real(n.linear_iterations),  real(n.rejected_error),
+  std::vector<Real> row{state.clock.time,
+                        h,
+                        real(n.steps),
+                        real(n.newton_iterations),
+                        real(n.linear_iterations),
+                        real(n.rejected_error),
                         real(n.rejected_newton)};
   energy_row(state, row);
   body_row(state, row);
@@ -115,8 +123,10 @@ void Recorder::history(State& state, Real h) {
 
 void Recorder::energy_row(State& state, std::vector<Real>& row) {
   const bool verlet = model_.integrator.particles == ParticleIntegrator::velocity_verlet;
-  const ParticleLedger particles = backend_.ledger(verlet ? model_.time.step / model_.integrator.substeps : 0);
-  const Ledger ledger = make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
+  const ParticleLedger particles =
+      backend_.ledger(verlet ? model_.time.step / model_.integrator.substeps : 0);
+  const Ledger ledger =
+      make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   BalanceState& balance = state.balance;
   if (!balance.open) balance = {true, ledger.accounted(), 0, ledger};
   balance.exchanged += energy_exchanged(balance.last, ledger);

@@ -19,14 +19,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kProgressSeconds = 0.25;  // between progress lines on a terminal
-constexpr double kFlushSeconds = 5;        // between writes of the history, besides those with snapshots and checkpoints
+constexpr double kFlushSeconds =
+    5;  // between writes of the history, besides those with snapshots and checkpoints
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 double cpu_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -46,8 +49,9 @@ std::unique_ptr<Backend> make_backend(const Model& model, const std::string& nam
 State read_state(const RunOptions& options) {
   const Checkpoint checkpoint = read_checkpoint(options.restart);
   if (checkpoint.text("fingerprint") != options.fingerprint)
-    throw InputError("--restart " + options.restart +
-                     ": the checkpoint belongs to another deck; only time.end and the table output may differ");
+    throw InputError(
+        "--restart " + options.restart +
+        ": the checkpoint belongs to another deck; only time.end and the table output may differ");
   return unpack(checkpoint);
 }
 
@@ -152,8 +156,9 @@ ExitCode Simulation::run() {
                         model_.bodies.size(), backend_->description(),
                         link_.multibody() ? link_.multibody()->solver_description() : "none"));
   const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
-  StepLoop loop(parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
-                [this](const State& s, Real h) { progress(s, h); });
+  StepLoop loop(
+      parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
+      [this](const State& s, Real h) { progress(s, h); });
   try {
     if (loop.run() == LoopEnd::done) {
       checkpoint(loop.complete_state(), "checkpoint_end.h5");
@@ -219,9 +224,10 @@ void Simulation::summarize() const {
   const StepCounts& n = step_.counts();
   const BalanceState& b = state_.balance;
   const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
-  log_.info(fmt::format("t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
-                        state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
-                        n.linear_iterations, n.list_builds));
+  log_.info(fmt::format(
+      "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
+      state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
+      n.linear_iterations, n.list_builds));
   log_.info(fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} particles left the space",
                         b.last.accounted() - b.start, b.exchanged, state_.carried_out.left));
   log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,

@@ -103,7 +103,8 @@ constexpr int kRealsPerParticle = 15, kIntegersPerParticle = 5;
 void pack_particles(const std::vector<ParticleRecord>& particles, Checkpoint& out) {
   std::vector<Real>& reals = out.reals["particles/reals"];
   std::vector<std::int64_t>& integers = out.integers["particles/integers"];
-  reals.reserve(particles.size() * kRealsPerParticle), integers.reserve(particles.size() * kIntegersPerParticle);
+  reals.reserve(particles.size() * kRealsPerParticle),
+      integers.reserve(particles.size() * kIntegersPerParticle);
   for (const ParticleRecord& p : particles) {
     for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force})
       for (const Real value : {v.x, v.y, v.z}) reals.push_back(value);
@@ -126,8 +127,10 @@ std::vector<ParticleRecord> unpack_particles(const Checkpoint& in) {
     const std::int64_t* k = &integers[i * kIntegersPerParticle];
     const auto vector = [r](int at) { return Vec3{r[at], r[at + 1], r[at + 2]}; };
     const auto whole = [k](int at) { return static_cast<std::int32_t>(k[at]); };
-    particles[i] = {k[0],  vector(0), vector(3), vector(6),                      vector(9),
-                    r[12], r[13],     r[14],     {whole(1), whole(2), whole(3)}, k[4] != 0};
+    particles[i] = {k[0],      vector(0), vector(3),
+                    vector(6), vector(9), r[12],
+                    r[13],     r[14],     {whole(1), whole(2), whole(3)},
+                    k[4] != 0};
   }
   return particles;
 }

@@ -17,8 +17,10 @@ constexpr Real kSameTime = 1e-6;
 }  // namespace
 
 StepClock::StepClock(const Model& model) : time_(model.time), output_(model.output) {
-  // An end that is an output time but for round-off becomes it: a run that goes on from there has the same times.
-  for (const Real interval : {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval}) {
+  // An end that is an output time but for round-off becomes it: a run that goes on from there has the same
+  // times.
+  for (const Real interval :
+       {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval}) {
     const Real output_time = interval > 0 ? std::round(time_.end / interval) * interval : 0;
     if (std::abs(output_time - time_.end) <= same_time_margin()) time_.end = output_time;
   }
@@ -29,7 +31,8 @@ StepClock::StepClock(const Model& model) : time_(model.time), output_(model.outp
 StepClock::StepClock(const Model& model, const ClockState& state) : StepClock(model) {
   state_ = state;
   const auto recount = [&](std::int64_t& count, Real interval) {
-    if (interval > 0) count = static_cast<std::int64_t>(std::floor((state_.time + same_time_margin()) / interval));
+    if (interval > 0)
+      count = static_cast<std::int64_t>(std::floor((state_.time + same_time_margin()) / interval));
   };
   recount(state_.histories, output_.history_interval);
   recount(state_.snapshots, output_.snapshot_interval);
@@ -39,7 +42,8 @@ StepClock::StepClock(const Model& model, const ClockState& state) : StepClock(mo
 
 Real StepClock::same_time_margin() const {
   Real shortest = time_.step;
-  for (const Real interval : {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval})
+  for (const Real interval :
+       {output_.checkpoint_interval, output_.snapshot_interval, output_.history_interval})
     if (interval > 0) shortest = std::min(shortest, interval);
   return kSameTime * shortest;
 }
@@ -106,9 +110,10 @@ void StepClock::accepted(Real error) {
 void StepClock::shrink(Real factor, const std::string& reason) {
   const Real h = step();
   if (h * factor < time_.min_step)
-    throw SimulationError(fmt::format("{}; the step at t = {:.9g} s, h = {:.3g} s, cannot be shortened below "
-                                      "time.min_step = {:g} s",
-                                      reason, state_.time, h, time_.min_step));
+    throw SimulationError(
+        fmt::format("{}; the step at t = {:.9g} s, h = {:.3g} s, cannot be shortened below "
+                    "time.min_step = {:g} s",
+                    reason, state_.time, h, time_.min_step));
   state_.next_step = h * factor;
   state_.just_rejected = true;
 }

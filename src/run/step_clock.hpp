@@ -11,14 +11,14 @@ namespace scree {
 
 // All that the clock carries from step to step; part of the state.
 struct ClockState {
-  Real time = 0;                   // t [s]
-  Real start = 0, end = 0;         // of the segment between two output times [s]
-  std::int64_t grid_steps = 0;     // fixed control: equal steps of this segment
-  std::int64_t grid_done = 0;      // of them taken
-  std::int64_t level = 0;          // fixed control: the grid step is being taken in 2^level parts
-  std::int64_t parts_left = 1;     // of them to go
-  Real next_step = 0;              // adaptive control: h wanted for the next step [s]
-  bool just_rejected = false;      // adaptive control: no growth right after a rejection
+  Real time = 0;                // t [s]
+  Real start = 0, end = 0;      // of the segment between two output times [s]
+  std::int64_t grid_steps = 0;  // fixed control: equal steps of this segment
+  std::int64_t grid_done = 0;   // of them taken
+  std::int64_t level = 0;       // fixed control: the grid step is being taken in 2^level parts
+  std::int64_t parts_left = 1;  // of them to go
+  Real next_step = 0;           // adaptive control: h wanted for the next step [s]
+  bool just_rejected = false;   // adaptive control: no growth right after a rejection
   std::int64_t histories = 0, snapshots = 0, checkpoints = 0;  // output times reached
 };
 
@@ -36,8 +36,8 @@ class StepClock {
   Real begin_step();
   // The step was taken; error: local error over the tolerance.
   void accepted(Real error);
-  // The step is to be repeated, shorter. Throws SimulationError, with the reason, when it would be shorter than
-  // min_step.
+  // The step is to be repeated, shorter. Throws SimulationError, with the reason, when it would be shorter
+  // than min_step.
   void rejected_for_error(Real error);
   void rejected_for_convergence(const std::string& reason);
 

@@ -66,7 +66,8 @@ void StepLoop::leave() {
 void StepLoop::output(Real h) {
   const auto scope = parts_.timers.time(Stage::output);
   state_.counts = parts_.step.counts();
-  const bool history = clock_.take_history(), snapshot = clock_.take_snapshot(), checkpoint = clock_.take_checkpoint();
+  const bool history = clock_.take_history(), snapshot = clock_.take_snapshot(),
+             checkpoint = clock_.take_checkpoint();
   state_.clock = clock_.state();
   if (history) parts_.recorder.history(state_, h);
   if (snapshot) parts_.recorder.snapshot(state_);

@@ -1,7 +1,8 @@
-// Speed of explicit steps on a settled 2D bed of frictionless discs: particle-steps per second for 1e4 to 1e6 discs.
+// Speed of explicit steps on a settled 2D bed of frictionless discs: particle-steps per second for 1e4 to 1e6
+// discs.
 //
-// A tile of 100 x 100 discs, periodic in x, settles under gravity; it is then repeated in x, so that every size has the
-// same contacts. Prints CPU time alone. Usage: dense_bed [particles ...]
+// A tile of 100 x 100 discs, periodic in x, settles under gravity; it is then repeated in x, so that every
+// size has the same contacts. Prints CPU time alone. Usage: dense_bed [particles ...]
 #include <mpi.h>
 
 #include <cstdio>
@@ -46,12 +47,14 @@ void add_disc(Model& model, Vec3 position) {
 }
 
 struct Run {
-  explicit Run(const Model& m) : model(m), backend(make_cpu_backend(model)), link(model), step(model, *backend, link, timers) {
+  explicit Run(const Model& m)
+      : model(m), backend(make_cpu_backend(model)), link(model), step(model, *backend, link, timers) {
     backend->load(initial_records(model.particles, Subdomain(model.space)), {});
     step.start(bodies);
   }
   void advance(int steps) {
-    for (int k = 0; k < steps / model.integrator.substeps; ++k) step.explicit_step(bodies, 0, model.time.step);
+    for (int k = 0; k < steps / model.integrator.substeps; ++k)
+      step.explicit_step(bodies, 0, model.time.step);
   }
 
   Model model;
@@ -68,7 +71,8 @@ std::vector<Vec3> settled_tile() {
   const auto jitter = [&] { return 1e-3 * (static_cast<Real>(engine()) / 4294967296.0 - 0.5); };
   for (int row = 0; row < kTileSide; ++row)
     for (int column = 0; column < kTileSide; ++column)
-      add_disc(model, {(column + 0.25 + 0.5 * (row % 2)) * kSpacing + jitter(), kRadius + 0.09 * row + jitter(), 0});
+      add_disc(model,
+               {(column + 0.25 + 0.5 * (row % 2)) * kSpacing + jitter(), kRadius + 0.09 * row + jitter(), 0});
   Run run(model);
   run.advance(20000);
   const ParticleLedger ledger = run.backend->ledger(0);
@@ -92,10 +96,11 @@ void measure(const std::vector<Vec3>& tile, int particles) {
   run.advance(steps);
   const double seconds = cpu_seconds() - start;
   const double updates = static_cast<double>(model.particles.size()) * steps;
-  std::printf("%8zu discs: %.3g particle-steps/s, %.1f ns each, %d steps, %lld list builds, %.2f listed per disc\n",
-              model.particles.size(), updates / seconds, 1e9 * seconds / updates, steps,
-              static_cast<long long>(run.step.counts().list_builds - builds),
-              static_cast<double>(run.backend->list_entries()) / static_cast<double>(model.particles.size()));
+  std::printf(
+      "%8zu discs: %.3g particle-steps/s, %.1f ns each, %d steps, %lld list builds, %.2f listed per disc\n",
+      model.particles.size(), updates / seconds, 1e9 * seconds / updates, steps,
+      static_cast<long long>(run.step.counts().list_builds - builds),
+      static_cast<double>(run.backend->list_entries()) / static_cast<double>(model.particles.size()));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The items of src/dem on the device against the same items on the CPU. Both are built without contraction, and roots
-// and divisions are exact to the last bit on both: the results must be equal bit for bit.
+// The items of src/dem on the device against the same items on the CPU. Both are built without contraction,
+// and roots and divisions are exact to the last bit on both: the results must be equal bit for bit.
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -73,8 +73,9 @@ struct Scene {
     for (const Wall& wall : model.walls) planes.push_back({wall.point, wall.normal, wall.material});
   }
   ContactViews views() const {
-    return {store.position.data(),  store.velocity.data(), store.material.data(), list.offsets.data(), list.neighbors.data(),
-            list.wall_offsets.data(), list.walls.data(),   planes.data(),         layout.first_shape};
+    return {store.position.data(), store.velocity.data(), store.material.data(),
+            list.offsets.data(),   list.neighbors.data(), list.wall_offsets.data(),
+            list.walls.data(),     planes.data(),         layout.first_shape};
   }
 
   BodyShapes shapes;
@@ -86,8 +87,14 @@ struct Scene {
 
 struct DeviceScene {
   explicit DeviceScene(const Scene& s)
-      : position(s.store.position), velocity(s.store.velocity), material(s.store.material), offsets(s.list.offsets),
-        neighbors(s.list.neighbors), wall_offsets(s.list.wall_offsets), walls(s.list.walls), planes(s.planes),
+      : position(s.store.position),
+        velocity(s.store.velocity),
+        material(s.store.material),
+        offsets(s.list.offsets),
+        neighbors(s.list.neighbors),
+        wall_offsets(s.list.wall_offsets),
+        walls(s.list.walls),
+        planes(s.planes),
         first_shape(s.layout.first_shape) {}
   ContactViews views() const {
     return {position.get(),     velocity.get(), material.get(), offsets.get(), neighbors.get(),
@@ -112,7 +119,8 @@ TEST_CASE("contact forces on the device equal the CPU's bit for bit") {
     const std::size_t n = model.particles.size();
     std::vector<Vec3> force(n);
     std::vector<Real> loss(n);
-    make_contact_kernels(model.contact)->forces(scene.views(), kGravity, scene.layout.owned, force.data(), loss.data());
+    make_contact_kernels(model.contact)
+        ->forces(scene.views(), kGravity, scene.layout.owned, force.data(), loss.data());
 
     const DeviceScene device(scene);
     const DeviceArray<Vec3> d_force(n);
@@ -133,7 +141,8 @@ TEST_CASE("an implicit step's system on the device equals the CPU's bit for bit"
   // The step started a little earlier: contacts open and close within it.
   std::vector<Vec4> start = scene.store.position;
   const Real h = 1e-3;
-  for (std::size_t i = 0; i < n; ++i) start[i] = vec4(xyz(start[i]) - h * xyz(scene.store.velocity[i]), start[i].w);
+  for (std::size_t i = 0; i < n; ++i)
+    start[i] = vec4(xyz(start[i]) - h * xyz(scene.store.velocity[i]), start[i].w);
   const NewtonWeights weights{h * h / 4, h / 2};
 
   std::vector<Vec3> step(n), end(n), b(slots);
@@ -148,13 +157,13 @@ TEST_CASE("an implicit step's system on the device equals the CPU's bit for bit"
 
   const DeviceScene device(scene);
   const DeviceArray<Vec4> d_start(start);
-  const DeviceArray<Vec3> d_step(n), d_end(n),
-      d_b(slots);
+  const DeviceArray<Vec3> d_step(n), d_end(n), d_b(slots);
   const DeviceArray<Real> d_step_loss(n), d_end_loss(n), d_magnitude(n);
   const DeviceArray<Index> d_count(n), d_neighbor(slots);
   const DeviceArray<Sym3> d_diagonal(n);
   const DeviceContactKernels<LinearElastic, OneLaw> kernels(Device{}, {model.contact.laws[0]});
-  kernels.system(device.views(), kGravity, scene.layout.owned, weights, {d_start.get(), device.velocity.get(), h, true},
+  kernels.system(device.views(), kGravity, scene.layout.owned, weights,
+                 {d_start.get(), device.velocity.get(), h, true},
                  {d_step.get(), d_end.get(), d_step_loss.get(), d_end_loss.get(), d_magnitude.get()},
                  {d_count.get(), d_neighbor.get(), d_b.get(), d_diagonal.get()});
   CHECK(same_bits(d_step.host(), step));
@@ -179,12 +188,18 @@ TEST_CASE("velocity-Verlet steps on the device equal the CPU's bit for bit") {
   std::vector<Vec4> position(n), velocity(n);
   const Real squared = make_contact_kernels(model.contact)
                            ->verlet_advance(scene.views(), kGravity, scene.layout.owned,
-                                            {position.data(), velocity.data(), scene.store.acceleration.data(),
-                                             scene.store.contact_loss.data(), scene.store.loss_power.data(), 1e-5, {}});
+                                            {position.data(),
+                                             velocity.data(),
+                                             scene.store.acceleration.data(),
+                                             scene.store.contact_loss.data(),
+                                             scene.store.loss_power.data(),
+                                             1e-5,
+                                             {}});
   const DeviceContactKernels<LinearElastic, OneLaw> kernels(Device{}, {model.contact.laws[0]});
-  kernels.verlet_advance(device.views(), kGravity, scene.layout.owned,
-                         {d_position.get(), d_velocity.get(), d_acceleration.get(), d_loss.get(), d_power.get(), 1e-5, {}},
-                         d_squared.get());
+  kernels.verlet_advance(
+      device.views(), kGravity, scene.layout.owned,
+      {d_position.get(), d_velocity.get(), d_acceleration.get(), d_loss.get(), d_power.get(), 1e-5, {}},
+      d_squared.get());
   CHECK(same_bits(d_position.host(), position));
   CHECK(same_bits(d_velocity.host(), velocity));
   CHECK(same_bits(d_acceleration.host(), scene.store.acceleration));
