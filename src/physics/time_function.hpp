@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "base/hd.hpp"
 #include "base/types.hpp"
@@ -18,7 +19,7 @@ SCREE_HD TimeValue ramp_function(Real value, Real rate, Real t) { return {value 
 
 // f = value + amplitude sin(2 pi frequency t + phase); frequency [Hz], phase [rad].
 SCREE_HD TimeValue sine_function(Real value, Real amplitude, Real frequency, Real phase, Real t) {
-  const Real omega = 2 * Real(3.14159265358979323846) * frequency;
+  const Real omega = 2 * std::numbers::pi_v<Real> * frequency;
   const Real s = std::sin(omega * t + phase), c = std::cos(omega * t + phase);
   return {value + amplitude * s, amplitude * omega * c, -amplitude * omega * omega * s};
 }

@@ -1,36 +1,16 @@
 // Case 5.1 of Jung, Jun, Sohn (2013): the discrete HHT solution, the truth, and the static chain.
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
+#include "support/reference.hpp"
 
 using namespace scree;
 
 namespace {
-
-// Rows of numbers of a reference file; lines that do not start with a number are its head.
-std::vector<std::vector<Real>> read_reference(const std::string& name) {
-  std::ifstream file(std::string(SCREE_SOURCE_DIR) + "/tests/reference/" + name);
-  REQUIRE(file.good());
-  std::vector<std::vector<Real>> rows;
-  for (std::string line; std::getline(file, line);) {
-    std::vector<Real> row;
-    std::istringstream words(line);
-    for (std::string word; std::getline(words, word, ',');) {
-      char* end = nullptr;
-      const Real value = std::strtod(word.c_str(), &end);
-      if (end == word.c_str()) break;
-      row.push_back(value);
-    }
-    if (!row.empty()) rows.push_back(row);
-  }
-  return rows;
-}
 
 // Largest difference in x or y of bodies 4 and 5 from a reference with columns t, x4, y4, vx4, vy4, x5, y5,
 // ... every 1 ms.
@@ -53,12 +33,12 @@ Real largest_error(Real hht_alpha, int steps_per_sample, const std::vector<std::
 }  // namespace
 
 TEST_CASE("the net follows the discrete HHT solution") {
-  CHECK(largest_error(0, 1, read_reference("hht51_h1e-3_alpha_0.csv")) < 1e-10);
-  CHECK(largest_error(-0.3, 1, read_reference("hht51_h1e-3_alpha_m030.csv")) < 1e-10);
+  CHECK(largest_error(0, 1, reference_rows("hht51_h1e-3_alpha_0.csv")) < 1e-10);
+  CHECK(largest_error(-0.3, 1, reference_rows("hht51_h1e-3_alpha_m030.csv")) < 1e-10);
 }
 
 TEST_CASE("the net's error against the truth is the method's, and of second order") {
-  const auto truth = read_reference("chain51_bodies4_5.csv");
+  const auto truth = reference_rows("chain51_bodies4_5.csv");
   // alpha and the error of two independent implementations at h = 1e-3 [m], known to four digits.
   const std::array<std::array<Real, 2>, 6> known = {{{0, 1.691e-4},
                                                      {-0.05, 1.931e-4},
@@ -92,7 +72,7 @@ TEST_CASE("the net comes to rest in the static shape") {
   }
   MultibodyRun run(model);
   run.steps(4000, 5e-3);
-  for (const std::vector<Real>& row : read_reference("chain_static.csv")) {
+  for (const std::vector<Real>& row : reference_rows("chain_static.csv")) {
     const int body = static_cast<int>(row[0]);
     CAPTURE(body);
     CHECK(std::abs(run.x(body) - row[1]) < 1e-8);
