@@ -35,7 +35,6 @@ void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& w
 struct CoupledStep::Iteration {
   Real correction = 1;  // of the particles
   Real residual = 0;
-  GlobalId worst = -1;  // particle
 };
 
 CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
@@ -47,7 +46,6 @@ CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, S
 
 void CoupledStep::rebuild_list(Real skin) {
   backend_.build_list(skin, timers_);
-  ++counts_.list_builds;
 }
 
 void CoupledStep::start(MultibodyState& bodies) {
@@ -57,6 +55,7 @@ void CoupledStep::start(MultibodyState& bodies) {
   // Only now are the contact wrenches at the start known.
   link_.reduce_wrench(backend_);
   if (link_.multibody()) bodies = link_.multibody()->initial_state(link_.end_wrench());
+  bodies.wrench = link_.end_wrench();
 }
 
 void CoupledStep::resume(const MultibodyState& bodies) {
@@ -133,6 +132,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   }
   backend_.accept();
   if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
+  bodies.wrench = link_.end_wrench();
   ++counts_.steps;
   return outcome;
 }
@@ -160,7 +160,7 @@ void CoupledStep::iterate() {
   throw SimulationError(
       fmt::format("stage particle_correct: no convergence in {} iterations; the largest residual, {:.2e} "
                   "of the largest force, is that of particle {}",
-                  model_.integrator.max_iterations, last.residual, last.worst));
+                  model_.integrator.max_iterations, last.residual, backend_.worst_particle()));
 }
 
 // One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
@@ -171,7 +171,7 @@ bool CoupledStep::iterate_once(Iteration& last) {
   {
     const auto scope = timers_.time(Stage::contact_force);
     particles = backend_.contact_force();
-    last.residual = particles.residual, last.worst = particles.worst;
+    last.residual = particles.residual;
     if (particles.overshoot) {
       backend_.shorten_correction();
       return false;
@@ -204,42 +204,43 @@ bool CoupledStep::iterate_once(Iteration& last) {
   return false;
 }
 
-void CoupledStep::explicit_step(MultibodyState& bodies, Real t, Real h) {
+std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h) {
   const int substeps = model_.integrator.substeps;
-  const Real substep = h / substeps;
-  std::vector<BodyWrench> start, sum;
-  if (link_.has_bodies()) {
-    backend_.shape_contacts();
-    link_.reduce_wrench(backend_);
-    start = link_.end_wrench();
-    add_wrenches(sum, start, 0.5);
-  }
   {
     const auto scope = timers_.time(Stage::predict);
-    backend_.verlet_start(substep);
+    backend_.verlet_start(h / substeps);
   }
+  std::size_t taken = 0;
+  if (link_.has_bodies()) {
+    for (bool open = true; open; ++taken)
+      open = explicit_step_with_bodies(bodies, times[taken], h, taken + 1 < times.size());
+  } else {
+    const Index most = static_cast<Index>(times.size()) * substeps;
+    taken = static_cast<std::size_t>(backend_.verlet_run(h / substeps, most, false, timers_).closed / substeps);
+  }
+  counts_.steps += static_cast<std::int64_t>(taken);
+  return taken;
+}
+
+// Returns whether the particles' next step is open.
+bool CoupledStep::explicit_step_with_bodies(MultibodyState& bodies, Real t, Real h, bool keep_open) {
+  const int substeps = model_.integrator.substeps;
+  std::vector<BodyWrench> sum;
+  add_wrenches(sum, bodies.wrench, 0.5);
+  bool open = true;
   for (int s = 1; s <= substeps; ++s) {
     {
       const auto scope = timers_.time(Stage::broadcast_motion);
       link_.broadcast_motion(backend_, bodies, h * s / substeps);
     }
-    if (backend_.list_displacement() > 1) rebuild_list(model_.contact.skin);
-    {
-      const auto scope = timers_.time(Stage::contact_force);
-      if (s < substeps)
-        backend_.verlet_advance(substep);
-      else
-        backend_.verlet_finish(substep);
-    }
+    open = backend_.verlet_run(h / substeps, 1, s < substeps || keep_open, timers_).open;
     const auto scope = timers_.time(Stage::reduce_wrench);
     link_.reduce_wrench(backend_);
     add_wrenches(sum, link_.end_wrench(), s < substeps ? 1 : 0.5);
   }
-  if (link_.has_bodies()) {
-    link_.set_mean_wrench(start, sum, substeps);
-    solve_bodies(bodies, t, h);
-  }
-  ++counts_.steps;
+  link_.set_mean_wrench(bodies.wrench, sum, substeps);
+  solve_bodies(bodies, t, h);
+  return open;
 }
 
 // The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
@@ -264,6 +265,7 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
   backend_.shape_contacts();
   link_.reduce_wrench(backend_);
   if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
+  bodies.wrench = link_.end_wrench();
 }
 
 }  // namespace scree

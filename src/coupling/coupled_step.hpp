@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/timer.hpp"
 #include "coupling/body_link.hpp"
@@ -24,7 +25,6 @@ struct StepOutcome {
 struct StepCounts {
   std::int64_t steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::int64_t rejected_error = 0, rejected_newton = 0;
-  std::int64_t list_builds = 0;  // neighbour list; not part of the state
 };
 
 class CoupledStep {
@@ -38,8 +38,9 @@ class CoupledStep {
   // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they
   // were, where a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
-  // Advances both sides by h, the particles in substeps.
-  void explicit_step(MultibodyState& bodies, Real t, Real h);
+  // Advances both sides by up to times.size() steps of length h, the particles in substeps. times: where each
+  // step starts [s]. Returns the number of steps taken: fewer where a particle is outside the space after one.
+  std::size_t explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h);
   // The particles outside the space now. Throws SimulationError naming the first that is beyond a wall, or
   // outside at all where the deck calls that an error.
   std::vector<Leaver> check_inside() const;
@@ -56,6 +57,7 @@ class CoupledStep {
   bool covered(const MultibodyState& bodies);
   void iterate();
   bool iterate_once(Iteration& last);
+  bool explicit_step_with_bodies(MultibodyState& bodies, Real t, Real h, bool keep_open);
   void solve_bodies(MultibodyState& bodies, Real t, Real h);
 
   const Model& model_;

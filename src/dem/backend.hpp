@@ -9,6 +9,7 @@
 #include "base/timer.hpp"
 #include "base/types.hpp"
 #include "dem/particle_store.hpp"
+#include "dem/shape_side.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
 
@@ -18,7 +19,6 @@ namespace scree {
 struct ParticleNorms {
   Real residual = 0;  // over the largest force on a particle, at the iterate and at the start of the step
   Real correction_bound = 0;  // of the position correction that the residual can still cause, over the radius
-  GlobalId worst = -1;        // the particle with the largest residual
   bool overshoot = false;     // the last correction went too far along its direction
 };
 
@@ -55,17 +55,10 @@ struct ParticlePack {
   std::vector<int> contacts;
 };
 
-struct ShapePack {
-  std::vector<int> body;
-  std::vector<Real> radius;
-  std::vector<Vec3> position, velocity, force;
-  std::vector<int> contacts;
-};
-
-// Dissipation in the shapes' own share of their contacts (with other bodies' shapes and with walls).
-struct ShapeLosses {
-  Real contact_loss = 0;  // since t = 0 [J]
-  Real loss_power = 0;    // at t_n [W]
+// How far Backend::verlet_run came.
+struct VerletRun {
+  Index closed = 0;   // steps
+  bool open = false;  // whether the step after the last of them is open
 };
 
 class Backend {
@@ -84,6 +77,7 @@ class Backend {
   virtual Real list_displacement() = 0;
   virtual void build_list(Real skin, StageTimers& timers) = 0;
   virtual std::int64_t list_entries() const = 0;
+  virtual std::int64_t list_builds() const = 0;  // since the backend was made
 
   // Start: forces and accelerations of the loaded positions and velocities.
   virtual void initial_forces() = 0;
@@ -93,6 +87,8 @@ class Backend {
   virtual void rollback() = 0;
   virtual Real step_displacement() = 0;  // largest of a particle or shape since the step's start [m]
   virtual ParticleNorms contact_force() = 0;
+  // The particle with the largest residual in the last contact_force; -1 without particles.
+  virtual GlobalId worst_particle() const = 0;
   // Contact wrenches on the bodies: what the step needs, and at the end of the step; equal unless contacts
   // open or close within it.
   virtual void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) = 0;
@@ -102,12 +98,14 @@ class Backend {
   virtual Real error() = 0;  // local position error of the step over the radius
   virtual void accept() = 0;
 
-  // Explicit steps: verlet_start, then for each step place_bodies, list, and verlet_advance, which closes it
-  // and opens the next; verlet_finish instead closes the last.
+  // Explicit steps. verlet_start opens the first. verlet_run closes up to `most` and opens the one after each,
+  // the last of them only if keep_open; it renews the list where needed. Bodies stay where they were placed,
+  // so that with bodies `most` is 1. Every Integrator::substeps from verlet_start a step of the bodies ends:
+  // there it stops, closed, if a particle is outside the space.
   virtual void verlet_start(Real h) = 0;
-  virtual void verlet_advance(Real h) = 0;
-  virtual void verlet_finish(Real h) = 0;
-  // Contacts of the bodies' shapes as everything stands, for reduce_wrench.
+  virtual VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) = 0;
+  // Contacts of the bodies' shapes, where they are placed now, with the particles as they were when the last
+  // step was closed; for reduce_wrench.
   virtual void shape_contacts() = 0;
 
   // The particles that are outside the space now and not known to drift, ordered by global id.

@@ -22,7 +22,7 @@ int BlockSolver::solve(const System& system, std::vector<Vec4>& d, std::vector<V
   const Index n = static_cast<Index>(system.residual.size());
   const Real low = 1 / (1 + system.largest_stiffening), high = 2;
   const Real center = (high + low) / 2, half_width = (high - low) / 2, sigma = center / half_width;
-  SubtractMatrixItem subtract = system.matrix;
+  SubtractMatrixItem<PackedRows> subtract = system.matrix;
   subtract.d = d.data(), subtract.residual = system.residual.data();
 
   Real rho = 1 / sigma, from_last = 0, from_residual = 1 / center;

@@ -19,7 +19,7 @@ namespace scree {
 class BlockSolver {
  public:
   struct System {
-    SubtractMatrixItem matrix;  // d and residual are set by the solver
+    SubtractMatrixItem<PackedRows> matrix;  // d and residual are set by the solver
     std::span<const Sym3> inverse_block;
     std::span<Vec3> residual;  // in: right-hand side; out: what is left of it
     std::span<const Ghost> ghosts;

@@ -29,13 +29,25 @@ struct LawTable {
   SCREE_HD const KelvinVoigt& get(int i, int j) const { return laws[i * materials + j]; }
 };
 
+// Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend, another
+// type of the same form on a GPU.
+struct PackedRows {
+  const Index* offsets;  // [items + 1]
+  const Index* neighbors;
+
+  SCREE_HD Index count(Index i) const { return offsets[i + 1] - offsets[i]; }
+  // Slot of the row's first entry, and from one entry to the next.
+  SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
+  SCREE_HD static constexpr int stride() { return 1; }
+};
+
 // Read-only views of items and neighbour list.
+template <class Rows>
 struct ContactViews {
   const Vec4* position;  // x, y, z, radius
   const Vec4* velocity;  // x, y, z, mass
   const int* material;
-  const Index* offsets;  // neighbour list rows
-  const Index* neighbors;
+  Rows rows;
   const Index* wall_offsets;
   const Index* walls;
   const WallPlane* planes;
@@ -57,9 +69,9 @@ struct TotalForce {
 };
 
 // Total force on particle i at the current positions and velocities, and its share of the dissipation.
-template <class Elastic, class Laws>
+template <class Elastic, class Laws, class Rows>
 struct ContactForceItem {
-  ContactViews in;
+  ContactViews<Rows> in;
   Laws laws;
   Vec3 gravity;
   Vec3* force;       // [N]
@@ -76,9 +88,9 @@ struct ContactForceItem {
     const int material = in.material[i];
     Vec3 f = u.w * gravity;
     Real loss = 0, shape_loss = 0;
-    const Index end = in.offsets[i + 1];
-    for (Index k = in.offsets[i]; k < end; ++k) {
-      const Index j = in.neighbors[k];
+    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
+    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
+      const Index j = *neighbor;
       const Vec4 q = in.position[j];
       const Vec3 r = xyz(p) - xyz(q);
       const Real reach = p.w + q.w, squared_distance = dot(r, r);
@@ -155,9 +167,9 @@ SCREE_HD StepContact step_contact(const KelvinVoigt& law, const StepStart& start
 
 // Visits the contacts of item i over a step: visit(StepContact, normal at the end, slot of the neighbour or
 // -1 for a wall, partner).
-template <class Elastic, class Laws>
+template <class Elastic, class Laws, class Rows>
 struct StepContacts {
-  ContactViews in;
+  ContactViews<Rows> in;
   Laws laws;
   StepStart start;
 
@@ -166,8 +178,9 @@ struct StepContacts {
   template <class Visit>
   SCREE_HD void neighbors(Index i, const Visit& visit) const {
     const Vec4 p = in.position[i], p0 = start.position[i];
-    for (Index k = in.offsets[i]; k < in.offsets[i + 1]; ++k) {
-      const Index j = in.neighbors[k];
+    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
+    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
+      const Index j = *neighbor;
       const Vec4 q = in.position[j];
       const Vec3 r = xyz(p) - xyz(q), r0 = xyz(p0) - xyz(start.position[j]);
       const Real reach = p.w + q.w;
@@ -196,9 +209,9 @@ struct StepContacts {
 };
 
 // Force, dissipation and Newton matrix row of particle i in an implicit step.
-template <class Elastic, class Laws>
+template <class Elastic, class Laws, class Rows>
 struct ContactSystemItem {
-  StepContacts<Elastic, Laws> contacts;
+  StepContacts<Elastic, Laws, Rows> contacts;
   Vec3 gravity;
   NewtonWeights weights;
   StepForces out;
@@ -209,6 +222,7 @@ struct ContactSystemItem {
     Vec3 step_force = weight, end_force = weight;
     Real step_loss = 0, end_loss = 0, magnitude = norm(weight);
     Index entries = 0;
+    std::int64_t slot = contacts.in.rows.first(i);
     Sym3 diagonal;
     const auto add = [&](const StepContact& c, Vec3 normal, Real share) {
       step_force += c.step.force * normal;
@@ -222,9 +236,9 @@ struct ContactSystemItem {
     };
     contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
       const Real s = add(c, normal, particle_share(j, contacts.in.first_shape));
-      const Index slot = contacts.in.offsets[i] + entries++;
       matrix.neighbor[slot] = j;
       matrix.b[slot] = std::sqrt(s) * normal;
+      ++entries, slot += Rows::stride();
     });
     contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
     out.step_force[i] = step_force, out.end_force[i] = end_force;
@@ -246,13 +260,19 @@ struct ShapeContact {
   Index contacts = 0;
 };
 
+// Where the shape items are, indexed from first_shape.
+struct ShapePlaces {
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;
+};
+
 // Particles book the energies of their contacts with shapes; shapes among each other half each.
 SCREE_HD Real shape_share(Index j, Index first_shape) { return j < first_shape ? Real(0) : Real(0.5); }
 
 // Contacts of a shape item over an implicit step.
-template <class Elastic, class Laws>
+template <class Elastic, class Laws, class Rows>
 struct ShapeStepItem {
-  StepContacts<Elastic, Laws> contacts;
+  StepContacts<Elastic, Laws, Rows> contacts;
   ShapeContact* out;  // [shape items], indexed from first_shape
 
   SCREE_HD void operator()(Index shape) const {
@@ -275,12 +295,20 @@ struct ShapeStepItem {
   }
 };
 
-// Contacts of a shape item at one instant.
-template <class Elastic, class Laws>
+// Contacts of a shape item at one instant. The shapes may be elsewhere than in the arrays of all items.
+template <class Elastic, class Laws, class Rows>
 struct ShapeContactItem {
-  ContactViews in;
+  ContactViews<Rows> in;
+  ShapePlaces shapes;
   Laws laws;
   ShapeContact* out;  // [shape items], indexed from first_shape
+
+  SCREE_HD Vec4 position(Index j) const {
+    return j < in.first_shape ? in.position[j] : shapes.position[j - in.first_shape];
+  }
+  SCREE_HD Vec4 velocity(Index j) const {
+    return j < in.first_shape ? in.velocity[j] : shapes.velocity[j - in.first_shape];
+  }
 
   SCREE_HD void add(ShapeContact& sum, const KelvinVoigt& law, const Overlap& o, Real rate,
                     Real share) const {
@@ -294,13 +322,15 @@ struct ShapeContactItem {
 
   SCREE_HD void operator()(Index shape) const {
     const Index i = in.first_shape + shape;
-    const Vec4 p = in.position[i], u = in.velocity[i];
+    const Vec4 p = position(i), u = velocity(i);
     ShapeContact sum;
-    for (Index k = in.offsets[i]; k < in.offsets[i + 1]; ++k) {
-      const Index j = in.neighbors[k];
-      const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
+    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
+    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
+      const Index j = *neighbor;
+      const Vec4 q = position(j);
+      const Overlap o = sphere_overlap(xyz(p) - xyz(q), p.w + q.w);
       if (o.overlap <= 0) continue;
-      const Real rate = -dot(o.normal, xyz(u) - xyz(in.velocity[j]));
+      const Real rate = -dot(o.normal, xyz(u) - xyz(velocity(j)));
       add(sum, laws.get(in.material[i], in.material[j]), o, rate, shape_share(j, in.first_shape));
     }
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
@@ -314,9 +344,9 @@ struct ShapeContactItem {
 };
 
 // Elastic energy of particle i's share of its contacts, their number, and its share of that number.
-template <class Elastic, class Laws>
+template <class Elastic, class Laws, class Rows>
 struct ContactEnergyItem {
-  ContactViews in;
+  ContactViews<Rows> in;
   Laws laws;
   Real* energy;  // [J]
   Index* contacts;
@@ -326,8 +356,9 @@ struct ContactEnergyItem {
     const Vec4 p = in.position[i];
     Real sum = 0, share = 0;
     Index n = 0;
-    for (Index k = in.offsets[i]; k < in.offsets[i + 1]; ++k) {
-      const Index j = in.neighbors[k];
+    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
+    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
+      const Index j = *neighbor;
       const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
       if (o.overlap <= 0) continue;
       const Real own = particle_share(j, in.first_shape);

@@ -12,17 +12,15 @@ namespace scree {
 CpuBackend::CpuBackend(const Model& model)
     : model_(model),
       subdomain_(model.space),
-      shapes_(model),
-      builder_(model, shapes_),
+      side_(model, subdomain_),
+      builder_(model, side_.shapes()),
       kernels_(make_contact_kernels(model.contact)),
-      hht_(hht_coefficients(model.integrator.hht_alpha)),
-      motion_(model.bodies.size()),
-      shape_shift_(static_cast<std::size_t>(shapes_.size())) {
+      hht_(hht_coefficients(model.integrator.hht_alpha)) {
   for (const Wall& wall : model.walls) planes_.push_back({wall.point, wall.normal, wall.material});
 }
 
 void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
-  shape_losses_ = shapes;
+  side_.losses() = shapes;
   store_.load(model_.particles, records);
   layout_changed_ = true;
 }
@@ -33,42 +31,32 @@ std::vector<ParticleRecord> CpuBackend::records() const {
   return out;
 }
 
-ContactViews CpuBackend::views() const {
-  return {store_.position.data(), store_.velocity.data(), store_.material.data(),
-          list_.offsets.data(),   list_.neighbors.data(), list_.wall_offsets.data(),
-          list_.walls.data(),     planes_.data(),         layout_.first_shape};
+CpuBackend::Views CpuBackend::views(const std::vector<Vec4>& position,
+                                    const std::vector<Vec4>& velocity) const {
+  return {position.data(),
+          velocity.data(),
+          store_.material.data(),
+          {list_.offsets.data(), list_.neighbors.data()},
+          list_.wall_offsets.data(),
+          list_.walls.data(),
+          planes_.data(),
+          layout_.first_shape};
 }
 
 void CpuBackend::place_bodies(std::span<const BodyMotion> motion) {
-  motion_.assign(motion.begin(), motion.end());
+  side_.set_motion(motion);
   if (!layout_changed_) place_shapes();
 }
 
 void CpuBackend::place_shapes() {
-  const Index items = layout_.items - layout_.first_shape;
-  Real squared = 0;
-  for (Index s = 0; s < items; ++s) {
-    const Index item = layout_.first_shape + s, shape = layout_.shape_of(item);
-    const ShapeItem& source = shapes_.items()[shape];
-    const PointMotion point = point_motion(motion_[source.body], source.offset);
-    Vec3 position = snap(point.position, subdomain_.snap_constant()) + shape_shift_[shape];
-    if (layout_.is_shape_image(item)) position += layout_.shape_images[s - layout_.shapes].shift;
-    shape_step_[s] = position - placed_[s];
-    placed_[s] = position;
-    squared = std::max(squared, dot(shape_step_[s], shape_step_[s]));
-    store_.position[item] = vec4(position, source.radius);
-    store_.velocity[item] = vec4(point.velocity, 0);
-  }
-  shape_bound_ += std::sqrt(squared);
+  shape_bound_ += side_.place(layout_);
+  std::copy(side_.position().begin(), side_.position().end(), store_.position.begin() + layout_.first_shape);
+  std::copy(side_.velocity().begin(), side_.velocity().end(), store_.velocity.begin() + layout_.first_shape);
 }
 
-// Trapezoidal in time, like the particles' losses.
-void CpuBackend::book_shape_losses(Real h) {
-  Real step_power = 0, end_power = 0;
-  for (const ShapeContact& contact : shape_contacts_)
-    step_power += contact.step_loss, end_power += contact.end_loss;
-  shape_losses_.contact_loss += h / 2 * (shape_losses_.loss_power + step_power);
-  shape_losses_.loss_power = end_power;
+void CpuBackend::find_shape_contacts(const Views& views) {
+  kernels_->shapes(views, {side_.position().data(), side_.velocity().data()},
+                   layout_.items - layout_.first_shape, side_.contacts().data());
 }
 
 void CpuBackend::report_not_finite(const std::vector<Vec3>& force) const {
@@ -85,7 +73,7 @@ void CpuBackend::refresh_ghosts() {
 
 // Owned particles in the order of their cells; those outside at the end.
 void CpuBackend::sort_cells(Real skin) {
-  const CellGrid grid = builder_.grid(skin, store_.owned + shapes_.size());
+  const CellGrid grid = builder_.grid(skin, store_.owned + side_.shapes().size());
   const Index outside = grid.count();
   std::vector<Index> cell(store_.owned), start(outside + 2, 0), from(store_.owned);
   store_.active = 0;
@@ -106,23 +94,13 @@ void CpuBackend::sort_cells(Real skin) {
 }
 
 void CpuBackend::lay_out_items(Real skin) {
-  layout_.owned = store_.owned, layout_.active = store_.active, layout_.shapes = shapes_.size();
+  layout_.owned = store_.owned, layout_.active = store_.active;
   const Real width = builder_.cutoff(skin);
   layout_.ghosts = exchange_halo(subdomain_, model_.space,
                                  {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
   layout_.first_shape = layout_.owned + static_cast<Index>(layout_.ghosts.size());
 
-  std::vector<Vec4> centers(shapes_.items().size());
-  for (Index s = 0; s < layout_.shapes; ++s) {
-    const ShapeItem& shape = shapes_.items()[s];
-    const Vec3 p = snap(point_motion(motion_[shape.body], shape.offset).position, subdomain_.snap_constant());
-    ImageCount unused;
-    const Vec3 wrapped = subdomain_.wrap(p, unused);
-    shape_shift_[s] = wrapped - p;
-    centers[s] = vec4(wrapped, shape.radius);
-  }
-  layout_.shape_images = exchange_halo(subdomain_, model_.space, centers, width);
-  layout_.items = layout_.first_shape + layout_.shapes + static_cast<Index>(layout_.shape_images.size());
+  side_.lay_out(model_.space, width, layout_);
 
   store_.position.resize(layout_.items), store_.velocity.resize(layout_.items);
   store_.material.resize(layout_.items), store_.global_id.resize(layout_.items);
@@ -131,12 +109,9 @@ void CpuBackend::lay_out_items(Real skin) {
     store_.global_id[layout_.owned + g] = store_.global_id[layout_.ghosts[g].source];
   }
   for (Index item = layout_.first_shape; item < layout_.items; ++item) {
-    const ShapeItem& shape = shapes_.items()[layout_.shape_of(item)];
+    const ShapeItem& shape = side_.shapes().items()[layout_.shape_of(item)];
     store_.material[item] = shape.material, store_.global_id[item] = shape.global_id;
   }
-  shape_step_.assign(layout_.items - layout_.first_shape, Vec3{});
-  placed_.resize(layout_.items - layout_.first_shape);
-  shape_contacts_.resize(layout_.items - layout_.first_shape);
 }
 
 void CpuBackend::build_list(Real skin, StageTimers& timers) {
@@ -156,6 +131,7 @@ void CpuBackend::build_list(Real skin, StageTimers& timers) {
   spare_position_ = store_.position, spare_velocity_ = store_.velocity;
   displacement_bound_ = step_bound_ = shape_bound_ = 0;
   layout_changed_ = false;
+  ++list_builds_;
 
   const std::size_t slots = list_.neighbors.size(), owned = static_cast<std::size_t>(layout_.owned);
   if (model_.integrator.particles != ParticleIntegrator::hht) return;

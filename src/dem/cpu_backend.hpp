@@ -7,7 +7,6 @@
 
 #include "dem/backend.hpp"
 #include "dem/block_solver.hpp"
-#include "dem/body_shapes.hpp"
 #include "dem/contact_kernels.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/particle_store.hpp"
@@ -23,18 +22,20 @@ class CpuBackend : public Backend {
 
   void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) override;
   std::vector<ParticleRecord> records() const override;
-  ShapeLosses shape_losses() const override { return shape_losses_; }
+  ShapeLosses shape_losses() const override { return side_.losses(); }
 
   void place_bodies(std::span<const BodyMotion> motion) override;
   Real list_displacement() override;
   void build_list(Real skin, StageTimers& timers) override;
   std::int64_t list_entries() const override { return static_cast<std::int64_t>(list_.neighbors.size()); }
+  std::int64_t list_builds() const override { return list_builds_; }
   void initial_forces() override;
 
   void begin_step(Real h) override;
   void rollback() override;
   Real step_displacement() override;
   ParticleNorms contact_force() override;
+  GlobalId worst_particle() const override;
   void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) override;
   ParticleCorrection particle_correct() override;
   void shorten_correction() override;
@@ -42,8 +43,7 @@ class CpuBackend : public Backend {
   void accept() override;
 
   void verlet_start(Real h) override;
-  void verlet_advance(Real h) override;
-  void verlet_finish(Real h) override;
+  VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) override;
   void shape_contacts() override;
 
   std::vector<Leaver> outside() const override;
@@ -53,8 +53,13 @@ class CpuBackend : public Backend {
   ShapePack pack_shapes() override;
 
  private:
-  ContactViews views() const;
+  using Views = ContactViews<PackedRows>;
+  Views views() const { return views(store_.position, store_.velocity); }
+  Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const;
   StepViews step_views();
+  void verlet_advance(Real h);
+  void verlet_finish(Real h);
+  bool ends_step() const { return (closed_ + 1) % model_.integrator.substeps == 0; }
   VerletViews verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity);
   StepForces step_forces();
   Real slope(const std::vector<Vec3>& residual) const;
@@ -65,26 +70,24 @@ class CpuBackend : public Backend {
   // Throws SimulationError naming the first particle whose force is not finite.
   void report_not_finite(const std::vector<Vec3>& force) const;
   void place_shapes();
-  void book_shape_losses(Real h);
+  void find_shape_contacts(const Views& views);
   Vec3 unwrapped(Index i) const;  // position without the periodic box [m]
   Real energy_of(Index i) const;  // kinetic and gravitational [J]
 
   const Model& model_;
   Subdomain subdomain_;
-  BodyShapes shapes_;
+  ShapeSide side_;
   NeighborBuilder builder_;
   std::unique_ptr<ContactKernels> kernels_;
   std::vector<WallPlane> planes_;
   HhtCoefficients hht_;
 
   ParticleStore store_;
-  std::vector<BodyMotion> motion_;  // of the bodies as last placed
-  ShapeLosses shape_losses_;
   NeighborList list_;
   ItemLayout layout_;
-  std::vector<Vec3> shape_shift_;    // brings each shape into the periodic box [m]
   std::vector<Vec4> list_position_;  // of all items when the list was built
   bool layout_changed_ = true;       // particles left since the list was built
+  std::int64_t list_builds_ = 0;
 
   // Workspace of the implicit step: start of the step (begin_step), then contact_force, then
   // particle_correct.
@@ -97,10 +100,9 @@ class CpuBackend : public Backend {
   std::vector<Vec3> matrix_b_, residual_, right_hand_side_, correction_;
   std::vector<Sym3> matrix_diagonal_, inverse_block_;
   std::vector<Vec4> direction_;
-  std::vector<Vec3> placed_;                           // position of each shape item as last placed [m]
-  std::vector<Vec3> shape_step_;                       // its displacement by the last place_bodies [m]
   std::vector<Vec4> spare_position_, spare_velocity_;  // explicit steps write here while neighbours are read
-  std::vector<ShapeContact> shape_contacts_;
+  Index closed_ = 0;                                   // explicit steps since verlet_start
+  bool opened_ = false;                                // whether the last of them was closed by opening the next
   Real largest_stiffening_ = 0, force_scale_ = 0;
   // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at
   // its start and at the iterate.

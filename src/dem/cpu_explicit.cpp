@@ -20,31 +20,47 @@ VerletViews CpuBackend::verlet_views(Real h, std::vector<Vec4>& position, std::v
 void CpuBackend::verlet_start(Real h) {
   const VerletStartItem item{verlet_views(h, store_.position, store_.velocity)};
   step_bound_ = std::sqrt(max_over(Serial{}, layout_.owned, item));
+  closed_ = 0;
 }
 
+VerletRun CpuBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) {
+  VerletRun run{0, true};
+  while (run.closed < most && run.open) {
+    if (list_displacement() > 1) build_list(model_.contact.skin, timers);
+    const auto scope = timers.time(Stage::contact_force);
+    run.open = (keep_open || run.closed + 1 < most) && !(ends_step() && !outside().empty());
+    run.open ? verlet_advance(h) : verlet_finish(h);
+    ++run.closed, ++closed_;
+  }
+  return run;
+}
+
+// Particles as the last step left them before it opened the next: with the velocities that the law saw.
 void CpuBackend::shape_contacts() {
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
+  find_shape_contacts(views(opened_ ? spare_position_ : store_.position, spare_velocity_));
 }
 
 void CpuBackend::verlet_advance(Real h) {
   refresh_ghosts();
-  shape_contacts();
-  book_shape_losses(h);
+  find_shape_contacts(views());
+  side_.book_losses(h);
   step_bound_ = std::sqrt(kernels_->verlet_advance(views(), model_.gravity, layout_.owned,
                                                    verlet_views(h, spare_position_, spare_velocity_)));
   std::swap(store_.position, spare_position_);
   std::swap(store_.velocity, spare_velocity_);
+  opened_ = true;
 }
 
 void CpuBackend::verlet_finish(Real h) {
   refresh_ghosts();
-  shape_contacts();
-  book_shape_losses(h);
+  find_shape_contacts(views());
+  side_.book_losses(h);
   const Real squared =
       kernels_->verlet_finish(views(), model_.gravity, layout_.owned,
                               verlet_views(h, spare_position_, spare_velocity_), store_.force.data());
   if (!std::isfinite(squared)) report_not_finite(store_.force);
   std::swap(store_.velocity, spare_velocity_);
+  opened_ = false;
   refresh_ghosts();
 }
 

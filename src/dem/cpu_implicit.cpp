@@ -35,8 +35,8 @@ void CpuBackend::initial_forces() {
   kernels_->forces(views(), model_.gravity, layout_.owned, store_.force.data(), store_.loss_power.data());
   for (Index i = 0; i < layout_.owned; ++i)
     store_.acceleration[i] = (1 / store_.velocity[i].w) * store_.force[i];
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
-  book_shape_losses(0);
+  find_shape_contacts(views());
+  side_.book_losses(0);
 }
 
 void CpuBackend::begin_step(Real h) {
@@ -84,7 +84,7 @@ ParticleNorms CpuBackend::contact_force() {
   const ContactMatrix matrix{matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(),
                              matrix_diagonal_.data()};
   kernels_->system(views(), model_.gravity, n, weights, start, step_forces(), matrix);
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, start, shape_contacts_.data());
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, start, side_.contacts().data());
   for_each(Serial{}, n,
            ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
                         stiffening_.data()});
@@ -95,7 +95,7 @@ ParticleNorms CpuBackend::contact_force() {
   for (Index i = 0; i < n; ++i) {
     const Real r = norm(residual_[i]);
     if (!std::isfinite(r)) report_not_finite(residual_);
-    if (r > residual) residual = r, norms.worst = store_.global_id[i];
+    residual = std::max(residual, r);
     bound = std::max(
         bound, weights.stiffness * r * (1 + hht_.hht_alpha) / (store_.velocity[i].w * store_.position[i].w));
     const Real at_start = norm(start_force_[i]) + store_.velocity[i].w * norm(start_acceleration_[i]);
@@ -109,6 +109,17 @@ ParticleNorms CpuBackend::contact_force() {
     norms.overshoot = slope_ > kMostSlope * std::abs(start_slope_);
   }
   return norms;
+}
+
+GlobalId CpuBackend::worst_particle() const {
+  Real largest = -1;
+  GlobalId worst = -1;
+  for (Index i = 0; i < layout_.owned; ++i) {
+    const Real r = norm(residual_[i]);
+    const bool first_of_equals = r == largest && store_.global_id[i] < worst;
+    if (r > largest || first_of_equals) largest = r, worst = store_.global_id[i];
+  }
+  return worst;
 }
 
 // Residual along the last correction.
@@ -128,25 +139,15 @@ void CpuBackend::shorten_correction() {
 }
 
 void CpuBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
-  std::fill(step.begin(), step.end(), BodyWrench{});
-  std::fill(end.begin(), end.end(), BodyWrench{});
-  const Index items = layout_.items - layout_.first_shape;
-  for (Index s = 0; s < items; ++s) {
-    const ShapeContact& contact = shape_contacts_[s];
-    if (contact.contacts == 0) continue;
-    const ShapeItem& shape = shapes_.items()[layout_.shape_of(layout_.first_shape + s)];
-    const Vec3 arm = point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
-    add_point_force(step[shape.body], contact.force, arm, contact.stiffness, contact.damping);
-    add_point_force(end[shape.body], contact.end_force, arm, {}, {});
-  }
+  side_.reduce(layout_, step, end);
 }
 
 ParticleCorrection CpuBackend::particle_correct() {
   const Index n = layout_.owned;
   const Real weight = hht_.newmark_beta * h_ * h_;
-  const SubtractMatrixItem matrix{
+  const SubtractMatrixItem<PackedRows> matrix{
       {matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(), matrix_diagonal_.data()},
-      list_.offsets.data(),
+      {list_.offsets.data(), list_.neighbors.data()},
       store_.velocity.data(),
       1 / (1 + hht_.hht_alpha),
       direction_.data(),
@@ -155,7 +156,7 @@ ParticleCorrection CpuBackend::particle_correct() {
   if (layout_.items > layout_.first_shape) {
     std::fill(direction_.begin(), direction_.end(), Vec4{});
     for (Index item = layout_.first_shape; item < layout_.items; ++item)
-      direction_[item] = vec4((1 / weight) * shape_step_[item - layout_.first_shape], 0);
+      direction_[item] = vec4((1 / weight) * side_.step()[item - layout_.first_shape], 0);
     for_each(Serial{}, n, matrix);
     std::fill(direction_.begin() + layout_.first_shape, direction_.end(), Vec4{});
   }
@@ -193,7 +194,7 @@ void CpuBackend::accept() {
   for_each(Serial{}, layout_.owned,
            AcceptItem{step_views(), step_forces(), store_.force.data(), store_.loss_power.data(),
                       store_.contact_loss.data(), store_.integrator_loss.data()});
-  book_shape_losses(h_);
+  side_.book_losses(h_);
   in_implicit_step_ = false;
 }
 

@@ -56,7 +56,7 @@ ParticleLedger CpuBackend::ledger(Real verlet_step) {
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
   kernels_->energies(views(), n, {elastic.data(), touching.data(), pairs.data()});
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
+  find_shape_contacts(views());
 
   ParticleLedger out;
   const auto mass = [&](Index i) { return store_.velocity[i].w; };
@@ -64,18 +64,15 @@ ParticleLedger CpuBackend::ledger(Real verlet_step) {
   out.kinetic = reproducible_sum(n, [&](Index i) { return kinetic_energy(mass(i), velocity(i)); });
   out.gravitational = reproducible_sum(
       n, [&](Index i) { return gravitational_energy(mass(i), model_.gravity, unwrapped(i)); });
-  Real shapes_elastic = 0, body_pairs = 0;
-  for (const ShapeContact& contact : shape_contacts_)
-    shapes_elastic += contact.energy, body_pairs += contact.pairs;
-  out.contact_elastic = reproducible_sum(n, [&](Index i) { return elastic[i]; }) + shapes_elastic;
+  out.contact_elastic = reproducible_sum(n, [&](Index i) { return elastic[i]; }) + side_.elastic_energy();
   out.contact_loss =
-      reproducible_sum(n, [&](Index i) { return store_.contact_loss[i]; }) + shape_losses_.contact_loss;
+      reproducible_sum(n, [&](Index i) { return store_.contact_loss[i]; }) + side_.losses().contact_loss;
   out.integrator_loss = reproducible_sum(n, [&](Index i) {
     return store_.integrator_loss[i] - verlet_energy_shift(verlet_step, mass(i), store_.acceleration[i]);
   });
   out.momentum = vector_sum(n, [&](Index i) { return mass(i) * velocity(i); });
   out.angular_momentum = vector_sum(n, [&](Index i) { return mass(i) * cross(unwrapped(i), velocity(i)); });
-  out.contacts = std::llround(reproducible_sum(n, [&](Index i) { return pairs[i]; }) + body_pairs);
+  out.contacts = std::llround(reproducible_sum(n, [&](Index i) { return pairs[i]; }) + side_.pairs());
   for (Index i = 0; i < n; ++i) out.drifting += store_.drifting[i];
   return out;
 }
@@ -98,26 +95,8 @@ ParticlePack CpuBackend::pack_particles() {
 }
 
 ShapePack CpuBackend::pack_shapes() {
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, shape_contacts_.data());
-  ShapePack pack;
-  for (Index s = 0; s < layout_.shapes; ++s) {
-    const ShapeItem& shape = shapes_.items()[s];
-    pack.body.push_back(shape.body);
-    pack.radius.push_back(shape.radius);
-    const PointMotion point = point_motion(motion_[shape.body], shape.offset);
-    ImageCount unused;
-    pack.position.push_back(subdomain_.wrap(point.position, unused));
-    pack.velocity.push_back(point.velocity);
-    pack.force.push_back(shape_contacts_[s].force);
-    pack.contacts.push_back(shape_contacts_[s].contacts);
-  }
-  for (std::size_t image = 0; image < layout_.shape_images.size(); ++image) {
-    const Index original = layout_.shape_images[image].source;
-    const ShapeContact& contact = shape_contacts_[layout_.shapes + image];
-    pack.force[original] += contact.force;
-    pack.contacts[original] += contact.contacts;
-  }
-  return pack;
+  find_shape_contacts(views());
+  return side_.pack(layout_);
 }
 
 }  // namespace scree

@@ -59,9 +59,10 @@ struct ResidualItem {
 };
 
 // residual_i -= (A d)_i for the Newton matrix A = mass / (1 + alpha) + contacts.
+template <class Rows>
 struct SubtractMatrixItem {
   ContactMatrix matrix;
-  const Index* offsets;
+  Rows rows;
   const Vec4* velocity;  // mass in w
   Real inverse_scale;    // 1 / (1 + alpha)
   const Vec4* d;         // all items
@@ -70,9 +71,10 @@ struct SubtractMatrixItem {
   SCREE_HD void operator()(Index i) const {
     const Vec3 di = xyz(d[i]);
     Vec3 sum = (velocity[i].w * inverse_scale) * di + matrix.diagonal[i] * di;
-    for (Index k = offsets[i]; k < offsets[i] + matrix.count[i]; ++k) {
-      const Vec3 b = matrix.b[k];
-      sum -= dot(b, xyz(d[matrix.neighbor[k]])) * b;
+    std::int64_t slot = rows.first(i);
+    for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride()) {
+      const Vec3 b = matrix.b[slot];
+      sum -= dot(b, xyz(d[matrix.neighbor[slot]])) * b;
     }
     residual[i] -= sum;
   }
@@ -131,9 +133,9 @@ struct VerletStartItem {
 
 // Closes a step: velocity and acceleration at its end from the force there. `state.velocity` is not the array
 // that the contacts read: other particles need the velocities as they were.
-template <class Elastic, class Laws>
+template <class Elastic, class Laws, class Rows>
 struct VerletFinishItem {
-  ContactForceItem<Elastic, Laws> contacts;
+  ContactForceItem<Elastic, Laws, Rows> contacts;
   VerletViews state;
 
   // Returns |a|^2, so that a force that is not finite does not pass unseen.
@@ -150,9 +152,9 @@ struct VerletFinishItem {
 
 // Closes a step and opens the next of the same length: the two items above in one pass over memory, bit for
 // bit.
-template <class Elastic, class Laws>
+template <class Elastic, class Laws, class Rows>
 struct VerletAdvanceItem {
-  ContactForceItem<Elastic, Laws> contacts;
+  ContactForceItem<Elastic, Laws, Rows> contacts;
   VerletViews state;
 
   SCREE_HD Real operator()(Index i) const {

@@ -19,6 +19,7 @@ struct MultibodyState {
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
+  std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body; its derivatives are not used
   Real dissipated = 0;             // in force elements since t = 0 [J]
   Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
   Real driver_work = 0;            // done by drivers, actuators and applied forces since t = 0 [J]

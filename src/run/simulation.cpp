@@ -205,7 +205,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"linear_iterations", n.linear_iterations},
                    {"rejected_error", n.rejected_error},
                    {"rejected_newton", n.rejected_newton},
-                   {"list_builds", n.list_builds},
+                   {"list_builds", backend_->list_builds()},
                    {"list_entries", backend_->list_entries()},
                    {"particles", static_cast<std::int64_t>(model_.particles.size())},
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
@@ -227,7 +227,7 @@ void Simulation::summarize() const {
   log_.info(fmt::format(
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
-      n.linear_iterations, n.list_builds));
+      n.linear_iterations, backend_->list_builds()));
   log_.info(fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} particles left the space",
                         b.last.accounted() - b.start, b.exchanged, state_.carried_out.left));
   log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,

@@ -15,6 +15,11 @@ class Writer {
   void operator()(const char* name, const std::int64_t& value) { out_.integers[name] = {value}; }
   void operator()(const char* name, const bool& value) { out_.integers[name] = {value ? 1 : 0}; }
   void operator()(const char* name, const std::vector<Real>& values) { out_.reals[name] = values; }
+  void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
+    std::vector<Real>& values = out_.reals[name];
+    for (const BodyWrench& w : wrenches)
+      for (const Vec3& v : {w.force, w.torque}) values.insert(values.end(), {v.x, v.y, v.z});
+  }
 
  private:
   Checkpoint& out_;
@@ -27,6 +32,14 @@ class Reader {
   void operator()(const char* name, std::int64_t& value) { value = single(name, in_.integer_array(name)); }
   void operator()(const char* name, bool& value) { value = single(name, in_.integer_array(name)) != 0; }
   void operator()(const char* name, std::vector<Real>& values) { values = in_.real_array(name); }
+  void operator()(const char* name, std::vector<BodyWrench>& wrenches) {
+    const std::vector<Real>& values = in_.real_array(name);
+    wrenches.resize(values.size() / 6);
+    for (std::size_t b = 0; b < wrenches.size(); ++b) {
+      const Real* v = &values[6 * b];
+      wrenches[b].force = {v[0], v[1], v[2]}, wrenches[b].torque = {v[3], v[4], v[5]};
+    }
+  }
 
  private:
   template <class T>
@@ -80,6 +93,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("bodies/multipliers", state.bodies.multipliers);
   visit("bodies/force", state.bodies.force);
   visit("bodies/applied", state.bodies.applied);
+  visit("bodies/wrench", state.bodies.wrench);
   visit("bodies/dissipated", state.bodies.dissipated);
   visit("bodies/integrator_loss", state.bodies.integrator_loss);
   visit("bodies/driver_work", state.bodies.driver_work);

@@ -87,6 +87,17 @@ Real StepClock::step() const {
   return left < 2 * state_.next_step ? left / 2 : state_.next_step;
 }
 
+std::vector<Real> StepClock::equal_steps(std::size_t most) const {
+  std::vector<Real> times{state_.time};
+  if (time_.control != StepControl::fixed || output_.history_interval <= 0) return times;
+  StepClock ahead(*this);
+  for (;;) {
+    ahead.accepted(0);
+    if (times.size() >= most || ahead.state_.time == state_.end || ahead.step() != step()) return times;
+    times.push_back(ahead.time());
+  }
+}
+
 void StepClock::accepted(Real error) {
   const Real h = step();
   if (time_.control == StepControl::fixed) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
 #include "model/model.hpp"
@@ -34,6 +35,9 @@ class StepClock {
 
   // Opens the next step, or the same one again after a rejection, and returns its length [s].
   Real begin_step();
+  // Start times of the steps from the open one on that are as long as it, at most so many and none past the
+  // next output [s].
+  std::vector<Real> equal_steps(std::size_t most) const;
   // The step was taken; error: local error over the tolerance.
   void accepted(Real error);
   // The step is to be repeated, shorter. Throws SimulationError, with the reason, when it would be shorter

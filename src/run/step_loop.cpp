@@ -1,5 +1,6 @@
 #include "run/step_loop.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/error.hpp"
@@ -10,6 +11,8 @@ namespace {
 
 // Keeping a good state of an explicit run may take this share of the run's time.
 constexpr double kGoodStateShare = 0.02;
+// Explicit steps are taken in batches of about this length [s], and of no more substeps than this.
+constexpr double kBatchSeconds = 0.05, kMostSubsteps = 1e6;
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -38,16 +41,27 @@ LoopEnd StepLoop::run() {
 
 void StepLoop::take_step() {
   const Real h = clock_.begin_step();
-  Real error = 0;
-  if (implicit_) {
-    const StepOutcome outcome = parts_.step.implicit_step(state_.bodies, clock_.time(), h);
-    if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
-    if (outcome.verdict == Verdict::not_converged) return clock_.rejected_for_convergence(outcome.trouble);
-    error = outcome.error;
-  } else {
-    parts_.step.explicit_step(state_.bodies, clock_.time(), h);
-  }
-  clock_.accepted(error);
+  if (!implicit_) return take_explicit_steps(h);
+  const StepOutcome outcome = parts_.step.implicit_step(state_.bodies, clock_.time(), h);
+  if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
+  if (outcome.verdict == Verdict::not_converged) return clock_.rejected_for_convergence(outcome.trouble);
+  clock_.accepted(outcome.error);
+  close_step(h);
+}
+
+// Equal steps up to the next output, but no longer than until the next look at signals and progress.
+void StepLoop::take_explicit_steps(Real h) {
+  const std::vector<Real> times = clock_.equal_steps(batch_);
+  const double start = seconds_now();
+  const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h);
+  const double each = (seconds_now() - start) / static_cast<double>(taken);
+  batch_ = static_cast<std::size_t>(
+      std::clamp(kBatchSeconds / each, 1.0, kMostSubsteps / parts_.model.integrator.substeps));
+  for (std::size_t k = 0; k < taken; ++k) clock_.accepted(0);
+  close_step(h);
+}
+
+void StepLoop::close_step(Real h) {
   state_.clock = clock_.state();
   leave();
   output(h);

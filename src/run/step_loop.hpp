@@ -39,6 +39,8 @@ class StepLoop {
 
  private:
   void take_step();
+  void take_explicit_steps(Real h);
+  void close_step(Real h);
   void leave();
   void output(Real h);
   void keep_good_state();
@@ -49,6 +51,7 @@ class StepLoop {
   std::function<void(const State&)> write_checkpoint_;
   std::function<void(const State&, Real)> progress_;
   bool implicit_;
+  std::size_t batch_ = 1;  // explicit steps to take at once
   State good_;             // explicit: the copy
   double good_cost_ = 0;   // seconds that keeping it took
   double good_age_ = 0;    // steady clock when it was kept [s]

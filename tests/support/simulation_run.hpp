@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "coupling/ledger.hpp"
 #include "run/state.hpp"
+#include "support/backends.hpp"
 #include "support/petsc_run.hpp"
 
 namespace scree {
@@ -40,7 +41,7 @@ class SimulationRun {
       if (model_.integrator.particles == ParticleIntegrator::hht) {
         outcome = step_.implicit_step(state_.bodies, clock_.time(), h);
       } else {
-        step_.explicit_step(state_.bodies, clock_.time(), h);
+        step_.explicit_steps(state_.bodies, {clock_.time()}, h);
       }
       if (outcome.verdict == Verdict::accepted) {
         clock_.accepted(outcome.error);
@@ -86,7 +87,7 @@ class SimulationRun {
   // PETSc and MPI start before the bodies' solver is made.
   SimulationRun(const Model& model, bool)
       : model_((petsc(), model)),
-        backend_(make_cpu_backend(model_)),
+        backend_(make_test_backend(model_)),
         link_(model_),
         step_(model_, *backend_, link_, timers_),
         clock_(model_) {}

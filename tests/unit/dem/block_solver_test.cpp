@@ -130,7 +130,7 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
       std::vector<Vec4> d(kParticles + p.ghosts.size());
       const Real tolerance = 1e-11;
       const BlockSolver::System system{{{p.count.data(), p.neighbor.data(), p.b.data(), p.diagonal.data()},
-                                        p.offsets.data(),
+                                        {p.offsets.data(), p.neighbor.data()},
                                         p.velocity.data(),
                                         kInverseScale,
                                         nullptr,

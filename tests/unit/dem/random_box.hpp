@@ -11,6 +11,7 @@
 #include "model/random.hpp"
 #include "partition/halo.hpp"
 #include "partition/subdomain.hpp"
+#include "support/backends.hpp"
 
 namespace scree {
 
@@ -132,7 +133,7 @@ struct LoadedBox {
   Model model;
   std::vector<ParticleRecord> records;
   std::vector<BodyMotion> motion;
-  std::unique_ptr<Backend> backend = make_cpu_backend(model);
+  std::unique_ptr<Backend> backend = make_test_backend(model);
   StageTimers timers;
 };
 

@@ -1,0 +1,30 @@
+// The GPU's backend as the rest of the program sees it. With SCREE_CUDA the room cuda/ defines these functions,
+// without it no_device.cpp does.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "dem/backend.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// Why this program cannot use a GPU on this machine, in words for the user; empty if it can.
+std::string device_trouble();
+
+// "NVIDIA H200, 132 multiprocessors, 150 GB"; only where device_trouble() is empty.
+std::string device_name();
+
+// Device memory that is free now [B]; only where device_trouble() is empty.
+std::size_t free_device_memory();
+
+// Device memory that the backend takes for this model [B]: what `scree check` prints. An estimate from the
+// model alone, the same on machines without a GPU.
+std::size_t device_memory(const Model& model);
+
+// Throws InputError where there is no usable GPU, or where the model does not fit into its free memory.
+std::unique_ptr<Backend> make_cuda_backend(const Model& model);
+
+}  // namespace scree

@@ -1,0 +1,17 @@
+// The functions of device.hpp in a build without CUDA.
+#include "base/error.hpp"
+#include "dem/device.hpp"
+
+namespace scree {
+
+std::string device_trouble() {
+  return "this program was built without CUDA (cmake --preset cuda builds it with)";
+}
+
+std::string device_name() { return "none"; }
+
+std::size_t free_device_memory() { return 0; }
+
+std::unique_ptr<Backend> make_cuda_backend(const Model&) { throw InputError(device_trouble()); }
+
+}  // namespace scree

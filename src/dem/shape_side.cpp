@@ -1,0 +1,106 @@
+#include "dem/shape_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "partition/halo.hpp"
+
+namespace scree {
+
+ShapeSide::ShapeSide(const Model& model, const Subdomain& subdomain)
+    : subdomain_(subdomain),
+      shapes_(model),
+      motion_(model.bodies.size()),
+      shift_(static_cast<std::size_t>(shapes_.size())) {}
+
+void ShapeSide::lay_out(const Space& space, Real width, ItemLayout& layout) {
+  layout.shapes = shapes_.size();
+  std::vector<Vec4> centers(shapes_.items().size());
+  for (Index s = 0; s < layout.shapes; ++s) {
+    const ShapeItem& shape = shapes_.items()[s];
+    const Vec3 p = snap(point_motion(motion_[shape.body], shape.offset).position, subdomain_.snap_constant());
+    ImageCount unused;
+    const Vec3 wrapped = subdomain_.wrap(p, unused);
+    shift_[s] = wrapped - p;
+    centers[s] = vec4(wrapped, shape.radius);
+  }
+  layout.shape_images = exchange_halo(subdomain_, space, centers, width);
+  layout.items = layout.first_shape + layout.shapes + static_cast<Index>(layout.shape_images.size());
+  const auto items = static_cast<std::size_t>(layout.items - layout.first_shape);
+  position_.resize(items), velocity_.resize(items), contacts_.resize(items);
+  step_.assign(items, Vec3{});
+}
+
+Real ShapeSide::place(const ItemLayout& layout) {
+  Real squared = 0;
+  for (Index s = 0; s < layout.items - layout.first_shape; ++s) {
+    const Index item = layout.first_shape + s, shape = layout.shape_of(item);
+    const ShapeItem& source = shapes_.items()[shape];
+    const PointMotion point = point_motion(motion_[source.body], source.offset);
+    Vec3 position = snap(point.position, subdomain_.snap_constant()) + shift_[shape];
+    if (layout.is_shape_image(item)) position += layout.shape_images[s - layout.shapes].shift;
+    step_[s] = position - xyz(position_[s]);
+    squared = std::max(squared, dot(step_[s], step_[s]));
+    position_[s] = vec4(position, source.radius);
+    velocity_[s] = vec4(point.velocity, 0);
+  }
+  return std::sqrt(squared);
+}
+
+void ShapeSide::reduce(const ItemLayout& layout, std::vector<BodyWrench>& step,
+                       std::vector<BodyWrench>& end) const {
+  std::fill(step.begin(), step.end(), BodyWrench{});
+  std::fill(end.begin(), end.end(), BodyWrench{});
+  for (std::size_t s = 0; s < contacts_.size(); ++s) {
+    const ShapeContact& contact = contacts_[s];
+    if (contact.contacts == 0) continue;
+    const ShapeItem& shape = shapes_.items()[layout.shape_of(layout.first_shape + static_cast<Index>(s))];
+    const Vec3 arm = point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
+    add_point_force(step[shape.body], contact.force, arm, contact.stiffness, contact.damping);
+    add_point_force(end[shape.body], contact.end_force, arm, {}, {});
+  }
+}
+
+void ShapeSide::book_losses(Real h) {
+  Real step_power = 0, end_power = 0;
+  for (const ShapeContact& contact : contacts_)
+    step_power += contact.step_loss, end_power += contact.end_loss;
+  losses_.contact_loss += h / 2 * (losses_.loss_power + step_power);
+  losses_.loss_power = end_power;
+}
+
+Real ShapeSide::elastic_energy() const {
+  Real sum = 0;
+  for (const ShapeContact& contact : contacts_) sum += contact.energy;
+  return sum;
+}
+
+Real ShapeSide::pairs() const {
+  Real sum = 0;
+  for (const ShapeContact& contact : contacts_) sum += contact.pairs;
+  return sum;
+}
+
+ShapePack ShapeSide::pack(const ItemLayout& layout) const {
+  ShapePack pack;
+  for (Index s = 0; s < layout.shapes; ++s) {
+    const ShapeItem& shape = shapes_.items()[s];
+    pack.body.push_back(shape.body);
+    pack.radius.push_back(shape.radius);
+    const PointMotion point = point_motion(motion_[shape.body], shape.offset);
+    ImageCount unused;
+    pack.position.push_back(subdomain_.wrap(point.position, unused));
+    pack.velocity.push_back(point.velocity);
+    pack.force.push_back(contacts_[s].force);
+    pack.contacts.push_back(contacts_[s].contacts);
+  }
+  for (std::size_t image = 0; image < layout.shape_images.size(); ++image) {
+    const Index original = layout.shape_images[image].source;
+    const ShapeContact& contact = contacts_[layout.shapes + image];
+    pack.force[original] += contact.force;
+    pack.contacts[original] += contact.contacts;
+  }
+  return pack;
+}
+
+}  // namespace scree

@@ -1,0 +1,70 @@
+// The bodies' shapes among the items of a backend: where they are, what their contacts sum to, what they lose.
+// Few and small beside the particles, they live on the host for every backend.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dem/body_shapes.hpp"
+#include "dem/contact_items.hpp"
+#include "dem/neighbor_list.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+// Dissipation in the shapes' own share of their contacts (with other bodies' shapes and with walls).
+struct ShapeLosses {
+  Real contact_loss = 0;  // since t = 0 [J]
+  Real loss_power = 0;    // at t_n [W]
+};
+
+struct ShapePack {
+  std::vector<int> body;
+  std::vector<Real> radius;
+  std::vector<Vec3> position, velocity, force;
+  std::vector<int> contacts;
+};
+
+class ShapeSide {
+ public:
+  ShapeSide(const Model& model, const Subdomain& subdomain);
+
+  const BodyShapes& shapes() const { return shapes_; }
+  void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
+  // Brings each shape into the periodic box and finds its images; fills the shapes' part of the layout, whose
+  // owned particles and ghosts are known.
+  void lay_out(const Space& space, Real width, ItemLayout& layout);
+  // Moves the shape items to where the bodies are; returns the largest displacement of one [m].
+  Real place(const ItemLayout& layout);
+
+  // One entry per shape item, indexed from ItemLayout::first_shape.
+  const std::vector<Vec4>& position() const { return position_; }  // x, y, z, radius
+  const std::vector<Vec4>& velocity() const { return velocity_; }  // x, y, z, 0
+  const std::vector<Vec3>& step() const { return step_; }          // displacement by the last place() [m]
+  std::vector<ShapeContact>& contacts() { return contacts_; }      // filled by the backend
+
+  // Contact wrenches on the bodies for the step and at its end.
+  void reduce(const ItemLayout& layout, std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) const;
+  // Books the dissipation of a step of length h from contacts(): trapezoidal, like the particles' losses.
+  void book_losses(Real h);
+  ShapeLosses& losses() { return losses_; }
+  const ShapeLosses& losses() const { return losses_; }
+  // Shapes' share of the contacts' elastic energy [J] and of their number.
+  Real elastic_energy() const;
+  Real pairs() const;
+  ShapePack pack(const ItemLayout& layout) const;
+
+ private:
+  const Subdomain& subdomain_;
+  BodyShapes shapes_;
+  std::vector<BodyMotion> motion_;  // of the bodies as last set
+  std::vector<Vec3> shift_;         // brings each shape into the periodic box [m]
+  std::vector<Vec4> position_, velocity_;
+  std::vector<Vec3> step_;
+  std::vector<ShapeContact> contacts_;
+  ShapeLosses losses_;
+};
+
+}  // namespace scree

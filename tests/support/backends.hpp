@@ -1,0 +1,22 @@
+// The backend that the tests of this process run on: an argument of the test run, not of the test. The
+// environment variable SCREE_TEST_BACKEND says cpu (the default) or cuda; ctest has an entry for each.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "dem/device.hpp"
+
+namespace scree {
+
+inline bool tests_on_gpu() {
+  const char* name = std::getenv("SCREE_TEST_BACKEND");
+  return name != nullptr && std::string(name) == "cuda";
+}
+
+inline std::unique_ptr<Backend> make_test_backend(const Model& model) {
+  return tests_on_gpu() ? make_cuda_backend(model) : make_cpu_backend(model);
+}
+
+}  // namespace scree
