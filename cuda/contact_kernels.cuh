@@ -1,34 +1,97 @@
-// The contact stages on the device: the items of src/dem, launched. All pointers in views and outputs are the
-// device's. The CPU's counterpart is CpuContactKernels in src/dem/contact_kernels.cpp.
+// The contact stages on the device for the law of this run, chosen once. All pointers are the device's; everything is
+// queued and nothing waits. The CPU's counterpart is src/dem/contact_kernels.hpp.
 #pragma once
+
+#include <memory>
 
 #include "dem/contact_items.hpp"
 #include "dem/contact_kernels.hpp"
 #include "dem/step_items.hpp"
 #include "device.cuh"
+#include "device_list.cuh"
 
 namespace scree {
 
-// Elastic: LinearElastic or PowerElastic; Laws: OneLaw, or LawTable with its table on the device.
-template <class Elastic, class Laws>
+using DeviceViews = ContactViews<SlicedRows>;
+
+// Maxima of StepNorms over the particles, on the device.
+struct SystemRequest {
+  DeviceViews in;
+  Index n;
+  Vec3 gravity;
+  NewtonWeights weights;
+  StepStart start;
+  StepForces forces;
+  ContactMatrix matrix;
+  StepViews step;
+  Vec3* residual;
+  Real* stiffening;
+  Sym3* inverse_block;
+  StepNorms* largest;
+};
+
+// Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run see
+// `stop` and change nothing.
+struct VerletControl {
+  unsigned largest;  // bits of the single that is at least the largest squared displacement of this step [m^2]
+  unsigned finished_blocks;
+  Real bound;               // displacement of any item since the list was built, at most [m]
+  Real half_skin;           // what the list covers [m]
+  Index closed;             // steps, since the start of the run
+  Index last;               // stop when so many are closed
+  Index substeps;           // steps of the particles per step of the bodies
+  int parity[2];            // which of the two position and velocity arrays holds the open step
+  int outside;              // whether a particle of a step of this run was outside the space
+  int stop;
+  // What was found when step `closed` was closed and the next opened, for the last steps: a host that looks while the
+  // next step runs sees it unchanged.
+  struct Closed {
+    bool expired;  // the list does not cover the open step
+    bool leaves;   // the open step ends a step of the bodies, and a particle is outside
+  };
+  static constexpr int kClosedSteps = 4;
+  Closed closed_steps[kClosedSteps];
+
+  // Decides whether the run goes on.
+  SCREE_HD void judge(bool is_outside) {
+    const Closed now{!(bound < half_skin), is_outside && (closed + 1) % substeps == 0};
+    closed_steps[closed % kClosedSteps] = now;
+    stop = now.expired || now.leaves || closed == last;
+  }
+};
+
+// Two arrays each for position and velocity: a step reads one and writes the other.
+struct VerletRequest {
+  DeviceViews in;  // but for position and velocity
+  Index n;
+  Vec3 gravity;
+  Vec4 *position[2], *velocity[2];
+  VerletViews state;  // likewise
+  Vec3* force;
+  OpenBox box;
+  const std::uint8_t* drifting;
+  VerletControl* control;
+};
+
 class DeviceContactKernels {
  public:
-  DeviceContactKernels(Device device, Laws laws) : device_(device), laws_(laws) {}
-
-  void forces(const ContactViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power) const;
-  void verlet_finish(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state, Vec3* force) const;
-  // d_squared: the square of the largest displacement [m^2], on the device.
-  void verlet_advance(const ContactViews& in, Vec3 gravity, Index n, const VerletViews& state, Real* d_squared) const;
-  void system(const ContactViews& in, Vec3 gravity, Index n, NewtonWeights weights, const StepStart& start,
-              const StepForces& out, const ContactMatrix& matrix) const;
+  virtual ~DeviceContactKernels() = default;
+  virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
+                      Real* loss_power) const = 0;
+  virtual void system(Device device, const SystemRequest& request) const = 0;
   // Contacts of shapes over an implicit step, and at one instant.
-  void shapes(const ContactViews& in, Index n, const StepStart& start, ShapeContact* out) const;
-  void shapes(const ContactViews& in, Index n, ShapeContact* out) const;
-  void energies(const ContactViews& in, Index n, const EnergyOutputs& out) const;
-
- private:
-  Device device_;
-  Laws laws_;
+  virtual void shapes(Device device, const DeviceViews& in, Index n, const StepStart& start,
+                      ShapeContact* out) const = 0;
+  virtual void shapes(Device device, const DeviceViews& in, const ShapePlaces& places, Index n,
+                      ShapeContact* out) const = 0;
+  virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
+  // One explicit step, closed and the next opened; does nothing once the control says stop.
+  virtual void verlet_advance(Device device, const VerletRequest& request) const = 0;
+  // The last step, closed. *largest: the square of the largest acceleration; a NaN if one is not finite.
+  virtual void verlet_finish(Device device, const VerletRequest& request, Real* largest) const = 0;
 };
+
+// d_laws: the model's table of laws on the device.
+std::unique_ptr<DeviceContactKernels> make_device_contact_kernels(const Contact& contact, const KelvinVoigt* d_laws);
 
 }  // namespace scree

@@ -1,9 +1,13 @@
-// Where the loops over items run on a GPU, and how its errors become ours.
+// Where the loops over items run on a GPU, its memory, and how its errors become ours.
 #pragma once
 
 #include <cuda_runtime.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 
@@ -14,9 +18,150 @@ struct Device {
   cudaStream_t stream = nullptr;
 };
 
-// Throws SimulationError with the runtime's text. what: the call that failed, for the message.
+// Throws DeviceError with the runtime's text. what: the call that failed, for the message.
 inline void require_cuda(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) throw SimulationError(std::string("cuda: ") + what + ": " + cudaGetErrorString(status));
+  if (status != cudaSuccess) throw DeviceError(std::string("cuda: ") + what + ": " + cudaGetErrorString(status));
 }
+
+inline void wait_for(cudaStream_t stream) { require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize"); }
+
+// A stream of its own, and an event on it.
+class Stream {
+ public:
+  Stream() { require_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate"); }
+  ~Stream() { cudaStreamDestroy(stream_); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+class Event {
+ public:
+  Event() { require_cuda(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreate"); }
+  ~Event() { cudaEventDestroy(event_); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  void record(cudaStream_t stream) { require_cuda(cudaEventRecord(event_, stream), "cudaEventRecord"); }
+  void hold(cudaStream_t stream) const { require_cuda(cudaStreamWaitEvent(stream, event_), "cudaStreamWaitEvent"); }
+  void wait() const { require_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+// n values, queued on the stream. from and to: device and pinned memory.
+template <class T>
+void copy_async(T* to, const T* from, std::size_t n, cudaStream_t stream) {
+  if (n > 0) require_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDefault, stream), "cudaMemcpyAsync");
+}
+
+// Device memory that the arrays below hold now [B].
+std::size_t& device_bytes_in_use();
+
+// An array on the device. Its contents are lost where it has to grow.
+template <class T>
+class DeviceArray {
+ public:
+  static constexpr std::size_t kSpare = 8;  // an array that grows gets 1 / kSpare more than asked for
+
+  DeviceArray() = default;
+  explicit DeviceArray(std::size_t size) { resize(size); }
+  ~DeviceArray() { release(); }
+  DeviceArray(DeviceArray&& other) noexcept { swap(other); }
+  DeviceArray& operator=(DeviceArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  // Throws DeviceError where the memory does not suffice; the array is then empty.
+  void resize(std::size_t size) {
+    if (size > capacity_) {
+      release();
+      require_cuda(cudaMalloc(&data_, size * sizeof(T)), "device memory");
+      capacity_ = size;
+      device_bytes_in_use() += size * sizeof(T);
+    }
+    size_ = size;
+  }
+  // The same, with the first `keep` values kept where the array has to grow, and room for more. Waits if it grows.
+  void grow(std::size_t size, std::size_t keep, cudaStream_t stream) {
+    if (size > capacity_) {
+      DeviceArray larger(keep > 0 ? size + size / kSpare : size);
+      copy_async(larger.data_, data_, keep, stream);
+      wait_for(stream);
+      swap(larger);
+    }
+    size_ = size;
+  }
+  std::size_t size() const { return size_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  void swap(DeviceArray& other) noexcept {
+    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(capacity_, other.capacity_);
+  }
+  void zero(cudaStream_t stream) {
+    if (size_ > 0) require_cuda(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "cudaMemsetAsync");
+  }
+
+  // Whole vectors; both wait until the copy is done.
+  void upload(const std::vector<T>& values, cudaStream_t stream) {
+    resize(values.size());
+    copy(data_, values.data(), size_, cudaMemcpyHostToDevice, stream);
+  }
+  std::vector<T> download(cudaStream_t stream) const {
+    std::vector<T> values(size_);
+    copy(values.data(), data_, size_, cudaMemcpyDeviceToHost, stream);
+    return values;
+  }
+
+ private:
+  static void copy(T* to, const T* from, std::size_t n, cudaMemcpyKind kind, cudaStream_t stream) {
+    if (n == 0) return;
+    require_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), kind, stream), "cudaMemcpyAsync");
+    wait_for(stream);
+  }
+  void release() {
+    if (data_ == nullptr) return;
+    cudaFree(data_);
+    device_bytes_in_use() -= capacity_ * sizeof(T);
+    data_ = nullptr, size_ = capacity_ = 0;
+  }
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+// An array in host memory that the device copies to and from without waiting.
+template <class T>
+class PinnedArray {
+ public:
+  PinnedArray() = default;
+  explicit PinnedArray(std::size_t size) { resize(size); }
+  ~PinnedArray() { cudaFreeHost(data_); }
+  PinnedArray(const PinnedArray&) = delete;
+  PinnedArray& operator=(const PinnedArray&) = delete;
+
+  void resize(std::size_t size) {
+    if (size > capacity_) {
+      cudaFreeHost(data_);
+      data_ = nullptr, capacity_ = 0;
+      require_cuda(cudaMallocHost(&data_, size * sizeof(T)), "pinned host memory");
+      capacity_ = size;
+    }
+    size_ = size;
+  }
+  std::size_t size() const { return size_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0, capacity_ = 0;
+};
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// The loop over items as a kernel launch: the namesake of base/for_each.hpp.
+// The loop over items as a kernel launch, the namesake of base/for_each.hpp, and maxima over items.
 #pragma once
 
 #include <type_traits>
@@ -10,36 +10,20 @@ namespace scree {
 
 inline constexpr int kThreadsPerBlock = 128;
 
+inline unsigned blocks_for(std::int64_t n, int threads = kThreadsPerBlock) {
+  return static_cast<unsigned>((n + threads - 1) / threads);
+}
+
+__device__ inline Index thread_index() { return static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x); }
+
 template <class Item>
 __global__ void for_each_kernel(Index n, const Item item) {
-  const Index i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
+  const Index i = thread_index();
   if (i < n) item(i);
 }
 
-// Non-negative doubles are ordered like their bits, and a NaN's bits lie above all of them: the largest bits are
-// the largest number, or a NaN if there is one, in whatever order the threads come.
-template <class Item>
-__global__ void max_over_kernel(Index n, const Item item, Real* d_largest) {
-  const Index i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
-  unsigned long long largest = 0;
-  if (i < n) {
-    const Real value = item(i);
-    if (!(value <= 0)) largest = static_cast<unsigned long long>(__double_as_longlong(value));
-  }
-  for (int offset = warpSize / 2; offset > 0; offset /= 2) {
-    const unsigned long long other = __shfl_down_sync(~0u, largest, offset);
-    largest = other > largest ? other : largest;
-  }
-  if (threadIdx.x % warpSize == 0 && largest > 0)
-    atomicMax(reinterpret_cast<unsigned long long*>(d_largest), largest);
-}
-
-inline unsigned blocks_for(Index n) {
-  return (static_cast<unsigned>(n) + kThreadsPerBlock - 1) / kThreadsPerBlock;
-}
-
 // Calls item(i) for i = 0 ... n-1, in any order. The item's pointers are the device's.
-// Throws SimulationError if the launch fails.
+// Throws DeviceError if the launch fails.
 template <class Item>
 void for_each(Device device, Index n, const Item& item) {
   static_assert(std::is_trivially_copyable_v<Item>, "an item travels to the device as bytes");
@@ -48,8 +32,39 @@ void for_each(Device device, Index n, const Item& item) {
   require_cuda(cudaGetLastError(), "for_each");
 }
 
-// The same for items that return a number: the largest of them, at least 0; a NaN makes the result a NaN. It stays on
-// the device, in *d_largest, because reading it here would wait for the stream.
+// Non-negative doubles are ordered like their bits, and a NaN's bits lie above all of them: the largest bits are
+// the largest number, or a NaN if there is one, in whatever order the threads come.
+__device__ inline unsigned long long ordered_bits(Real value) {
+  return value <= 0 ? 0 : static_cast<unsigned long long>(__double_as_longlong(value)) & ~(1ull << 63);
+}
+
+// Every thread of the block calls this; *d_largest becomes the largest value.
+__device__ inline void block_max(Real value, Real* d_largest) {
+  __shared__ unsigned long long largest;
+  if (threadIdx.x == 0) largest = 0;
+  __syncthreads();
+  unsigned long long bits = ordered_bits(value);
+  for (int offset = warpSize / 2; offset > 0; offset /= 2) {
+    const unsigned long long other = __shfl_down_sync(~0u, bits, offset);
+    bits = other > bits ? other : bits;
+  }
+  if (threadIdx.x % warpSize == 0 && bits > 0) atomicMax(&largest, bits);
+  __syncthreads();
+  auto* target = reinterpret_cast<unsigned long long*>(d_largest);
+  // The plain read saves most of the atomics: the value only grows.
+  if (threadIdx.x == 0 && largest > *reinterpret_cast<volatile unsigned long long*>(target))
+    atomicMax(target, largest);
+  __syncthreads();
+}
+
+template <class Item>
+__global__ void max_over_kernel(Index n, const Item item, Real* d_largest) {
+  const Index i = thread_index();
+  block_max(i < n ? item(i) : 0, d_largest);
+}
+
+// The largest item(i), at least 0; a NaN makes the result a NaN. It stays on the device, in *d_largest, because reading
+// it here would wait for the stream.
 template <class Item>
 void max_over(Device device, Index n, const Item& item, Real* d_largest) {
   static_assert(std::is_trivially_copyable_v<Item>, "an item travels to the device as bytes");

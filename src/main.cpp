@@ -137,7 +137,11 @@ ExitCode dispatch(const CommandLine& line) {
   run_command
       ->add_option("--output", arguments.output, "folder for the results (default: results/DECK's name)")
       ->type_name("DIR");
-  run_command->add_option("--backend", arguments.backend, "auto, cpu or cuda")
+  run_command
+      ->add_option(
+          "--backend", arguments.backend,
+          "cpu; cuda: the GPU; auto: the GPU if there is one and the particles are enough to gain by it "
+          "(default: auto)")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")->type_name("FILE");
   run_command->footer(kExitCodes);

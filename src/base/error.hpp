@@ -25,6 +25,11 @@ struct SimulationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The GPU or its memory fails: no shorter step helps.
+struct DeviceError : SimulationError {
+  using SimulationError::SimulationError;
+};
+
 // A file that cannot be read or written. The message names the file and the system's reason.
 struct IoError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -1,50 +1,68 @@
-// Sum of many doubles that gives the same bits in any order and for any split over ranks.
+// Sum of many doubles that gives the same bits in any order and for any split over ranks or threads.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <span>
 
+#include "base/hd.hpp"
 #include "base/types.hpp"
 
 namespace scree {
 
 // Terms are rounded to multiples of a quantum 2^-62 below the largest magnitude and added as integers.
 // Two passes: the maximum (exact in any order), then the integers (exact in any order). Up to 2^64 terms.
-class ReproducibleSum {
+class ReproducibleScale {
  public:
   // largest: an upper bound on |term|, the same on every rank.
-  explicit ReproducibleSum(Real largest) : usable_(std::isfinite(largest)) {
+  ReproducibleScale() = default;
+  SCREE_HD explicit ReproducibleScale(Real largest) : usable_(std::isfinite(largest)) {
+    constexpr int kLargestShift = 1000;  // tinier terms than this resolves are as good as zero
     int exponent = 0;
     if (usable_) std::frexp(largest, &exponent);
-    const int shift = std::min(62 - exponent, kLargestShift);
-    scale_ = std::ldexp(Real(1), shift), inverse_scale_ = std::ldexp(Real(1), -shift);
+    const int shift = 62 - exponent < kLargestShift ? 62 - exponent : kLargestShift;
+    scale_ = std::ldexp(Real(1), shift), inverse_ = std::ldexp(Real(1), -shift);
   }
   // |term * scale| < 2^62: it fits into 64 bits, the sum into 128.
-  void add(Real term) {
-    if (usable_) sum_ += static_cast<std::int64_t>(term * scale_);
+  SCREE_HD std::int64_t quanta(Real term) const {
+    return usable_ ? static_cast<std::int64_t>(term * scale_) : 0;
   }
-  Real value() const { return usable_ ? static_cast<Real>(sum_) * inverse_scale_ : NAN; }
+  Real value(__int128 quanta) const { return usable_ ? static_cast<Real>(quanta) * inverse_ : NAN; }
 
  private:
-  static constexpr int kLargestShift = 1000;  // tinier terms than this resolves are as good as zero
-  bool usable_;
-  Real scale_ = 1, inverse_scale_ = 1;
-  __int128 sum_ = 0;
+  bool usable_ = false;
+  Real scale_ = 1, inverse_ = 1;
 };
 
-// term(i) for i = 0 ... n-1, evaluated twice.
+// Sums of N terms each: item(i).value[k] for i = 0 ... n-1, evaluated twice.
+template <int N, class Item>
+void reproducible_sums(Index n, const Item& item, Real (&sums)[N]) {
+  Real largest[N] = {};
+  for (Index i = 0; i < n; ++i) {
+    const auto terms = item(i);
+    for (int k = 0; k < N; ++k) {
+      const Real magnitude = std::abs(terms.value[k]);
+      if (!(magnitude <= largest[k]) && !std::isnan(largest[k])) largest[k] = magnitude;  // a NaN sticks
+    }
+  }
+  ReproducibleScale scale[N];
+  for (int k = 0; k < N; ++k) scale[k] = ReproducibleScale(largest[k]);
+  __int128 quanta[N] = {};
+  for (Index i = 0; i < n; ++i) {
+    const auto terms = item(i);
+    for (int k = 0; k < N; ++k) quanta[k] += scale[k].quanta(terms.value[k]);
+  }
+  for (int k = 0; k < N; ++k) sums[k] = scale[k].value(quanta[k]);
+}
+
+// The same of one term, a function of i.
 template <class Term>
 Real reproducible_sum(Index n, const Term& term) {
-  Real largest = 0;
-  for (Index i = 0; i < n; ++i) {
-    const Real magnitude = std::abs(term(i));
-    if (!(magnitude <= largest) && !std::isnan(largest)) largest = magnitude;  // a NaN sticks
-  }
-  ReproducibleSum sum(largest);
-  for (Index i = 0; i < n; ++i) sum.add(term(i));
-  return sum.value();
+  struct One {
+    Real value[1];
+  };
+  Real sum[1];
+  reproducible_sums(n, [&](Index i) { return One{{term(i)}}; }, sum);
+  return sum[0];
 }
 
 }  // namespace scree

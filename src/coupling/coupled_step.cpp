@@ -107,6 +107,9 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     }
     for (const Leaver& l : backend_.outside())
       if (l.lost) check_inside();  // through a wall: a shorter step may not
+  } catch (const DeviceError&) {
+    undo_step(bodies);
+    throw;
   } catch (const SimulationError& error) {
     undo_step(bodies);
     ++counts_.rejected_newton;

@@ -97,6 +97,11 @@ const TableKeys& integrator_keys() {
            .within(1, 1000000)
            .otherwise("1")
            .about("Velocity-verlet steps of the particles per step of the bodies."),
+       text("precision")
+           .one_of({"double", "mixed"})
+           .otherwise("\"double\"")
+           .about("GPU, velocity-verlet: mixed keeps state and sums at about double precision and computes "
+                  "contact forces in single; the CPU computes in double either way."),
        real("residual_tolerance", "").above(0).otherwise("1e-8").about("Of the iteration: scaled residual."),
        real("correction_tolerance", "")
            .above(0)

@@ -1,8 +1,10 @@
 // The seam between the coupled step and the machine that computes the particles: the CPU, or one GPU.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/log.hpp"
@@ -36,6 +38,9 @@ struct ParticleLedger {
   std::int64_t contacts = 0;                                 // touching pairs, walls and body shapes included
   std::int64_t drifting = 0;                                 // particles outside that drift on
 };
+
+// From the sums of LedgerItem over the particles, indexed by LedgerTerm, and the shapes' shares.
+ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes);
 
 // A particle outside the space.
 struct Leaver {
@@ -115,8 +120,19 @@ class Backend {
   virtual void take_out(const std::vector<Leaver>& leavers) = 0;
   // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s].
   virtual ParticleLedger ledger(Real verlet_step) = 0;
+  // Begins to copy out what pack_particles returns: the particles as they are now, whatever steps follow.
+  virtual void start_pack() = 0;
   virtual ParticlePack pack_particles() = 0;
   virtual ShapePack pack_shapes() = 0;
+
+  // Whether steps go on while the host does something else.
+  virtual bool computes_asynchronously() const { return false; }
+  // Called by backends that compute asynchronously where they would only wait: from within verlet_run and
+  // particle_correct. It must not change the backend.
+  void set_idle_work(std::function<void()> work) { idle_work_ = std::move(work); }
+
+ protected:
+  std::function<void()> idle_work_;
 };
 
 // Both throw SimulationError naming stage and global id on values that are not finite.

@@ -13,6 +13,42 @@
 
 namespace scree {
 
+// Weights of the iteration d <- from_last d + from_residual D^-1 r, x <- x + d, for eigenvalues of D^-1 A between
+// low and high.
+class ChebyshevWeights {
+ public:
+  ChebyshevWeights(Real low, Real high)
+      : half_width_((high - low) / 2), sigma_((high + low) / 2 / half_width_), rho_(1 / sigma_) {
+    from_residual = 1 / ((high + low) / 2);
+  }
+  void advance() {
+    const Real next = 1 / (2 * sigma_ - rho_);
+    from_last = next * rho_, from_residual = 2 * next / half_width_;
+    rho_ = next;
+  }
+  Real from_last = 0, from_residual;
+
+ private:
+  Real half_width_, sigma_, rho_;
+};
+
+// Bounds for the particles' matrix; see BlockSolver.
+inline ChebyshevWeights solver_weights(Real largest_stiffening) {
+  return ChebyshevWeights(1 / (1 + largest_stiffening), 2);
+}
+
+struct DirectionItem {
+  const Sym3* inverse_block;
+  const Vec3* residual;
+  Real from_last, from_residual;
+
+  SCREE_HD Vec3 next(Index i, Vec3 d) const {
+    return from_last * d + from_residual * (inverse_block[i] * residual[i]);
+  }
+};
+
+inline constexpr int kMostProducts = 2000;  // matrix products of one solve
+
 // The matrix is M' + sum over pairs of [b; -b][b; -b]^T with M' = mass / (1 + alpha): each pair term is at
 // most twice its own diagonal, so D^-1 A has no eigenvalue above 2, and none below 1 / (1 + largest
 // stiffening).

@@ -29,6 +29,8 @@ class BodyShapes {
   // Whether shapes of these two bodies may touch: not of one body, nor of two that a joint or a force element
   // connects unless the deck says so.
   bool may_touch(int body_a, int body_b) const;
+  // The bodies whose shapes those of this one must not touch, besides its own.
+  const std::vector<int>& connected(int body) const { return connected_[static_cast<std::size_t>(body)]; }
 
  private:
   std::vector<ShapeItem> items_;

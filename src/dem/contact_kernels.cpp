@@ -55,10 +55,13 @@ std::unique_ptr<ContactKernels> with_elastic(const Contact& contact) {
 
 }  // namespace
 
+bool is_linear(const Contact& contact) {
+  return std::all_of(contact.laws.begin(), contact.laws.end(),
+                     [](const KelvinVoigt& l) { return l.exponent == 1; });
+}
+
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact) {
-  const bool linear = std::all_of(contact.laws.begin(), contact.laws.end(),
-                                  [](const KelvinVoigt& l) { return l.exponent == 1; });
-  return linear ? with_elastic<LinearElastic>(contact) : with_elastic<PowerElastic>(contact);
+  return is_linear(contact) ? with_elastic<LinearElastic>(contact) : with_elastic<PowerElastic>(contact);
 }
 
 }  // namespace scree

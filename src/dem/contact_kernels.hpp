@@ -34,6 +34,9 @@ class ContactKernels {
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
 };
 
+// Whether all laws have exponent 1: their kernels need no pow().
+bool is_linear(const Contact& contact);
+
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact);
 
 }  // namespace scree

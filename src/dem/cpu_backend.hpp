@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dem/backend.hpp"
@@ -49,7 +50,8 @@ class CpuBackend : public Backend {
   std::vector<Leaver> outside() const override;
   void take_out(const std::vector<Leaver>& leavers) override;
   ParticleLedger ledger(Real verlet_step) override;
-  ParticlePack pack_particles() override;
+  void start_pack() override;
+  ParticlePack pack_particles() override { return std::move(pack_); }
   ShapePack pack_shapes() override;
 
  private:
@@ -62,6 +64,7 @@ class CpuBackend : public Backend {
   bool ends_step() const { return (closed_ + 1) % model_.integrator.substeps == 0; }
   VerletViews verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity);
   StepForces step_forces();
+  CorrectItem correct_item(Real share);
   Real slope(const std::vector<Vec3>& residual) const;
   // Sizes all item arrays, fills in ghosts and shapes.
   void lay_out_items(Real skin);
@@ -71,7 +74,6 @@ class CpuBackend : public Backend {
   void report_not_finite(const std::vector<Vec3>& force) const;
   void place_shapes();
   void find_shape_contacts(const Views& views);
-  Vec3 unwrapped(Index i) const;  // position without the periodic box [m]
   Real energy_of(Index i) const;  // kinetic and gravitational [J]
 
   const Model& model_;
@@ -108,6 +110,7 @@ class CpuBackend : public Backend {
   // its start and at the iterate.
   Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;
   bool in_implicit_step_ = false;
+  ParticlePack pack_;  // of start_pack
   Real displacement_bound_ = 0;  // of any item since the list was built, at most [m]
   Real step_bound_ = 0;          // of any particle in the open explicit step [m]
   Real shape_bound_ = 0;         // of any shape since list_displacement was last asked, at most [m]

@@ -33,8 +33,8 @@ StepViews CpuBackend::step_views() {
 void CpuBackend::initial_forces() {
   refresh_ghosts();
   kernels_->forces(views(), model_.gravity, layout_.owned, store_.force.data(), store_.loss_power.data());
-  for (Index i = 0; i < layout_.owned; ++i)
-    store_.acceleration[i] = (1 / store_.velocity[i].w) * store_.force[i];
+  for_each(Serial{}, layout_.owned,
+           StartAccelerationItem{store_.force.data(), store_.velocity.data(), store_.acceleration.data()});
   find_shape_contacts(views());
   side_.book_losses(0);
 }
@@ -62,14 +62,10 @@ void CpuBackend::rollback() {
 }
 
 Real CpuBackend::step_displacement() {
-  Real squared = 0;
-  const auto add = [&](Index i) {
-    const Vec3 d = xyz(store_.position[i]) - xyz(start_position_[i]);
-    squared = std::max(squared, dot(d, d));
-  };
-  for (Index i = 0; i < layout_.active; ++i) add(i);
-  for (Index i = layout_.first_shape; i < layout_.items; ++i) add(i);
-  return std::sqrt(squared);
+  const DisplacementItem moved{start_position_.data(), store_.position.data()};
+  const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
+  const Real particles = max_over(Serial{}, layout_.active, moved);
+  return std::sqrt(std::max(particles, max_over(Serial{}, layout_.items - layout_.first_shape, shapes)));
 }
 
 StepForces CpuBackend::step_forces() {
@@ -90,20 +86,18 @@ ParticleNorms CpuBackend::contact_force() {
                         stiffening_.data()});
 
   ParticleNorms norms;
-  Real residual = 0, bound = 0;
+  Real residual = 0;
   force_scale_ = largest_stiffening_ = 0;
+  const StepNormsItem of{step_views(), residual_.data(), force_magnitude_.data(), stiffening_.data()};
   for (Index i = 0; i < n; ++i) {
-    const Real r = norm(residual_[i]);
-    if (!std::isfinite(r)) report_not_finite(residual_);
-    residual = std::max(residual, r);
-    bound = std::max(
-        bound, weights.stiffness * r * (1 + hht_.hht_alpha) / (store_.velocity[i].w * store_.position[i].w));
-    const Real at_start = norm(start_force_[i]) + store_.velocity[i].w * norm(start_acceleration_[i]);
-    force_scale_ = std::max(force_scale_, force_magnitude_[i] + at_start);
-    largest_stiffening_ = std::max(largest_stiffening_, stiffening_[i]);
+    const StepNorms one = of(i);
+    if (!std::isfinite(one.residual)) report_not_finite(residual_);
+    residual = std::max(residual, one.residual);
+    norms.correction_bound = std::max(norms.correction_bound, one.correction_bound);
+    force_scale_ = std::max(force_scale_, one.force);
+    largest_stiffening_ = std::max(largest_stiffening_, one.stiffening);
   }
   norms.residual = residual == 0 ? 0 : residual / force_scale_;
-  norms.correction_bound = bound;
   if (applied_share_ > kLeastShare) {
     slope_ = -slope(residual_);
     norms.overshoot = slope_ > kMostSlope * std::abs(start_slope_);
@@ -124,15 +118,21 @@ GlobalId CpuBackend::worst_particle() const {
 
 // Residual along the last correction.
 Real CpuBackend::slope(const std::vector<Vec3>& residual) const {
-  return reproducible_sum(layout_.owned, [&](Index i) { return dot(residual[i], correction_[i]); });
+  Real sum[1];
+  reproducible_sums(layout_.owned, SlopeItem{residual.data(), correction_.data()}, sum);
+  return sum[0];
+}
+
+CorrectItem CpuBackend::correct_item(Real share) {
+  return {store_.acceleration.data(), correction_.data(), store_.position.data(), share,
+          hht_.newmark_beta * h_ * h_};
 }
 
 // Regula falsi for the zero of the slope between the start of the correction and the iterate.
 void CpuBackend::shorten_correction() {
   const Real full = std::abs(start_slope_) / (std::abs(start_slope_) + slope_);
   const Real share = applied_share_ * std::clamp(full, Real(0.1), Real(0.8));
-  for (Index i = 0; i < layout_.owned; ++i)
-    store_.acceleration[i] += (share - applied_share_) * correction_[i];
+  for_each(Serial{}, layout_.owned, correct_item(share - applied_share_));
   applied_share_ = share;
   for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
   refresh_ghosts();
@@ -170,10 +170,7 @@ ParticleCorrection CpuBackend::particle_correct() {
   ParticleCorrection out;
   if (right_hand_side > 0) {
     out.iterations = solver_.solve(system, direction_, correction_);
-    for (Index i = 0; i < n; ++i) {
-      store_.acceleration[i] += correction_[i];
-      out.correction = std::max(out.correction, weight * norm(correction_[i]) / store_.position[i].w);
-    }
+    out.correction = max_over(Serial{}, n, correct_item(1));
     start_slope_ = -slope(right_hand_side_);
   }
   applied_share_ = right_hand_side > 0 ? 1 : 0;
@@ -182,13 +179,7 @@ ParticleCorrection CpuBackend::particle_correct() {
   return out;
 }
 
-Real CpuBackend::error() {
-  Real largest = 0;
-  for (Index i = 0; i < layout_.owned; ++i)
-    largest = std::max(largest, hht_position_error(hht_, h_, start_acceleration_[i], store_.acceleration[i],
-                                                   store_.position[i].w));
-  return largest;
-}
+Real CpuBackend::error() { return max_over(Serial{}, layout_.owned, StepErrorItem{step_views()}); }
 
 void CpuBackend::accept() {
   for_each(Serial{}, layout_.owned,

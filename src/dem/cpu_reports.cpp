@@ -4,28 +4,12 @@
 
 #include "base/reproducible_sum.hpp"
 #include "dem/cpu_backend.hpp"
+#include "dem/ledger_items.hpp"
 
 namespace scree {
-namespace {
-
-template <class Term>
-Vec3 vector_sum(Index n, const Term& term) {
-  return {reproducible_sum(n, [&](Index i) { return term(i).x; }),
-          reproducible_sum(n, [&](Index i) { return term(i).y; }),
-          reproducible_sum(n, [&](Index i) { return term(i).z; })};
-}
-
-}  // namespace
-
 Real CpuBackend::energy_of(Index i) const {
   const Vec4 v = store_.velocity[i];
-  return kinetic_energy(v.w, xyz(v)) + gravitational_energy(v.w, model_.gravity, unwrapped(i));
-}
-
-Vec3 CpuBackend::unwrapped(Index i) const {
-  const Vec3 period = subdomain_.period();
-  const ImageCount& image = store_.image[i];
-  return xyz(store_.position[i]) + Vec3{image.x * period.x, image.y * period.y, image.z * period.z};
+  return kinetic_energy(v.w, xyz(v)) + gravitational_energy(v.w, model_.gravity, unwrapped(store_.position[i], store_.image[i], subdomain_.period()));
 }
 
 std::vector<Leaver> CpuBackend::outside() const {
@@ -58,28 +42,22 @@ ParticleLedger CpuBackend::ledger(Real verlet_step) {
   kernels_->energies(views(), n, {elastic.data(), touching.data(), pairs.data()});
   find_shape_contacts(views());
 
-  ParticleLedger out;
-  const auto mass = [&](Index i) { return store_.velocity[i].w; };
-  const auto velocity = [&](Index i) { return xyz(store_.velocity[i]); };
-  out.kinetic = reproducible_sum(n, [&](Index i) { return kinetic_energy(mass(i), velocity(i)); });
-  out.gravitational = reproducible_sum(
-      n, [&](Index i) { return gravitational_energy(mass(i), model_.gravity, unwrapped(i)); });
-  out.contact_elastic = reproducible_sum(n, [&](Index i) { return elastic[i]; }) + side_.elastic_energy();
-  out.contact_loss =
-      reproducible_sum(n, [&](Index i) { return store_.contact_loss[i]; }) + side_.losses().contact_loss;
-  out.integrator_loss = reproducible_sum(n, [&](Index i) {
-    return store_.integrator_loss[i] - verlet_energy_shift(verlet_step, mass(i), store_.acceleration[i]);
-  });
-  out.momentum = vector_sum(n, [&](Index i) { return mass(i) * velocity(i); });
-  out.angular_momentum = vector_sum(n, [&](Index i) { return mass(i) * cross(unwrapped(i), velocity(i)); });
-  out.contacts = std::llround(reproducible_sum(n, [&](Index i) { return pairs[i]; }) + side_.pairs());
+  const LedgerItem item{store_.position.data(),     store_.velocity.data(),
+                        store_.acceleration.data(), store_.image.data(),
+                        store_.contact_loss.data(), store_.integrator_loss.data(),
+                        elastic.data(),             pairs.data(),
+                        model_.gravity,             subdomain_.period(),
+                        verlet_step};
+  Real sums[kLedgerTerms];
+  reproducible_sums(n, item, sums);
+  ParticleLedger out = make_particle_ledger(sums, side_);
   for (Index i = 0; i < n; ++i) out.drifting += store_.drifting[i];
   return out;
 }
 
-ParticlePack CpuBackend::pack_particles() {
+void CpuBackend::start_pack() {
   const Index n = store_.owned;
-  ParticlePack pack;
+  ParticlePack& pack = pack_ = {};
   std::vector<Real> energy(n), pairs(n);
   pack.contacts.resize(n);
   kernels_->energies(views(), n, {energy.data(), pack.contacts.data(), pairs.data()});
@@ -91,7 +69,6 @@ ParticlePack CpuBackend::pack_particles() {
     pack.velocity.push_back(xyz(store_.velocity[i]));
     pack.force.push_back(store_.force[i] - store_.velocity[i].w * model_.gravity);
   }
-  return pack;
 }
 
 ShapePack CpuBackend::pack_shapes() {

@@ -20,6 +20,13 @@ std::string device_name();
 // Device memory that is free now [B]; only where device_trouble() is empty.
 std::size_t free_device_memory();
 
+// Device memory that the program holds now [B].
+std::size_t device_memory_in_use();
+
+// Room of a neighbour list on the device: slots per item at the start, and over what was needed where that is more.
+inline constexpr std::size_t kSlotsPerItem = 16;
+inline constexpr double kListSlack = 1.15;
+
 // Device memory that the backend takes for this model [B]: what `scree check` prints. An estimate from the
 // model alone, the same on machines without a GPU.
 std::size_t device_memory(const Model& model);

@@ -21,6 +21,15 @@ struct StepViews {
   Vec3 snap;  // Subdomain::snap_constant
 };
 
+// Acceleration at the start of the simulation.
+struct StartAccelerationItem {
+  const Vec3* force;     // [N]
+  const Vec4* velocity;  // mass in w
+  Vec3* acceleration;
+
+  SCREE_HD void operator()(Index i) const { acceleration[i] = (1 / velocity[i].w) * force[i]; }
+};
+
 // Newmark's position and velocity from the current a_{n+1}.
 struct NewmarkItem {
   StepViews step;
@@ -56,6 +65,73 @@ struct ResidualItem {
     block += Sym3{scaled_mass, 0, 0, scaled_mass, 0, scaled_mass};
     inverse_block[i] = inverse(block);
   }
+};
+
+// What one particle adds to the norms of a Newton iteration; all of them are maxima over the particles.
+struct StepNorms {
+  Real residual;          // [N]
+  Real correction_bound;  // of the position correction that the residual can still cause, over the radius
+  Real force;             // at the iterate and at the start of the step [N]
+  Real stiffening;        // ResidualItem::stiffening
+};
+
+struct StepNormsItem {
+  StepViews step;
+  const Vec3* residual;
+  const Real *magnitude, *stiffening;
+
+  SCREE_HD StepNorms operator()(Index i) const {
+    const Real r = norm(residual[i]), mass = step.velocity[i].w;
+    const Real bound = step.hht.newmark_beta * step.h * step.h * r * (1 + step.hht.hht_alpha) /
+                       (mass * step.position[i].w);
+    const Real at_start = norm(step.start_force[i]) + mass * norm(step.start_acceleration[i]);
+    return {r, bound, magnitude[i] + at_start, stiffening[i]};
+  }
+};
+
+// Applies a share of a correction to the accelerations. Returns the size of the whole position correction over the
+// particle's radius.
+struct CorrectItem {
+  Vec3* acceleration;
+  const Vec3* correction;
+  const Vec4* position;  // radius in w
+  Real share;
+  Real weight;  // beta h^2 [s^2]
+
+  SCREE_HD Real operator()(Index i) const {
+    acceleration[i] += share * correction[i];
+    return weight * norm(correction[i]) / position[i].w;
+  }
+};
+
+// Local position error of an implicit step over the radius.
+struct StepErrorItem {
+  StepViews step;
+
+  SCREE_HD Real operator()(Index i) const {
+    return hht_position_error(step.hht, step.h, step.start_acceleration[i], step.acceleration[i],
+                              step.position[i].w);
+  }
+};
+
+// Square of the distance between two places of an item [m^2].
+struct DisplacementItem {
+  const Vec4 *from, *to;
+
+  SCREE_HD Real operator()(Index i) const {
+    const Vec3 d = xyz(to[i]) - xyz(from[i]);
+    return dot(d, d);
+  }
+};
+
+// The part of (residual, correction) in the slope of the potential along a correction [N m/s^2].
+struct SlopeTerm {
+  Real value[1];
+};
+struct SlopeItem {
+  const Vec3 *residual, *correction;
+
+  SCREE_HD SlopeTerm operator()(Index i) const { return {{dot(residual[i], correction[i])}}; }
 };
 
 // residual_i -= (A d)_i for the Newton matrix A = mass / (1 + alpha) + contacts.

@@ -127,12 +127,16 @@ void build_time(const DeckTable& deck, Model& model) {
       method.text("particles") == "hht" ? ParticleIntegrator::hht : ParticleIntegrator::velocity_verlet;
   integrator.resolve_events = method.text("contact_events") == "resolved";
   integrator.substeps = static_cast<int>(method.integer("substeps"));
+  integrator.precision = method.text("precision") == "mixed" ? Precision::mixed : Precision::full;
   integrator.residual_tolerance = method.real("residual_tolerance");
   integrator.correction_tolerance = method.real("correction_tolerance");
   integrator.max_iterations = static_cast<int>(method.integer("max_iterations"));
   const bool implicit = integrator.particles == ParticleIntegrator::hht;
   if (implicit && integrator.substeps > 1) {
     method.fail("substeps", "must be 1, unless integrator.particles = \"velocity-verlet\"");
+  }
+  if (implicit && integrator.precision == Precision::mixed) {
+    method.fail("precision", "must be \"double\", unless integrator.particles = \"velocity-verlet\"");
   }
   if (!implicit && adaptive) {
     method.fail("particles",

@@ -54,6 +54,11 @@ struct Contact {
 
 enum class StepControl { fixed, adaptive };
 enum class ParticleIntegrator { hht, velocity_verlet };
+// Of the particles on a GPU. The CPU always computes in full precision.
+enum class Precision {
+  full,  // double throughout
+  mixed  // state and sums at about double, contact forces in single
+};
 
 struct TimeControl {
   Real end = 0;   // [s]
@@ -69,10 +74,11 @@ struct Integrator {
   // hht: a contact that opens or closes within a step acts over the part of the step that it is closed; else
   // the force at the end of the step stands for all of it, as in the paper.
   bool resolve_events = true;
-  int substeps = 1;                  // of velocity-verlet per multibody step
-  Real residual_tolerance = 1e-8;    // scaled, both sides
-  Real correction_tolerance = 1e-8;  // scaled by radius (particles) or length scale (bodies)
-  int max_iterations = 50;           // of the Newton-like loop
+  int substeps = 1;                       // of velocity-verlet per multibody step
+  Precision precision = Precision::full;  // mixed: velocity-verlet only
+  Real residual_tolerance = 1e-8;         // scaled, both sides
+  Real correction_tolerance = 1e-8;       // scaled by radius (particles) or length scale (bodies)
+  int max_iterations = 50;                // of the Newton-like loop
 };
 
 struct Output {

@@ -10,6 +10,10 @@
 
 namespace scree {
 
+struct CellPlace {
+  Index x, y, z;
+};
+
 // Cells are numbered x fastest, so that three neighbours in x are contiguous.
 struct CellGrid {
   Vec3 origin;        // lower corner of cell (0, 0, 0) [m]
@@ -19,13 +23,19 @@ struct CellGrid {
 
   Index count() const { return cells[0] * cells[1] * cells[2]; }
   SCREE_HD Index index(Index x, Index y, Index z) const { return (z * cells[1] + y) * cells[0] + x; }
-  // Cell of a point, or -1 outside the grid.
-  SCREE_HD Index cell(Vec3 p) const {
+  // Coordinates of the cell of a point; x is -1 outside the grid.
+  SCREE_HD CellPlace place(Vec3 p) const {
     const Real fx = std::floor((p.x - origin.x) * inverse_size.x);
     const Real fy = std::floor((p.y - origin.y) * inverse_size.y);
     const Real fz = layer ? 0 : std::floor((p.z - origin.z) * inverse_size.z);
     const bool inside = fx >= 0 && fx < cells[0] && fy >= 0 && fy < cells[1] && fz >= 0 && fz < cells[2];
-    return inside ? index(static_cast<Index>(fx), static_cast<Index>(fy), static_cast<Index>(fz)) : -1;
+    if (!inside) return {-1, -1, -1};
+    return {static_cast<Index>(fx), static_cast<Index>(fy), static_cast<Index>(fz)};
+  }
+  // Cell of a point, or -1 outside the grid.
+  SCREE_HD Index cell(Vec3 p) const {
+    const CellPlace c = place(p);
+    return c.x < 0 ? -1 : index(c.x, c.y, c.z);
   }
 };
 

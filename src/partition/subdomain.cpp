@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace scree {
 namespace {
-
-constexpr Real kMostPeriods = 1e6;
 
 // Twice the largest coordinate of the axis, halo included, fits into 2^52 quanta.
 Real rounding_constant(Real min, Real max) {
@@ -18,23 +17,21 @@ Real rounding_constant(Real min, Real max) {
 }  // namespace
 
 Subdomain::Subdomain(const Space& space) : space_(space) {
-  const auto axis = [&](int side, Real min, Real max, Real& period, Real& constant) {
-    if (space.boundary[static_cast<std::size_t>(side)] != Boundary::periodic) return;
-    constant = rounding_constant(min, max);
-    period = ((max - min) + constant) - constant;
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  box_ = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  const auto axis = [&](int side, Real Vec3::* along) {
+    const Real min = space.min.*along, max = space.max.*along;
+    if (space.boundary[static_cast<std::size_t>(side)] == Boundary::periodic) {
+      const Real constant = rounding_constant(min, max);
+      snap_.*along = constant;
+      period_.*along = ((max - min) + constant) - constant;
+    } else {
+      box_.min.*along = min, box_.max.*along = max;
+    }
   };
-  axis(kXMin, space.min.x, space.max.x, period_.x, snap_.x);
-  axis(kYMin, space.min.y, space.max.y, period_.y, snap_.y);
-  if (space.dimension == 3) axis(kZMin, space.min.z, space.max.z, period_.z, snap_.z);
-}
-
-bool Subdomain::inside(Vec3 p) const {
-  const auto within = [](Real x, Real min, Real max, Real period) {
-    return period > 0 || (x >= min && x <= max);
-  };
-  return within(p.x, space_.min.x, space_.max.x, period_.x) &&
-         within(p.y, space_.min.y, space_.max.y, period_.y) &&
-         (space_.dimension == 2 || within(p.z, space_.min.z, space_.max.z, period_.z));
+  axis(kXMin, &Vec3::x);
+  axis(kYMin, &Vec3::y);
+  if (space.dimension == 3) axis(kZMin, &Vec3::z);
 }
 
 bool Subdomain::beyond_wall(Vec3 p) const {
@@ -43,22 +40,6 @@ bool Subdomain::beyond_wall(Vec3 p) const {
   for (std::size_t side = 0; side < (space_.dimension == 3 ? kSides : kZMin); ++side)
     if (beyond[side] && space_.boundary[side] == Boundary::wall) return true;
   return false;
-}
-
-Vec3 Subdomain::wrap(Vec3 p, ImageCount& image) const {
-  // Coordinates that no particle of a sound run has stay as they are; the cell sort then reports them.
-  const auto axis = [](Real& x, Real min, Real period, std::int32_t& count) {
-    if (period == 0 || !(std::abs(x - min) < kMostPeriods * period)) return;
-    const Real periods = std::floor((x - min) / period);
-    x -= periods * period;
-    count += static_cast<std::int32_t>(periods);
-    while (x < min) x += period, --count;
-    while (x >= min + period) x -= period, ++count;
-  };
-  axis(p.x, space_.min.x, period_.x, image.x);
-  axis(p.y, space_.min.y, period_.y, image.y);
-  axis(p.z, space_.min.z, period_.z, image.z);
-  return p;
 }
 
 }  // namespace scree

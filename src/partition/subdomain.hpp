@@ -12,6 +12,35 @@ struct ImageCount {
   std::int32_t x = 0, y = 0, z = 0;
 };
 
+// The position inside the periodic box that starts at min, and the periods taken off it; exact. period: 0 along
+// axes that are not periodic. Coordinates that no particle of a sound run has stay as they are; the cell sort
+// then reports them.
+SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
+  constexpr Real kMostPeriods = 1e6;
+  const auto axis = [](Real& x, Real start, Real length, std::int32_t& count) {
+    if (length == 0 || !(std::abs(x - start) < kMostPeriods * length)) return;
+    const Real periods = std::floor((x - start) / length);
+    x -= periods * length;
+    count += static_cast<std::int32_t>(periods);
+    while (x < start) x += length, --count;
+    while (x >= start + length) x -= length, ++count;
+  };
+  axis(p.x, min.x, period.x, image.x);
+  axis(p.y, min.y, period.y, image.y);
+  axis(p.z, min.z, period.z, image.z);
+  return p;
+}
+
+// The sides of the space that are not periodic; the others, and z in 2D, are at infinity.
+struct OpenBox {
+  Vec3 min, max;  // [m]
+  // Whether p lies within by at least `margin` [m]. A NaN does not.
+  SCREE_HD bool inside(Vec3 p, Real margin = 0) const {
+    return p.x - margin >= min.x && p.x + margin <= max.x && p.y - margin >= min.y && p.y + margin <= max.y &&
+           p.z - margin >= min.z && p.z + margin <= max.z;
+  }
+};
+
 // The space in the form that ownership and halo need. Positions along periodic axes lie on a grid of quanta
 // that the period is a multiple of: moving a particle by a period is then exact, and results do not depend on
 // when, or on which rank, that happens.
@@ -23,14 +52,16 @@ class Subdomain {
   // Rounding constants for snap(): 0 along axes that are not periodic.
   Vec3 snap_constant() const { return snap_; }
   // Whether the point lies within the sides that are not periodic.
-  bool inside(Vec3 p) const;
+  bool inside(Vec3 p) const { return box_.inside(p); }
+  const OpenBox& box() const { return box_; }
   // Whether the point lies beyond a side that is a wall.
   bool beyond_wall(Vec3 p) const;
   // The position inside the periodic box and the periods taken off it; exact.
-  Vec3 wrap(Vec3 p, ImageCount& image) const;
+  Vec3 wrap(Vec3 p, ImageCount& image) const { return ::scree::wrap(space_.min, period_, p, image); }
 
  private:
   Space space_;
+  OpenBox box_;
   Vec3 period_, snap_;
 };
 

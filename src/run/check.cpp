@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "dem/device.hpp"
 #include "model/limits.hpp"
 
 namespace scree {
@@ -93,13 +94,25 @@ std::string time_lines(const Model& model) {
                              integrator.hht_alpha, particles);
 }
 
+std::string megabytes(Real bytes) { return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0); }
+
 std::string memory_line(const Model& model) {
   const Real unknowns = 3 * static_cast<Real>(model.bodies.size()) + constraint_count(model);
   const Real bytes =
       kBytesPerParticle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns;
   return fmt::format(
-      "memory         about {:.3g} MB of state and scratch (estimate: {} B per particle, {} B per unknown)\n",
-      bytes / 1e6, kBytesPerParticle, kBytesPerUnknown);
+      "memory         about {} of state and scratch (estimate: {} B per particle, {} B per unknown)\n",
+      megabytes(bytes), kBytesPerParticle, kBytesPerUnknown);
+}
+
+std::string device_memory_line(const Model& model) {
+  const std::string trouble = device_trouble();
+  const std::string free =
+      trouble.empty() ? fmt::format("{} are free on {}", megabytes(static_cast<Real>(free_device_memory())),
+                                    device_name())
+                      : trouble;
+  return fmt::format("device memory  about {} on the GPU (estimate); {}\n",
+                     megabytes(static_cast<Real>(device_memory(model))), free);
 }
 
 }  // namespace
@@ -107,7 +120,8 @@ std::string memory_line(const Model& model) {
 std::string check_report(const Model& model) {
   const std::string title = model.title.empty() ? "" : "title          " + model.title + "\n";
   return title + space_lines(model) + multibody_lines(model) + limit_lines(model) + time_lines(model) +
-         fmt::format("search         skin {:.4g} m\n", model.contact.skin) + memory_line(model);
+         fmt::format("search         skin {:.4g} m\n", model.contact.skin) + memory_line(model) +
+         device_memory_line(model);
 }
 
 }  // namespace scree

@@ -7,8 +7,8 @@
 
 namespace scree {
 
-// Sizes, materials, contact times and step limits, degrees of freedom, and an estimate of the memory; several
-// lines.
+// Sizes, materials, contact times and step limits, degrees of freedom, and an estimate of the memory on the
+// host and on a GPU; several lines.
 std::string check_report(const Model& model);
 
 }  // namespace scree

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -93,6 +94,15 @@ std::vector<T> ordered(const std::vector<T>& values, const std::vector<std::size
   return out;
 }
 
+ParticlePack by_global_id(ParticlePack p) {
+  if (std::is_sorted(p.global_id.begin(), p.global_id.end())) return p;
+  std::vector<std::size_t> order(p.global_id.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return p.global_id[a] < p.global_id[b]; });
+  return {ordered(p.global_id, order), ordered(p.radius, order), ordered(p.position, order),
+          ordered(p.velocity, order),  ordered(p.force, order),  ordered(p.contacts, order)};
+}
+
 }  // namespace
 
 Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
@@ -102,7 +112,11 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
       link_(link),
       history_(directory, history_columns(model, reactions_of(model, link, state)), model.output.history_csv,
                state.history_rows),
-      snapshots_(directory, model.title, static_cast<int>(state.snapshots)) {}
+      snapshots_(directory, model.title, static_cast<int>(state.snapshots)) {
+  if (backend.computes_asynchronously()) backend.set_idle_work([this] { write_pending(); });
+}
+
+Recorder::~Recorder() { backend_.set_idle_work({}); }
 
 void Recorder::history(State& state, Real h) {
   const auto real = [](std::int64_t n) { return static_cast<Real>(n); };
@@ -155,6 +169,8 @@ void Recorder::body_row(const State& state, std::vector<Real>& row) const {
 
 void Recorder::particle_row(std::vector<Real>& row) {
   if (model_.output.history_particles.empty()) return;
+  write_pending();  // the backend holds one pack
+  backend_.start_pack();
   const ParticlePack pack = backend_.pack_particles();
   for (const GlobalId id : model_.output.history_particles) {
     const auto found = std::find(pack.global_id.begin(), pack.global_id.end(), id);
@@ -169,23 +185,32 @@ void Recorder::particle_row(std::vector<Real>& row) {
 }
 
 void Recorder::snapshot(State& state) {
-  ParticlePack p = backend_.pack_particles();
-  std::vector<std::size_t> order(p.global_id.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return p.global_id[a] < p.global_id[b]; });
-  p = {ordered(p.global_id, order), ordered(p.radius, order), ordered(p.position, order),
-       ordered(p.velocity, order),  ordered(p.force, order),  ordered(p.contacts, order)};
-
-  const ShapePack s = backend_.pack_shapes();
+  write_pending();
+  backend_.start_pack();
+  PendingSnapshot next{state.clock.time, backend_.pack_shapes(), {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
-  std::vector<Real> angle, angular_velocity;
-  for (const int body : s.body) {
-    angle.push_back(motion[body].angle);
-    angular_velocity.push_back(motion[body].angular_velocity);
+  for (const int body : next.shapes.body) {
+    next.angle.push_back(motion[body].angle);
+    next.angular_velocity.push_back(motion[body].angular_velocity);
   }
-  snapshots_.append(state.clock.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
-                    {s.body, s.radius, s.position, s.velocity, angle, angular_velocity, s.force, s.contacts});
+  pending_ = std::move(next);
   ++state.snapshots;
+  if (!backend_.computes_asynchronously()) write_pending();
+}
+
+void Recorder::write_pending() {
+  if (!pending_) return;
+  const PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
+  const ParticlePack p = by_global_id(backend_.pack_particles());
+  const ShapePack& s = snapshot.shapes;
+  snapshots_.append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
+                    {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
+                     s.force, s.contacts});
+  history_.flush();
+}
+
+void Recorder::flush() {
+  write_pending();
   history_.flush();
 }
 

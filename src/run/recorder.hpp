@@ -1,8 +1,9 @@
 // History rows and snapshots from the state of both sides.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "coupling/body_link.hpp"
 #include "dem/backend.hpp"
@@ -18,13 +19,28 @@ class Recorder {
   // Continues existing files after state.history_rows rows and state.snapshots snapshots, or starts new ones.
   Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
            const State& state);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;  // the backend knows its address
+  Recorder& operator=(const Recorder&) = delete;
 
   // One row; h: length of the step just taken [s]. Updates the balance in the state.
   void history(State& state, Real h);
+  // Takes one. A backend that computes asynchronously goes on with its steps, and the snapshot is written
+  // while the host would only wait for them, at the latest by flush() or before the next one.
   void snapshot(State& state);
-  void flush() { history_.flush(); }
+  void write_pending();  // where the backend fails to hand out the particles, the snapshot is given up
+  // Brings all that was recorded to disk.
+  void flush();
+  std::int64_t snapshots_written() const { return snapshots_.snapshots(); }
 
  private:
+  // Taken; its particles are with the backend until they are written.
+  struct PendingSnapshot {
+    Real time;
+    ShapePack shapes;
+    std::vector<Real> angle, angular_velocity;  // of the shapes' bodies
+  };
+
   void energy_row(State& state, std::vector<Real>& row);
   void body_row(const State& state, std::vector<Real>& row) const;
   void particle_row(std::vector<Real>& row);
@@ -34,6 +50,7 @@ class Recorder {
   const BodyLink& link_;
   HistoryWriter history_;
   SnapshotWriter snapshots_;
+  std::optional<PendingSnapshot> pending_;
 };
 
 }  // namespace scree

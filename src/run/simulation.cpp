@@ -9,6 +9,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "dem/device.hpp"
 #include "output/run_record.hpp"
 #include "run/signals.hpp"
 #include "run/step_loop.hpp"
@@ -18,7 +19,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kProgressSeconds = 0.25;  // between progress lines on a terminal
+constexpr std::size_t kGpuParticles = 10000;  // --backend auto: from so many on a GPU is faster
+constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
 constexpr double kFlushSeconds =
     5;  // between writes of the history, besides those with snapshots and checkpoints
 
@@ -40,10 +42,34 @@ void make_directory(const std::string& path) {
   if (!std::filesystem::is_directory(path)) throw IoError(fmt::format("output folder {}: is a file", path));
 }
 
-std::unique_ptr<Backend> make_backend(const Model& model, const std::string& name) {
-  if (name == "cuda")
-    throw InputError("--backend cuda: this version computes on the CPU only; allowed: auto, cpu");
+std::unique_ptr<Backend> make_gpu(const Model& model, Log& log) {
+  std::unique_ptr<Backend> backend = make_cuda_backend(model);
+  log.info("backend cuda: " + device_name());
+  return backend;
+}
+
+std::unique_ptr<Backend> make_cpu(const Model& model, const std::string& why, Log& log) {
+  log.info("backend cpu: " + why);
+  if (model.integrator.precision == Precision::mixed)
+    log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   return make_cpu_backend(model);
+}
+
+// The one that --backend names, or for auto the one that is likely to be faster.
+std::unique_ptr<Backend> make_backend(const Model& model, const std::string& name, Log& log) {
+  if (name == "cpu") return make_cpu(model, "chosen by --backend", log);
+  const std::size_t particles = model.particles.size();
+  if (name == "auto" && particles < kGpuParticles)
+    return make_cpu(
+        model,
+        fmt::format("{} particles are fewer than {}, from which a GPU is faster", particles, kGpuParticles),
+        log);
+  try {
+    return make_gpu(model, log);
+  } catch (const InputError& error) {
+    if (name == "auto") return make_cpu(model, error.what(), log);
+    throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));
+  }
 }
 
 State read_state(const RunOptions& options) {
@@ -62,7 +88,7 @@ class Simulation {
         options_(options),
         log_(log),
         state_(options.restart.empty() ? State{} : read_state(options)),
-        backend_(make_backend(model, options.backend)),
+        backend_(make_backend(model, options.backend, log)),
         link_(model),
         step_(model, *backend_, link_, timers_) {
     make_directory(options.output_directory);
@@ -81,6 +107,8 @@ class Simulation {
   bool continues_files() const;
   void checkpoint(const State& state, const std::string& name);
   void progress(const State& state, Real h);
+  ExitCode fail(StepLoop& loop, const SimulationError& error);
+  void keep_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
   void write_record(const std::string& status, ExitCode code);
   void summarize() const;
@@ -165,10 +193,7 @@ ExitCode Simulation::run() {
       return finish("done", ExitCode::done);
     }
   } catch (const SimulationError& error) {
-    checkpoint(loop.last_good_state(), "checkpoint_failed.h5");
-    log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
-    log_.info("last good state: " + options_.output_directory + "/checkpoint_failed.h5");
-    return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
+    return fail(loop, error);
   } catch (const IoError& error) {
     write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
     throw;
@@ -178,6 +203,27 @@ ExitCode Simulation::run() {
   log_.info("stopped by signal (" + signal + "); continue with --restart " + options_.output_directory +
             "/checkpoint.h5");
   return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
+}
+
+ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
+  log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
+  keep_last_good_state(loop);
+  return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
+}
+
+// A GPU that has failed may hold a snapshot, and the state of an implicit run: both are lost then.
+void Simulation::keep_last_good_state(StepLoop& loop) {
+  try {
+    recorder_->write_pending();
+  } catch (const DeviceError&) {
+    state_.snapshots = recorder_->snapshots_written();
+  }
+  try {
+    checkpoint(loop.last_good_state(), "checkpoint_failed.h5");
+    log_.info("last good state: " + options_.output_directory + "/checkpoint_failed.h5");
+  } catch (const DeviceError& error) {
+    log_.error(std::string("the last good state is lost: ") + error.what());
+  }
 }
 
 ExitCode Simulation::finish(const std::string& status, ExitCode code) {
@@ -211,7 +257,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
                    {"left", state_.carried_out.left},
                    {"history_rows", state_.history_rows},
-                   {"snapshots", state_.snapshots}};
+                   {"snapshots", recorder_->snapshots_written()}};
   const BalanceState& b = state_.balance;
   record.measures = {{"simulated_time", state_.clock.time},
                      {"balance_error", b.last.accounted() - b.start},

@@ -29,7 +29,8 @@ struct State {
   ShapeLosses shapes;
   CarriedOut carried_out;
   BalanceState balance;
-  std::int64_t history_rows = 0, snapshots = 0;  // written so far
+  // Taken so far; all of them are on disk before a checkpoint with these counts is.
+  std::int64_t history_rows = 0, snapshots = 0;
 };
 
 Checkpoint pack(const State& state);

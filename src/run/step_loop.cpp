@@ -93,6 +93,7 @@ void StepLoop::output(Real h) {
 void StepLoop::keep_good_state() {
   if (implicit_) return;
   const double start = seconds_now();
+  parts_.recorder.write_pending();  // the copy counts it, also where the backend fails before it is written
   good_ = complete_state();
   good_age_ = seconds_now();
   good_cost_ = good_age_ - start;

@@ -141,7 +141,7 @@ class UsageTest(CommandLineTest):
     def test_keys_are_the_manual(self):
         text = self.expect(DONE, "keys").stdout
         for key in ("time", "step", "hht_alpha", "stiffness", "tension", "leaving", "history_csv", "max_start_overlap",
-                    "spring_dampers", "drivers", "min_step"):
+                    "spring_dampers", "drivers", "min_step", "precision"):
             self.assertIn(key, text)
         for word in ("[s]", "[N/m^n]", "default", "required"):
             self.assertIn(word, text)
@@ -158,6 +158,7 @@ class UsageTest(CommandLineTest):
         for word in ("particles      6", "bodies         1", "degrees of freedom", "contact", "resolved at steps",
                      "fixed step 0.0001 s (4000 steps)", "memory", "petsc"):
             self.assertIn(word, text)
+        self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU \(estimate\); .+")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["deck.toml"])
 
     def test_several_ranks_are_refused_once(self):
@@ -237,8 +238,40 @@ class RunTest(CommandLineTest):
         self.assertIn("KSP Object: (mbs_)", result.stdout)
         self.assertIn("mbs_misspelt", result.stderr)
 
-    def test_an_absent_backend_is_bad_usage(self):
-        self.assertIn("allowed", self.run_deck(BAD_INPUT, "out", "--backend", "cuda").stderr)
+    def gpu_trouble(self):
+        """Why there is no GPU to use, as `check` says it; empty where there is one."""
+        text = re.search(r"device memory .*\(estimate\); (.+)", self.expect(DONE, "check", self.deck).stdout).group(1)
+        return "" if " are free on " in text else text
+
+    def test_the_gpu_is_used_or_refused_with_the_reason(self):
+        trouble = self.gpu_trouble()
+        if not trouble:
+            self.assertIn("\nbackend cuda: ", "\n" + self.run_deck(DONE, "out", *self.SHORT, "--backend", "cuda").stdout)
+            return
+        message = self.run_deck(BAD_INPUT, "out", "--backend", "cuda").stderr
+        self.assertEqual(message, f"error: --backend cuda: {trouble}; allowed here: auto, cpu\n")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_the_log_says_which_backend_and_why(self):
+        for words in ((), ("--backend", "auto")):
+            self.assertRegex(self.run_deck(DONE, "out", *self.SHORT, *words).stdout,
+                             r"(?m)^backend cpu: 6 particles are fewer than \d+, from which a GPU is faster$")
+        self.assertRegex(self.run_deck(DONE, "out", *self.SHORT, "--backend", "cpu").stdout,
+                         r"(?m)^backend cpu: chosen by --backend$")
+        many = ("--set", "particles.0.size=[300, 100]", "--set", "particles.0.spacing=[1e-3, 1e-3]",
+                "--set", "particles.0.radius=4e-4", "--set", "time.end=1e-4")
+        trouble = self.gpu_trouble()
+        self.assertIn(f"\nbackend cpu: {trouble}\n" if trouble else "\nbackend cuda: ",
+                      "\n" + self.run_deck(DONE, "out", *many).stdout)
+
+    def test_mixed_precision_on_the_cpu_is_double(self):
+        both = (*self.SHORT, *EXPLICIT, "--backend", "cpu")
+        self.assertNotIn("precision", self.run_deck(DONE, "double", *both).stdout)
+        mixed = self.run_deck(DONE, "mixed", *both, "--set", "integrator.precision=mixed")
+        self.assertIn("the CPU computes in double", mixed.stdout)
+        self.assert_same_history("mixed", "double")
+        message = self.run_deck(BAD_INPUT, "none", "--set", "integrator.precision=mixed").stderr
+        self.assertIn('must be "double", unless integrator.particles = "velocity-verlet"', message)
 
     def test_output_that_cannot_be_written(self):
         self.write("file", "not a folder")

@@ -12,6 +12,8 @@ std::string device_name() { return "none"; }
 
 std::size_t free_device_memory() { return 0; }
 
+std::size_t device_memory_in_use() { return 0; }
+
 std::unique_ptr<Backend> make_cuda_backend(const Model&) { throw InputError(device_trouble()); }
 
 }  // namespace scree

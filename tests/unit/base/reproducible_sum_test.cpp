@@ -105,10 +105,11 @@ TEST_CASE("terms that come from several places add up to the same bits") {
   const Real sum = sum_of(terms);
   Real largest = 0;
   for (const Real term : terms) largest = std::max(largest, std::abs(term));
-  ReproducibleSum one(largest);
-  for (std::size_t i = 0; i < terms.size(); i += 2) one.add(terms[i]);
-  for (std::size_t i = 1; i < terms.size(); i += 2) one.add(terms[i]);
-  CHECK(one.value() == sum);
+  const ReproducibleScale scale(largest);
+  __int128 quanta = 0;
+  for (std::size_t i = 0; i < terms.size(); i += 2) quanta += scale.quanta(terms[i]);
+  for (std::size_t i = 1; i < terms.size(); i += 2) quanta += scale.quanta(terms[i]);
+  CHECK(scale.value(quanta) == sum);
 }
 
 }  // namespace scree

@@ -71,6 +71,7 @@ TEST_CASE("contact forces on particles and shapes are those of all pairs and wal
     LoadedBox box(random_box(c, kParticles, 11));
     const BruteContacts expected = brute_contacts(box);
     REQUIRE(expected.count > 20);
+    box.backend->start_pack();
     const ParticlePack particles = box.backend->pack_particles();
     for (std::size_t i = 0; i < particles.global_id.size(); ++i) {
       const auto id = static_cast<std::size_t>(particles.global_id[i]);
@@ -116,6 +117,7 @@ TEST_CASE("particles and bodies push each other with opposite forces and torques
     LoadedBox box(model);
     Vec3 force, torque;
     Real magnitude = 0;
+    box.backend->start_pack();
     const ParticlePack particles = box.backend->pack_particles();
     for (std::size_t i = 0; i < particles.force.size(); ++i) {
       force += particles.force[i], torque += cross(particles.position[i], particles.force[i]);

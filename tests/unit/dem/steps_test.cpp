@@ -195,6 +195,7 @@ TEST_CASE("a particle that drifts feels gravity alone") {
   box.backend->load(box.records, {});
   box.backend->build_list(0.02, box.timers);
   box.backend->initial_forces();
+  box.backend->start_pack();
   const ParticlePack pack = box.backend->pack_particles();
   for (std::size_t i = 0; i < pack.global_id.size(); ++i) {
     if (pack.global_id[i] < 3 || pack.global_id[i] > 5) continue;

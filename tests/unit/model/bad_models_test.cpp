@@ -142,6 +142,20 @@ TEST_CASE("time and integrator") {
   CHECK(contains(model_error(kSmallDeck, {"integrator.substeps=2"}), "must be 1, unless"));
   CHECK(contains(model_error(kSmallDeck, {"integrator.particles=velocity-verlet", "time.control=adaptive"}),
                  "the explicit method has no error estimate"));
+  CHECK(contains(model_error(kSmallDeck, {"integrator.precision=mixed"}),
+                 "--set integrator.precision=mixed: must be \"double\", unless integrator.particles = "
+                 "\"velocity-verlet\""));
+  CHECK(contains(model_error(kSmallDeck + "[integrator]\nprecision = \"mixed\"\n"),
+                 "integrator.precision = \"mixed\": must be \"double\", unless"));
+  CHECK(contains(model_error(kSmallDeck, {"integrator.precision=single"}), "must be one of"));
+}
+
+TEST_CASE("precision of the particles") {
+  const std::string verlet = "integrator.particles=velocity-verlet";
+  CHECK(model_of(kSmallDeck).integrator.precision == Precision::full);
+  CHECK(model_of(kSmallDeck, {verlet}).integrator.precision == Precision::full);
+  CHECK(model_of(kSmallDeck, {verlet, "integrator.precision=mixed"}).integrator.precision ==
+        Precision::mixed);
 }
 
 }  // namespace scree

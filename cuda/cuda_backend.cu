@@ -1,0 +1,361 @@
+// Particles, items and list of the GPU's backend. The steps are in cuda_implicit.cu and cuda_explicit.cu.
+#include "cuda_backend.cuh"
+
+#include <cub/device/device_scan.cuh>
+
+#include "backend_parts.cuh"
+#include "dem/device.hpp"
+
+namespace scree {
+
+CudaBackend::CudaBackend(const Model& model)
+    : model_(model),
+      subdomain_(model.space),
+      side_(model, subdomain_),
+      builder_(model, side_.shapes()),
+      hht_(hht_coefficients(model.integrator.hht_alpha)),
+      results_(1),
+      h_results_(1),
+      solver_(1),
+      h_solver_(1),
+      pack_(std::make_unique<PackArrays>()) {
+  laws_.upload(model.contact.laws, stream_);
+  kernels_ = make_device_contact_kernels(model.contact, laws_.data());
+  std::vector<WallPlane> planes;
+  for (const Wall& wall : model.walls) planes.push_back({wall.point, wall.normal, wall.material});
+  planes_.upload(planes, stream_);
+  std::vector<Index> offsets{0}, connected;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    for (const int other : side_.shapes().connected(static_cast<int>(b))) connected.push_back(other);
+    offsets.push_back(static_cast<Index>(connected.size()));
+  }
+  connected_offsets_.upload(offsets, stream_), connected_.upload(connected, stream_);
+}
+
+CudaBackend::~CudaBackend() = default;
+
+std::string CudaBackend::description() const { return "cuda (" + device_name() + ")"; }
+
+DeviceViews CudaBackend::views(const Vec4* position, const Vec4* velocity) const {
+  return {position,       velocity,      now_.material.data(), list_.rows(), list_.wall_offsets(),
+          list_.walls(), planes_.data(), layout_.first_shape};
+}
+
+void CudaBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
+  side_.losses() = shapes;
+  owned_ = static_cast<Index>(records.size());
+  const std::size_t n = records.size();
+  ParticleStore store;
+  store.load(model_.particles, records);
+  std::vector<std::int64_t> keys(n);
+  for (std::size_t i = 0; i < n; ++i) keys[i] = row_key(store.global_id[i], kNoShift);
+  now_.grow(n, n, 0, stream_);
+  now_.position.upload(store.position, stream_), now_.velocity.upload(store.velocity, stream_);
+  now_.material.upload(store.material, stream_), now_.row_key.upload(keys, stream_);
+  now_.acceleration.upload(store.acceleration, stream_), now_.force.upload(store.force, stream_);
+  now_.contact_loss.upload(store.contact_loss, stream_), now_.loss_power.upload(store.loss_power, stream_);
+  now_.integrator_loss.upload(store.integrator_loss, stream_), now_.image.upload(store.image, stream_);
+  now_.drifting.upload(store.drifting, stream_);
+  layout_changed_ = true;
+}
+
+std::vector<ParticleRecord> CudaBackend::records() const {
+  DeviceArray<ParticleRecord> d_records(static_cast<std::size_t>(owned_));
+  for_each(device(), owned_, RecordItem{views_of(now_), model_.space.min, subdomain_.period(), d_records.data()});
+  std::vector<ParticleRecord> out = d_records.download(stream_);
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
+  return out;
+}
+
+void CudaBackend::place_bodies(std::span<const BodyMotion> motion) {
+  side_.set_motion(motion);
+  if (layout_changed_) return;
+  side_.place(layout_);
+  // An explicit run brings the shapes to the arrays of its open step itself.
+  if (!in_run_) put_shapes(now_);
+}
+
+// Positions and velocities of the shape items, as side_ has placed them, into the arrays of all items.
+void CudaBackend::put_shapes(ParticleArrays& arrays) {
+  const auto n = static_cast<std::size_t>(shape_items());
+  if (n == 0) return;
+  const Vec4* places = stage_shapes();
+  copy_async(arrays.position.data() + layout_.first_shape, places, n, stream_);
+  copy_async(arrays.velocity.data() + layout_.first_shape, places + n, n, stream_);
+  places_copied_.record(stream_);
+}
+
+// A copy in pinned memory, once the last one is used no longer.
+const Vec4* CudaBackend::stage_shapes() {
+  places_copied_.wait();
+  const auto n = static_cast<std::size_t>(shape_items());
+  h_shape_places_.resize(2 * n);
+  std::copy(side_.position().begin(), side_.position().end(), h_shape_places_.data());
+  std::copy(side_.velocity().begin(), side_.velocity().end(), h_shape_places_.data() + n);
+  return h_shape_places_.data();
+}
+
+void CudaBackend::find_shape_contacts() {
+  if (shape_items() == 0) return;
+  const ShapePlaces places{now_.position.data() + layout_.first_shape, now_.velocity.data() + layout_.first_shape};
+  kernels_->shapes(device(), views(), places, shape_items(), shape_contacts_.data());
+  fetch_shape_contacts(stream_);
+}
+
+// Waits for the stream.
+void CudaBackend::fetch_shape_contacts(cudaStream_t stream) {
+  const auto n = static_cast<std::size_t>(shape_items());
+  copy_async(h_shape_contacts_.data(), shape_contacts_.data(), n, stream);
+  wait_for(stream);
+  std::copy(h_shape_contacts_.data(), h_shape_contacts_.data() + n, side_.contacts().begin());
+}
+
+void CudaBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
+  side_.reduce(layout_, step, end);
+}
+
+void CudaBackend::refresh_ghosts(Vec4* position, Vec4* velocity) {
+  for_each(device(), ghosts_, GhostItem{ghost_.data(), position, velocity, owned_});
+}
+
+namespace {
+
+// Wraps a particle into the periodic box and finds its cell. Particles outside the search get the key past the last
+// cell. *bad: smallest id of a particle whose position is not finite.
+struct CellKeyItem {
+  ParticleViews in;
+  Vec3 box_min, period;
+  BrickGrid grid;
+  unsigned outside;
+  unsigned* keys;
+  long long* bad;
+
+  __device__ void operator()(Index i) const {
+    const Vec4 p = in.position[i];
+    const Vec3 x = wrap(box_min, period, xyz(p), in.image[i]);
+    in.position[i] = vec4(x, p.w);
+    if (!is_finite(x)) atomicMin(bad, static_cast<long long>(id_of(in.row_key[i])));
+    const CellPlace c = grid.cells.place(x);
+    keys[i] = in.drifting[i] || c.x < 0 ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
+  }
+};
+
+struct CountGhostsItem {
+  HaloBox box;
+  const Vec4* position;
+  Index* counts;
+  SCREE_HD void operator()(Index i) const {
+    Index count = 0;
+    for_each_ghost(box, xyz(position[i]), [&](Vec3, std::int8_t) { ++count; });
+    counts[i] = count;
+  }
+};
+
+struct FillGhostsItem {
+  HaloBox box;
+  const Index* offsets;
+  ParticleViews items;
+  Index owned;
+  Ghost* ghosts;
+  SCREE_HD void operator()(Index i) const {
+    Index slot = offsets[i];
+    for_each_ghost(box, xyz(items.position[i]), [&](Vec3 shift, std::int8_t image) {
+      ghosts[slot] = {i, shift, image};
+      items.material[owned + slot] = items.material[i];
+      items.row_key[owned + slot] = row_key(id_of(items.row_key[i]), image);
+      ++slot;
+    });
+  }
+};
+
+struct OtherKeyItem {
+  const Vec4* position;  // of the first item that is no particle
+  BrickGrid grid;
+  unsigned outside;
+  unsigned* keys;
+  SCREE_HD void operator()(Index k) const {
+    const CellPlace c = grid.cells.place(xyz(position[k]));
+    keys[k] = c.x < 0 ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
+  }
+};
+
+struct OtherItem {
+  const Index* order;
+  Index first;
+  Index* out;
+  SCREE_HD void operator()(Index k) const { out[k] = first + order[k]; }
+};
+
+}  // namespace
+
+void CudaBackend::sort_cells(Real skin) {
+  grid_ = make_brick_grid(builder_.grid(skin, owned_ + side_.shapes().size()));
+  const auto outside = static_cast<unsigned>(grid_.count());
+  const auto n = static_cast<std::size_t>(owned_);
+  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
+  for_each(device(), owned_,
+           CellKeyItem{views_of(now_), model_.space.min, subdomain_.period(), grid_, outside, particle_sort_.keys(n),
+                       result(&Results::worst_id)});
+  particle_sort_.sort(device(), owned_, outside);
+  CellRange* d_range = &results_.data()->range;
+  copy_async(d_range, particle_sort_.ranges() + outside, 1, stream_);
+  fetch(&Results::worst_id);
+  copy_async(&h_results_.data()->range, d_range, 1, stream_);
+  wait_for(stream_);
+  if (h_results_[0].worst_id < kNoId)
+    throw SimulationError("stage sort_cells: the position of particle " + std::to_string(h_results_[0].worst_id) +
+                          " is not finite");
+  const CellRange left = h_results_[0].range;
+  layout_.owned = owned_, layout_.active = owned_ - (left.end - left.begin);
+  reorder(particle_sort_.order(), owned_);
+}
+
+// Particle i becomes the one that was order[i].
+void CudaBackend::reorder(const Index* order, Index n) {
+  const auto size = static_cast<std::size_t>(n);
+  other_.grow(std::max(size, now_.position.size()), size, 0, stream_);
+  for_each(device(), n, ReorderItem{views_of(now_), views_of(other_), order});
+  std::swap(now_, other_);
+}
+
+void CudaBackend::find_ghosts(const HaloBox& box) {
+  ghosts_ = 0;
+  if (box.period == Vec3{}) return;
+  const auto n = static_cast<std::size_t>(layout_.active);
+  ghost_counts_.resize(n + 1), ghost_offsets_.resize(n + 1);
+  ghost_counts_.zero(stream_);
+  for_each(device(), layout_.active, CountGhostsItem{box, now_.position.data(), ghost_counts_.data()});
+  std::size_t space = 0;
+  const auto scan = [&](void* at) {
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, space, ghost_counts_.data(), ghost_offsets_.data(),
+                                               layout_.active + 1, stream_),
+                 "scan");
+  };
+  scan(nullptr);
+  space_.resize(space);
+  scan(space_.data());
+  copy_async(&h_results_.data()->index, ghost_offsets_.data() + n, 1, stream_);
+  wait_for(stream_);
+  ghosts_ = h_results_[0].index;
+  ghost_.resize(static_cast<std::size_t>(ghosts_));
+  grow_items(owned_ + ghosts_);
+  for_each(device(), layout_.active, FillGhostsItem{box, ghost_offsets_.data(), views_of(now_), owned_, ghost_.data()});
+}
+
+// Room for so many items; the particles and ghosts stay.
+void CudaBackend::grow_items(Index items) {
+  const auto n = static_cast<std::size_t>(items), owned = static_cast<std::size_t>(owned_);
+  now_.grow(n, owned, std::min(n, now_.position.size()), stream_), other_.grow(n, owned, 0, stream_);
+}
+
+void CudaBackend::lay_out_items(Real skin) {
+  const Real width = builder_.cutoff(skin);
+  find_ghosts({model_.space.min, model_.space.max, subdomain_.period(), width});
+  layout_.first_shape = owned_ + ghosts_;
+  side_.lay_out(model_.space, width, layout_);
+  grow_items(layout_.items);
+
+  const auto n = static_cast<std::size_t>(shape_items());
+  std::vector<int> material, body;
+  std::vector<std::int64_t> keys;
+  for (Index item = layout_.first_shape; item < layout_.items; ++item) {
+    const ShapeItem& shape = side_.shapes().items()[layout_.shape_of(item)];
+    const std::int8_t image = layout_.is_shape_image(item)
+                                  ? layout_.shape_images[item - layout_.first_shape - layout_.shapes].image
+                                  : kNoShift;
+    material.push_back(shape.material), body.push_back(shape.body);
+    keys.push_back(row_key(shape.global_id, image));
+  }
+  if (n > 0) {
+    require_cuda(cudaMemcpyAsync(now_.material.data() + layout_.first_shape, material.data(), n * sizeof(int),
+                                 cudaMemcpyHostToDevice, stream_),
+                 "cudaMemcpyAsync");
+    require_cuda(cudaMemcpyAsync(now_.row_key.data() + layout_.first_shape, keys.data(), n * sizeof(std::int64_t),
+                                 cudaMemcpyHostToDevice, stream_),
+                 "cudaMemcpyAsync");
+    shape_body_.upload(body, stream_);
+  }
+  shape_contacts_.resize(n), h_shape_contacts_.resize(n);
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  side_.place(layout_);
+  put_shapes(now_);
+}
+
+// Ghosts and shapes by cell.
+void CudaBackend::index_others() {
+  const Index others = layout_.items - owned_;
+  if (others == 0) return;
+  const auto outside = static_cast<unsigned>(grid_.count());
+  for_each(device(), others,
+           OtherKeyItem{now_.position.data() + owned_, grid_, outside,
+                        other_sort_.keys(static_cast<std::size_t>(others))});
+  other_sort_.sort(device(), others, outside);
+  other_items_.resize(static_cast<std::size_t>(others));
+  for_each(device(), others, OtherItem{other_sort_.order(), owned_, other_items_.data()});
+}
+
+void CudaBackend::search(Real skin) {
+  ListInput in;
+  in.position = now_.position.data(), in.row_key = now_.row_key.data();
+  in.grid = grid_;
+  in.cell_particles = particle_sort_.ranges();
+  const bool others = layout_.items > owned_;
+  in.cell_others = others ? other_sort_.ranges() : nullptr;
+  in.other_items = others ? other_items_.data() : nullptr;
+  in.bodies = {shape_body_.data(), connected_offsets_.data(), connected_.data()};
+  in.planes = planes_.data(), in.walls = static_cast<Index>(planes_.size());
+  in.active = layout_.active, in.owned = owned_, in.first_shape = layout_.first_shape;
+  in.first_image = layout_.first_shape + layout_.shapes, in.items = layout_.items;
+  in.skin = skin;
+  list_.build(device(), in);
+}
+
+void CudaBackend::build_list(Real skin, StageTimers& timers) {
+  settle();
+  {
+    const auto scope = timers.time(Stage::sort_cells);
+    sort_cells(skin);
+  }
+  {
+    const auto scope = timers.time(Stage::exchange_halo);
+    lay_out_items(skin);
+  }
+  const auto scope = timers.time(Stage::neighbors);
+  index_others();
+  search(skin);
+  const auto items = static_cast<std::size_t>(layout_.items);
+  list_position_.resize(items);
+  copy_async(list_position_.data(), now_.position.data(), items, stream_);
+  h_list_shapes_ = side_.position();
+  list_skin_ = skin;
+  bound_ = 0;
+  level_ = Level::state;
+  layout_changed_ = false;
+  ++list_builds_;
+  if (model_.integrator.particles == ParticleIntegrator::hht) size_step_arrays();
+}
+
+Real CudaBackend::list_displacement() {
+  if (layout_changed_) return 2;
+  settle();
+  const DisplacementItem moved{list_position_.data(), now_.position.data()};
+  const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
+  max_over(device(), layout_.active, moved, result(&Results::largest));
+  max_over(device(), shape_items(), shapes, result(&Results::displacement));
+  const Real particles = fetch(&Results::largest), others = fetch(&Results::displacement);
+  if (!std::isfinite(particles) || !std::isfinite(others)) return 2;
+  bound_ = std::sqrt(std::max(particles, others));
+  return bound_ / (list_skin_ / 2);
+}
+
+std::unique_ptr<Backend> make_cuda_backend(const Model& model) {
+  const std::string trouble = device_trouble();
+  if (!trouble.empty()) throw InputError(trouble);
+  const std::size_t needed = device_memory(model), free = free_device_memory();
+  if (needed > free)
+    throw InputError("the model needs about " + std::to_string(needed / 1000000) + " MB of device memory, " +
+                     std::to_string(free / 1000000) + " MB are free on " + device_name());
+  return std::make_unique<CudaBackend>(model);
+}
+
+}  // namespace scree

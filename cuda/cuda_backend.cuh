@@ -1,0 +1,207 @@
+// The backend of one GPU: the paper's GMAP. The schedule of src/dem/cpu_backend.hpp as kernels; arithmetic stays in
+// src/physics, items in src/dem.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cell_sort.cuh"
+#include "contact_kernels.cuh"
+#include "dem/backend.hpp"
+#include "dem/ledger_items.hpp"
+#include "device_list.cuh"
+#include "particle_arrays.cuh"
+#include "partition/halo.hpp"
+#include "pack_items.cuh"
+#include "step_graph.cuh"
+#include "sums.cuh"
+
+namespace scree {
+
+// Progress of a linear solve: written by the last block of each product.
+struct SolverControl {
+  Real tolerance;  // on the largest |residual| [N]
+  Real largest;    // squared, of this product
+  unsigned finished_blocks;
+  int products;
+  int stop;
+};
+
+class CudaBackend : public Backend {
+ public:
+  explicit CudaBackend(const Model& model);
+  ~CudaBackend() override;
+  std::string description() const override;
+
+  void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) override;
+  std::vector<ParticleRecord> records() const override;
+  ShapeLosses shape_losses() const override { return side_.losses(); }
+
+  void place_bodies(std::span<const BodyMotion> motion) override;
+  Real list_displacement() override;
+  void build_list(Real skin, StageTimers& timers) override;
+  std::int64_t list_entries() const override { return list_.entries(); }
+  std::int64_t list_builds() const override { return list_builds_; }
+  void initial_forces() override;
+
+  void begin_step(Real h) override;
+  void rollback() override;
+  Real step_displacement() override;
+  ParticleNorms contact_force() override;
+  GlobalId worst_particle() const override;
+  void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) override;
+  ParticleCorrection particle_correct() override;
+  void shorten_correction() override;
+  Real error() override;
+  void accept() override;
+
+  void verlet_start(Real h) override;
+  VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) override;
+  void shape_contacts() override;
+
+  std::vector<Leaver> outside() const override;
+  void take_out(const std::vector<Leaver>& leavers) override;
+  ParticleLedger ledger(Real verlet_step) override;
+  void start_pack() override;
+  ParticlePack pack_particles() override;
+  ShapePack pack_shapes() override;
+  bool computes_asynchronously() const override { return true; }
+
+ private:
+  // Small results that the device writes and the host reads.
+  struct Results {
+    StepNorms norms;
+    Real displacement, largest;
+    ExactSums<1> slope;
+    ExactSums<kLedgerTerms> ledger;
+    VerletControl control;
+    long long worst_id;
+    CellRange range;
+    Index index;
+    Index leavers;
+  };
+  Device device() const { return {stream_}; }
+  // Copies one member of the results to the host, once what is queued is done.
+  template <class T>
+  const T& fetch(T Results::* member) const;
+  template <class T>
+  T* result(T Results::* member) const {
+    return &(results_.data()->*member);
+  }
+
+  DeviceViews views() const { return views(now_.position.data(), now_.velocity.data()); }
+  DeviceViews views(const Vec4* position, const Vec4* velocity) const;
+  StepViews step_views();
+  StepForces step_forces();
+  ContactMatrix matrix();
+  Index shape_items() const { return layout_.items - layout_.first_shape; }
+
+  // Parts of build_list, in their order.
+  void sort_cells(Real skin);
+  void reorder(const Index* order, Index n);
+  void find_ghosts(const HaloBox& box);
+  void grow_items(Index items);
+  void lay_out_items(Real skin);
+  void index_others();
+  void search(Real skin);
+  void size_step_arrays();
+
+  void refresh_ghosts(Vec4* position, Vec4* velocity);
+  void put_shapes(ParticleArrays& arrays);
+  const Vec4* stage_shapes();
+  void find_shape_contacts();
+  void fetch_shape_contacts(cudaStream_t stream);
+  void report_not_finite(const Vec3* force) const;
+
+  // Parts of the implicit step.
+  CorrectItem correct_item(Real share);
+  void subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix);
+  int solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance);
+
+  // Parts of an explicit run.
+  VerletRequest verlet_request(Real h);
+  void settle();
+  void resume_control(Index last);
+  const VerletControl& wait_for_control();
+  void queue_steps(const VerletRequest& request, Index steps);
+  void finish(Real h);
+  bool renew_list(StageTimers& timers);
+  VerletRun run_alone(Real h, Index most, bool keep_open, StageTimers& timers);
+  VerletRun run_with_shapes(Real h, Index most, bool keep_open, StageTimers& timers);
+  bool step_with_shapes(Real h, bool keep_open, StageTimers& timers);
+  bool shapes_covered() const;
+  void queue_shape_contacts();
+
+  const Model& model_;
+  Subdomain subdomain_;
+  ShapeSide side_;
+  NeighborBuilder builder_;  // its grid and reach; the search is the device's
+  HhtCoefficients hht_;
+  // Everything that follows the particles; contacts of shapes beside an explicit step; output.
+  mutable Stream stream_, shape_stream_, copy_stream_;
+
+  DeviceArray<KelvinVoigt> laws_;
+  std::unique_ptr<DeviceContactKernels> kernels_;
+  DeviceArray<WallPlane> planes_;
+
+  // `now_` holds the state. `other_` is what sorting writes, the start of an open implicit step, or what the open
+  // explicit step reads or writes.
+  mutable ParticleArrays now_;
+  ParticleArrays other_;
+  Index owned_ = 0;
+  ItemLayout layout_;  // without its list of ghosts
+  Index ghosts_ = 0;
+  DeviceArray<Ghost> ghost_;
+  DeviceArray<Index> ghost_counts_, ghost_offsets_, other_items_;
+  mutable DeviceArray<unsigned char> space_;  // of library calls
+  CellSort particle_sort_, other_sort_;
+  BrickGrid grid_;
+  DeviceList list_;
+  Real list_skin_ = 0;
+  DeviceArray<Vec4> list_position_;  // of all items when the list was built
+  DeviceArray<Index> shape_body_, connected_offsets_, connected_;
+  DeviceArray<Vec4> shape_places_;  // positions, then velocities, where they are not those of all items
+  DeviceArray<Vec3> shape_step_;
+  DeviceArray<ShapeContact> shape_contacts_;
+  PinnedArray<Vec4> h_shape_places_;
+  std::vector<Vec4> h_list_shapes_;  // positions of the shapes when the list was built
+  Event places_copied_, step_queued_;
+  PinnedArray<ShapeContact> h_shape_contacts_;
+  bool layout_changed_ = true;  // particles left since the list was built
+  std::int64_t list_builds_ = 0;
+
+  mutable DeviceArray<Results> results_;
+  mutable PinnedArray<Results> h_results_;
+  mutable DeviceArray<Leaver> leavers_;
+
+  // Workspace of the implicit step.
+  Real h_ = 0;
+  bool in_implicit_step_ = false;
+  DeviceArray<Vec3> step_force_, end_force_, residual_, right_hand_side_, correction_, matrix_b_;
+  DeviceArray<Real> step_loss_, end_loss_, force_magnitude_, stiffening_;
+  DeviceArray<Index> matrix_count_, matrix_neighbor_;
+  DeviceArray<Sym3> matrix_diagonal_, inverse_block_;
+  DeviceArray<Vec4> direction_[2];
+  DeviceArray<SolverControl> solver_;
+  PinnedArray<SolverControl> h_solver_;
+  Real largest_stiffening_ = 0, force_scale_ = 0;
+  Real right_hand_side_norm_ = 0;
+  Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;  // see CpuBackend
+
+  // Explicit run.
+  bool in_run_ = false;     // whether a step is open
+  int parity_[2] = {0, 0};  // of the open step's position and velocity: 0 in now_, 1 in other_
+  Real bound_ = 0;          // displacement of any item since the list was built, at most [m]
+  // Where the particles as the last step left them are, with the velocities that the law saw: in the state itself, or
+  // where a step closed by opening the next, or closed alone, has left them.
+  enum class Level { state, opened, finished } level_ = Level::state;
+  Index closed_ = 0;        // with bodies: steps since verlet_start
+  StepGraph graph_;
+
+  // Output.
+  struct PackArrays;
+  std::unique_ptr<PackArrays> pack_;
+};
+
+}  // namespace scree

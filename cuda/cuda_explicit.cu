@@ -1,0 +1,252 @@
+// The explicit step of the GPU's backend. Steps are queued ahead of the host: each reads on the device whether the
+// list still covers it, and does nothing if not.
+#include <cmath>
+
+#include "backend_parts.cuh"
+
+namespace scree {
+namespace {
+
+// Steps queued before the host looks at how far they came: long enough to hide the look, short enough that little is
+// queued in vain where the list expires.
+constexpr Index kQueuedSteps = 128;
+// A list whose exact displacement is past this share of what it covers is built anew at once.
+constexpr Real kWornList = 0.9;
+
+constexpr Index kEndless = std::numeric_limits<Index>::max();
+
+// Opens the first step of a run.
+struct RunStartItem {
+  VerletStartItem start;
+  OpenBox box;
+  const std::uint8_t* drifting;
+  VerletControl* control;
+
+  __device__ Real operator()(Index i) const {
+    const Real squared = start(i);
+    if (!box.inside(xyz(start.state.position[i])) && !drifting[i]) control->outside = 1;
+    return squared;
+  }
+};
+
+__global__ void started_kernel(VerletControl* c, const Real* largest) {
+  c->bound += std::sqrt(*largest);
+  c->judge(c->outside != 0);
+}
+
+// Goes on after a stop: with another end, or another list.
+__global__ void resume_kernel(VerletControl* c, Index last, Real bound, Real half_skin, int position_parity,
+                              int velocity_parity) {
+  c->last = last, c->bound = bound, c->half_skin = half_skin;
+  c->parity[0] = position_parity, c->parity[1] = velocity_parity;
+  c->judge(c->outside != 0);
+}
+
+// Refreshes a ghost in the arrays of the open step.
+struct RunGhostItem {
+  const Ghost* ghosts;
+  Vec4 *position[2], *velocity[2];
+  Index first_ghost;
+  const VerletControl* control;
+
+  __device__ void operator()(Index g) const {
+    GhostItem{ghosts, control->parity[0] == 0 ? position[0] : position[1],
+              control->parity[1] == 0 ? velocity[0] : velocity[1], first_ghost}(g);
+  }
+};
+
+}  // namespace
+
+VerletRequest CudaBackend::verlet_request(Real h) {
+  VerletRequest r{};
+  r.in = views(nullptr, nullptr);
+  r.n = owned_, r.gravity = model_.gravity;
+  r.position[0] = now_.position.data(), r.position[1] = other_.position.data();
+  r.velocity[0] = now_.velocity.data(), r.velocity[1] = other_.velocity.data();
+  r.state = {nullptr, nullptr,
+             now_.acceleration.data(),
+             now_.contact_loss.data(),
+             now_.loss_power.data(),
+             h,
+             subdomain_.snap_constant()};
+  r.force = now_.force.data();
+  r.box = subdomain_.box();
+  r.drifting = now_.drifting.data();
+  r.control = result(&Results::control);
+  return r;
+}
+
+void CudaBackend::verlet_start(Real h) {
+  other_.grow(now_.position.size(), static_cast<std::size_t>(owned_), 0, stream_);
+  VerletControl& c = h_results_.data()->control;
+  c = {};
+  c.bound = bound_, c.half_skin = list_skin_ / 2;
+  c.last = kEndless, c.substeps = model_.integrator.substeps;
+  copy_async(result(&Results::control), &c, 1, stream_);
+  const VerletRequest r = verlet_request(h);
+  VerletViews state = r.state;
+  state.position = now_.position.data(), state.velocity = now_.velocity.data();
+  max_over(device(), owned_, RunStartItem{{state}, r.box, r.drifting, r.control}, result(&Results::largest));
+  started_kernel<<<1, 1, 0, stream_>>>(r.control, result(&Results::largest));
+  require_cuda(cudaGetLastError(), "explicit step");
+  wait_for(stream_);  // the host's copy of the control is free again
+  in_run_ = true;
+  parity_[0] = parity_[1] = closed_ = 0;
+}
+
+const VerletControl& CudaBackend::wait_for_control() {
+  const VerletControl& c = fetch(&Results::control);
+  parity_[0] = c.parity[0], parity_[1] = c.parity[1];
+  bound_ = c.bound;
+  return c;
+}
+
+// Brings the open step into now_.
+void CudaBackend::settle() {
+  if (!in_run_) return;
+  wait_for_control();
+  if (parity_[0] == 1) std::swap(now_.position, other_.position);
+  if (parity_[1] == 1) std::swap(now_.velocity, other_.velocity);
+  parity_[0] = parity_[1] = 0;
+  resume_control(kEndless);
+}
+
+void CudaBackend::resume_control(Index last) {
+  resume_kernel<<<1, 1, 0, stream_>>>(result(&Results::control), last, bound_, list_skin_ / 2, parity_[0], parity_[1]);
+  require_cuda(cudaGetLastError(), "explicit step");
+}
+
+// After a stop: whether the list is the reason and was renewed, or turned out to cover the particles yet.
+bool CudaBackend::renew_list(StageTimers& timers) {
+  if (!layout_changed_ && bound_ < list_skin_ / 2) return false;
+  if (!(list_displacement() < kWornList)) build_list(model_.contact.skin, timers);
+  resume_control(kEndless);
+  return true;
+}
+
+void CudaBackend::queue_steps(const VerletRequest& r, Index steps) {
+  std::string key(reinterpret_cast<const char*>(&r), sizeof(r));
+  key += std::to_string(ghosts_) + ' ' + std::to_string(reinterpret_cast<std::uintptr_t>(ghost_.data()));
+  const RunGhostItem ghosts{ghost_.data(), {r.position[0], r.position[1]}, {r.velocity[0], r.velocity[1]}, owned_,
+                            r.control};
+  graph_.queue(stream_, key, steps, [&] {
+    for_each(device(), ghosts_, ghosts);
+    kernels_->verlet_advance(device(), r);
+  });
+}
+
+// Closes the open step without opening another; now_ holds it afterwards. The host knows the parities.
+void CudaBackend::finish(Real h) {
+  const VerletRequest r = verlet_request(h);
+  refresh_ghosts(r.position[parity_[0]], r.velocity[parity_[1]]);
+  kernels_->verlet_finish(device(), r, result(&Results::largest));
+  if (!std::isfinite(fetch(&Results::largest))) report_not_finite(now_.force.data());
+  if (parity_[0] == 1) std::swap(now_.position, other_.position);
+  if (parity_[1] == 0) std::swap(now_.velocity, other_.velocity);  // velocities changed arrays
+  parity_[0] = parity_[1] = 0;
+  in_run_ = false, level_ = Level::finished;
+  put_shapes(now_);
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+}
+
+VerletRun CudaBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) {
+  return shape_items() > 0 ? run_with_shapes(h, most, keep_open, timers) : run_alone(h, most, keep_open, timers);
+}
+
+VerletRun CudaBackend::run_alone(Real h, Index most, bool keep_open, StageTimers& timers) {
+  const VerletControl* c = &wait_for_control();
+  const Index start = c->closed, last = start + most - (keep_open ? 0 : 1);
+  const auto leaves = [&] { return c->closed_steps[c->closed % VerletControl::kClosedSteps].leaves; };
+  for (;;) {
+    if (renew_list(timers)) c = &wait_for_control();
+    if (c->closed == last || leaves()) break;
+    const auto scope = timers.time(Stage::contact_force);
+    resume_control(last);
+    queue_steps(verlet_request(h), std::min(last - c->closed, kQueuedSteps));
+    level_ = Level::opened;
+    if (idle_work_) idle_work_();
+    c = &wait_for_control();
+  }
+  const Index closed = c->closed - start;
+  if (keep_open && !leaves()) return {closed, true};
+  const auto scope = timers.time(Stage::contact_force);
+  finish(h);
+  return {closed + 1, false};
+}
+
+// Whether the list covers the shapes where they are placed now.
+bool CudaBackend::shapes_covered() const {
+  Real squared = 0;
+  const DisplacementItem moved{h_list_shapes_.data(), side_.position().data()};
+  for (Index s = 0; s < shape_items(); ++s) squared = std::max(squared, moved(s));
+  return squared < list_skin_ * list_skin_ / 4;
+}
+
+// Queues, beside the step's own kernel, the shapes' contacts with the open step.
+void CudaBackend::queue_shape_contacts() {
+  Vec4* position = (parity_[0] == 0 ? now_ : other_).position.data() + layout_.first_shape;
+  Vec4* velocity = (parity_[1] == 0 ? now_ : other_).velocity.data() + layout_.first_shape;
+  const auto n = static_cast<std::size_t>(shape_items());
+  const Vec4* places = stage_shapes();
+  copy_async(position, places, n, shape_stream_);
+  copy_async(velocity, places + n, n, shape_stream_);
+  places_copied_.record(shape_stream_);
+  step_queued_.hold(shape_stream_);
+  kernels_->shapes({shape_stream_}, views(position - layout_.first_shape, velocity - layout_.first_shape),
+                   {position, velocity}, shape_items(), shape_contacts_.data());
+  copy_async(&h_results_.data()->control, result(&Results::control), 1, shape_stream_);
+}
+
+VerletRun CudaBackend::run_with_shapes(Real h, Index most, bool keep_open, StageTimers& timers) {
+  VerletRun run{0, true};
+  for (; run.closed < most && run.open; ++run.closed)
+    run.open = step_with_shapes(h, keep_open || run.closed + 1 < most, timers);
+  return run;
+}
+
+// One step with bodies; returns whether the next is open. The host waits for the contacts of the shapes only, and solves for the bodies' motion while
+// the particles' kernel runs.
+bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) {
+  for (;;) {
+    if (layout_changed_ || !shapes_covered()) build_list(model_.contact.skin, timers), resume_control(kEndless);
+    const auto scope = timers.time(Stage::contact_force);
+    step_queued_.record(stream_);
+    queue_shape_contacts();
+    places_copied_.hold(stream_);
+    if (keep_open) queue_steps(verlet_request(h), 1);
+    fetch_shape_contacts(shape_stream_);
+    const VerletControl& control = h_results_[0].control;
+    const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
+    if (before.expired) {  // what was queued has done nothing
+      bound_ = list_skin_;
+      renew_list(timers);
+      continue;
+    }
+    side_.book_losses(h);
+    if (!keep_open || before.leaves) {
+      finish(h);
+      return false;
+    }
+    parity_[0] ^= 1, parity_[1] ^= 1;
+    level_ = Level::opened, ++closed_;
+    return true;
+  }
+}
+
+// Beside the step that was queued last: its kernel reads the same arrays.
+void CudaBackend::shape_contacts() {
+  const auto n = static_cast<std::size_t>(shape_items());
+  if (n == 0) return;
+  const bool in_now[2] = {level_ == Level::opened ? parity_[0] == 1 : parity_[0] == 0,
+                          level_ == Level::state ? parity_[1] == 0 : parity_[1] == 1};
+  const Vec4* position = (in_now[0] ? now_ : other_).position.data();
+  const Vec4* velocity = (in_now[1] ? now_ : other_).velocity.data();
+  shape_places_.resize(2 * n);
+  copy_async(shape_places_.data(), stage_shapes(), 2 * n, shape_stream_);
+  places_copied_.record(shape_stream_);
+  kernels_->shapes({shape_stream_}, views(position, velocity), {shape_places_.data(), shape_places_.data() + n},
+                   shape_items(), shape_contacts_.data());
+  fetch_shape_contacts(shape_stream_);
+}
+
+}  // namespace scree

@@ -1,0 +1,319 @@
+// The implicit step of the GPU's backend: the schedule of src/dem/cpu_implicit.cpp and block_solver.cpp.
+#include <cmath>
+
+#include "backend_parts.cuh"
+#include "dem/block_solver.hpp"
+
+namespace scree {
+
+StepViews CudaBackend::step_views() {
+  return {now_.position.data(),
+          now_.velocity.data(),
+          now_.acceleration.data(),
+          other_.position.data(),
+          other_.velocity.data(),
+          other_.acceleration.data(),
+          now_.force.data(),
+          hht_,
+          h_,
+          subdomain_.snap_constant()};
+}
+
+StepForces CudaBackend::step_forces() {
+  return {step_force_.data(), end_force_.data(), step_loss_.data(), end_loss_.data(), force_magnitude_.data()};
+}
+
+ContactMatrix CudaBackend::matrix() {
+  return {matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(), matrix_diagonal_.data()};
+}
+
+void CudaBackend::size_step_arrays() {
+  const auto owned = static_cast<std::size_t>(owned_), slots = static_cast<std::size_t>(list_.slots());
+  matrix_neighbor_.resize(slots), matrix_b_.resize(slots);
+  for (DeviceArray<Vec4>& direction : direction_) direction.resize(static_cast<std::size_t>(layout_.items));
+  step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
+  force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
+  residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned);
+  matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
+}
+
+namespace {
+
+// Smallest id of the particles of which `is` holds; *id starts from kNoId.
+template <class Is>
+struct SmallestIdItem {
+  const std::int64_t* row_key;
+  Is is;
+  long long* id;
+  __device__ void operator()(Index i) const {
+    if (is(i)) atomicMin(id, static_cast<long long>(id_of(row_key[i])));
+  }
+};
+
+struct IsNotFinite {
+  const Vec3* force;
+  __device__ bool operator()(Index i) const { return !is_finite(force[i]); }
+};
+
+struct IsLargest {
+  const Vec3* residual;
+  const Real* largest;
+  __device__ bool operator()(Index i) const { return norm(residual[i]) == *largest; }
+};
+
+struct NormItem {
+  const Vec3* vector;
+  SCREE_HD Real operator()(Index i) const { return norm(vector[i]); }
+};
+
+// Displacements of the shapes as directions of the linear solve; no other item moves.
+struct ShapeDirectionItem {
+  const Vec3* step;
+  Real inverse_weight;
+  Index first_shape;
+  Vec4* direction;
+  SCREE_HD void operator()(Index item) const {
+    direction[item] = item < first_shape ? Vec4{} : vec4(inverse_weight * step[item - first_shape], 0);
+  }
+};
+
+struct FirstDirectionItem {
+  DirectionItem direction;
+  Vec4* d;
+  Vec3* solution;
+  SCREE_HD void operator()(Index i) const {
+    d[i] = vec4(direction.next(i, {}), 0);
+    solution[i] = {};
+  }
+};
+
+struct GhostDirectionItem {
+  const Ghost* ghosts;
+  Vec4* direction;
+  Index first_ghost;
+  SCREE_HD void operator()(Index g) const { direction[first_ghost + g] = direction[ghosts[g].source]; }
+};
+
+// One step of the solve: takes the direction d into the solution and the residual, and finds the next direction.
+struct SolverItem {
+  SubtractMatrixItem<SlicedRows> subtract;
+  DirectionItem direction;  // weights of the next one
+  Vec4* next;
+  Vec3* solution;
+
+  SCREE_HD Real operator()(Index i) const {
+    const Vec3 d = xyz(subtract.d[i]);
+    solution[i] += d;
+    subtract(i);
+    next[i] = vec4(direction.next(i, d), 0);
+    return dot(subtract.residual[i], subtract.residual[i]);
+  }
+};
+
+__global__ void solver_kernel(Index n, const __grid_constant__ SolverItem item, SolverControl* c) {
+  if (c->stop) return;
+  const Index i = thread_index();
+  block_max(i < n ? item(i) : 0, &c->largest);
+  if (threadIdx.x > 0) return;
+  __threadfence();
+  if (atomicAdd(&c->finished_blocks, 1u) != gridDim.x - 1) return;
+  const Real largest = *static_cast<volatile Real*>(&c->largest);
+  c->largest = 0, c->finished_blocks = 0;
+  ++c->products;
+  c->stop = std::sqrt(largest) <= c->tolerance;
+}
+
+// A correction overshoots if the slope behind it has risen past this share of the slope before it.
+constexpr Real kMostSlope = 0.5;
+// A correction is not shortened below this share: at a kink of the potential no share is good enough.
+constexpr Real kLeastShare = 0.05;
+
+}  // namespace
+
+void CudaBackend::report_not_finite(const Vec3* force) const {
+  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
+  for_each(device(), owned_,
+           SmallestIdItem<IsNotFinite>{now_.row_key.data(), {force}, result(&Results::worst_id)});
+  throw SimulationError("stage contact_force: the force on particle " +
+                        std::to_string(fetch(&Results::worst_id)) + " is not finite");
+}
+
+GlobalId CudaBackend::worst_particle() const {
+  if (owned_ == 0) return -1;
+  max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
+  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
+  for_each(device(), owned_,
+           SmallestIdItem<IsLargest>{now_.row_key.data(), {residual_.data(), result(&Results::largest)},
+                                     result(&Results::worst_id)});
+  return fetch(&Results::worst_id);
+}
+
+void CudaBackend::initial_forces() {
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  kernels_->forces(device(), views(), model_.gravity, owned_, now_.force.data(), now_.loss_power.data());
+  for_each(device(), owned_,
+           StartAccelerationItem{now_.force.data(), now_.velocity.data(), now_.acceleration.data()});
+  find_shape_contacts();
+  side_.book_losses(0);
+}
+
+void CudaBackend::begin_step(Real h) {
+  h_ = h;
+  applied_share_ = 0;
+  in_implicit_step_ = true;
+  const auto n = static_cast<std::size_t>(owned_), shapes = static_cast<std::size_t>(shape_items());
+  std::swap(now_.position, other_.position), std::swap(now_.velocity, other_.velocity);
+  copy_async(other_.acceleration.data(), now_.acceleration.data(), n, stream_);
+  copy_async(now_.position.data() + layout_.first_shape, other_.position.data() + layout_.first_shape, shapes, stream_);
+  copy_async(now_.velocity.data() + layout_.first_shape, other_.velocity.data() + layout_.first_shape, shapes, stream_);
+  for_each(device(), owned_, NewmarkItem{step_views()});
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+}
+
+void CudaBackend::rollback() {
+  if (!in_implicit_step_) return;
+  std::swap(now_.position, other_.position), std::swap(now_.velocity, other_.velocity);
+  copy_async(now_.acceleration.data(), other_.acceleration.data(), static_cast<std::size_t>(owned_), stream_);
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  in_implicit_step_ = false;
+}
+
+Real CudaBackend::step_displacement() {
+  const DisplacementItem moved{other_.position.data(), now_.position.data()};
+  const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
+  max_over(device(), layout_.active, moved, result(&Results::largest));
+  max_over(device(), shape_items(), shapes, result(&Results::displacement));
+  const Real particles = fetch(&Results::largest);
+  return std::sqrt(std::max(particles, fetch(&Results::displacement)));
+}
+
+ParticleNorms CudaBackend::contact_force() {
+  SystemRequest r;
+  r.in = views(), r.n = owned_, r.gravity = model_.gravity;
+  r.weights = {hht_.newmark_beta * h_ * h_, h_ * hht_.newmark_gamma};
+  r.start = {other_.position.data(), other_.velocity.data(), h_, model_.integrator.resolve_events};
+  r.forces = step_forces(), r.matrix = matrix(), r.step = step_views();
+  r.residual = residual_.data(), r.stiffening = stiffening_.data(), r.inverse_block = inverse_block_.data();
+  r.largest = result(&Results::norms);
+  kernels_->system(device(), r);
+  if (shape_items() > 0) {
+    kernels_->shapes(device(), views(), shape_items(), r.start, shape_contacts_.data());
+    fetch_shape_contacts(stream_);
+  }
+  const bool line_search = applied_share_ > kLeastShare;
+  if (line_search)
+    exact_sums(device(), owned_, SlopeItem{residual_.data(), correction_.data()}, result(&Results::slope));
+  copy_async(&h_results_.data()->slope, result(&Results::slope), 1, stream_);
+  const StepNorms largest = fetch(&Results::norms);
+  if (!std::isfinite(largest.residual)) report_not_finite(residual_.data());
+
+  ParticleNorms norms;
+  force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
+  norms.residual = largest.residual == 0 ? 0 : largest.residual / force_scale_;
+  norms.correction_bound = largest.correction_bound;
+  right_hand_side_norm_ = largest.residual;
+  if (line_search) {
+    slope_ = -h_results_[0].slope.sum(0);
+    norms.overshoot = slope_ > kMostSlope * std::abs(start_slope_);
+  }
+  return norms;
+}
+
+CorrectItem CudaBackend::correct_item(Real share) {
+  return {now_.acceleration.data(), correction_.data(), now_.position.data(), share, hht_.newmark_beta * h_ * h_};
+}
+
+// Regula falsi for the zero of the slope between the start of the correction and the iterate.
+void CudaBackend::shorten_correction() {
+  const Real full = std::abs(start_slope_) / (std::abs(start_slope_) + slope_);
+  const Real share = applied_share_ * std::clamp(full, Real(0.1), Real(0.8));
+  max_over(device(), owned_, correct_item(share - applied_share_), result(&Results::largest));
+  applied_share_ = share;
+  for_each(device(), owned_, NewmarkItem{step_views()});
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+}
+
+// The bodies have already taken their correction: as a known part of the solution it moves to the right.
+void CudaBackend::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
+  const auto n = static_cast<std::size_t>(shape_items());
+  if (n == 0) return;
+  shape_step_.upload(side_.step(), stream_);
+  const Real weight = hht_.newmark_beta * h_ * h_;
+  for_each(device(), layout_.items,
+           ShapeDirectionItem{shape_step_.data(), 1 / weight, layout_.first_shape, direction_[0].data()});
+  matrix.d = direction_[0].data();
+  for_each(device(), owned_, matrix);
+  max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
+  right_hand_side_norm_ = fetch(&Results::largest);
+}
+
+// Solves for correction_ in batches of products, so that the host seldom waits; returns the number of products.
+int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
+  constexpr int kBatch = 8;
+  h_solver_[0] = {tolerance, 0, 0, 0, 0};
+  copy_async(solver_.data(), h_solver_.data(), 1, stream_);
+  // Ghosts are refreshed, shapes do not move.
+  const std::size_t shapes = static_cast<std::size_t>(shape_items()) * sizeof(Vec4);
+  for (DeviceArray<Vec4>& direction : direction_)
+    if (shapes > 0)
+      require_cuda(cudaMemsetAsync(direction.data() + layout_.first_shape, 0, shapes, stream_), "cudaMemsetAsync");
+  ChebyshevWeights weights = solver_weights(largest_stiffening_);
+  const auto direction = [&] {
+    return DirectionItem{inverse_block_.data(), residual_.data(), weights.from_last, weights.from_residual};
+  };
+  for_each(device(), owned_, FirstDirectionItem{direction(), direction_[0].data(), correction_.data()});
+  for (int product = 0; product < kMostProducts; ++product) {
+    DeviceArray<Vec4>&d = direction_[product % 2], &next = direction_[1 - product % 2];
+    for_each(device(), ghosts_, GhostDirectionItem{ghost_.data(), d.data(), owned_});
+    weights.advance();
+    SolverItem item{matrix, direction(), next.data(), correction_.data()};
+    item.subtract.d = d.data(), item.subtract.residual = residual_.data();
+    solver_kernel<<<blocks_for(owned_), kThreadsPerBlock, 0, stream_>>>(owned_, item, solver_.data());
+    require_cuda(cudaGetLastError(), "linear solve");
+    if (product % kBatch != kBatch - 1) continue;
+    copy_async(h_solver_.data(), solver_.data(), 1, stream_);
+    if (idle_work_) idle_work_();
+    wait_for(stream_);
+    if (h_solver_[0].stop) break;
+  }
+  return h_solver_[0].products;
+}
+
+ParticleCorrection CudaBackend::particle_correct() {
+  const SubtractMatrixItem<SlicedRows> system{matrix(),        list_.rows(), now_.velocity.data(), 1 / (1 + hht_.hht_alpha),
+                                              nullptr,         residual_.data()};
+  subtract_shape_steps(system);
+  const Real right_hand_side = right_hand_side_norm_;
+  const Real goal = Real(0.1) * model_.integrator.residual_tolerance * force_scale_;
+  ParticleCorrection out;
+  if (right_hand_side > 0) {
+    copy_async(right_hand_side_.data(), residual_.data(), static_cast<std::size_t>(owned_), stream_);
+    out.iterations = solve(system, std::max(goal, Real(0.01) * right_hand_side));
+    max_over(device(), owned_, correct_item(1), result(&Results::largest));
+    exact_sums(device(), owned_, SlopeItem{right_hand_side_.data(), correction_.data()}, result(&Results::slope));
+  }
+  applied_share_ = right_hand_side > 0 ? 1 : 0;
+  for_each(device(), owned_, NewmarkItem{step_views()});
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  if (right_hand_side > 0) {
+    copy_async(&h_results_.data()->largest, result(&Results::largest), 1, stream_);
+    start_slope_ = -fetch(&Results::slope).sum(0);
+    out.correction = h_results_[0].largest;
+  }
+  return out;
+}
+
+Real CudaBackend::error() {
+  max_over(device(), owned_, StepErrorItem{step_views()}, result(&Results::largest));
+  return fetch(&Results::largest);
+}
+
+void CudaBackend::accept() {
+  for_each(device(), owned_,
+           AcceptItem{step_views(), step_forces(), now_.force.data(), now_.loss_power.data(),
+                      now_.contact_loss.data(), now_.integrator_loss.data()});
+  side_.book_losses(h_);
+  in_implicit_step_ = false;
+}
+
+}  // namespace scree

@@ -1,0 +1,186 @@
+// What the GPU's backend tells about its particles: leavers, sums, packs for output.
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_select.cuh>
+
+#include "backend_parts.cuh"
+
+namespace scree {
+namespace {
+
+// Collects the particles outside that are not known to drift; counts all, keeps as many as there is room for.
+struct LeaverItem {
+  ParticleViews in;
+  OpenBox box;
+  Vec3 gravity, period;
+  Leaver* out;
+  Index room;
+  Index* count;
+
+  __device__ void operator()(Index i) const {
+    const Vec4 x = in.position[i], v = in.velocity[i];
+    if (in.drifting[i] || box.inside(xyz(x))) return;
+    const Index slot = atomicAdd(count, 1);
+    if (slot >= room) return;
+    const Real energy = kinetic_energy(v.w, xyz(v)) +
+                        gravitational_energy(v.w, gravity, unwrapped(x, in.image[i], period));
+    out[slot] = {id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i]};
+  }
+};
+
+struct MarkItem {
+  const Index* particles;
+  std::uint8_t* drifting;
+  SCREE_HD void operator()(Index k) const { drifting[particles[k]] = 1; }
+};
+
+struct StaysItem {
+  const std::uint8_t* drifting;
+  std::uint8_t* stays;
+  Index* iota;
+  SCREE_HD void operator()(Index i) const { stays[i] = !drifting[i], iota[i] = i; }
+};
+
+struct IdItem {
+  const std::int64_t* row_key;
+  unsigned long long* ids;
+  Index* iota;
+  SCREE_HD void operator()(Index i) const {
+    ids[i] = static_cast<unsigned long long>(id_of(row_key[i]));
+    iota[i] = i;
+  }
+};
+
+struct CountDriftingItem {
+  const std::uint8_t* drifting;
+  Index* count;
+  __device__ void operator()(Index i) const {
+    if (drifting[i]) atomicAdd(count, 1);
+  }
+};
+
+}  // namespace
+
+std::vector<Leaver> CudaBackend::outside() const {
+  constexpr std::size_t kFirstRoom = 1024;
+  if (leavers_.size() == 0) leavers_.resize(kFirstRoom);
+  Index found = 0;
+  for (bool enough = false; !enough; enough = static_cast<std::size_t>(found) <= leavers_.size()) {
+    if (static_cast<std::size_t>(found) > leavers_.size()) leavers_.resize(static_cast<std::size_t>(found));
+    require_cuda(cudaMemsetAsync(result(&Results::leavers), 0, sizeof(Index), stream_), "cudaMemsetAsync");
+    for_each(device(), owned_,
+             LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), leavers_.data(),
+                        static_cast<Index>(leavers_.size()), result(&Results::leavers)});
+    found = fetch(&Results::leavers);
+    if (static_cast<std::size_t>(found) > leavers_.size()) continue;
+  }
+  std::vector<Leaver> leavers(static_cast<std::size_t>(found));
+  if (found == 0) return leavers;
+  require_cuda(cudaMemcpyAsync(leavers.data(), leavers_.data(), leavers.size() * sizeof(Leaver),
+                               cudaMemcpyDeviceToHost, stream_),
+               "cudaMemcpyAsync");
+  wait_for(stream_);
+  for (Leaver& leaver : leavers) leaver.lost = subdomain_.beyond_wall(leaver.position);
+  std::sort(leavers.begin(), leavers.end(),
+            [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
+  return leavers;
+}
+
+void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
+  if (leavers.empty()) return;
+  std::vector<Index> particles;
+  for (const Leaver& leaver : leavers) particles.push_back(leaver.local_index);
+  DeviceArray<Index> d_particles;
+  d_particles.upload(particles, stream_);
+  for_each(device(), static_cast<Index>(particles.size()), MarkItem{d_particles.data(), now_.drifting.data()});
+  layout_changed_ = true;
+  if (model_.space.leaving != Leaving::remove) return;
+
+  const auto n = static_cast<std::size_t>(owned_);
+  DeviceArray<std::uint8_t> stays(n);
+  DeviceArray<Index> iota(n), staying(n);
+  for_each(device(), owned_, StaysItem{now_.drifting.data(), stays.data(), iota.data()});
+  std::size_t space = 0;
+  const auto select = [&](void* at) {
+    require_cuda(cub::DeviceSelect::Flagged(at, space, iota.data(), stays.data(), staying.data(),
+                                            result(&Results::index), owned_, stream_),
+                 "select");
+  };
+  select(nullptr);
+  space_.resize(space);
+  select(space_.data());
+  owned_ = fetch(&Results::index);
+  reorder(staying.data(), owned_);
+  wait_for(stream_);  // before the arrays above go
+}
+
+ParticleLedger CudaBackend::ledger(Real verlet_step) {
+  const auto n = static_cast<std::size_t>(owned_);
+  DeviceArray<Real>&elastic = pack_->elastic, &pairs = pack_->pairs;
+  DeviceArray<Index>& contacts = pack_->contacts;
+  elastic.resize(n), pairs.resize(n), contacts.resize(n);
+  kernels_->energies(device(), views(), owned_, {elastic.data(), contacts.data(), pairs.data()});
+  find_shape_contacts();
+  const LedgerItem item{now_.position.data(),     now_.velocity.data(), now_.acceleration.data(),
+                        now_.image.data(),        now_.contact_loss.data(),
+                        now_.integrator_loss.data(), elastic.data(),    pairs.data(),
+                        model_.gravity,           subdomain_.period(),  verlet_step};
+  exact_sums(device(), owned_, item, result(&Results::ledger));
+  require_cuda(cudaMemsetAsync(result(&Results::index), 0, sizeof(Index), stream_), "cudaMemsetAsync");
+  for_each(device(), owned_, CountDriftingItem{now_.drifting.data(), result(&Results::index)});
+  copy_async(&h_results_.data()->index, result(&Results::index), 1, stream_);
+  const ExactSums<kLedgerTerms>& sums = fetch(&Results::ledger);
+  Real totals[kLedgerTerms];
+  for (int k = 0; k < kLedgerTerms; ++k) totals[k] = sums.sum(k);
+  ParticleLedger out = make_particle_ledger(totals, side_);
+  out.drifting = h_results_[0].index;
+  return out;
+}
+
+void CudaBackend::start_pack() {
+  PackArrays& p = *pack_;
+  const auto n = static_cast<std::size_t>(owned_);
+  p.ready.wait();  // for the last pack, whose arrays are written now
+  p.n = n;
+  p.packed.resize(n), p.h_packed.resize(n);
+  p.elastic.resize(n), p.pairs.resize(n), p.contacts.resize(n);
+  p.ids.resize(n), p.sorted_ids.resize(n), p.order.resize(n), p.sorted_order.resize(n);
+  kernels_->energies(device(), views(), owned_, {p.elastic.data(), p.contacts.data(), p.pairs.data()});
+  for_each(device(), owned_, IdItem{now_.row_key.data(), p.ids.data(), p.order.data()});
+  std::size_t space = 0;
+  const auto sort = [&](void* at) {
+    require_cuda(cub::DeviceRadixSort::SortPairs(at, space, p.ids.data(), p.sorted_ids.data(), p.order.data(),
+                                                 p.sorted_order.data(), owned_, 0, 8 * sizeof(GlobalId), stream_),
+                 "sort");
+  };
+  sort(nullptr);
+  space_.resize(space);
+  if (n > 0) sort(space_.data());
+  for_each(device(), owned_,
+           PackItem{views_of(now_), p.sorted_order.data(), p.contacts.data(), model_.gravity, model_.space.min,
+                    subdomain_.period(), p.packed.data()});
+  step_queued_.record(stream_);
+  step_queued_.hold(copy_stream_);
+  copy_async(p.h_packed.data(), p.packed.data(), n, copy_stream_);
+  p.ready.record(copy_stream_);
+}
+
+ParticlePack CudaBackend::pack_particles() {
+  PackArrays& p = *pack_;
+  p.ready.wait();
+  ParticlePack pack;
+  pack.global_id.resize(p.n), pack.radius.resize(p.n), pack.position.resize(p.n);
+  pack.velocity.resize(p.n), pack.force.resize(p.n), pack.contacts.resize(p.n);
+  for (std::size_t i = 0; i < p.n; ++i) {
+    const PackedParticle& one = p.h_packed[i];
+    pack.global_id[i] = one.global_id, pack.radius[i] = one.radius, pack.position[i] = one.position;
+    pack.velocity[i] = one.velocity, pack.force[i] = one.force, pack.contacts[i] = one.contacts;
+  }
+  return pack;
+}
+
+ShapePack CudaBackend::pack_shapes() {
+  find_shape_contacts();
+  return side_.pack(layout_);
+}
+
+}  // namespace scree

@@ -1,0 +1,66 @@
+// The machine's GPU, and what a model needs of its memory.
+#include "device.cuh"
+
+#include "dem/device.hpp"
+
+namespace scree {
+
+std::size_t& device_bytes_in_use() {
+  static std::size_t bytes = 0;
+  return bytes;
+}
+
+namespace {
+
+__global__ void trial_kernel() {}
+
+std::string trouble_of(cudaError_t status) {
+  int driver = 0, runtime = 0;
+  cudaDriverGetVersion(&driver), cudaRuntimeGetVersion(&runtime);
+  const auto version = [](int v) { return std::to_string(v / 1000) + "." + std::to_string(v % 1000 / 10); };
+  switch (status) {
+    case cudaErrorNoDevice: return "there is no GPU that CUDA can use";
+    case cudaErrorInsufficientDriver:
+      return driver == 0 ? "there is no NVIDIA driver here"
+                         : "the NVIDIA driver supports CUDA " + version(driver) + ", this program needs " + version(runtime);
+    case cudaErrorNoKernelImageForDevice:
+    case cudaErrorUnsupportedPtxVersion: {
+      int major = 0, minor = 0;
+      cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, 0);
+      cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, 0);
+      return "the GPU is of generation " + std::to_string(major) + "." + std::to_string(minor) +
+             ", this program was built for " SCREE_CUDA_ARCHITECTURES " (CMAKE_CUDA_ARCHITECTURES)";
+    }
+    default: return cudaGetErrorString(status);
+  }
+}
+
+}  // namespace
+
+std::string device_trouble() {
+  int devices = 0;
+  cudaError_t status = cudaGetDeviceCount(&devices);
+  if (status == cudaSuccess && devices == 0) status = cudaErrorNoDevice;
+  if (status == cudaSuccess) {
+    trial_kernel<<<1, 1>>>();
+    status = cudaGetLastError();
+    if (status == cudaSuccess) status = cudaDeviceSynchronize();
+  }
+  return status == cudaSuccess ? "" : trouble_of(status);
+}
+
+std::string device_name() {
+  cudaDeviceProp properties{};
+  require_cuda(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
+  return properties.name;
+}
+
+std::size_t device_memory_in_use() { return device_bytes_in_use(); }
+
+std::size_t free_device_memory() {
+  std::size_t free = 0, total = 0;
+  require_cuda(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
+  return free;
+}
+
+}  // namespace scree

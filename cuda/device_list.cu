@@ -1,0 +1,210 @@
+#include "device_list.cuh"
+
+#include <cub/device/device_scan.cuh>
+
+#include "dem/device.hpp"
+#include "for_each.cuh"
+
+namespace scree {
+
+// Where the search puts what it finds.
+struct RowOutputs {
+  std::int64_t* slice_start;
+  Index *counts, *neighbors, *wall_counts;
+  unsigned long long capacity;  // slots
+  DeviceList::Totals* totals;
+};
+
+namespace {
+
+// The search keeps a row of up to so many entries in shared memory; longer rows take a slower way.
+template <int kEntries>
+struct RowBuffer {
+  static constexpr int kThreads = kEntries <= 16 ? 128 : 64;
+  std::int64_t key[kEntries][kThreads];
+  Index neighbor[kEntries][kThreads];
+};
+
+// Which pairs a row leaves out: see NeighborBuilder::excluded.
+__device__ bool excluded(const ListInput& in, Index i, Index j) {
+  if (i == j) return true;
+  if (i < in.first_shape) return false;
+  if (j < in.owned) return false;
+  if (j < in.first_shape || i >= in.first_image) return true;
+  return !in.bodies.may_touch(i - in.first_shape, j - in.first_shape);
+}
+
+// Calls visit(j) for every entry of row i, in the order of the cells.
+template <class Visit>
+__device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
+  const Vec4 p = in.position[i];
+  const CellGrid& cells = in.grid.cells;
+  const CellPlace c = cells.place(xyz(p));
+  if (c.x < 0) return;
+  const auto consider = [&](Index j) {
+    const Vec4 q = in.position[j];
+    const Vec3 d = xyz(p) - xyz(q);
+    const Real reach = p.w + q.w + in.skin;
+    if (dot(d, d) < reach * reach && !excluded(in, i, j)) visit(j);
+  };
+  for (Index z = max(c.z - 1, 0); z <= min(c.z + 1, cells.cells[2] - 1); ++z)
+    for (Index y = max(c.y - 1, 0); y <= min(c.y + 1, cells.cells[1] - 1); ++y)
+      for (Index x = max(c.x - 1, 0); x <= min(c.x + 1, cells.cells[0] - 1); ++x) {
+        const Index cell = in.grid.key(x, y, z);
+        const CellRange particles = in.cell_particles[cell];
+        for (Index k = particles.begin; k < particles.end; ++k) consider(k);
+        if (in.cell_others == nullptr) continue;
+        const CellRange others = in.cell_others[cell];
+        for (Index k = others.begin; k < others.end; ++k) consider(in.other_items[k]);
+      }
+}
+
+// Heap sort of a row in device memory by row_key.
+__device__ void sort_row(const std::int64_t* row_key, Index* row, Index n) {
+  const auto at = [&](Index k) -> Index& { return row[static_cast<std::int64_t>(k) * kSlice]; };
+  const auto sift = [&](Index root, Index end) {
+    while (2 * root + 1 < end) {
+      Index child = 2 * root + 1;
+      if (child + 1 < end && row_key[at(child)] < row_key[at(child + 1)]) ++child;
+      if (row_key[at(root)] >= row_key[at(child)]) return;
+      const Index held = at(root);
+      at(root) = at(child), at(child) = held;
+      root = child;
+    }
+  };
+  for (Index root = n / 2; root-- > 0;) sift(root, n);
+  for (Index end = n; end-- > 1;) {
+    const Index held = at(0);
+    at(0) = at(end), at(end) = held;
+    sift(0, end);
+  }
+}
+
+__device__ bool near(const ListInput& in, Vec4 p, const WallPlane& wall) {
+  return wall_overlap(p, wall).distance < p.w + in.skin;
+}
+
+__device__ bool collides_with_walls(const ListInput& in, Index i) {
+  return i < in.active || (i >= in.first_shape && i < in.first_image);
+}
+
+__device__ Index near_walls(const ListInput& in, Index i) {
+  Index count = 0;
+  if (collides_with_walls(in, i))
+    for (Index w = 0; w < in.walls; ++w) count += near(in, in.position[i], in.planes[w]);
+  return count;
+}
+
+// Finds row i, sorted in the thread's column of the buffer as far as it fits there; returns its length.
+template <int kEntries>
+__device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buffer) {
+  const int column = static_cast<int>(threadIdx.x);
+  Index found = 0;
+  visit_row(in, i, [&](Index j) {
+    if (found < kEntries) {
+      const std::int64_t key = in.row_key[j];
+      Index k = found;
+      for (; k > 0 && buffer.key[k - 1][column] > key; --k) {
+        buffer.key[k][column] = buffer.key[k - 1][column];
+        buffer.neighbor[k][column] = buffer.neighbor[k - 1][column];
+      }
+      buffer.key[k][column] = key, buffer.neighbor[k][column] = j;
+    }
+    ++found;
+  });
+  return found;
+}
+
+template <int kEntries>
+__global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
+    find_rows_kernel(const __grid_constant__ ListInput in, RowOutputs out) {
+  __shared__ RowBuffer<kEntries> buffer;
+  const Index i = thread_index(), lane = static_cast<Index>(threadIdx.x) % kSlice;
+  const bool has_row = i < in.active || (i >= in.first_shape && i < in.items);
+  const Index found = has_row ? find_row(in, i, buffer) : 0;
+
+  const auto width = static_cast<Index>(__reduce_max_sync(~0u, static_cast<unsigned>(found)));
+  const auto sum = __reduce_add_sync(~0u, static_cast<unsigned>(found));
+  unsigned long long start = 0;
+  if (lane == 0) {
+    start = atomicAdd(&out.totals->used, static_cast<unsigned long long>(width) * kSlice);
+    atomicAdd(&out.totals->entries, static_cast<unsigned long long>(sum));
+    if (width > *static_cast<volatile Index*>(&out.totals->longest)) atomicMax(&out.totals->longest, width);
+    if (i < in.items) out.slice_start[i / kSlice] = static_cast<std::int64_t>(start);
+  }
+  start = __shfl_sync(~0u, start, 0);
+  if (i >= in.items) return;
+  out.counts[i] = found;
+  out.wall_counts[i] = near_walls(in, i);
+  if (start + static_cast<unsigned long long>(width) * kSlice > out.capacity) return;  // the host repeats the search
+  Index* row = out.neighbors + start + lane;
+  if (found <= kEntries) {
+    for (Index k = 0; k < found; ++k) row[static_cast<std::int64_t>(k) * kSlice] = buffer.neighbor[k][threadIdx.x];
+  } else {
+    std::int64_t slot = 0;
+    visit_row(in, i, [&](Index j) { row[slot] = j, slot += kSlice; });
+    sort_row(in.row_key, row, found);
+  }
+}
+
+__global__ void fill_walls_kernel(const __grid_constant__ ListInput in, const Index* offsets, Index* walls) {
+  const Index i = thread_index();
+  if (i >= in.items || offsets[i] == offsets[i + 1]) return;
+  Index slot = offsets[i];
+  for (Index w = 0; w < in.walls; ++w)
+    if (near(in, in.position[i], in.planes[w])) walls[slot++] = w;
+}
+
+constexpr int kShortRow = 16, kLongRow = 48;
+
+}  // namespace
+
+DeviceList::DeviceList() : totals_(1), h_totals_(1) { h_totals_[0] = {}; }
+
+void DeviceList::search(Device device, const ListInput& in) {
+  const bool long_rows = h_totals_[0].longest > kShortRow;
+  totals_.zero(device.stream);
+  const RowOutputs out{slice_start_.data(), counts_.data(),    neighbors_.data(),
+                       wall_counts_.data(), neighbors_.size(), totals_.data()};
+  if (long_rows)
+    find_rows_kernel<kLongRow><<<blocks_for(in.items, 64), 64, 0, device.stream>>>(in, out);
+  else
+    find_rows_kernel<kShortRow><<<blocks_for(in.items, 128), 128, 0, device.stream>>>(in, out);
+  require_cuda(cudaGetLastError(), "neighbour list");
+  copy_async(h_totals_.data(), totals_.data(), 1, device.stream);
+}
+
+void DeviceList::build(Device device, const ListInput& in) {
+  const auto items = static_cast<std::size_t>(in.items);
+  slice_start_.resize(items / kSlice + 1), counts_.resize(items);
+  wall_counts_.resize(items + 1), wall_offsets_.resize(items + 1);
+  if (neighbors_.size() == 0) neighbors_.resize(kSlotsPerItem * items + kSlice);
+  search(device, in);
+
+  // The entry past the end is read, though no sum depends on it.
+  require_cuda(cudaMemsetAsync(wall_counts_.data() + items, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
+  std::size_t space = 0;
+  require_cuda(cub::DeviceScan::ExclusiveSum(nullptr, space, wall_counts_.data(), wall_offsets_.data(), in.items + 1,
+                                             device.stream),
+               "scan");
+  scan_space_.resize(space);
+  require_cuda(cub::DeviceScan::ExclusiveSum(scan_space_.data(), space, wall_counts_.data(), wall_offsets_.data(),
+                                             in.items + 1, device.stream),
+               "scan");
+  copy_async(&h_totals_.data()->wall_entries, wall_offsets_.data() + in.items, 1, device.stream);
+  wait_for(device.stream);
+  if (h_totals_[0].used > neighbors_.size()) {
+    neighbors_.resize(static_cast<std::size_t>(kListSlack * static_cast<double>(h_totals_[0].used)));
+    const Index wall_entries = h_totals_[0].wall_entries;
+    search(device, in);
+    wait_for(device.stream);
+    h_totals_[0].wall_entries = wall_entries;
+  }
+  walls_.resize(static_cast<std::size_t>(h_totals_[0].wall_entries));
+  if (h_totals_[0].wall_entries == 0 || in.items == 0) return;
+  fill_walls_kernel<<<blocks_for(in.items), kThreadsPerBlock, 0, device.stream>>>(in, wall_offsets_.data(),
+                                                                                  walls_.data());
+  require_cuda(cudaGetLastError(), "walls");
+}
+
+}  // namespace scree

@@ -1,0 +1,54 @@
+// Batches of explicit steps as CUDA graphs: one launch instead of one or two per step.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "device.cuh"
+
+namespace scree {
+
+class StepGraph {
+ public:
+  static constexpr int kSteps = 16;  // in one graph
+
+  StepGraph() = default;
+  ~StepGraph();
+  StepGraph(const StepGraph&) = delete;
+  StepGraph& operator=(const StepGraph&) = delete;
+
+  // Queues `steps` calls of queue_one(), which queues one step on the stream. key: all that the launches depend on; a
+  // batch of a key that was seen before is launched without capturing it again.
+  template <class QueueOne>
+  void queue(cudaStream_t stream, const std::string& key, int steps, const QueueOne& queue_one) {
+    if (steps >= kSteps) {
+      const cudaGraphExec_t graph = find(key) != nullptr ? find(key) : capture(stream, key, queue_one);
+      for (; steps >= kSteps; steps -= kSteps) require_cuda(cudaGraphLaunch(graph, stream), "cudaGraphLaunch");
+    }
+    for (; steps > 0; --steps) queue_one();
+  }
+
+ private:
+  struct Entry {
+    std::string key;
+    cudaGraphExec_t graph = nullptr;
+  };
+  cudaGraphExec_t find(const std::string& key) const;
+  void keep(const std::string& key, cudaGraph_t captured);
+
+  template <class QueueOne>
+  cudaGraphExec_t capture(cudaStream_t stream, const std::string& key, const QueueOne& queue_one) {
+    require_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "cudaStreamBeginCapture");
+    for (int step = 0; step < kSteps; ++step) queue_one();
+    cudaGraph_t captured = nullptr;
+    require_cuda(cudaStreamEndCapture(stream, &captured), "cudaStreamEndCapture");
+    keep(key, captured);
+    return find(key);
+  }
+
+  // Sorting swaps the arrays of the particles, so that two keys alternate; two more are slack.
+  std::array<Entry, 4> entries_;
+  std::size_t oldest_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,83 @@
+// How much device memory a model takes: the arrays of cuda/, counted. A GPU test compares it with what they hold.
+#include <algorithm>
+
+#include "dem/backend.hpp"
+#include "dem/device.hpp"
+
+namespace scree {
+namespace {
+
+// Bytes per particle or item, by the array groups of cuda/cuda_backend.cuh.
+constexpr double kItemArrays = 2 * (sizeof(Vec4) + sizeof(Vec4) + sizeof(int) + sizeof(GlobalId));
+constexpr double kParticleArrays = 2 * (2 * sizeof(Vec3) + 3 * sizeof(Real) + sizeof(ImageCount) + 1);
+constexpr double kSortArrays = 4 * sizeof(Index) + 2 * sizeof(Index);  // keys and order twice, the library's buffers
+constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);       // counts, walls, positions at the build
+constexpr double kGhostArrays = 40 + kSortArrays + sizeof(Index);
+constexpr double kStepArrays = 5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
+constexpr double kStepArraysPerSlot = sizeof(Vec3) + sizeof(Index);
+constexpr double kOutputArrays = 96 + 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
+                                 sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
+constexpr double kCellBytes = 2 * sizeof(Index);
+constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
+
+struct Sizes {
+  double particles, ghosts, items, cells, slots;
+};
+
+bool equal_radii(const Model& model) {
+  const auto [smallest, largest] = std::minmax_element(model.particles.radius.begin(), model.particles.radius.end());
+  return model.particles.size() == 0 || *largest <= 1.2 * *smallest;
+}
+
+// Slots of a list in slices of 32 rows, of particles as they are at the start.
+double slots_at_start(const ParticleStore& store, const ItemLayout& layout, NeighborBuilder& builder, Real skin) {
+  constexpr Index kSlice = 32;
+  NeighborList list;
+  builder.build(store, layout, skin, list);
+  double slots = 0;
+  for (Index first = 0; first < layout.items; first += kSlice) {
+    Index width = 0;
+    for (Index i = first; i < std::min(first + kSlice, layout.items); ++i)
+      width = std::max(width, list.offsets[i + 1] - list.offsets[i]);
+    slots += static_cast<double>(width) * kSlice;
+  }
+  return slots;
+}
+
+Sizes sizes_of(const Model& model) {
+  const Subdomain subdomain(model.space);
+  const BodyShapes shapes(model);
+  NeighborBuilder builder(model, shapes);
+  const Real skin = model.contact.skin;
+  ParticleStore store;
+  store.load(model.particles, initial_records(model.particles, subdomain));
+  const std::vector<Ghost> ghosts = exchange_halo(subdomain, model.space, store.position, builder.cutoff(skin));
+  Sizes sizes{};
+  sizes.particles = static_cast<double>(model.particles.size()), sizes.ghosts = static_cast<double>(ghosts.size());
+  sizes.items = sizes.particles + sizes.ghosts + static_cast<double>(shapes.size());
+  sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, store.owned + shapes.size()).count());
+  sizes.slots = kSlotsPerItem * sizes.items;
+  if (equal_radii(model)) return sizes;
+  ItemLayout layout;
+  layout.owned = layout.active = layout.first_shape = layout.items = store.owned;
+  sizes.slots = std::max(sizes.slots, kListSlack * slots_at_start(store, layout, builder, skin));
+  return sizes;
+}
+
+}  // namespace
+
+std::size_t device_memory(const Model& model) {
+  const Sizes n = sizes_of(model);
+  const bool periodic = n.ghosts > 0;
+  const double spare = periodic ? 1.125 : 1;  // arrays that grow when ghosts are found
+  double bytes = n.items * kItemArrays * spare + n.particles * kParticleArrays;
+  bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays + n.particles * 2 * sizeof(Index) : 0);
+  bytes += n.items * kListArrays + n.slots * sizeof(Index);
+  bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
+  if (model.integrator.particles == ParticleIntegrator::hht)
+    bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
+  bytes += n.particles * (kOutputArrays + sizeof(ParticleRecord));
+  return static_cast<std::size_t>(bytes);
+}
+
+}  // namespace scree

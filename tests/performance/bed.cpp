@@ -1,0 +1,310 @@
+// Speed of explicit and implicit steps on settled beds, and what a net of bodies costs on top. Usage: bed
+// --help.
+//
+// The CPU's times are CPU seconds, the GPU's wall seconds around calls that return when the work is done.
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <iostream>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+#include "bed_cases.hpp"
+#include "coupling/coupled_step.hpp"
+#include "dem/device.hpp"
+#include "mbs/petsc_session.hpp"
+
+namespace scree {
+namespace {
+
+struct Options {
+  int dimension = 3;
+  std::string backend = "cpu", precision = "double", integrator = "verlet";
+  std::vector<std::int64_t> particles;
+  Index rebuild = 25;
+  int repeats = 5;
+  double seconds = 0.5;
+  bool net = false;
+  std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5";
+
+  bool on_gpu() const { return backend == "cuda"; }
+};
+
+// Bodies and particles exchange in batches of this many steps: as long as those between two outputs of a run.
+constexpr Index kCoupledBatch = 1000;
+// The bed's own steps before anything is measured, implicit: the contacts adapt to the longer step.
+constexpr int kImplicitWarmUp = 5;
+
+double seconds_now(const Options& options) {
+  timespec time{};
+  clock_gettime(options.on_gpu() ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+struct Samples {
+  Index steps = 0;              // per sample
+  std::vector<double> seconds;  // per step, in increasing order
+
+  double median() const { return seconds[seconds.size() / 2]; }
+};
+
+// Sections of equal length, in multiples of `quantum` steps. advance(n) takes n steps and returns when they
+// are done; before_samples is called between the search for the length and the first sample.
+Samples sample(
+    const Options& options, Index quantum, const std::function<void(Index)>& advance,
+    const std::function<void()>& before_samples = [] {}) {
+  const auto timed = [&](Index steps) {
+    const double start = seconds_now(options);
+    advance(steps);
+    return seconds_now(options) - start;
+  };
+  advance(quantum);
+  Index steps = quantum;
+  double taken = timed(steps);
+  while (taken < 0.2 * options.seconds) taken = timed(steps *= 4);
+  const double quanta =
+      std::ceil(options.seconds / taken * static_cast<double>(steps) / static_cast<double>(quantum));
+  Samples samples;
+  samples.steps = quantum * std::max<Index>(1, static_cast<Index>(quanta));
+  before_samples();
+  for (int r = 0; r < options.repeats; ++r)
+    samples.seconds.push_back(timed(samples.steps) / static_cast<double>(samples.steps));
+  std::sort(samples.seconds.begin(), samples.seconds.end());
+  return samples;
+}
+
+// A bed on its backend.
+struct Run {
+  Run(Model bed, const Options& options)
+      : model(std::move(bed)),
+        backend(options.on_gpu() ? make_cuda_backend(model) : make_cpu_backend(model)),
+        link(model),
+        step(model, *backend, link, timers) {
+    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+  }
+  double listed() const {
+    return static_cast<double>(backend->list_entries()) / static_cast<double>(model.particles.size());
+  }
+
+  Model model;
+  StageTimers timers;
+  std::unique_ptr<Backend> backend;
+  BodyLink link;
+  CoupledStep step;
+  MultibodyState bodies;
+};
+
+// "2.51e+07 (2.44e+07 to 2.53e+07) particle-steps/s, 398 us per step"
+std::string speed_text(const Samples& samples, std::size_t particles) {
+  const double n = static_cast<double>(particles);
+  return fmt::format("{:.3g} ({:.3g} to {:.3g}) particle-steps/s, {:.4g} us per step", n / samples.median(),
+                     n / samples.seconds.back(), n / samples.seconds.front(), 1e6 * samples.median());
+}
+
+void measure_explicit(Model bed, Real h, const Options& options) {
+  bed.integrator.particles = ParticleIntegrator::velocity_verlet;
+  // How often particles outside the space are looked for.
+  bed.integrator.substeps = bed.space.dimension == 3 ? 25 : 10;
+  Run run(std::move(bed), options);
+  Backend& backend = *run.backend;
+  const Real skin = run.model.contact.skin;
+  backend.place_bodies({});
+  backend.build_list(skin, run.timers);
+  backend.initial_forces();
+  backend.verlet_start(h);
+  const auto take = [&](Index steps) {
+    if (backend.verlet_run(h, steps, true, run.timers).closed != steps)
+      throw SimulationError("a particle has left the bed");
+  };
+  std::int64_t builds = 0;
+  const Samples samples = sample(
+      options, options.rebuild > 0 ? options.rebuild : run.model.integrator.substeps,
+      [&](Index steps) {
+        if (options.rebuild == 0) take(steps);
+        for (Index done = 0; options.rebuild > 0 && done < steps; done += options.rebuild) {
+          take(options.rebuild);
+          backend.build_list(skin, run.timers);
+        }
+        backend.list_displacement();  // returns when all that was asked for is done
+      },
+      [&] { builds = backend.list_builds(); });
+  fmt::print("{:10d} {}, {} x {} steps, {} list builds, {:.2f} listed per particle\n",
+             run.model.particles.size(), speed_text(samples, run.model.particles.size()), options.repeats,
+             samples.steps, backend.list_builds() - builds, run.listed());
+}
+
+void print_stages(const StageTimers& before, const StageTimers& after) {
+  double all = 0;
+  const auto seconds = [&](int s) {
+    return after[static_cast<Stage>(s)].seconds - before[static_cast<Stage>(s)].seconds;
+  };
+  for (int s = 0; s < static_cast<int>(Stage::count); ++s) all += seconds(s);
+  std::string text;
+  for (int s = 0; s < static_cast<int>(Stage::count); ++s)
+    if (seconds(s) > 0)
+      text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", kStageNames[static_cast<std::size_t>(s)],
+                          100 * seconds(s) / all);
+  fmt::print("{:10} {}\n", "", text);
+}
+
+void measure_implicit(Model bed, const Options& options) {
+  const Real h = implicit_sphere_step(bed);
+  Run run(std::move(bed), options);
+  run.step.start(run.bodies);
+  Index taken = 0;
+  const auto advance = [&](Index steps) {
+    for (Index k = 0; k < steps; ++k) {
+      const StepOutcome outcome = run.step.implicit_step(run.bodies, static_cast<Real>(taken++) * h, h);
+      if (outcome.verdict != Verdict::accepted) throw SimulationError(outcome.trouble);
+    }
+  };
+  advance(kImplicitWarmUp);
+  StageTimers timers;
+  StepCounts counts;
+  std::int64_t builds = 0;
+  const Samples samples = sample(options, 1, advance, [&] {
+    timers = run.timers, counts = run.step.counts(), builds = run.backend->list_builds();
+  });
+  const double steps = static_cast<double>(run.step.counts().steps - counts.steps);
+  fmt::print(
+      "{:10d} {:.4g} ({:.4g} to {:.4g}) ms per step, {:.1f} Newton and {:.1f} linear iterations per step, {} "
+      "x {} "
+      "steps, {} list builds, {:.2f} listed per particle\n",
+      run.model.particles.size(), 1e3 * samples.median(), 1e3 * samples.seconds.front(),
+      1e3 * samples.seconds.back(),
+      static_cast<double>(run.step.counts().newton_iterations - counts.newton_iterations) / steps,
+      static_cast<double>(run.step.counts().linear_iterations - counts.linear_iterations) / steps,
+      options.repeats, samples.steps, run.backend->list_builds() - builds, run.listed());
+  print_stages(timers, run.timers);
+}
+
+struct CoupledSamples {
+  Samples samples;
+  double iterations = 0;  // of the bodies' Newton loop per step
+  double contacts = 0;    // of the bodies' shapes, mean of looks after each batch
+};
+
+// The coupled explicit step, with bodies solved every step where the bed has some.
+CoupledSamples sample_coupled(Model bed, const Options& options) {
+  bed.integrator.particles = ParticleIntegrator::velocity_verlet;
+  Run run(std::move(bed), options);
+  run.step.start(run.bodies);
+  Index taken = 0;
+  CoupledSamples out;
+  double looks = 0;
+  out.samples = sample(options, kCoupledBatch, [&](Index steps) {
+    for (Index done = 0; done < steps; done += kCoupledBatch) {
+      std::vector<Real> times;
+      for (Index k = 0; k < kCoupledBatch; ++k) times.push_back(static_cast<Real>(taken++) * kSphereStep);
+      if (run.step.explicit_steps(run.bodies, times, kSphereStep) != times.size())
+        throw SimulationError("a particle has left the bed");
+      for (const int contacts : run.backend->pack_shapes().contacts) out.contacts += contacts;
+      ++looks;
+    }
+    run.backend->list_displacement();
+  });
+  const StepCounts& counts = run.step.counts();
+  out.iterations = static_cast<double>(counts.newton_iterations) / static_cast<double>(counts.steps);
+  out.contacts /= looks;
+  return out;
+}
+
+void measure_net(Model bed, const Options& options) {
+  add_net(bed);
+  const std::size_t particles = bed.particles.size(), bodies = bed.bodies.size();
+  Model bare = bed;
+  bare.bodies.clear(), bare.joints.clear(), bare.spring_dampers.clear(), bare.applied_forces.clear();
+  const Samples without = sample_coupled(std::move(bare), options).samples;
+  const CoupledSamples with = sample_coupled(std::move(bed), options);
+  fmt::print("{:10d} without bodies: {}\n", particles, speed_text(without, particles));
+  fmt::print(
+      "{:10} with {} bodies: {}; {:.1f} iterations of the bodies per step, {:.1f} contacts of theirs\n", "",
+      bodies, speed_text(with.samples, particles), with.iterations, with.contacts);
+  fmt::print("{:10} {:.4g} times as long, {:.4g} us more per step\n", "",
+             with.samples.median() / without.median(), 1e6 * (with.samples.median() - without.median()));
+}
+
+void measure_all(const Options& options) {
+  if (options.dimension == 2 && (options.net || options.integrator == "hht"))
+    throw InputError("--dimension 2: allowed for --integrator verlet without --net");
+  if (options.net && options.integrator == "hht") throw InputError("--net: allowed for --integrator verlet");
+  if (options.precision == "mixed" && (!options.on_gpu() || options.integrator == "hht"))
+    throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
+  if (options.on_gpu() && !device_trouble().empty()) throw InputError("--backend cuda: " + device_trouble());
+  fmt::print("commit {}, {}, {}, {}{}{}\n", commit(),
+             options.on_gpu() ? device_name() : "one core, CPU seconds", options.precision,
+             options.dimension == 3 ? "spheres" : "discs",
+             options.integrator == "hht" ? ", implicit" : ", explicit",
+             options.integrator == "hht" || options.net ? ""
+             : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
+                                   : ", list rebuilds where needed");
+  std::vector<Vec3> discs;
+  if (options.dimension == 2) discs = settled_discs();
+  for (const std::int64_t particles : options.particles) {
+    Model bed = options.dimension == 3 ? sphere_bed(options.tile, particles) : disc_bed(discs, particles);
+    if (options.precision == "mixed") bed.integrator.precision = Precision::mixed;
+    if (options.net)
+      measure_net(std::move(bed), options);
+    else if (options.integrator == "hht")
+      measure_implicit(std::move(bed), options);
+    else
+      measure_explicit(std::move(bed), options.dimension == 3 ? kSphereStep : kDiscStep, options);
+    std::fflush(stdout);
+  }
+}
+
+ExitCode run(int count, char** values) {
+  Options options;
+  CLI::App app("Measures the speed of steps on settled beds", "bed");
+  app.add_option("--dimension", options.dimension, "3: spheres, 2: discs (settled at the start)")
+      ->check(CLI::IsMember({2, 3}));
+  app.add_option("--backend", options.backend, "cpu or cuda")->check(CLI::IsMember({"cpu", "cuda"}));
+  app.add_option("--precision", options.precision, "double or mixed")
+      ->check(CLI::IsMember({"double", "mixed"}));
+  app.add_option("--integrator", options.integrator, "verlet (explicit) or hht (implicit)")
+      ->check(CLI::IsMember({"verlet", "hht"}));
+  app.add_option("--particles", options.particles,
+                 "sizes, multiples of 10000 (default: 10000 100000 1000000)");
+  app.add_option("--rebuild", options.rebuild, "explicit steps per list rebuild; 0: the backend decides")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--repeats", options.repeats, "samples per size")->check(CLI::PositiveNumber);
+  app.add_option("--seconds", options.seconds, "length of a sample, about")->check(CLI::NonNegativeNumber);
+  app.add_flag("--net", options.net, "the bed with a net of 20 bodies, solved every step, and without");
+  app.add_option("--tile", options.tile, "file with the tile of spheres");
+  try {
+    app.parse(count, values);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? ExitCode::done : ExitCode::bad_input;
+  }
+  if (options.particles.empty()) options.particles = {10000, 100000, 1000000};
+  try {
+    const PetscSession petsc("bed", {});
+    measure_all(options);
+  } catch (const InputError& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return ExitCode::bad_input;
+  } catch (const IoError& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return ExitCode::io_failed;
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return ExitCode::simulation_failed;
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+}  // namespace scree
+
+int main(int count, char** values) {
+  MPI_Init(&count, &values);
+  const scree::ExitCode code = scree::run(count, values);
+  MPI_Finalize();
+  return static_cast<int>(code);
+}

@@ -1,0 +1,195 @@
+#include "bed_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "base/error.hpp"
+#include "coupling/coupled_step.hpp"
+#include "model/particle_file.hpp"
+#include "physics/step_limits.hpp"
+
+namespace scree {
+namespace {
+
+constexpr Real kSphereTile = 25, kSphereRadius = 0.5;  // width of the tile, radius [m]
+constexpr int kDiscRow = 100;
+constexpr Real kDiscRadius = 0.05, kDiscSpacing = 0.102, kDiscTile = kDiscRow * kDiscSpacing;  // [m]
+constexpr int kNetBodies = 20;
+
+std::int64_t tiles_of(std::int64_t particles) {
+  if (particles < kTileParticles || particles % kTileParticles != 0)
+    throw InputError(fmt::format("--particles {}: must be a multiple of {}", particles, kTileParticles));
+  return particles / kTileParticles;
+}
+
+void add_particle(Model& model, Vec3 position, Real radius) {
+  ParticleSet& set = model.particles;
+  set.position.push_back(position), set.velocity.push_back({});
+  set.radius.push_back(radius), set.mass.push_back(1), set.material.push_back(0);
+}
+
+// The side of the space becomes a wall.
+void add_side(Model& model, Side side, Vec3 point, Vec3 normal) {
+  model.space.boundary[side] = Boundary::wall;
+  model.walls.push_back({fmt::format("side {}", static_cast<int>(side)), point, normal, 0});
+}
+
+Model disc_model(std::int64_t tiles, Real step, Real damping) {
+  Model model;
+  model.space.dimension = 2;
+  model.space.min = {0, 0, 0}, model.space.max = {static_cast<Real>(tiles) * kDiscTile, 1.5 * kDiscTile, 0};
+  model.space.boundary = {Boundary::periodic, Boundary::periodic, Boundary::wall, Boundary::wall};
+  model.gravity = {0, -9.8066, 0};
+  model.contact.material_names = {"disc"};
+  model.contact.laws = {{1e7, damping, 1, false}};
+  model.contact.skin = 0.2 * kDiscRadius;
+  model.walls = {{"floor", {0, 0, 0}, {0, 1, 0}, 0}};
+  model.integrator.particles = ParticleIntegrator::velocity_verlet;
+  model.integrator.substeps = 10;
+  model.time.end = 1, model.time.step = model.integrator.substeps * step;
+  return model;
+}
+
+}  // namespace
+
+Model sphere_bed(const std::string& tile, std::int64_t particles) {
+  const std::int64_t tiles = tiles_of(particles);
+  std::int64_t rows = static_cast<std::int64_t>(std::sqrt(static_cast<double>(tiles)));
+  while (tiles % rows != 0) --rows;
+  const ParticleColumns columns = read_particle_file(tile, 3);
+  const std::vector<Real>&x = columns.at("x"), &y = columns.at("y"), &z = columns.at("z");
+  if (static_cast<std::int64_t>(x.size()) != kTileParticles)
+    throw InputError(fmt::format("{}: {} particles; must be {}", tile, x.size(), kTileParticles));
+
+  Model model;
+  const Real width = kSphereTile * static_cast<Real>(tiles / rows),
+             depth = kSphereTile * static_cast<Real>(rows);
+  // The centres fill the tile up to its edges.
+  model.space.min = {-kSphereRadius, -kSphereRadius, 0};
+  model.space.max = {width + kSphereRadius, depth + kSphereRadius, 20};
+  add_side(model, kXMin, model.space.min, {1, 0, 0});
+  add_side(model, kXMax, model.space.max, {-1, 0, 0});
+  add_side(model, kYMin, model.space.min, {0, 1, 0});
+  add_side(model, kYMax, model.space.max, {0, -1, 0});
+  add_side(model, kZMin, model.space.min, {0, 0, 1});
+  model.gravity = {0, 0, -1};
+  model.contact.material_names = {"sphere"};
+  model.contact.laws = {{2e5, 25, 1, false}};
+  model.contact.skin = 0.1;
+  model.time.end = 1, model.time.step = kSphereStep;
+  model.integrator.hht_alpha = -0.05;  // as decks have it if they do not say
+  for (std::int64_t row = 0; row < rows; ++row)
+    for (std::int64_t column = 0; column < tiles / rows; ++column)
+      for (std::size_t i = 0; i < x.size(); ++i)
+        add_particle(model,
+                     {x[i] + kSphereTile * static_cast<Real>(column),
+                      y[i] + kSphereTile * static_cast<Real>(row), z[i]},
+                     kSphereRadius);
+  return model;
+}
+
+Real implicit_sphere_step(const Model& bed) {
+  return 1.2 / contact_frequency(bed.contact.laws[0].normal_stiffness, bed.particles.mass[0]);
+}
+
+void add_net(Model& bed) {
+  const Real diameter = 2 * kSphereRadius;
+  const Vec3 middle = 0.5 * (bed.space.min + bed.space.max);
+  const auto x_of = [&](int body) { return middle.x + (body - 0.5 * (kNetBodies - 1)) * diameter; };
+  // The height at which body b touches the particle at p from above; 0 where it passes beside it.
+  const auto touching_height = [&](int b, const Vec3& p) {
+    const Real dx = p.x - x_of(b), dy = p.y - middle.y, height2 = diameter * diameter - dx * dx - dy * dy;
+    return height2 > 0 ? p.z + std::sqrt(height2) : 0;
+  };
+  ParticleSet& set = bed.particles;
+  Real level = 0;
+  for (const Vec3& p : set.position)
+    for (int b = 0; b < kNetBodies; ++b) level = std::max(level, touching_height(b, p));
+  level -= diameter;
+  const auto in_the_way = [&](const Vec3& p) {
+    for (int b = 0; b < kNetBodies; ++b) {
+      const Vec3 r = p - Vec3{x_of(b), middle.y, level};
+      if (dot(r, r) < diameter * diameter) return true;
+    }
+    return false;
+  };
+  // All particles are alike: what goes with the positions is only made shorter.
+  set.position.erase(std::remove_if(set.position.begin(), set.position.end(), in_the_way),
+                     set.position.end());
+  const std::size_t left = set.position.size();
+  set.velocity.resize(left), set.radius.resize(left), set.mass.resize(left), set.material.resize(left);
+
+  for (int b = 0; b < kNetBodies; ++b) {
+    Body body;
+    body.name = fmt::format("net.{}", b);
+    body.mass = 1, body.inertia = 0.1;
+    body.position = {x_of(b), middle.y, level};
+    body.shapes = {{{0, 0, 0}, kSphereRadius, 0}};
+    bed.bodies.push_back(body);
+  }
+  for (int b = 0; b + 1 < kNetBodies; ++b) {
+    SpringDamper cord;
+    cord.name = fmt::format("cord.{}", b);
+    cord.body[0] = b, cord.body[1] = b + 1;
+    cord.stiffness = 1e5, cord.damping = 100, cord.free_length = 0.999 * diameter;  // taut
+    bed.spring_dampers.push_back(cord);
+  }
+  // Bodies move in planes of constant z, which gravity is normal to here: the net hangs sideways instead.
+  for (int b = 0; b < kNetBodies; ++b) {
+    AppliedForce weight;
+    weight.name = fmt::format("weight.{}", b);
+    weight.body = b;
+    weight.fy.value = -5;
+    bed.applied_forces.push_back(weight);
+  }
+  for (const int b : {0, kNetBodies - 1}) {
+    Joint pin;
+    pin.name = fmt::format("pin.{}", b);
+    pin.body[1] = b;
+    pin.point[0] = bed.bodies[static_cast<std::size_t>(b)].position;
+    bed.joints.push_back(pin);
+  }
+}
+
+Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles) {
+  const std::int64_t tiles = tiles_of(particles);
+  Model model = disc_model(tiles, kDiscStep, 100);
+  for (std::int64_t t = 0; t < tiles; ++t)
+    for (const Vec3& p : tile)
+      add_particle(model, p + Vec3{static_cast<Real>(t) * kDiscTile, 0, 0}, kDiscRadius);
+  return model;
+}
+
+std::vector<Vec3> settled_discs() {
+  constexpr Real kStep = 1e-4;
+  constexpr int kSteps = 20000;
+  Model model = disc_model(1, kStep, 700);
+  std::mt19937 engine(1);
+  const auto jitter = [&] { return 1e-3 * (static_cast<Real>(engine()) / 4294967296.0 - 0.5); };
+  for (int row = 0; row < kDiscRow; ++row) {
+    for (int column = 0; column < kDiscRow; ++column) {
+      const Real x = (column + 0.25 + 0.5 * (row % 2)) * kDiscSpacing + jitter();
+      add_particle(model, {x, kDiscRadius + 0.09 * row + jitter(), 0}, kDiscRadius);
+    }
+  }
+  StageTimers timers;
+  const std::unique_ptr<Backend> backend = make_cpu_backend(model);
+  backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+  BodyLink link(model);
+  CoupledStep step(model, *backend, link, timers);
+  MultibodyState bodies;
+  step.start(bodies);
+  const std::vector<Real> times(static_cast<std::size_t>(kSteps / model.integrator.substeps));
+  step.explicit_steps(bodies, times, model.time.step);
+  const ParticleLedger ledger = backend->ledger(0);
+  fmt::print("settled tile: kinetic energy {:.2e} J per disc, {:.2f} contacts per disc\n",
+             ledger.kinetic / kTileParticles, 2 * static_cast<Real>(ledger.contacts) / kTileParticles);
+  std::vector<Vec3> out;
+  for (const ParticleRecord& record : backend->records()) out.push_back(record.position);
+  return out;
+}
+
+}  // namespace scree

@@ -1,0 +1,200 @@
+// The CUDA backend against the CPU's, on boxes of particles and bodies at random places. Both are built without
+// contraction, and roots and divisions are exact to the last bit on both: linear laws give the same bits. pow() is
+// not: other exponents agree to round-off.
+#include <cmath>
+#include <cstring>
+
+#include "dem/device.hpp"
+#include "support/catch.hpp"
+#include "unit/dem/random_box.hpp"
+
+namespace scree {
+namespace {
+
+constexpr int kParticles = 3000;
+constexpr Real kRoundOff = 1e-11;  // of forces: sums of some ten terms behind a pow()
+
+struct Pair {
+  explicit Pair(const Model& of, Real skin = 0.02)
+      : model(of), motion(motion_of(model.bodies)), cpu(make_cpu_backend(model)), cuda(make_cuda_backend(model)) {
+    for (Backend* backend : {cpu.get(), cuda.get()}) {
+      backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+      backend->place_bodies(motion);
+      backend->build_list(skin, timers);
+      backend->initial_forces();
+    }
+  }
+  template <class Do>
+  void both(const Do& action) {
+    action(*cpu), action(*cuda);
+  }
+
+  Model model;
+  std::vector<BodyMotion> motion;
+  std::unique_ptr<Backend> cpu, cuda;
+  StageTimers timers;
+};
+
+Model dense_box(const BoxCase& box, ParticleIntegrator integrator) {
+  Model model = random_box(box, kParticles, 33);
+  // More room than the small boxes of the other tests: some ten neighbours each.
+  const Real scale = box.dimension == 2 ? 3.5 : 2;
+  for (Vec3* corner : {&model.space.min, &model.space.max}) *corner = scale * *corner;
+  for (Vec3& position : model.particles.position) position = scale * position;
+  model.integrator.particles = integrator;
+  return model;
+}
+
+Real difference(Vec3 a, Vec3 b) { return norm(a - b) / (1 + norm(a)); }
+
+// Largest difference of two states, relative; 0 where all bits are the same.
+Real difference(const std::vector<ParticleRecord>& a, const std::vector<ParticleRecord>& b) {
+  if (a.size() != b.size()) return INFINITY;
+  Real largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].global_id != b[i].global_id || a[i].drifting != b[i].drifting || a[i].image.x != b[i].image.x) return INFINITY;
+    for (const Real d :
+         {difference(a[i].position, b[i].position), difference(a[i].velocity, b[i].velocity),
+          difference(a[i].acceleration, b[i].acceleration), difference(a[i].force, b[i].force),
+          std::abs(a[i].contact_loss - b[i].contact_loss), std::abs(a[i].loss_power - b[i].loss_power),
+          std::abs(a[i].integrator_loss - b[i].integrator_loss)})
+      if (!(d <= largest)) largest = d;
+  }
+  return largest;
+}
+
+Real allowed(const BoxCase& box) { return box.exponent == 1 ? 0 : kRoundOff; }
+
+void check_wrenches(Pair& pair, Real tolerance) {
+  std::vector<BodyWrench> step[2], end[2];
+  for (int k = 0; k < 2; ++k) {
+    step[k].resize(pair.model.bodies.size()), end[k].resize(pair.model.bodies.size());
+    (k == 0 ? pair.cpu : pair.cuda)->reduce_wrench(step[k], end[k]);
+  }
+  for (std::size_t b = 0; b < pair.model.bodies.size(); ++b) {
+    CHECK(difference(step[0][b].force, step[1][b].force) <= tolerance);
+    CHECK(difference(step[0][b].torque, step[1][b].torque) <= tolerance);
+    CHECK(difference(end[0][b].force, end[1][b].force) <= tolerance);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("forces, lists and sums at the start are the same on both backends") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    Pair pair(dense_box(c, ParticleIntegrator::hht));
+    CHECK(pair.cpu->list_entries() == pair.cuda->list_entries());
+    CHECK(pair.cpu->list_entries() > kParticles);
+    CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= allowed(c));
+    const ParticleLedger a = pair.cpu->ledger(0), b = pair.cuda->ledger(0);
+    CHECK(a.contacts == b.contacts);
+    CHECK(a.kinetic == b.kinetic);
+    CHECK(a.gravitational == b.gravitational);
+    CHECK(std::abs(a.contact_elastic - b.contact_elastic) <= allowed(c) * a.contact_elastic);
+    CHECK(difference(a.angular_momentum, b.angular_momentum) == 0);
+    check_wrenches(pair, allowed(c));
+  }
+}
+
+TEST_CASE("an implicit step is the same on both backends") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    Pair pair(dense_box(c, ParticleIntegrator::hht), 0.1);
+    std::vector<int> iterations[2];
+    for (int k = 0; k < 2; ++k) {
+      Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
+      backend.begin_step(2e-4);
+      for (int iteration = 0; iteration < 60; ++iteration) {
+        const ParticleNorms norms = backend.contact_force();
+        if (norms.overshoot) {
+          backend.shorten_correction();
+          iterations[k].push_back(-1);
+          continue;
+        }
+        if (norms.residual <= 1e-10) break;
+        backend.place_bodies(pair.motion);
+        iterations[k].push_back(backend.particle_correct().iterations);
+      }
+      CHECK(backend.step_displacement() > 0);
+    }
+    CHECK(pair.cpu->step_displacement() == Approx(pair.cuda->step_displacement()).epsilon(1e-10));
+    CHECK(iterations[0] == iterations[1]);
+    CHECK(iterations[0].size() > 1);
+    CHECK(pair.cpu->error() == Approx(pair.cuda->error()).epsilon(1e-7));
+    check_wrenches(pair, c.exponent == 1 ? 0 : 1e-7);
+    pair.both([](Backend& backend) { backend.accept(); });
+    // Other exponents: both iterates are within the residual's tolerance.
+    CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= (c.exponent == 1 ? 0 : 1e-7));
+  }
+}
+
+// Steps of one backend, with those that leave taken out on the way.
+void take_steps(Backend& backend, Pair& pair, Index steps, Index most) {
+  backend.verlet_start(1e-4);
+  for (Index left = steps; left > 0;) {
+    backend.place_bodies(pair.motion);
+    const VerletRun run = backend.verlet_run(1e-4, std::min(left, most), left > most, pair.timers);
+    left -= run.closed;
+    if (run.open) continue;
+    backend.take_out(backend.outside());
+    backend.build_list(pair.model.contact.skin, pair.timers);
+    if (left > 0) backend.verlet_start(1e-4);
+  }
+}
+
+TEST_CASE("explicit steps are the same on both backends") {
+  for (const BoxCase& c : kBoxes)
+    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+      CAPTURE(c.name);
+      Model model = dense_box(c, ParticleIntegrator::velocity_verlet);
+      model.contact.skin = 0.004;  // expires within the run
+      model.space.leaving = leaving;
+      Pair pair(model, model.contact.skin);
+      take_steps(*pair.cpu, pair, 100, 7);
+      take_steps(*pair.cuda, pair, 100, 50);
+      CHECK(pair.cuda->list_builds() > 2);
+      CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= (c.exponent == 1 ? 0 : 1e-7));
+      pair.both([](Backend& backend) { backend.shape_contacts(); });
+      check_wrenches(pair, c.exponent == 1 ? 0 : 1e-7);
+    }
+}
+
+TEST_CASE("the state moves between the backends without a trace") {
+  const BoxCase& c = kBoxes[5];
+  Pair pair(dense_box(c, ParticleIntegrator::velocity_verlet));
+  const std::vector<ParticleRecord> records = pair.cpu->records();
+  pair.cuda->load(records, {});
+  CHECK(difference(pair.cuda->records(), records) == 0);
+}
+
+TEST_CASE("what is said about device memory before a run is what the run takes") {
+  for (const BoxCase& c : {kBoxes[0], kBoxes[4], kBoxes[6]})
+    for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+      CAPTURE(c.name, static_cast<int>(integrator));
+      Model model = random_box(c, 300000, 5);
+      const Real scale = c.dimension == 2 ? 60 : 14;
+      for (Vec3* corner : {&model.space.min, &model.space.max}) *corner = scale * *corner;
+      for (Vec3& position : model.particles.position) position = scale * position;
+      model.integrator.particles = integrator;
+      model.contact.skin = 0.02;
+      const std::size_t before = device_memory_in_use();
+      const std::unique_ptr<Backend> backend = make_cuda_backend(model);
+      StageTimers timers;
+      backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+      backend->build_list(model.contact.skin, timers);
+      backend->initial_forces();
+      if (integrator == ParticleIntegrator::velocity_verlet) {
+        backend->verlet_start(1e-7);
+        backend->verlet_run(1e-7, 4, false, timers);
+      }
+      backend->ledger(0);
+      backend->start_pack();
+      backend->pack_particles();
+      const auto taken = static_cast<double>(device_memory_in_use() - before) +
+                         300000.0 * sizeof(ParticleRecord);  // held while records() runs
+      CHECK(static_cast<double>(device_memory(model)) == Approx(taken).epsilon(0.1));
+    }
+}
+
+}  // namespace scree

@@ -1,0 +1,212 @@
+// The files are the same whether snapshots are written at once or beside later steps.
+#include "run/recorder.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "dem/cpu_backend.hpp"
+#include "output/hdf5_file.hpp"
+#include "run/step_clock.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/petsc_run.hpp"
+
+namespace scree {
+
+namespace {
+
+// Two discs fly into a third; a body hangs on a pin among them.
+const std::string kDeck = kSmallDeck + R"(
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e4
+[[bodies]]
+name = "pad"
+position = [0.0, -0.3]
+mass = 1.0
+inertia = 0.01
+shapes = [{ radius = 0.1 }]
+[[joints]]
+name = "pin"
+type = "revolute"
+bodies = ["ground", "pad"]
+point = [0.0, 0.0]
+[[particles]]
+name = "discs"
+kind = "list"
+positions = [[0.21, 0.0], [-0.3, 0.0], [0.0, 0.0]]
+velocity = [1.0, 0.5]
+radius = 0.1
+mass = 1.0
+[output]
+history_particles = [1]
+)";
+
+// Lets the recorder believe that the steps go on while it could write, and idles when the test says so.
+class LateBackend : public CpuBackend {
+ public:
+  using CpuBackend::CpuBackend;
+  bool computes_asynchronously() const override { return true; }
+  bool has_idle_work() const { return idle_work_ != nullptr; }
+  void idle() { idle_work_(); }
+  ParticlePack pack_particles() override {
+    if (failed) throw DeviceError("the device has failed");
+    return CpuBackend::pack_particles();
+  }
+
+  bool failed = false;
+};
+
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "scree_recorder_XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no scratch directory");
+    path_ = pattern;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// A run by hand: the model's steps, and a recorder for their files.
+template <class B>
+struct Recording {
+  Recording() {
+    state.clock = StepClock(model).state();
+    backend.load(initial_records(model.particles, Subdomain(model.space)), {});
+    step.start(state.bodies);
+    recorder = std::make_unique<Recorder>(model, backend, link, folder.path(), state);
+  }
+  void advance() {
+    step.explicit_steps(state.bodies, {state.clock.time}, model.time.step);
+    state.clock.time += model.time.step;
+    state.counts = step.counts();
+    recorder->history(state, model.time.step);
+  }
+  // Times of the snapshots on disk.
+  std::vector<Real> times() const {
+    const std::string path = folder.path() + "/particles.vtkhdf";
+    if (!std::filesystem::exists(path)) return {};
+    return Hdf5File(path, Hdf5Access::read).read_array<Real>("/VTKHDF/Steps/Values");
+  }
+  std::int64_t history_rows() const {
+    const std::string path = folder.path() + "/history.h5";
+    return std::filesystem::exists(path) ? Hdf5File(path, Hdf5Access::read).rows("/step/time") : 0;
+  }
+
+  Folder folder;
+  const Model model = (petsc(), model_of(kDeck));
+  State state;
+  StageTimers timers;
+  B backend{model};
+  BodyLink link{model};
+  CoupledStep step{model, backend, link, timers};
+  std::unique_ptr<Recorder> recorder;
+};
+
+// Whether a dataset is the same in both files; false also where it is not of this type.
+template <class T>
+bool same_values(const Hdf5File& a, const Hdf5File& b, const std::string& name) {
+  try {
+    return a.read_array<T>(name) == b.read_array<T>(name);
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
+void check_same_files(const std::string& folder, const std::string& other) {
+  for (const char* name : {"particles.vtkhdf", "bodies.vtkhdf", "history.h5"}) {
+    const Hdf5File a(folder + "/" + name, Hdf5Access::read), b(other + "/" + name, Hdf5Access::read);
+    const std::vector<std::string> datasets = a.dataset_names("/");
+    CHECK(datasets.size() > 10);
+    CHECK(datasets == b.dataset_names("/"));
+    for (const std::string& dataset : datasets) {
+      CAPTURE(name, dataset);
+      CHECK((same_values<Real>(a, b, dataset) || same_values<std::int64_t>(a, b, dataset) ||
+             same_values<std::int32_t>(a, b, dataset)));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a snapshot of a synchronous backend is on disk when it is taken") {
+  Recording<CpuBackend> run;
+  run.recorder->history(run.state, 0);
+  run.recorder->snapshot(run.state);
+  CHECK(run.state.snapshots == 1);
+  CHECK(run.times() == std::vector<Real>{0});
+  CHECK(run.history_rows() == 1);
+}
+
+TEST_CASE("a snapshot of an asynchronous backend is written while it computes") {
+  Recording<LateBackend> run;
+  run.recorder->history(run.state, 0);
+  run.recorder->snapshot(run.state);
+  CHECK(run.state.snapshots == 1);
+  CHECK(run.recorder->snapshots_written() == 0);
+  CHECK(run.times().empty());
+  run.backend.idle();
+  CHECK(run.times() == std::vector<Real>{0});
+  CHECK(run.history_rows() == 1);
+  run.backend.idle();  // nothing is left to do
+  CHECK(run.recorder->snapshots_written() == 1);
+}
+
+TEST_CASE("a pending snapshot goes to disk before the next one and with a flush") {
+  Recording<LateBackend> run;
+  run.recorder->snapshot(run.state);
+  run.state.clock.time = 1;
+  run.recorder->snapshot(run.state);
+  CHECK(run.times() == std::vector<Real>{0});
+  run.recorder->flush();
+  CHECK(run.times() == std::vector<Real>{0, 1});
+  CHECK(run.state.snapshots == run.recorder->snapshots_written());
+}
+
+TEST_CASE("late and immediate snapshots give the same files") {
+  Recording<CpuBackend> now;
+  Recording<LateBackend> late;
+  for (int k = 0; k < 300; ++k) {
+    if (k % 40 == 0) now.recorder->snapshot(now.state), late.recorder->snapshot(late.state);
+    if (k % 80 == 0) late.backend.idle();  // the others are written by a history row of a later state
+    now.advance(), late.advance();
+  }
+  now.recorder->flush(), late.recorder->flush();
+  REQUIRE(now.times().size() == 8);
+  REQUIRE(now.history_rows() == 300);
+  check_same_files(now.folder.path(), late.folder.path());
+}
+
+TEST_CASE("a snapshot that a failed device holds is given up once") {
+  Recording<LateBackend> run;
+  run.recorder->snapshot(run.state);
+  run.backend.failed = true;
+  CHECK_THROWS_AS(run.recorder->write_pending(), DeviceError);
+  run.recorder->flush();
+  CHECK(run.recorder->snapshots_written() == 0);
+}
+
+TEST_CASE("a recorder that has gone leaves no work behind") {
+  Recording<LateBackend> run;
+  CHECK(run.backend.has_idle_work());
+  run.recorder.reset();
+  CHECK(!run.backend.has_idle_work());
+}
+
+}  // namespace scree
