@@ -35,10 +35,17 @@ struct PackedRows {
   const Index* offsets;  // [items + 1]
   const Index* neighbors;
 
-  SCREE_HD Index count(Index i) const { return offsets[i + 1] - offsets[i]; }
   // Slot of the row's first entry, and from one entry to the next.
   SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
   SCREE_HD static constexpr int stride() { return 1; }
+  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. kAtOnce: how many a
+  // machine that works on several at once may evaluate before it adds the first.
+  template <int kAtOnce, class Touches, class Evaluate, class Add>
+  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate, const Add& add) const {
+    const Index end = offsets[i + 1];
+    for (Index k = offsets[i]; k < end; ++k)
+      if (const Index j = neighbors[k]; touches(j)) add(evaluate(j));
+  }
 };
 
 // Read-only views of items and neighbour list.
@@ -60,8 +67,21 @@ SCREE_HD Overlap wall_overlap(Vec4 p, const WallPlane& wall) {
   return {p.w - distance, distance, wall.normal};
 }
 
+SCREE_HD bool touch(Vec4 p, Vec4 q) {
+  const Vec3 r = xyz(p) - xyz(q);
+  const Real reach = p.w + q.w;
+  return dot(r, r) < reach * reach;
+}
+
 // A particle's share of a contact's energies: half with another particle, all with a body's shape or a wall.
 SCREE_HD Real particle_share(Index j, Index first_shape) { return j < first_shape ? Real(0.5) : Real(1); }
+
+// What one contact adds to them.
+struct PairForce {
+  Vec3 force;       // [N]
+  Real loss;        // of the whole contact [W]
+  bool with_shape;  // of a body
+};
 
 struct TotalForce {
   Vec3 force;       // [N], gravity included
@@ -88,20 +108,21 @@ struct ContactForceItem {
     const int material = in.material[i];
     Vec3 f = u.w * gravity;
     Real loss = 0, shape_loss = 0;
-    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
-    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
-      const Index j = *neighbor;
+    const auto evaluate = [&](Index j) {
       const Vec4 q = in.position[j];
       const Vec3 r = xyz(p) - xyz(q);
-      const Real reach = p.w + q.w, squared_distance = dot(r, r);
-      if (squared_distance >= reach * reach) continue;
-      const Gap gap = sphere_gap(squared_distance, reach);
+      const Gap gap = sphere_gap(dot(r, r), p.w + q.w);
       const Real rate = approach_rate(r, gap.inverse_distance, xyz(u) - xyz(in.velocity[j]));
       const ContactForce c = contact_force<Elastic>(laws.get(material, in.material[j]), gap.overlap, rate);
-      f += (c.force * gap.inverse_distance) * r;
-      loss += c.loss;
-      if (j >= in.first_shape) shape_loss += c.loss;
-    }
+      return PairForce{(c.force * gap.inverse_distance) * r, c.loss, j >= in.first_shape};
+    };
+    in.rows.template for_each_contact<2>(
+        i, [&](Index j) { return touch(p, in.position[j]); }, evaluate,
+        [&](const PairForce& c) {
+          f += c.force;
+          loss += c.loss;
+          if (c.with_shape) shape_loss += c.loss;
+        });
     loss = Real(0.5) * (loss + shape_loss);  // the particle's share: half with particles, all with shapes
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
@@ -173,25 +194,32 @@ struct StepContacts {
   Laws laws;
   StepStart start;
 
+  struct Neighbor {
+    StepContact contact;
+    Vec3 normal;
+    Index j;
+  };
+
   SCREE_HD static Real rate(Vec3 normal, Vec3 relative_velocity) { return -dot(normal, relative_velocity); }
 
   template <class Visit>
   SCREE_HD void neighbors(Index i, const Visit& visit) const {
     const Vec4 p = in.position[i], p0 = start.position[i];
-    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
-    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
-      const Index j = *neighbor;
+    const auto evaluate = [&](Index j) {
       const Vec4 q = in.position[j];
-      const Vec3 r = xyz(p) - xyz(q), r0 = xyz(p0) - xyz(start.position[j]);
       const Real reach = p.w + q.w;
-      if (dot(r, r) >= reach * reach && dot(r0, r0) >= reach * reach) continue;
-      const Overlap o = sphere_overlap(r, reach), o0 = sphere_overlap(r0, reach);
+      const Overlap o = sphere_overlap(xyz(p) - xyz(q), reach);
+      const Overlap o0 = sphere_overlap(xyz(p0) - xyz(start.position[j]), reach);
       const KelvinVoigt& law = laws.get(in.material[i], in.material[j]);
-      visit(step_contact<Elastic>(law, start, o0.overlap,
-                                  rate(o0.normal, xyz(start.velocity[i]) - xyz(start.velocity[j])), o.overlap,
-                                  rate(o.normal, xyz(in.velocity[i]) - xyz(in.velocity[j]))),
-            o.normal, j);
-    }
+      return Neighbor{
+          step_contact<Elastic>(law, start, o0.overlap,
+                                rate(o0.normal, xyz(start.velocity[i]) - xyz(start.velocity[j])), o.overlap,
+                                rate(o.normal, xyz(in.velocity[i]) - xyz(in.velocity[j]))),
+          o.normal, j};
+    };
+    in.rows.template for_each_contact<1>(
+        i, [&](Index j) { return touch(p, in.position[j]) || touch(p0, start.position[j]); }, evaluate,
+        [&](const Neighbor& n) { visit(n.contact, n.normal, n.j); });
   }
 
   template <class Visit>
@@ -324,15 +352,14 @@ struct ShapeContactItem {
     const Index i = in.first_shape + shape;
     const Vec4 p = position(i), u = velocity(i);
     ShapeContact sum;
-    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
-    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
-      const Index j = *neighbor;
-      const Vec4 q = position(j);
-      const Overlap o = sphere_overlap(xyz(p) - xyz(q), p.w + q.w);
-      if (o.overlap <= 0) continue;
-      const Real rate = -dot(o.normal, xyz(u) - xyz(velocity(j)));
-      add(sum, laws.get(in.material[i], in.material[j]), o, rate, shape_share(j, in.first_shape));
-    }
+    in.rows.template for_each_contact<1>(
+        i, [&](Index j) { return touch(p, position(j)); }, [](Index j) { return j; },
+        [&](Index j) {
+          const Vec4 q = position(j);
+          const Overlap o = sphere_overlap(xyz(p) - xyz(q), p.w + q.w);
+          const Real rate = -dot(o.normal, xyz(u) - xyz(velocity(j)));
+          add(sum, laws.get(in.material[i], in.material[j]), o, rate, shape_share(j, in.first_shape));
+        });
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
       const Overlap o = wall_overlap(p, wall);
@@ -356,16 +383,15 @@ struct ContactEnergyItem {
     const Vec4 p = in.position[i];
     Real sum = 0, share = 0;
     Index n = 0;
-    const Index* neighbor = in.rows.neighbors + in.rows.first(i);
-    for (Index left = in.rows.count(i); left > 0; --left, neighbor += Rows::stride()) {
-      const Index j = *neighbor;
-      const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
-      if (o.overlap <= 0) continue;
-      const Real own = particle_share(j, in.first_shape);
-      sum += own * Elastic::energy(laws.get(in.material[i], in.material[j]), o.overlap);
-      share += own;
-      ++n;
-    }
+    in.rows.template for_each_contact<1>(
+        i, [&](Index j) { return touch(p, in.position[j]); }, [](Index j) { return j; },
+        [&](Index j) {
+          const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
+          const Real own = particle_share(j, in.first_shape);
+          sum += own * Elastic::energy(laws.get(in.material[i], in.material[j]), o.overlap);
+          share += own;
+          ++n;
+        });
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
       const Overlap o = wall_overlap(p, wall);

@@ -218,7 +218,7 @@ struct VerletFinishItem {
   SCREE_HD Real operator()(Index i) const {
     contacts(i);
     const Vec4 v = contacts.in.velocity[i];
-    const Vec3 a = (1 / v.w) * contacts.force[i];
+    const Vec3 a = reciprocal(v.w) * contacts.force[i];
     state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
     state.acceleration[i] = a;
     if (contacts.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * contacts.loss_power[i];
@@ -236,7 +236,7 @@ struct VerletAdvanceItem {
   SCREE_HD Real operator()(Index i) const {
     const TotalForce total = contacts.total(i);
     const Vec4 v = contacts.in.velocity[i];
-    const Vec3 a = (1 / v.w) * total.force;
+    const Vec3 a = reciprocal(v.w) * total.force;
     const Vec3 v1 = verlet_velocity(state.h, xyz(v), state.acceleration[i], a);
     state.acceleration[i] = a;
     if (total.loss_power != 0) {

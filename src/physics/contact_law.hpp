@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/hd.hpp"
+#include "base/root.hpp"
 #include "base/vec3.hpp"
 
 namespace scree {
@@ -25,9 +26,8 @@ struct Overlap {
 
 // Paper's Eqs. 19-21, 23, 24.
 SCREE_HD Overlap sphere_overlap(Vec3 r, Real radius_sum) {
-  const Real distance = std::sqrt(dot(r, r));
-  const Real inverse = 1 / distance;
-  return {radius_sum - distance, distance, inverse * r};
+  const RootAndInverse distance = root_and_inverse(dot(r, r));
+  return {radius_sum - distance.root, distance.root, distance.inverse * r};
 }
 
 // The same without the normal, for loops where its components are not needed one by one.
@@ -38,8 +38,8 @@ struct Gap {
 
 // squared_distance: |r|^2 [m^2].
 SCREE_HD Gap sphere_gap(Real squared_distance, Real radius_sum) {
-  const Real distance = std::sqrt(squared_distance);
-  return {radius_sum - distance, 1 / distance};
+  const RootAndInverse distance = root_and_inverse(squared_distance);
+  return {radius_sum - distance.root, distance.inverse};
 }
 
 // Overlap rate d_dot [m/s] of a pair: minus the normal part of the velocity of i relative to j.

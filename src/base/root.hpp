@@ -1,0 +1,54 @@
+// Square root and reciprocal, exact to the last bit on host and device.
+#pragma once
+
+#include <cmath>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+
+namespace scree {
+
+struct RootAndInverse {
+  Real root;     // sqrt(x)
+  Real inverse;  // 1 / root
+};
+
+#ifdef __CUDA_ARCH__
+
+// The compiler's own double-precision root and division branch for special cases, which keeps a GPU from working on
+// two at once. These do not: Newton's iteration from the hardware's estimate, with the last step in the form that
+// rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990). For normal numbers whose results are normal.
+
+__device__ inline RootAndInverse root_and_inverse(Real x) {
+  Real y;  // 1 / sqrt(x), some 20 bits at first
+  asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
+  for (int pass = 0; pass < 2; ++pass) {
+    const Real error = __fma_rn(-x * y, y, 1.0);
+    y = __fma_rn(y * error, __fma_rn(error, 0.375, 0.5), y);
+  }
+  Real root = x * y;
+  root = __fma_rn(__fma_rn(-root, root, x), 0.5 * y, root);
+  Real inverse = __fma_rn(__fma_rn(-root, y, 1.0), y, y);
+  inverse = __fma_rn(__fma_rn(-root, inverse, 1.0), inverse, inverse);
+  return {root, inverse};
+}
+
+__device__ inline Real reciprocal(Real x) {
+  Real y;
+  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
+  for (int pass = 0; pass < 3; ++pass) y = __fma_rn(__fma_rn(-x, y, 1.0), y, y);
+  return y;
+}
+
+#else
+
+SCREE_HD RootAndInverse root_and_inverse(Real x) {
+  const Real root = std::sqrt(x);
+  return {root, 1 / root};
+}
+
+SCREE_HD Real reciprocal(Real x) { return 1 / x; }
+
+#endif
+
+}  // namespace scree
