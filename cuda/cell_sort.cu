@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
 
 #include "for_each.cuh"
 
@@ -13,15 +14,15 @@ struct IotaItem {
   SCREE_HD void operator()(Index i) const { out[i] = i; }
 };
 
-// Where the keys change in sorted order, a cell ends and another begins.
-struct RangeItem {
+// Where the keys change in sorted order, a cell ends and another begins: the difference of the two is its count.
+struct CountItem {
   const unsigned* keys;
-  CellRange* ranges;
+  Index* counts;
   Index n;
-  SCREE_HD void operator()(Index i) const {
+  __device__ void operator()(Index i) const {
     const unsigned key = keys[i];
-    if (i == 0 || keys[i - 1] != key) ranges[key].begin = i;
-    if (i == n - 1 || keys[i + 1] != key) ranges[key].end = i + 1;
+    if (i == 0 || keys[i - 1] != key) atomicSub(&counts[key], i);
+    if (i == n - 1 || keys[i + 1] != key) atomicAdd(&counts[key], i + 1);
   }
 };
 
@@ -38,20 +39,27 @@ void CellSort::sort(Device device, Index n, unsigned last_key) {
     iota_.resize(size);
     for_each(device, n, IotaItem{iota_.data()});
   }
-  sorted_keys_.resize(size), order_.resize(size), ranges_.resize(static_cast<std::size_t>(last_key) + 1);
-  ranges_.zero(device.stream);
-  if (n == 0) return;
+  const std::size_t starts = static_cast<std::size_t>(last_key) + 2;
+  sorted_keys_.resize(size), order_.resize(size), counts_.resize(starts), starts_.resize(starts);
+  counts_.zero(device.stream);
   const int bits = std::max(1, static_cast<int>(std::bit_width(last_key)));
   std::size_t space = 0;
+  const auto with_space = [&](const auto& call) {
+    call(nullptr);
+    space_.resize(std::max<std::size_t>(space, 1));
+    call(space_.data());
+  };
   const auto sort = [&](void* at) {
     require_cuda(cub::DeviceRadixSort::SortPairs(at, space, keys_.data(), sorted_keys_.data(), iota_.data(),
                                                  order_.data(), n, 0, bits, device.stream),
                  "sort");
   };
-  sort(nullptr);
-  space_.resize(space);
-  sort(space_.data());
-  for_each(device, n, RangeItem{sorted_keys_.data(), ranges_.data(), n});
+  if (n > 0) with_space(sort);
+  for_each(device, n, CountItem{sorted_keys_.data(), counts_.data(), n});
+  with_space([&](void* at) {
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, space, counts_.data(), starts_.data(), starts, device.stream),
+                 "scan");
+  });
 }
 
 }  // namespace scree

@@ -12,16 +12,16 @@ class CellSort {
  public:
   // Keys of the items to sort; written by the caller before sort().
   unsigned* keys(std::size_t n);
-  // Afterwards order()[k] is the item at place k, items of one key in the order that they had; ranges()[key] is where
-  // the items of that key stand. Keys up to last_key have ranges.
+  // Afterwards order()[k] is the item at place k, items of one key in the order that they had; those of a key stand
+  // from starts()[key] to starts()[key + 1], for keys up to last_key.
   void sort(Device device, Index n, unsigned last_key);
   const Index* order() const { return order_.data(); }
-  const CellRange* ranges() const { return ranges_.data(); }
+  const Index* starts() const { return starts_.data(); }
 
  private:
   DeviceArray<unsigned> keys_, sorted_keys_;
   DeviceArray<Index> iota_, order_;
-  DeviceArray<CellRange> ranges_;
+  DeviceArray<Index> counts_, starts_;
   DeviceArray<unsigned char> space_;
 };
 

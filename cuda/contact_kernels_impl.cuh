@@ -3,6 +3,7 @@
 
 #include "contact_kernels.cuh"
 #include "for_each.cuh"
+#include "staging.cuh"
 
 namespace scree {
 
@@ -20,27 +21,52 @@ struct SystemItem {
   }
 };
 
-template <class Item>
-__global__ void system_kernel(Index n, const __grid_constant__ Item item, StepNorms* largest) {
-  const Index i = thread_index();
+inline constexpr int kSystemThreads = 128;
+
+// What a warp of an implicit step's system stages.
+struct SystemStages {
+  WarpStage<Vec3, kSystemThreads>::Shared step_force, end_force, residual;
+  WarpStage<Sym3, kSystemThreads>::Shared diagonal, inverse_block;
+};
+
+template <class Elastic, class Laws>
+__global__ void __launch_bounds__(kSystemThreads)
+    system_kernel(const __grid_constant__ SystemRequest r, const Laws laws) {
+  __shared__ SystemStages stages;
+  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize,
+              stretch = min(static_cast<Index>(warpSize), r.n - first);
+  const WarpStage<Vec3, kSystemThreads> step_force(stages.step_force), end_force(stages.end_force),
+      residual(stages.residual);
+  const WarpStage<Sym3, kSystemThreads> diagonal(stages.diagonal), inverse_block(stages.inverse_block);
   StepNorms norms{};
-  if (i < n) norms = item(i);
-  block_max(norms.residual, &largest->residual);
-  block_max(norms.correction_bound, &largest->correction_bound);
-  block_max(norms.force, &largest->force);
-  block_max(norms.stiffening, &largest->stiffening);
+  if (i < r.n) {
+    SystemItem<Elastic, Laws> item{{{r.in, laws, r.start}, r.gravity, r.weights, r.forces, r.matrix},
+                                   {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
+                                   {r.step, r.residual, r.forces.magnitude, r.stiffening}};
+    item.system.out.step_force = step_force.at(first), item.residual.force = step_force.at(first);
+    item.system.out.end_force = end_force.at(first);
+    item.system.matrix.diagonal = item.residual.matrix.diagonal = diagonal.at(first);
+    item.residual.residual = residual.at(first), item.norms.residual = residual.at(first);
+    item.residual.inverse_block = inverse_block.at(first);
+    norms = item(i);
+  }
+  __syncwarp();
+  step_force.store(r.forces.step_force, first, stretch), end_force.store(r.forces.end_force, first, stretch);
+  diagonal.store(r.matrix.diagonal, first, stretch);
+  residual.store(r.residual, first, stretch), inverse_block.store(r.inverse_block, first, stretch);
+  block_max(norms.residual, &r.largest->residual);
+  block_max(norms.correction_bound, &r.largest->correction_bound);
+  block_max(norms.force, &r.largest->force);
+  block_max(norms.stiffening, &r.largest->stiffening);
 }
 
 // Called by the last block of a step: the step is closed and the next one open.
 __device__ inline void close_step(VerletControl& c) {
-  // Other blocks wrote these two: not to be read from this multiprocessor's cache.
-  const unsigned largest = *static_cast<volatile unsigned*>(&c.largest);
-  const bool outside = *static_cast<volatile int*>(&c.outside) != 0;
-  c.bound += std::sqrt(static_cast<Real>(__uint_as_float(largest)));
-  c.largest = c.finished_blocks = 0;
+  c.bound += std::sqrt(static_cast<Real>(__uint_as_float(c.largest)));
+  c.largest = 0;
   ++c.closed;
   c.parity[0] ^= 1, c.parity[1] ^= 1;
-  c.judge(outside);
+  c.judge(c.outside != 0);
 }
 
 // Whether the particle's new place is outside. Far from the sides the old place alone says no.
@@ -51,36 +77,58 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_plac
   return !r.box.inside(xyz(new_place[i])) && !r.drifting[i];
 }
 
-inline constexpr int kVerletThreads = 128;
+// Registers are rationed for so many blocks on a multiprocessor: the kernel lives from many threads that wait.
+inline constexpr int kVerletThreads = 128, kVerletBlocks = 8;
+
+// What a warp of the explicit step stages.
+struct VerletStages {
+  WarpStage<Vec4, kVerletThreads>::Shared position, velocity;
+  WarpStage<Vec3, kVerletThreads>::Shared acceleration;
+};
 
 template <class Elastic, class Laws>
-__global__ void __launch_bounds__(kVerletThreads)
+__global__ void __launch_bounds__(kVerletThreads, kVerletBlocks)
     verlet_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
   if (r.control->stop) return;
   const int p = r.control->parity[0], v = r.control->parity[1];
+  __shared__ VerletStages stages;
   __shared__ unsigned largest;
-  if (threadIdx.x == 0) largest = 0;
+  __shared__ unsigned arrived;
+  if (threadIdx.x == 0) largest = arrived = 0;
   __syncthreads();
-  const Index i = thread_index();
+  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize,
+              stretch = min(static_cast<Index>(warpSize), r.n - first);
+  const WarpStage<Vec4, kVerletThreads> position(stages.position), velocity(stages.velocity);
+  const WarpStage<Vec3, kVerletThreads> acceleration(stages.acceleration);
+  acceleration.load(r.state.acceleration, first, stretch);
+  __syncwarp();
   Real d_squared = 0;
   if (i < r.n) {
     VerletAdvanceItem<Elastic, Laws, SlicedRows> item{{r.in, laws, r.gravity, nullptr, nullptr}, r.state};
     item.contacts.in.position = p == 0 ? r.position[0] : r.position[1];
     item.contacts.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
-    item.state.position = p == 0 ? r.position[1] : r.position[0];
-    item.state.velocity = v == 0 ? r.velocity[1] : r.velocity[0];
+    item.state.position = position.at(first), item.state.velocity = velocity.at(first);
+    item.state.acceleration = acceleration.at(first);
     d_squared = item(i);
     if (is_outside(r, i, item.contacts.in.position[i], item.state.position, d_squared)) r.control->outside = 1;
   }
+  __syncwarp();
+  position.store(p == 0 ? r.position[1] : r.position[0], first, stretch);
+  velocity.store(v == 0 ? r.velocity[1] : r.velocity[0], first, stretch);
+  acceleration.store(r.state.acceleration, first, stretch);
+
   // Singles that round up keep the order of the doubles, and a NaN stays the largest.
   const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
   const unsigned warp_largest = __reduce_max_sync(~0u, bits);
-  if (threadIdx.x % warpSize == 0) atomicMax(&largest, warp_largest);
-  __syncthreads();
-  if (threadIdx.x > 0) return;
+  if (threadIdx.x % warpSize > 0) return;
+  // The warp that comes last speaks for the block; the others do not wait for it.
+  atomicMax(&largest, warp_largest);
+  __threadfence_block();
+  if (atomicAdd(&arrived, 1u) != kVerletThreads / warpSize - 1) return;
+  __threadfence_block();
+  largest = atomicMax(&largest, 0u);
   if (largest > *static_cast<volatile unsigned*>(&r.control->largest)) atomicMax(&r.control->largest, largest);
-  __threadfence();
-  if (atomicAdd(&r.control->finished_blocks, 1u) == gridDim.x - 1) close_step(*r.control);
+  if (is_last_block(&r.control->finished_blocks)) close_step(*r.control);
 }
 
 template <class Elastic, class Laws>
@@ -109,11 +157,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   void system(Device device, const SystemRequest& r) const override {
     require_cuda(cudaMemsetAsync(r.largest, 0, sizeof(StepNorms), device.stream), "system");
     if (r.n == 0) return;
-    const SystemItem<Elastic, Laws> item{
-        {{r.in, laws_, r.start}, r.gravity, r.weights, r.forces, r.matrix},
-        {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
-        {r.step, r.residual, r.forces.magnitude, r.stiffening}};
-    system_kernel<<<blocks_for(r.n), kThreadsPerBlock, 0, device.stream>>>(r.n, item, r.largest);
+    system_kernel<Elastic><<<blocks_for(r.n, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
     require_cuda(cudaGetLastError(), "system");
   }
   void shapes(Device device, const DeviceViews& in, Index n, const StepStart& start,

@@ -197,16 +197,12 @@ void CudaBackend::sort_cells(Real skin) {
            CellKeyItem{views_of(now_), model_.space.min, subdomain_.period(), grid_, outside, particle_sort_.keys(n),
                        result(&Results::worst_id)});
   particle_sort_.sort(device(), owned_, outside);
-  CellRange* d_range = &results_.data()->range;
-  copy_async(d_range, particle_sort_.ranges() + outside, 1, stream_);
-  fetch(&Results::worst_id);
-  copy_async(&h_results_.data()->range, d_range, 1, stream_);
-  wait_for(stream_);
-  if (h_results_[0].worst_id < kNoId)
+  // Particles with the last key are outside the search; the others stand before them.
+  copy_async(&h_results_.data()->index, particle_sort_.starts() + outside, 1, stream_);
+  if (fetch(&Results::worst_id) < kNoId)
     throw SimulationError("stage sort_cells: the position of particle " + std::to_string(h_results_[0].worst_id) +
                           " is not finite");
-  const CellRange left = h_results_[0].range;
-  layout_.owned = owned_, layout_.active = owned_ - (left.end - left.begin);
+  layout_.owned = owned_, layout_.active = h_results_[0].index;
   reorder(particle_sort_.order(), owned_);
 }
 
@@ -298,9 +294,9 @@ void CudaBackend::search(Real skin) {
   ListInput in;
   in.position = now_.position.data(), in.row_key = now_.row_key.data();
   in.grid = grid_;
-  in.cell_particles = particle_sort_.ranges();
+  in.particle_starts = particle_sort_.starts();
   const bool others = layout_.items > owned_;
-  in.cell_others = others ? other_sort_.ranges() : nullptr;
+  in.other_starts = others ? other_sort_.starts() : nullptr;
   in.other_items = others ? other_items_.data() : nullptr;
   in.bodies = {shape_body_.data(), connected_offsets_.data(), connected_.data()};
   in.planes = planes_.data(), in.walls = static_cast<Index>(planes_.size());

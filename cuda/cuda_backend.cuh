@@ -77,7 +77,6 @@ class CudaBackend : public Backend {
     ExactSums<kLedgerTerms> ledger;
     VerletControl control;
     long long worst_id;
-    CellRange range;
     Index index;
     Index leavers;
   };

@@ -115,12 +115,10 @@ __global__ void solver_kernel(Index n, const __grid_constant__ SolverItem item, 
   const Index i = thread_index();
   block_max(i < n ? item(i) : 0, &c->largest);
   if (threadIdx.x > 0) return;
-  __threadfence();
-  if (atomicAdd(&c->finished_blocks, 1u) != gridDim.x - 1) return;
-  const Real largest = *static_cast<volatile Real*>(&c->largest);
-  c->largest = 0, c->finished_blocks = 0;
+  if (!is_last_block(&c->finished_blocks)) return;
+  c->stop = std::sqrt(c->largest) <= c->tolerance;
+  c->largest = 0;
   ++c->products;
-  c->stop = std::sqrt(largest) <= c->tolerance;
 }
 
 // A correction overshoots if the slope behind it has risen past this share of the slope before it.

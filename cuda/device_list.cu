@@ -47,16 +47,20 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
     const Real reach = p.w + q.w + in.skin;
     if (dot(d, d) < reach * reach && !excluded(in, i, j)) visit(j);
   };
+  const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
+  // Cells of one brick beside each other in x are contiguous: one run of items, or two where a brick ends.
+  const Index split = min(x1 + 1, (x0 / in.grid.side[0] + 1) * in.grid.side[0]);
   for (Index z = max(c.z - 1, 0); z <= min(c.z + 1, cells.cells[2] - 1); ++z)
-    for (Index y = max(c.y - 1, 0); y <= min(c.y + 1, cells.cells[1] - 1); ++y)
-      for (Index x = max(c.x - 1, 0); x <= min(c.x + 1, cells.cells[0] - 1); ++x) {
-        const Index cell = in.grid.key(x, y, z);
-        const CellRange particles = in.cell_particles[cell];
-        for (Index k = particles.begin; k < particles.end; ++k) consider(k);
-        if (in.cell_others == nullptr) continue;
-        const CellRange others = in.cell_others[cell];
-        for (Index k = others.begin; k < others.end; ++k) consider(in.other_items[k]);
-      }
+    for (Index y = max(c.y - 1, 0); y <= min(c.y + 1, cells.cells[1] - 1); ++y) {
+      const Index key = in.grid.key(x0, y, z), second = split <= x1 ? in.grid.key(split, y, z) : key;
+      const auto visit_runs = [&](const Index* starts, const auto& item) {
+        const Index begin = starts[key], length = starts[key + split - x0] - begin;
+        const Index second_begin = starts[second], all = length + starts[second + x1 + 1 - split] - second_begin;
+        for (Index k = 0; k < all; ++k) consider(item(k < length ? begin + k : second_begin + k - length));
+      };
+      visit_runs(in.particle_starts, [](Index k) { return k; });
+      if (in.other_starts != nullptr) visit_runs(in.other_starts, [&](Index k) { return in.other_items[k]; });
+    }
 }
 
 // Heap sort of a row in device memory by row_key.
@@ -101,17 +105,22 @@ __device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buf
   const int column = static_cast<int>(threadIdx.x);
   Index found = 0;
   visit_row(in, i, [&](Index j) {
-    if (found < kEntries) {
-      const std::int64_t key = in.row_key[j];
-      Index k = found;
-      for (; k > 0 && buffer.key[k - 1][column] > key; --k) {
-        buffer.key[k][column] = buffer.key[k - 1][column];
-        buffer.neighbor[k][column] = buffer.neighbor[k - 1][column];
-      }
-      buffer.key[k][column] = key, buffer.neighbor[k][column] = j;
-    }
+    if (found < kEntries) buffer.neighbor[found][column] = j;
     ++found;
   });
+  // Sorted at the end, all threads of a warp together.
+  const Index kept = min(found, kEntries);
+  for (Index k = 0; k < kept; ++k) buffer.key[k][column] = in.row_key[buffer.neighbor[k][column]];
+  for (Index k = 1; k < kept; ++k) {
+    const std::int64_t key = buffer.key[k][column];
+    const Index neighbor = buffer.neighbor[k][column];
+    Index to = k;
+    for (; to > 0 && buffer.key[to - 1][column] > key; --to) {
+      buffer.key[to][column] = buffer.key[to - 1][column];
+      buffer.neighbor[to][column] = buffer.neighbor[to - 1][column];
+    }
+    buffer.key[to][column] = key, buffer.neighbor[to][column] = neighbor;
+  }
   return found;
 }
 

@@ -19,54 +19,22 @@ struct SlicedRows {
   SCREE_HD std::int64_t first(Index i) const { return slice_start[i / kSlice] + i % kSlice; }
   SCREE_HD static constexpr int stride() { return kSlice; }
 
-  // As PackedRows::for_each_contact. First the entries that touch are marked, with several loads in flight; then they
-  // are evaluated kAtOnce at a time: few lanes of a warp then wait for others, and latencies overlap.
-  template <int kAtOnce, class Touches, class Evaluate, class Add>
+  // As PackedRows::for_each_contact. Two entries are tested at once while the next two are under way: loads that do not
+  // wait for each other.
+  template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate, const Add& add) const {
-    constexpr Index kMarks = 32;
     const Index* row = neighbors + first(i);
-    const auto entry = [&](Index k) { return row[k * kSlice]; };
-    for (Index left = counts[i]; left > 0; left -= kMarks, row += kMarks * kSlice) {
-      unsigned marks = find_touching(row, left < kMarks ? left : kMarks, i, touches);
-      while (marks != 0) {
-        const Index j = entry(lowest(marks));
-        marks &= marks - 1;
-        if constexpr (kAtOnce == 1) {
-          add(evaluate(j));
-        } else {
-          const bool two = marks != 0;
-          const Index j2 = two ? entry(lowest(marks)) : j;
-          marks &= marks - 1;  // 0 stays 0
-          const auto one = evaluate(j), other = evaluate(j2);
-          add(one);
-          if (two) add(other);
-        }
-      }
+    Index left = counts[i];
+    const auto entry = [&](Index k) { return k < left ? row[k * kSlice] : i; };
+    Index j[2] = {entry(0), entry(1)};
+    while (left > 0) {
+      const Index next[2] = {entry(2), entry(3)};
+      const bool first_touches = touches(j[0]), second_touches = touches(j[1]) & (left > 1);
+      if (first_touches) add(evaluate(j[0]));
+      if (second_touches) add(evaluate(j[1]));
+      j[0] = next[0], j[1] = next[1];
+      left -= 2, row += 2 * kSlice;
     }
-  }
-
- private:
-  // Bit k for the k-th of n entries if it touches.
-  template <class Touches>
-  SCREE_HD static unsigned find_touching(const Index* row, Index n, Index i, const Touches& touches) {
-    constexpr int kInFlight = 4;
-    unsigned marks = 0;
-    for (Index k = 0; k < n; k += kInFlight) {
-      Index j[kInFlight];
-#pragma unroll
-      for (int e = 0; e < kInFlight; ++e) j[e] = k + e < n ? row[(k + e) * kSlice] : i;
-#pragma unroll
-      for (int e = 0; e < kInFlight; ++e)
-        if (touches(j[e]) && k + e < n) marks |= 1u << (k + e);
-    }
-    return marks;
-  }
-  SCREE_HD static Index lowest(unsigned marks) {
-#ifdef __CUDA_ARCH__
-    return __ffs(static_cast<int>(marks)) - 1;
-#else
-    return __builtin_ctz(marks);
-#endif
   }
 };
 
@@ -83,19 +51,14 @@ struct ShapeBodies {
   }
 };
 
-// The items of one cell: [begin, end).
-struct CellRange {
-  Index begin, end;
-};
-
 // What the search reads. Active particles stand in the order of their cells; ghosts and shapes are found through an
 // index of their own.
 struct ListInput {
   const Vec4* position;         // all items
   const std::int64_t* row_key;  // all items: orders the entries of a row, by global id and image
   BrickGrid grid;
-  const CellRange* cell_particles;  // [cells] of active particles
-  const CellRange* cell_others;     // [cells] of other_items: ghosts and shapes; null without any
+  const Index* particle_starts;  // [cells + 1] into the active particles
+  const Index* other_starts;     // [cells + 1] into other_items: ghosts and shapes; null without any
   const Index* other_items;
   ShapeBodies bodies;
   const WallPlane* planes;

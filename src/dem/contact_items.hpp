@@ -38,9 +38,8 @@ struct PackedRows {
   // Slot of the row's first entry, and from one entry to the next.
   SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
   SCREE_HD static constexpr int stride() { return 1; }
-  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. kAtOnce: how many a
-  // machine that works on several at once may evaluate before it adds the first.
-  template <int kAtOnce, class Touches, class Evaluate, class Add>
+  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order.
+  template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate, const Add& add) const {
     const Index end = offsets[i + 1];
     for (Index k = offsets[i]; k < end; ++k)
@@ -116,7 +115,7 @@ struct ContactForceItem {
       const ContactForce c = contact_force<Elastic>(laws.get(material, in.material[j]), gap.overlap, rate);
       return PairForce{(c.force * gap.inverse_distance) * r, c.loss, j >= in.first_shape};
     };
-    in.rows.template for_each_contact<2>(
+    in.rows.for_each_contact(
         i, [&](Index j) { return touch(p, in.position[j]); }, evaluate,
         [&](const PairForce& c) {
           f += c.force;
@@ -217,7 +216,7 @@ struct StepContacts {
                                 rate(o.normal, xyz(in.velocity[i]) - xyz(in.velocity[j]))),
           o.normal, j};
     };
-    in.rows.template for_each_contact<1>(
+    in.rows.for_each_contact(
         i, [&](Index j) { return touch(p, in.position[j]) || touch(p0, start.position[j]); }, evaluate,
         [&](const Neighbor& n) { visit(n.contact, n.normal, n.j); });
   }
@@ -352,7 +351,7 @@ struct ShapeContactItem {
     const Index i = in.first_shape + shape;
     const Vec4 p = position(i), u = velocity(i);
     ShapeContact sum;
-    in.rows.template for_each_contact<1>(
+    in.rows.for_each_contact(
         i, [&](Index j) { return touch(p, position(j)); }, [](Index j) { return j; },
         [&](Index j) {
           const Vec4 q = position(j);
@@ -383,7 +382,7 @@ struct ContactEnergyItem {
     const Vec4 p = in.position[i];
     Real sum = 0, share = 0;
     Index n = 0;
-    in.rows.template for_each_contact<1>(
+    in.rows.for_each_contact(
         i, [&](Index j) { return touch(p, in.position[j]); }, [](Index j) { return j; },
         [&](Index j) {
           const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
