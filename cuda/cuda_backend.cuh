@@ -177,9 +177,10 @@ class CudaBackend : public Backend {
   // Workspace of the implicit step.
   Real h_ = 0;
   bool in_implicit_step_ = false;
-  DeviceArray<Vec3> step_force_, end_force_, residual_, right_hand_side_, correction_, matrix_b_;
+  DeviceArray<Vec3> step_force_, end_force_, residual_, right_hand_side_, correction_;
   DeviceArray<Real> step_loss_, end_loss_, force_magnitude_, stiffening_;
-  DeviceArray<Index> matrix_count_, matrix_neighbor_;
+  DeviceArray<Index> matrix_count_;
+  DeviceArray<ContactEntry> matrix_entries_;
   DeviceArray<Sym3> matrix_diagonal_, inverse_block_;
   DeviceArray<Vec4> direction_[2];
   DeviceArray<SolverControl> solver_;

@@ -24,12 +24,12 @@ StepForces CudaBackend::step_forces() {
 }
 
 ContactMatrix CudaBackend::matrix() {
-  return {matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(), matrix_diagonal_.data()};
+  return {matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()};
 }
 
 void CudaBackend::size_step_arrays() {
   const auto owned = static_cast<std::size_t>(owned_), slots = static_cast<std::size_t>(list_.slots());
-  matrix_neighbor_.resize(slots), matrix_b_.resize(slots);
+  matrix_entries_.resize(slots);
   for (DeviceArray<Vec4>& direction : direction_) direction.resize(static_cast<std::size_t>(layout_.items));
   step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
   force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);

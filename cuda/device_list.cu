@@ -41,11 +41,11 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
   const CellGrid& cells = in.grid.cells;
   const CellPlace c = cells.place(xyz(p));
   if (c.x < 0) return;
-  const auto consider = [&](Index j) {
+  const auto reaches = [&](Index j) {
     const Vec4 q = in.position[j];
     const Vec3 d = xyz(p) - xyz(q);
     const Real reach = p.w + q.w + in.skin;
-    if (dot(d, d) < reach * reach && !excluded(in, i, j)) visit(j);
+    return dot(d, d) < reach * reach;
   };
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
   // Cells of one brick beside each other in x are contiguous: one run of items, or two where a brick ends.
@@ -56,7 +56,13 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
       const auto visit_runs = [&](const Index* starts, const auto& item) {
         const Index begin = starts[key], length = starts[key + split - x0] - begin;
         const Index second_begin = starts[second], all = length + starts[second + x1 + 1 - split] - second_begin;
-        for (Index k = 0; k < all; ++k) consider(item(k < length ? begin + k : second_begin + k - length));
+        const auto at = [&](Index k) { return item(k < length ? begin + k : second_begin + k - length); };
+        for (Index k = 0; k < all; k += 2) {  // two at once: loads that do not wait for each other
+          const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
+          const bool hit[2] = {reaches(j[0]), reaches(j[1]) & (k + 1 < all)};
+          if (hit[0] && !excluded(in, i, j[0])) visit(j[0]);
+          if (hit[1] && !excluded(in, i, j[1])) visit(j[1]);
+        }
       };
       visit_runs(in.particle_starts, [](Index k) { return k; });
       if (in.other_starts != nullptr) visit_runs(in.other_starts, [&](Index k) { return in.other_items[k]; });

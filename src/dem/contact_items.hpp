@@ -136,14 +136,26 @@ struct ContactForceItem {
   }
 };
 
+// One touching pair in the Newton matrix. In single precision: the matrix only says where the iteration goes, the
+// residual says where it ends, and the entries are most of what a matrix product reads.
+struct alignas(16) ContactEntry {
+  float x, y, z;   // b [sqrt(kg)]
+  Index neighbor;  // j
+
+  SCREE_HD Vec3 b() const { return {x, y, z}; }
+};
+
+SCREE_HD ContactEntry contact_entry(Vec3 b, Index neighbor) {
+  return {static_cast<float>(b.x), static_cast<float>(b.y), static_cast<float>(b.z), neighbor};
+}
+
 // Newton matrix of the touching pairs: row i is sum over its entries of b (b . (x_i - x_j)), with
 // b = sqrt(beta h^2 dF/dd + h gamma dF/d(d_dot)) n. Entries stand at the neighbour list's slots, packed to
 // the front of a row.
 struct ContactMatrix {
-  Index* count;     // entries of row i
-  Index* neighbor;  // [slots of the list]
-  Vec3* b;          // [sqrt(kg)]
-  Sym3* diagonal;   // sum of b b^T over the row, walls included [kg]
+  Index* count;          // entries of row i
+  ContactEntry* entries;  // [slots of the list]
+  Sym3* diagonal;        // sum of b b^T over the row, walls included [kg]
 };
 
 // Sums over the contacts of each particle in an implicit step; "step" and "end" as in StepContact.
@@ -263,8 +275,7 @@ struct ContactSystemItem {
     };
     contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
       const Real s = add(c, normal, particle_share(j, contacts.in.first_shape));
-      matrix.neighbor[slot] = j;
-      matrix.b[slot] = std::sqrt(s) * normal;
+      matrix.entries[slot] = contact_entry(std::sqrt(s) * normal, j);
       ++entries, slot += Rows::stride();
     });
     contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });

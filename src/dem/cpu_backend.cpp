@@ -135,7 +135,7 @@ void CpuBackend::build_list(Real skin, StageTimers& timers) {
 
   const std::size_t slots = list_.neighbors.size(), owned = static_cast<std::size_t>(layout_.owned);
   if (model_.integrator.particles != ParticleIntegrator::hht) return;
-  matrix_neighbor_.resize(slots), matrix_b_.resize(slots), direction_.resize(layout_.items);
+  matrix_entries_.resize(slots), direction_.resize(layout_.items);
   step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
   force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
   residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned),

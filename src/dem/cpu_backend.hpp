@@ -98,8 +98,9 @@ class CpuBackend : public Backend {
   std::vector<Vec3> start_acceleration_, start_force_;
   std::vector<Vec3> step_force_, end_force_;
   std::vector<Real> step_loss_, end_loss_, force_magnitude_, stiffening_;
-  std::vector<Index> matrix_count_, matrix_neighbor_;
-  std::vector<Vec3> matrix_b_, residual_, right_hand_side_, correction_;
+  std::vector<Index> matrix_count_;
+  std::vector<ContactEntry> matrix_entries_;
+  std::vector<Vec3> residual_, right_hand_side_, correction_;
   std::vector<Sym3> matrix_diagonal_, inverse_block_;
   std::vector<Vec4> direction_;
   std::vector<Vec4> spare_position_, spare_velocity_;  // explicit steps write here while neighbours are read

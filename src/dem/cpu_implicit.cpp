@@ -77,8 +77,7 @@ ParticleNorms CpuBackend::contact_force() {
   const Index n = layout_.owned;
   const NewtonWeights weights{hht_.newmark_beta * h_ * h_, h_ * hht_.newmark_gamma};
   const StepStart start{start_position_.data(), start_velocity_.data(), h_, model_.integrator.resolve_events};
-  const ContactMatrix matrix{matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(),
-                             matrix_diagonal_.data()};
+  const ContactMatrix matrix{matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()};
   kernels_->system(views(), model_.gravity, n, weights, start, step_forces(), matrix);
   kernels_->shapes(views(), layout_.items - layout_.first_shape, start, side_.contacts().data());
   for_each(Serial{}, n,
@@ -146,7 +145,7 @@ ParticleCorrection CpuBackend::particle_correct() {
   const Index n = layout_.owned;
   const Real weight = hht_.newmark_beta * h_ * h_;
   const SubtractMatrixItem<PackedRows> matrix{
-      {matrix_count_.data(), matrix_neighbor_.data(), matrix_b_.data(), matrix_diagonal_.data()},
+      {matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()},
       {list_.offsets.data(), list_.neighbors.data()},
       store_.velocity.data(),
       1 / (1 + hht_.hht_alpha),

@@ -14,7 +14,7 @@ constexpr double kSortArrays = 4 * sizeof(Index) + 2 * sizeof(Index);  // keys a
 constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);       // counts, walls, positions at the build
 constexpr double kGhostArrays = 40 + kSortArrays + sizeof(Index);
 constexpr double kStepArrays = 5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
-constexpr double kStepArraysPerSlot = sizeof(Vec3) + sizeof(Index);
+constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kOutputArrays = 96 + 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kCellBytes = 2 * sizeof(Index);

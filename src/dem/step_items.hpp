@@ -149,8 +149,9 @@ struct SubtractMatrixItem {
     Vec3 sum = (velocity[i].w * inverse_scale) * di + matrix.diagonal[i] * di;
     std::int64_t slot = rows.first(i);
     for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride()) {
-      const Vec3 b = matrix.b[slot];
-      sum -= dot(b, xyz(d[matrix.neighbor[slot]])) * b;
+      const ContactEntry entry = matrix.entries[slot];
+      const Vec3 b = entry.b();
+      sum -= dot(b, xyz(d[entry.neighbor])) * b;
     }
     residual[i] -= sum;
   }
