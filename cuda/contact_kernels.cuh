@@ -6,6 +6,7 @@
 
 #include "dem/contact_items.hpp"
 #include "dem/contact_kernels.hpp"
+#include "dem/mixed_items.hpp"
 #include "dem/step_items.hpp"
 #include "device.cuh"
 #include "device_list.cuh"
@@ -73,6 +74,19 @@ struct VerletRequest {
   VerletControl* control;
 };
 
+// The same in mixed precision. in.position: the double state, as it was converted.
+struct MixedRequest {
+  DeviceViews in;
+  Index n;
+  Vec3 gravity;
+  MixedViews state;
+  QuantumGrid grid;
+  Real h;
+  OpenBox box;
+  const std::uint8_t* drifting;
+  VerletControl* control;
+};
+
 class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
@@ -87,6 +101,7 @@ class DeviceContactKernels {
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
   // One explicit step, closed and the next opened; does nothing once the control says stop.
   virtual void verlet_advance(Device device, const VerletRequest& request) const = 0;
+  virtual void mixed_advance(Device device, const MixedRequest& request) const = 0;
   // The last step, closed. *largest: the square of the largest acceleration; a NaN if one is not finite.
   virtual void verlet_finish(Device device, const VerletRequest& request, Real* largest) const = 0;
 };

@@ -78,7 +78,32 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_plac
 }
 
 // Registers are rationed for so many blocks on a multiprocessor: the kernel lives from many threads that wait.
-inline constexpr int kVerletThreads = 128, kVerletBlocks = 8;
+inline constexpr int kVerletThreads = 128, kVerletBlocks = 8, kMixedBlocks = 8;
+
+// A block's part in the largest displacement of a step.
+struct BlockLargest {
+  unsigned largest, arrived;
+  __device__ void clear() {
+    if (threadIdx.x == 0) largest = arrived = 0;
+    __syncthreads();
+  }
+};
+
+// Every thread calls this at its end: the last block closes the step.
+__device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, VerletControl& control) {
+  // Singles that round up keep the order of the doubles, and a NaN stays the largest.
+  const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
+  const unsigned warp_largest = __reduce_max_sync(~0u, bits);
+  if (threadIdx.x % warpSize > 0) return;
+  // The warp that comes last speaks for the block; the others do not wait for it.
+  atomicMax(&block.largest, warp_largest);
+  __threadfence_block();
+  if (atomicAdd(&block.arrived, 1u) != kVerletThreads / warpSize - 1) return;
+  __threadfence_block();
+  const unsigned largest = atomicMax(&block.largest, 0u);
+  if (largest > *static_cast<volatile unsigned*>(&control.largest)) atomicMax(&control.largest, largest);
+  if (is_last_block(&control.finished_blocks)) close_step(control);
+}
 
 // What a warp of the explicit step stages.
 struct VerletStages {
@@ -92,10 +117,8 @@ __global__ void __launch_bounds__(kVerletThreads, kVerletBlocks)
   if (r.control->stop) return;
   const int p = r.control->parity[0], v = r.control->parity[1];
   __shared__ VerletStages stages;
-  __shared__ unsigned largest;
-  __shared__ unsigned arrived;
-  if (threadIdx.x == 0) largest = arrived = 0;
-  __syncthreads();
+  __shared__ BlockLargest largest_of_step;
+  largest_of_step.clear();
   const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize,
               stretch = min(static_cast<Index>(warpSize), r.n - first);
   const WarpStage<Vec4, kVerletThreads> position(stages.position), velocity(stages.velocity);
@@ -117,18 +140,28 @@ __global__ void __launch_bounds__(kVerletThreads, kVerletBlocks)
   velocity.store(v == 0 ? r.velocity[1] : r.velocity[0], first, stretch);
   acceleration.store(r.state.acceleration, first, stretch);
 
-  // Singles that round up keep the order of the doubles, and a NaN stays the largest.
-  const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
-  const unsigned warp_largest = __reduce_max_sync(~0u, bits);
-  if (threadIdx.x % warpSize > 0) return;
-  // The warp that comes last speaks for the block; the others do not wait for it.
-  atomicMax(&largest, warp_largest);
-  __threadfence_block();
-  if (atomicAdd(&arrived, 1u) != kVerletThreads / warpSize - 1) return;
-  __threadfence_block();
-  largest = atomicMax(&largest, 0u);
-  if (largest > *static_cast<volatile unsigned*>(&r.control->largest)) atomicMax(&r.control->largest, largest);
-  if (is_last_block(&r.control->finished_blocks)) close_step(*r.control);
+  close_by_last_block(largest_of_step, d_squared, *r.control);
+}
+
+template <class Elastic, class Laws>
+__global__ void __launch_bounds__(kVerletThreads, kMixedBlocks)
+    mixed_advance_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
+  if (r.control->stop) return;
+  const int parity = r.control->parity[0];
+  __shared__ BlockLargest largest_of_step;
+  largest_of_step.clear();
+  const Index i = thread_index();
+  Real d_squared = 0;
+  if (i < r.n) {
+    const MixedAdvanceItem<Elastic, Laws, SlicedRows> item{r.in, laws, r.gravity, r.state, parity, r.grid, r.h};
+    d_squared = item(i);
+    const MixedFraction part = r.state.fraction[i];
+    const Real margin = r.control->half_skin;
+    if ((part.near_side || d_squared > margin * margin) && !r.drifting[i] &&
+        !r.box.inside(mixed_position(r.grid, r.in.position[i], (parity == 0 ? r.state.place[1] : r.state.place[0])[i], part)))
+      r.control->outside = 1;
+  }
+  close_by_last_block(largest_of_step, d_squared, *r.control);
 }
 
 template <class Elastic, class Laws>
@@ -174,6 +207,11 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
     verlet_advance_kernel<Elastic>
+        <<<std::max(1u, blocks_for(r.n, kVerletThreads)), kVerletThreads, 0, device.stream>>>(r, laws_);
+    require_cuda(cudaGetLastError(), "explicit step");
+  }
+  void mixed_advance(Device device, const MixedRequest& r) const override {
+    mixed_advance_kernel<Elastic>
         <<<std::max(1u, blocks_for(r.n, kVerletThreads)), kVerletThreads, 0, device.stream>>>(r, laws_);
     require_cuda(cudaGetLastError(), "explicit step");
   }

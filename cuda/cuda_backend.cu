@@ -18,6 +18,7 @@ CudaBackend::CudaBackend(const Model& model)
       h_results_(1),
       solver_(1),
       h_solver_(1),
+      mixed_(model.integrator.precision == Precision::mixed && side_.shapes().size() == 0),
       pack_(std::make_unique<PackArrays>()) {
   laws_.upload(model.contact.laws, stream_);
   kernels_ = make_device_contact_kernels(model.contact, laws_.data());
@@ -34,7 +35,11 @@ CudaBackend::CudaBackend(const Model& model)
 
 CudaBackend::~CudaBackend() = default;
 
-std::string CudaBackend::description() const { return "cuda (" + device_name() + ")"; }
+std::string CudaBackend::description() const {
+  const bool asked = model_.integrator.precision == Precision::mixed;
+  const std::string precision = mixed_ ? "mixed" : asked ? "double, because bodies have shapes" : "double";
+  return "cuda (" + device_name() + ", precision " + precision + ")";
+}
 
 DeviceViews CudaBackend::views(const Vec4* position, const Vec4* velocity) const {
   return {position,       velocity,      now_.material.data(), list_.rows(), list_.wall_offsets(),

@@ -123,7 +123,10 @@ class CudaBackend : public Backend {
   void settle();
   void resume_control(Index last);
   const VerletControl& wait_for_control();
-  void queue_steps(const VerletRequest& request, Index steps);
+  void queue_steps(Real h, Index steps);
+  MixedViews mixed_views();
+  void convert_to_mixed(Real h);
+  void convert_from_mixed();
   void finish(Real h);
   bool renew_list(StageTimers& timers);
   VerletRun run_alone(Real h, Index most, bool keep_open, StageTimers& timers);
@@ -198,6 +201,14 @@ class CudaBackend : public Backend {
   enum class Level { state, opened, finished } level_ = Level::state;
   Index closed_ = 0;        // with bodies: steps since verlet_start
   StepGraph graph_;
+  bool mixed_;              // explicit runs are in mixed precision
+  bool in_mixed_ = false;   // where the open step is: in the arrays below, or in now_ and other_
+  Real mixed_h_ = 0;        // [s]
+  QuantumGrid quanta_;
+  DeviceArray<MixedPlace> mixed_place_[2];
+  DeviceArray<MixedMotion> mixed_motion_[2];
+  DeviceArray<MixedFraction> mixed_fraction_;
+  DeviceArray<MixedRest> mixed_rest_;
 
   // Output.
   struct PackArrays;

@@ -55,6 +55,23 @@ struct RunGhostItem {
   }
 };
 
+struct MixedGhostItem {
+  const Ghost* ghosts;
+  MixedViews state;
+  QuantumGrid grid;
+  Index first_ghost;
+  const VerletControl* control;
+
+  __device__ void operator()(Index g) const {
+    const int parity = control->parity[0];
+    const Ghost ghost = ghosts[g];
+    MixedPlace* places = parity == 0 ? state.place[0] : state.place[1];
+    MixedMotion* motions = parity == 0 ? state.motion[0] : state.motion[1];
+    places[first_ghost + g] = shifted(grid, places[ghost.source], ghost.shift);
+    motions[first_ghost + g] = motions[ghost.source];
+  }
+};
+
 }  // namespace
 
 VerletRequest CudaBackend::verlet_request(Real h) {
@@ -105,10 +122,40 @@ const VerletControl& CudaBackend::wait_for_control() {
 void CudaBackend::settle() {
   if (!in_run_) return;
   wait_for_control();
-  if (parity_[0] == 1) std::swap(now_.position, other_.position);
-  if (parity_[1] == 1) std::swap(now_.velocity, other_.velocity);
+  if (in_mixed_) {
+    convert_from_mixed();
+  } else {
+    if (parity_[0] == 1) std::swap(now_.position, other_.position);
+    if (parity_[1] == 1) std::swap(now_.velocity, other_.velocity);
+  }
   parity_[0] = parity_[1] = 0;
   resume_control(kEndless);
+}
+
+MixedViews CudaBackend::mixed_views() {
+  return {{mixed_place_[0].data(), mixed_place_[1].data()},
+          {mixed_motion_[0].data(), mixed_motion_[1].data()},
+          mixed_fraction_.data(),
+          mixed_rest_.data()};
+}
+
+void CudaBackend::convert_to_mixed(Real h) {
+  const auto items = static_cast<std::size_t>(layout_.items), owned = static_cast<std::size_t>(owned_);
+  for (int k = 0; k < 2; ++k) mixed_place_[k].resize(items), mixed_motion_[k].resize(items);
+  mixed_fraction_.resize(owned), mixed_rest_.resize(owned);
+  quanta_ = make_quantum_grid(builder_.cutoff(list_skin_));
+  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  for_each(device(), layout_.items,
+           ToMixedItem{now_.position.data(), now_.velocity.data(), now_.acceleration.data(), mixed_views(), quanta_,
+                       subdomain_.box(), owned_, h, list_skin_ / 2});
+  in_mixed_ = true, mixed_h_ = h;
+}
+
+void CudaBackend::convert_from_mixed() {
+  for_each(device(), owned_,
+           FromMixedItem{mixed_views(), parity_[0], quanta_, now_.position.data(), now_.velocity.data(),
+                         now_.acceleration.data(), now_.contact_loss.data(), mixed_h_});
+  in_mixed_ = false;
 }
 
 void CudaBackend::resume_control(Index last) {
@@ -124,19 +171,33 @@ bool CudaBackend::renew_list(StageTimers& timers) {
   return true;
 }
 
-void CudaBackend::queue_steps(const VerletRequest& r, Index steps) {
-  std::string key(reinterpret_cast<const char*>(&r), sizeof(r));
-  key += std::to_string(ghosts_) + ' ' + std::to_string(reinterpret_cast<std::uintptr_t>(ghost_.data()));
-  const RunGhostItem ghosts{ghost_.data(), {r.position[0], r.position[1]}, {r.velocity[0], r.velocity[1]}, owned_,
-                            r.control};
-  graph_.queue(stream_, key, steps, [&] {
+void CudaBackend::queue_steps(Real h, Index steps) {
+  const auto bytes = [](const auto& value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); };
+  if (!mixed_) {
+    const VerletRequest r = verlet_request(h);
+    const RunGhostItem ghosts{ghost_.data(), {r.position[0], r.position[1]}, {r.velocity[0], r.velocity[1]}, owned_,
+                              r.control};
+    graph_.queue(stream_, bytes(r) + bytes(ghosts) + bytes(ghosts_), steps, [&] {
+      for_each(device(), ghosts_, ghosts);
+      kernels_->verlet_advance(device(), r);
+    });
+    return;
+  }
+  if (!in_mixed_) convert_to_mixed(h);
+  MixedRequest r{};
+  r.in = views(now_.position.data(), now_.velocity.data()), r.n = owned_, r.gravity = model_.gravity;
+  r.state = mixed_views(), r.grid = quanta_, r.h = h;
+  r.box = subdomain_.box(), r.drifting = now_.drifting.data(), r.control = result(&Results::control);
+  const MixedGhostItem ghosts{ghost_.data(), r.state, quanta_, owned_, r.control};
+  graph_.queue(stream_, bytes(r) + bytes(ghosts) + bytes(ghosts_), steps, [&] {
     for_each(device(), ghosts_, ghosts);
-    kernels_->verlet_advance(device(), r);
+    kernels_->mixed_advance(device(), r);
   });
 }
 
 // Closes the open step without opening another; now_ holds it afterwards. The host knows the parities.
 void CudaBackend::finish(Real h) {
+  if (in_mixed_) settle();
   const VerletRequest r = verlet_request(h);
   refresh_ghosts(r.position[parity_[0]], r.velocity[parity_[1]]);
   kernels_->verlet_finish(device(), r, result(&Results::largest));
@@ -162,7 +223,7 @@ VerletRun CudaBackend::run_alone(Real h, Index most, bool keep_open, StageTimers
     if (c->closed == last || leaves()) break;
     const auto scope = timers.time(Stage::contact_force);
     resume_control(last);
-    queue_steps(verlet_request(h), std::min(last - c->closed, kQueuedSteps));
+    queue_steps(h, std::min(last - c->closed, kQueuedSteps));
     level_ = Level::opened;
     if (idle_work_) idle_work_();
     c = &wait_for_control();
@@ -213,7 +274,7 @@ bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) 
     step_queued_.record(stream_);
     queue_shape_contacts();
     places_copied_.hold(stream_);
-    if (keep_open) queue_steps(verlet_request(h), 1);
+    if (keep_open) queue_steps(h, 1);
     fetch_shape_contacts(shape_stream_);
     const VerletControl& control = h_results_[0].control;
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];

@@ -3,11 +3,26 @@
 #
 #     jobs/build.sh [PRESET] [TARGET]      default: release, all
 #
-# The program is then build/PRESET/scree.
+# PRESET: release; debug (sanitizers); cuda (for the GPU of this machine); cuda-portable (for GPUs of other machines).
+# The program is then build/PRESET/scree. nvcc is the one that the environment variable CUDACXX names, or the one on
+# the PATH, or the one that jobs/setup.sh --cuda has installed into .venv.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=${1:-release} target=${2:-all}
+case "$preset" in
+  release | debug) ;;
+  cuda | cuda-portable)
+    installed=$(find .venv/lib/python3*/site-packages/nvidia/cu*/bin -name nvcc 2>/dev/null | sort -V | tail -n 1)
+    if [[ -z "${CUDACXX:-}" && -n "$installed" ]] && ! command -v nvcc >/dev/null; then
+      export CUDACXX=$PWD/$installed
+    fi
+    ;;
+  *)
+    echo "jobs/build.sh: unknown preset $preset; allowed: release, debug, cuda, cuda-portable" >&2
+    exit 2
+    ;;
+esac
 jobs/setup.sh
 cmake --preset "$preset" >/dev/null
 cmake --build "build/$preset" --target "$target"

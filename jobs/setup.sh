@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
 #
-#     jobs/setup.sh [--paraview]
+#     jobs/setup.sh [--paraview] [--cuda]
 #
 # --paraview adds Debian's ParaView, for the reader test that opens the .xdmf files in it.
+# --cuda adds nvcc of CUDA 13.0 from PyPI, in .venv, for machines without a CUDA toolkit. The driver is not among it.
 # With nothing to install it changes nothing; what it must not install it names.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -17,6 +18,7 @@ packages=(
 )
 paraview_packages=(paraview xvfb xauth python3-h5py)
 requirements=postprocess/requirements.txt
+cuda_packages=("cuda-toolkit[nvcc,cudart,cccl]==13.0.2" "nvidia-nvvm==13.0.*" "nvidia-cuda-crt==13.0.*")
 
 fail() {
   echo "set-up: $*" >&2
@@ -48,14 +50,29 @@ install_python_packages() {
   cp "$requirements" .venv/installed.txt
 }
 
-case "$*" in
-  "") ;;
-  --paraview) packages+=("${paraview_packages[@]}") ;;
-  *) fail "unknown arguments: $*; allowed: --paraview" ;;
-esac
+install_nvcc() {
+  local folder
+  [[ "$(cat .venv/installed_cuda.txt 2>/dev/null)" == "${cuda_packages[*]}" ]] && return 0
+  echo "set-up: installing nvcc into .venv: ${cuda_packages[*]}"
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check "${cuda_packages[@]}" ||
+    fail "pip could not install ${cuda_packages[*]}"
+  folder=$(echo .venv/lib/python3*/site-packages/nvidia/cu13)
+  ln -sfn lib "$folder/lib64" # nvcc names this folder to the linker
+  echo "${cuda_packages[*]}" >.venv/installed_cuda.txt
+}
+
+with_cuda=false
+for argument in "$@"; do
+  case "$argument" in
+    --paraview) packages+=("${paraview_packages[@]}") ;;
+    --cuda) with_cuda=true ;;
+    *) fail "unknown argument: $argument; allowed: --paraview, --cuda" ;;
+  esac
+done
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
   install_packages "${packages[@]}"
 else
   echo "set-up: this is not Debian; Scree needs what these Debian packages hold: ${packages[*]}"
 fi
 install_python_packages
+if "$with_cuda"; then install_nvcc; fi

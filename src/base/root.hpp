@@ -8,9 +8,10 @@
 
 namespace scree {
 
+template <class T>
 struct RootAndInverse {
-  Real root;     // sqrt(x)
-  Real inverse;  // 1 / root
+  T root;     // sqrt(x)
+  T inverse;  // 1 / root
 };
 
 #ifdef __CUDA_ARCH__
@@ -19,7 +20,7 @@ struct RootAndInverse {
 // two at once. These do not: Newton's iteration from the hardware's estimate, with the last step in the form that
 // rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990). For normal numbers whose results are normal.
 
-__device__ inline RootAndInverse root_and_inverse(Real x) {
+__device__ inline RootAndInverse<Real> root_and_inverse(Real x) {
   Real y;  // 1 / sqrt(x), some 20 bits at first
   asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
   for (int pass = 0; pass < 2; ++pass) {
@@ -33,6 +34,12 @@ __device__ inline RootAndInverse root_and_inverse(Real x) {
   return {root, inverse};
 }
 
+// In single precision to some last bits.
+__device__ inline RootAndInverse<float> root_and_inverse(float x) {
+  const float y = rsqrtf(x), root = x * y;
+  return {__fmaf_rn(__fmaf_rn(-root, root, x), 0.5f * y, root), y};
+}
+
 __device__ inline Real reciprocal(Real x) {
   Real y;
   asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
@@ -42,8 +49,9 @@ __device__ inline Real reciprocal(Real x) {
 
 #else
 
-SCREE_HD RootAndInverse root_and_inverse(Real x) {
-  const Real root = std::sqrt(x);
+template <class T>
+SCREE_HD RootAndInverse<T> root_and_inverse(T x) {
+  const T root = std::sqrt(x);
   return {root, 1 / root};
 }
 

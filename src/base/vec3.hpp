@@ -34,6 +34,19 @@ struct alignas(32) Vec4 {
 SCREE_HD Vec3 xyz(Vec4 a) { return {a.x, a.y, a.z}; }
 SCREE_HD Vec4 vec4(Vec3 a, Real w) { return {a.x, a.y, a.z, w}; }
 
+// Three-vector in single precision.
+struct Vec3f {
+  float x = 0, y = 0, z = 0;
+};
+
+SCREE_HD Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+SCREE_HD Vec3f operator*(float s, Vec3f a) { return {s * a.x, s * a.y, s * a.z}; }
+SCREE_HD float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+SCREE_HD Vec3 in_double(Vec3f a) { return {a.x, a.y, a.z}; }
+SCREE_HD Vec3f in_single(Vec3 a) {
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
+
 // Symmetric 3x3 matrix.
 struct Sym3 {
   Real xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;

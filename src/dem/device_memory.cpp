@@ -3,6 +3,7 @@
 
 #include "dem/backend.hpp"
 #include "dem/device.hpp"
+#include "dem/mixed_items.hpp"
 
 namespace scree {
 namespace {
@@ -14,6 +15,8 @@ constexpr double kSortArrays = 4 * sizeof(Index) + 2 * sizeof(Index);  // keys a
 constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);       // counts, walls, positions at the build
 constexpr double kGhostArrays = 40 + kSortArrays + sizeof(Index);
 constexpr double kStepArrays = 5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
+constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
+constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kOutputArrays = 96 + 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
@@ -76,6 +79,8 @@ std::size_t device_memory(const Model& model) {
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   if (model.integrator.particles == ParticleIntegrator::hht)
     bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
+  if (model.integrator.precision == Precision::mixed && model.bodies.empty())
+    bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
   bytes += n.particles * (kOutputArrays + sizeof(ParticleRecord));
   return static_cast<std::size_t>(bytes);
 }

@@ -9,13 +9,20 @@
 
 namespace scree {
 
-// F = K d^n + C d_dot along the normal while d > 0; F > 0 pushes the two apart.
-struct KelvinVoigt {
-  Real normal_stiffness = 0;  // K [N/m^n]
-  Real normal_damping = 0;    // C [N s/m]
-  Real exponent = 1;          // n [-]
+// F = K d^n + C d_dot along the normal while d > 0; F > 0 pushes the two apart. T: double, or single where a GPU computes forces in mixed precision.
+template <class T>
+struct KelvinVoigtOf {
+  T normal_stiffness = 0;  // K [N/m^n]
+  T normal_damping = 0;    // C [N s/m]
+  T exponent = 1;          // n [-]
   bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
 };
+using KelvinVoigt = KelvinVoigtOf<Real>;
+
+SCREE_HD KelvinVoigtOf<float> in_single(const KelvinVoigt& law) {
+  return {static_cast<float>(law.normal_stiffness), static_cast<float>(law.normal_damping),
+          static_cast<float>(law.exponent), law.tension};
+}
 
 // Overlap and normal of a pair at one instant. r = r_i - r_j.
 struct Overlap {
@@ -26,49 +33,63 @@ struct Overlap {
 
 // Paper's Eqs. 19-21, 23, 24.
 SCREE_HD Overlap sphere_overlap(Vec3 r, Real radius_sum) {
-  const RootAndInverse distance = root_and_inverse(dot(r, r));
+  const RootAndInverse<Real> distance = root_and_inverse(dot(r, r));
   return {radius_sum - distance.root, distance.root, distance.inverse * r};
 }
 
 // The same without the normal, for loops where its components are not needed one by one.
-struct Gap {
-  Real overlap;           // d [m]
-  Real inverse_distance;  // 1 / |r| [1/m]
+template <class T>
+struct GapOf {
+  T overlap;           // d [m]
+  T inverse_distance;  // 1 / |r| [1/m]
 };
+using Gap = GapOf<Real>;
 
 // squared_distance: |r|^2 [m^2].
-SCREE_HD Gap sphere_gap(Real squared_distance, Real radius_sum) {
-  const RootAndInverse distance = root_and_inverse(squared_distance);
+template <class T>
+SCREE_HD GapOf<T> sphere_gap(T squared_distance, T radius_sum) {
+  const auto distance = root_and_inverse(squared_distance);
   return {radius_sum - distance.root, distance.inverse};
 }
 
 // Overlap rate d_dot [m/s] of a pair: minus the normal part of the velocity of i relative to j.
-SCREE_HD Real approach_rate(Vec3 r, Real inverse_distance, Vec3 relative_velocity) {
+template <class Vector, class T>
+SCREE_HD T approach_rate(Vector r, T inverse_distance, Vector relative_velocity) {
   return -inverse_distance * dot(r, relative_velocity);
 }
 
 // The force of one contact and its derivatives with respect to overlap and overlap rate.
-struct ContactForce {
-  Real force;      // F [N]
-  Real stiffness;  // dF/dd [N/m]
-  Real damping;    // dF/d(d_dot) [N s/m]
-  Real loss;       // power taken out of the mechanical energy, (F - K d^n) d_dot [W]
+template <class T>
+struct ContactForceOf {
+  T force;      // F [N]
+  T stiffness;  // dF/dd [N/m]
+  T damping;    // dF/d(d_dot) [N s/m]
+  T loss;       // power taken out of the mechanical energy, (F - K d^n) d_dot [W]
 };
+using ContactForce = ContactForceOf<Real>;
 
 // K d^n and its slope. A policy per exponent keeps pow() out of the linear law's kernels.
 struct LinearElastic {
-  SCREE_HD static Real force(const KelvinVoigt& law, Real d) { return law.normal_stiffness * d; }
-  SCREE_HD static Real stiffness(const KelvinVoigt& law, Real) { return law.normal_stiffness; }
+  template <class T>
+  SCREE_HD static T force(const KelvinVoigtOf<T>& law, T d) {
+    return law.normal_stiffness * d;
+  }
+  template <class T>
+  SCREE_HD static T stiffness(const KelvinVoigtOf<T>& law, T) {
+    return law.normal_stiffness;
+  }
   SCREE_HD static Real energy(const KelvinVoigt& law, Real d) {
     return Real(0.5) * law.normal_stiffness * d * d;
   }
 };
 
 struct PowerElastic {
-  SCREE_HD static Real force(const KelvinVoigt& law, Real d) {
+  template <class T>
+  SCREE_HD static T force(const KelvinVoigtOf<T>& law, T d) {
     return law.normal_stiffness * std::pow(d, law.exponent);
   }
-  SCREE_HD static Real stiffness(const KelvinVoigt& law, Real d) {
+  template <class T>
+  SCREE_HD static T stiffness(const KelvinVoigtOf<T>& law, T d) {
     return law.normal_stiffness * law.exponent * std::pow(d, law.exponent - 1);
   }
   SCREE_HD static Real energy(const KelvinVoigt& law, Real d) {
@@ -77,10 +98,10 @@ struct PowerElastic {
 };
 
 // Force of a closed contact: overlap d > 0 [m], overlap rate d_dot [m/s], positive when approaching.
-template <class Elastic>
-SCREE_HD ContactForce contact_force(const KelvinVoigt& law, Real d, Real d_dot) {
-  const Real elastic = Elastic::force(law, d);
-  const Real force = elastic + law.normal_damping * d_dot;
+template <class Elastic, class T>
+SCREE_HD ContactForceOf<T> contact_force(const KelvinVoigtOf<T>& law, T d, T d_dot) {
+  const T elastic = Elastic::force(law, d);
+  const T force = elastic + law.normal_damping * d_dot;
   if (force < 0 && !law.tension) return {0, 0, 0, -elastic * d_dot};
   return {force, Elastic::stiffness(law, d), law.normal_damping, law.normal_damping * d_dot * d_dot};
 }

@@ -1,0 +1,233 @@
+// The explicit step in mixed precision: state and sums at about double precision, contact forces in single. Between
+// two builds of the neighbour list only; the state at rest is in double.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/contact_items.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+// Place on a grid of quanta, modulo 2^32: the difference of two near places is exact. What another particle reads.
+struct alignas(16) MixedPlace {
+  std::uint32_t x, y, z;
+  float radius;  // [m]
+};
+
+// Velocity that the contact law sees, and mass. What another particle reads.
+struct alignas(16) MixedMotion {
+  float x, y, z;  // [m/s]
+  float mass;     // [kg]
+};
+
+// The rest of the place: 2^-16 of a quantum. What no other particle reads.
+struct alignas(8) MixedFraction {
+  std::uint16_t x, y, z;
+  std::uint16_t near_side;  // whether the particle may leave the space before the list expires
+};
+
+// The velocity in the middle of the step, less the one that the law sees: small, so that a single holds it to far
+// below the last bit of the velocity.
+struct alignas(16) MixedRest {
+  float x, y, z;  // [m/s]
+  float loss;     // dissipated since the last conversion [J]
+};
+
+struct MixedViews {
+  MixedPlace* place[2];  // all items; a step reads one and writes the other
+  MixedMotion* motion[2];
+  MixedFraction* fraction;  // owned particles
+  MixedRest* rest;
+};
+
+// Grid of quanta for pairs up to `reach` [m] apart: eight times that far before differences wrap.
+struct QuantumGrid {
+  Real quantum = 1;  // power of two [m]
+  Real fraction = 1, inverse_fraction = 1;  // 2^-16 of it
+
+  SCREE_HD std::int64_t count(Real x) const { return static_cast<std::int64_t>(std::rint(x * inverse_fraction)); }
+  // The place that has moved on from x: by the difference of the low bits.
+  SCREE_HD Real moved(Real x, std::uint32_t place, std::uint16_t part) const {
+    const std::int64_t from = count(x);
+    const auto whole = static_cast<std::int32_t>(place - static_cast<std::uint32_t>(from >> 16));
+    const std::int64_t parts = static_cast<std::int64_t>(part) - (from & 0xffff);
+    return static_cast<Real>(from + whole * std::int64_t{65536} + parts) * fraction;
+  }
+};
+
+inline QuantumGrid make_quantum_grid(Real reach) {
+  int exponent = 0;
+  std::frexp(reach, &exponent);
+  const Real quantum = std::ldexp(Real(1), exponent - 28);
+  return {quantum, std::ldexp(quantum, -16), std::ldexp(1 / quantum, 16)};
+}
+
+SCREE_HD MixedPlace mixed_place(const QuantumGrid& grid, Vec4 p) {
+  return {static_cast<std::uint32_t>(grid.count(p.x) >> 16), static_cast<std::uint32_t>(grid.count(p.y) >> 16),
+          static_cast<std::uint32_t>(grid.count(p.z) >> 16), static_cast<float>(p.w)};
+}
+
+// The same place a whole number of periods away.
+SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace place, Vec3 shift) {
+  // Rounded alike in both directions: two particles see each other at opposite differences.
+  const auto whole = [&](Real x) { return static_cast<std::uint32_t>((grid.count(x) + 32768) >> 16); };
+  place.x += whole(shift.x), place.y += whole(shift.y), place.z += whole(shift.z);
+  return place;
+}
+
+// Position of a particle that was at `from` when it was converted [m].
+SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& place, const MixedFraction& part) {
+  return {grid.moved(from.x, place.x, part.x), grid.moved(from.y, place.y, part.y), grid.moved(from.z, place.z, part.z)};
+}
+
+// From the double state of an open explicit step. Ghosts' places are made from their own positions.
+struct ToMixedItem {
+  const Vec4 *position, *velocity;  // all items
+  const Vec3* acceleration;
+  MixedViews out;
+  QuantumGrid grid;
+  OpenBox box;
+  Index owned;
+  Real h, half_skin;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 p = position[i], v = velocity[i];
+    const Vec3f seen = in_single(xyz(v));
+    out.place[0][i] = mixed_place(grid, p);
+    out.motion[0][i] = {seen.x, seen.y, seen.z, static_cast<float>(v.w)};
+    if (i >= owned) return;
+    const auto part = [&](Real x) { return static_cast<std::uint16_t>(grid.count(x) & 0xffff); };
+    out.fraction[i] = {part(p.x), part(p.y), part(p.z),
+                       static_cast<std::uint16_t>(box.inside(xyz(p), 2 * half_skin) ? 0 : 1)};
+    const Vec3f rest = in_single(verlet_middle_velocity(h, xyz(v), acceleration[i]) - in_double(seen));
+    out.rest[i] = {rest.x, rest.y, rest.z, 0};
+  }
+};
+
+// Back to the double state. position, velocity: as they were converted.
+struct FromMixedItem {
+  MixedViews in;
+  int parity;
+  QuantumGrid grid;
+  Vec4 *position, *velocity;
+  Vec3* acceleration;
+  Real* contact_loss;
+  Real h;
+
+  SCREE_HD void operator()(Index i) const {
+    const MixedMotion u = in.motion[parity][i];
+    const MixedRest rest = in.rest[i];
+    const Vec3 seen{u.x, u.y, u.z}, middle = seen + Vec3{rest.x, rest.y, rest.z};
+    // A velocity that is not finite must not hide behind a place that always is.
+    const Vec3 x = is_finite(middle) ? mixed_position(grid, position[i], in.place[parity][i], in.fraction[i]) : middle;
+    position[i] = vec4(x, position[i].w);
+    velocity[i] = vec4(seen, velocity[i].w);
+    acceleration[i] = verlet_acceleration(h, seen, middle);
+    contact_loss[i] += rest.loss;
+  }
+};
+
+// Closes a step and opens the next. Returns the square of the displacement.
+template <class Elastic, class Laws, class Rows>
+struct MixedAdvanceItem {
+  ContactViews<Rows> in;  // position: as converted; velocity is not used
+  Laws laws;
+  Vec3 gravity;
+  MixedViews state;
+  int parity;
+  QuantumGrid grid;
+  Real h;
+
+  SCREE_HD Vec3f difference(const MixedPlace& p, const MixedPlace& q) const {
+    const auto along = [](std::uint32_t a, std::uint32_t b) {
+      return static_cast<float>(static_cast<std::int32_t>(a - b));
+    };
+    return static_cast<float>(grid.quantum) * Vec3f{along(p.x, q.x), along(p.y, q.y), along(p.z, q.z)};
+  }
+
+  SCREE_HD Real operator()(Index i) const {
+    const MixedPlace p = places()[i];
+    const MixedMotion u = motions()[i];
+    const Real mass = u.mass;
+    Vec3 f = mass * gravity;
+    float loss = 0;
+    add_neighbors(i, p, u, f, loss);
+    if (in.wall_offsets[i] < in.wall_offsets[i + 1]) add_walls(i, p, u, f, loss);
+    return advance(i, p, u, reciprocal(mass) * f, loss);
+  }
+
+ private:
+  // No indexing by parity: a GPU would copy the arrays of pointers to memory for it.
+  SCREE_HD MixedPlace* places() const { return parity == 0 ? state.place[0] : state.place[1]; }
+  SCREE_HD MixedMotion* motions() const { return parity == 0 ? state.motion[0] : state.motion[1]; }
+
+  SCREE_HD void add_neighbors(Index i, const MixedPlace& p, const MixedMotion& u, Vec3& f, float& loss) const {
+    const MixedPlace* from = places();
+    const MixedMotion* seen = motions();
+    const int material = in.material[i];
+    in.rows.for_each_contact(
+        i,
+        [&](Index j) {
+          const MixedPlace q = from[j];
+          const Vec3f r = difference(p, q);
+          const float reach = p.radius + q.radius;
+          return dot(r, r) < reach * reach;
+        },
+        [&](Index j) {
+          const MixedPlace q = from[j];
+          const MixedMotion w = seen[j];
+          const Vec3f r = difference(p, q), relative{u.x - w.x, u.y - w.y, u.z - w.z};
+          const GapOf<float> gap = sphere_gap(dot(r, r), p.radius + q.radius);
+          const auto c = contact_force<Elastic>(in_single(laws.get(material, in.material[j])), gap.overlap,
+                                                approach_rate(r, gap.inverse_distance, relative));
+          loss += 0.5f * c.loss;
+          return (c.force * gap.inverse_distance) * r;
+        },
+        [&](Vec3f force) { f += in_double(force); });
+  }
+
+  // The distance from a wall needs the whole position.
+  SCREE_HD void add_walls(Index i, const MixedPlace& p, const MixedMotion& u, Vec3& f, float& loss) const {
+    const Vec4 from = in.position[i];
+    const Vec4 x = vec4(mixed_position(grid, from, p, state.fraction[i]), from.w);
+    for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
+      const WallPlane& wall = in.planes[in.walls[k]];
+      const Overlap o = wall_overlap(x, wall);
+      if (o.overlap <= 0) continue;
+      const ContactForce c = contact_force<Elastic>(laws.get(in.material[i], wall.material), o.overlap,
+                                                    -dot(o.normal, Vec3{u.x, u.y, u.z}));
+      f += c.force * o.normal;
+      loss += static_cast<float>(c.loss);
+    }
+  }
+
+  SCREE_HD Real advance(Index i, const MixedPlace& p, const MixedMotion& u, Vec3 a, float loss) const {
+    const MixedRest rest = state.rest[i];
+    const Vec3 old_middle = Vec3{u.x, u.y, u.z} + Vec3{rest.x, rest.y, rest.z};
+    const Vec3 middle = verlet_next_middle(h, old_middle, a), dx = h * middle;
+    const Vec3f seen = in_single(verlet_predicted_from_middle(h, middle, a));
+    const Vec3f new_rest = in_single(middle - in_double(seen));
+    MixedFraction part = state.fraction[i];
+    MixedPlace place = p;
+    move(place.x, part.x, dx.x), move(place.y, part.y, dx.y), move(place.z, part.z, dx.z);
+    (parity == 0 ? state.place[1] : state.place[0])[i] = place;
+    state.fraction[i] = part;
+    (parity == 0 ? state.motion[1] : state.motion[0])[i] = {seen.x, seen.y, seen.z, u.mass};
+    state.rest[i] = {new_rest.x, new_rest.y, new_rest.z, rest.loss + static_cast<float>(h) * loss};
+    return dot(dx, dx);
+  }
+
+  SCREE_HD void move(std::uint32_t& place, std::uint16_t& part, Real dx) const {
+    const std::int64_t parts = part + grid.count(dx);
+    place += static_cast<std::uint32_t>(parts >> 16);
+    part = static_cast<std::uint16_t>(parts & 0xffff);
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# Runs the tests of the CUDA backend; needs a GPU.
+#
+#     tests/gpu.sh [--sanitize]
+#
+# Builds the preset cuda and runs its tests with the label gpu. With BIN=FOLDER in the environment it builds nothing and
+# runs the test programs in that folder, each as on_gpu test_...: for programs that were built elsewhere.
+# --sanitize adds compute-sanitizer's memcheck, racecheck and initcheck on unit/cuda, unit/dem and the first steps of two
+# decks. FILTER in the environment is passed to the two test programs as Catch2's choice of tests: FILTER='explicit*'.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+sanitize=false
+case "$*" in
+  "") ;;
+  --sanitize) sanitize=true ;;
+  *)
+    echo "usage: [BIN=FOLDER] [FILTER=TESTS] tests/gpu.sh [--sanitize]" >&2
+    exit 2
+    ;;
+esac
+bin=${BIN:-build/cuda}
+if [[ -z "${BIN:-}" ]]; then jobs/build.sh cuda; fi
+
+fail() {
+  echo "tests/gpu.sh: $*" >&2
+  exit 2
+}
+
+# Path of a program, wherever it stands in the folder.
+program() {
+  local path
+  path=$(find -L "$bin" -type f -perm -u+x -name "$1" -print -quit)
+  [[ -n "$path" ]] || fail "no program $1 in $bin"
+  echo "$path"
+}
+
+failed=()
+# Runs a command; says how long it took, and shows its output where it failed.
+run() {
+  local name=$1 start=$SECONDS
+  shift
+  if "$@" >"$scratch/output" 2>&1; then
+    echo "passed  $name, $((SECONDS - start)) s"
+  else
+    echo "FAILED  $name, $((SECONDS - start)) s, exit code $?; the end of its output:"
+    tail -n 40 "$scratch/output"
+    failed+=("$name")
+  fi
+}
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+on_gpu=$(program on_gpu)
+"$on_gpu" /usr/bin/env true || fail "the tests need a GPU"
+
+if [[ -z "${BIN:-}" ]]; then
+  run "ctest -L gpu" ctest --test-dir "$bin" --label-regex gpu --output-on-failure --no-tests=error
+else
+  mapfile -t tests < <(find -L "$bin" -type f -perm -u+x -name 'test_*' | sort)
+  ((${#tests[@]} > 0)) || fail "no program test_* in $bin"
+  for test in "${tests[@]}"; do run "${test##*/}" "$on_gpu" "$test"; done
+fi
+
+if "$sanitize"; then
+  command -v compute-sanitizer >/dev/null || fail "--sanitize needs compute-sanitizer of the CUDA toolkit on the PATH"
+  scree=$(program scree)
+  # Open MPI asks for these where the user is root, as in many containers.
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  export SCREE_TEST_BACKEND=cuda # what on_gpu sets; the sanitizer follows the program that it starts, and no other
+  filter=()
+  if [[ -n "${FILTER:-}" ]]; then filter=("$FILTER"); fi
+  for tool in memcheck racecheck initcheck; do
+    sanitizer=(compute-sanitizer --tool "$tool" --error-exitcode 1)
+    for name in unit_cuda unit_dem; do
+      run "$tool test_$name" "${sanitizer[@]}" "$(program "test_$name")" "${filter[@]}"
+    done
+    for deck in gas_periodic:2e-3 heap_900:0.03; do # explicit, implicit
+      run "$tool scree ${deck%:*}" "${sanitizer[@]}" "$scree" run "input/examples/${deck%:*}.toml" --backend cuda \
+        --set "time.end=${deck#*:}" --output "$scratch/results"
+    done
+  done
+fi
+
+if ((${#failed[@]} > 0)); then
+  echo "tests/gpu.sh: tests FAILED: $(printf '%s; ' "${failed[@]}")"
+  exit 1
+fi
+echo "tests/gpu.sh: all tests passed on the GPU"

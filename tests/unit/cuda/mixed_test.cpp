@@ -1,0 +1,113 @@
+// Explicit runs in mixed precision keep what they promise: restitution, heaps that stay settled, momentum.
+#include <cmath>
+
+#include "dem/device.hpp"
+#include "model/random.hpp"
+#include "support/catch.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+namespace {
+
+Model box_model(Real side, Precision precision) {
+  Model model;
+  model.space.min = {0, 0, 0}, model.space.max = {side, side, side};
+  model.contact.material_names = {"sphere"};
+  model.contact.laws = {{2e5, 25, 1, false}};
+  model.contact.skin = 0.1;
+  model.integrator.particles = ParticleIntegrator::velocity_verlet;
+  model.integrator.precision = precision;
+  return model;
+}
+
+void add_sphere(Model& model, Vec3 position, Vec3 velocity) {
+  ParticleSet& set = model.particles;
+  set.position.push_back(position), set.velocity.push_back(velocity);
+  set.radius.push_back(0.5), set.mass.push_back(1), set.material.push_back(0);
+}
+
+struct Run {
+  Run(const Model& of, bool cuda) : model(of), backend(cuda ? make_cuda_backend(model) : make_cpu_backend(model)) {
+    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+    backend->place_bodies({});
+    backend->build_list(model.contact.skin, timers);
+    backend->initial_forces();
+  }
+  void advance(Real h, Index steps) {
+    backend->verlet_start(h);
+    REQUIRE(backend->verlet_run(h, steps, false, timers).closed == steps);
+  }
+
+  Model model;
+  StageTimers timers;
+  std::unique_ptr<Backend> backend;
+};
+
+}  // namespace
+
+TEST_CASE("mixed precision: rebound velocities are within 1e-4 of those in double") {
+  for (const Real damping : {0.0, 25.0, 200.0}) {
+    CAPTURE(damping);
+    Model model = box_model(1000, Precision::mixed);
+    model.contact.laws[0].normal_damping = damping;
+    for (int k = 0; k < 64; ++k) {  // far from the origin, at many phases of the impact within a step
+      const Vec3 at{900 + 1e-5 * k, 3.0 + 4 * k, 990};
+      add_sphere(model, at, {1, 0.1, 0}), add_sphere(model, at + Vec3{1.01, 0.2, 0.1}, {-1, 0, 0.3});
+    }
+    Run mixed(model, true), exact(model, false);
+    mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
+    const std::vector<ParticleRecord> a = mixed.backend->records(), b = exact.backend->records();
+    Real largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, norm(a[i].velocity - b[i].velocity));
+    CHECK(norm(b[0].velocity - Vec3{1, 0.1, 0}) > 0.3);  // they did collide
+    CHECK(largest <= 1e-4);
+    CHECK(mixed.backend->ledger(1e-4).contact_loss ==
+          Approx(exact.backend->ledger(1e-4).contact_loss).epsilon(1e-3).margin(1e-9));
+  }
+}
+
+TEST_CASE("mixed precision: a settled heap stays settled for a million steps") {
+  Model model = box_model(8, Precision::mixed);
+  model.gravity = {0, 0, -1};
+  model.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, 0}, {"x0", {0, 0, 0}, {1, 0, 0}, 0}, {"x1", {8, 0, 0}, {-1, 0, 0}, 0},
+                 {"y0", {0, 0, 0}, {0, 1, 0}, 0},    {"y1", {0, 8, 0}, {0, -1, 0}, 0}};
+  RandomNumbers random(4);
+  for (int k = 0; k < 196; ++k) {
+    const auto jitter = [&] { return 0.02 * random.uniform(-1, 1); };
+    add_sphere(model, {0.6 + 1.1 * (k % 7) + jitter(), 0.6 + 1.1 * (k / 7 % 7) + jitter(), 0.6 + 1.05 * (k / 49)}, {});
+  }
+  Run run(model, true);
+  run.advance(1e-4, 600000);
+  const std::vector<ParticleRecord> settled = run.backend->records();
+  run.advance(1e-4, 1000000);
+  const std::vector<ParticleRecord> after = run.backend->records();
+  Real moved = 0, fastest = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    moved = std::max(moved, norm(after[i].position - settled[i].position));
+    fastest = std::max(fastest, norm(after[i].velocity));
+  }
+  CAPTURE(moved, fastest);
+  CHECK(moved < 1e-4);    // of a diameter
+  CHECK(fastest < 1e-4);  // a fall from 5e-9 diameters
+}
+
+TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum") {
+  Model model = box_model(60, Precision::mixed);
+  model.space.boundary.fill(Boundary::periodic);
+  RandomNumbers random(9);
+  for (int k = 0; k < 100000; ++k) {
+    const int x = k % 46, y = k / 46 % 46, z = k / 46 / 46;
+    add_sphere(model, {1.3 * x + 0.1 * random.uniform(), 1.3 * y + 0.1 * random.uniform(), 1.25 * z},
+               {random.normal(), random.normal(), random.normal()});
+  }
+  Run run(model, true);
+  const ParticleLedger before = run.backend->ledger(0);
+  run.advance(1e-4, 20000);
+  const ParticleLedger after = run.backend->ledger(0);
+  CHECK(after.contact_loss > 0.01 * before.kinetic);  // there were collisions
+  // Of the sum of the momenta's sizes, some 1e5.
+  CAPTURE(norm(after.momentum - before.momentum) / 1e5);
+  CHECK(norm(after.momentum - before.momentum) / 1e5 <= 1e-12);
+}
+
+}  // namespace scree
