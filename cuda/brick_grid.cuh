@@ -9,21 +9,24 @@ namespace scree {
 // cache lines: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D.
 struct BrickGrid {
   CellGrid cells;
-  Index side[3] = {4, 4, 4};
+  Index shift[3] = {2, 2, 2};  // sides of a brick as powers of two
   Index bricks[3] = {1, 1, 1};
 
-  Index count() const { return bricks[0] * bricks[1] * bricks[2] * side[0] * side[1] * side[2]; }
+  Index count() const { return (bricks[0] * bricks[1] * bricks[2]) << (shift[0] + shift[1] + shift[2]); }
   SCREE_HD Index key(Index x, Index y, Index z) const {
-    const Index brick = (z / side[2] * bricks[1] + y / side[1]) * bricks[0] + x / side[0];
-    return ((brick * side[2] + z % side[2]) * side[1] + y % side[1]) * side[0] + x % side[0];
+    const Index brick = ((z >> shift[2]) * bricks[1] + (y >> shift[1])) * bricks[0] + (x >> shift[0]);
+    const auto inside = [this](Index along, int axis) { return along & ((1 << shift[axis]) - 1); };
+    return (((brick << shift[2] | inside(z, 2)) << shift[1] | inside(y, 1)) << shift[0]) | inside(x, 0);
   }
+  // The first cell of the brick after that of x.
+  SCREE_HD Index next_brick(Index x) const { return ((x >> shift[0]) + 1) << shift[0]; }
 };
 
 inline BrickGrid make_brick_grid(const CellGrid& cells) {
   BrickGrid grid;
   grid.cells = cells;
-  if (cells.layer) grid.side[0] = grid.side[1] = 8, grid.side[2] = 1;
-  for (int axis = 0; axis < 3; ++axis) grid.bricks[axis] = (cells.cells[axis] + grid.side[axis] - 1) / grid.side[axis];
+  if (cells.layer) grid.shift[0] = grid.shift[1] = 3, grid.shift[2] = 0;
+  for (int axis = 0; axis < 3; ++axis) grid.bricks[axis] = ((cells.cells[axis] - 1) >> grid.shift[axis]) + 1;
   return grid;
 }
 

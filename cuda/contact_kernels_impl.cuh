@@ -78,7 +78,7 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_plac
 }
 
 // Registers are rationed for so many blocks on a multiprocessor: the kernel lives from many threads that wait.
-inline constexpr int kVerletThreads = 128, kVerletBlocks = 8, kMixedBlocks = 8;
+inline constexpr int kVerletThreads = 128, kVerletBlocks = 7, kMixedBlocks = 10;
 
 // A block's part in the largest displacement of a step.
 struct BlockLargest {

@@ -49,7 +49,7 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
   };
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
   // Cells of one brick beside each other in x are contiguous: one run of items, or two where a brick ends.
-  const Index split = min(x1 + 1, (x0 / in.grid.side[0] + 1) * in.grid.side[0]);
+  const Index split = min(x1 + 1, in.grid.next_brick(x0));
   for (Index z = max(c.z - 1, 0); z <= min(c.z + 1, cells.cells[2] - 1); ++z)
     for (Index y = max(c.y - 1, 0); y <= min(c.y + 1, cells.cells[1] - 1); ++y) {
       const Index key = in.grid.key(x0, y, z), second = split <= x1 ? in.grid.key(split, y, z) : key;
@@ -59,7 +59,7 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
         const auto at = [&](Index k) { return item(k < length ? begin + k : second_begin + k - length); };
         for (Index k = 0; k < all; k += 2) {  // two at once: loads that do not wait for each other
           const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
-          const bool hit[2] = {reaches(j[0]), reaches(j[1]) & (k + 1 < all)};
+          const bool reached = reaches(j[1]), hit[2] = {reaches(j[0]), reached && k + 1 < all};
           if (hit[0] && !excluded(in, i, j[0])) visit(j[0]);
           if (hit[1] && !excluded(in, i, j[1])) visit(j[1]);
         }

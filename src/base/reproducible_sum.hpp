@@ -61,7 +61,8 @@ Real reproducible_sum(Index n, const Term& term) {
     Real value[1];
   };
   Real sum[1];
-  reproducible_sums(n, [&](Index i) { return One{{term(i)}}; }, sum);
+  reproducible_sums(
+      n, [&](Index i) { return One{{term(i)}}; }, sum);
   return sum[0];
 }
 

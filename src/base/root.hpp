@@ -16,9 +16,10 @@ struct RootAndInverse {
 
 #ifdef __CUDA_ARCH__
 
-// The compiler's own double-precision root and division branch for special cases, which keeps a GPU from working on
-// two at once. These do not: Newton's iteration from the hardware's estimate, with the last step in the form that
-// rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990). For normal numbers whose results are normal.
+// The compiler's own double-precision root and division branch for special cases, which keeps a GPU from
+// working on two at once. These do not: Newton's iteration from the hardware's estimate, with the last step
+// in the form that rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990). For normal numbers whose results
+// are normal.
 
 __device__ inline RootAndInverse<Real> root_and_inverse(Real x) {
   Real y;  // 1 / sqrt(x), some 20 bits at first

@@ -34,14 +34,16 @@ struct alignas(32) Vec4 {
 SCREE_HD Vec3 xyz(Vec4 a) { return {a.x, a.y, a.z}; }
 SCREE_HD Vec4 vec4(Vec3 a, Real w) { return {a.x, a.y, a.z, w}; }
 
-// Three-vector in single precision.
+// Three-vector in single precision. Its functions are found through their arguments alone, so that braces
+// mean a Vec3.
 struct Vec3f {
   float x = 0, y = 0, z = 0;
+
+  friend SCREE_HD Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend SCREE_HD Vec3f operator*(float s, Vec3f a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend SCREE_HD float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 };
 
-SCREE_HD Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-SCREE_HD Vec3f operator*(float s, Vec3f a) { return {s * a.x, s * a.y, s * a.z}; }
-SCREE_HD float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 SCREE_HD Vec3 in_double(Vec3f a) { return {a.x, a.y, a.z}; }
 SCREE_HD Vec3f in_single(Vec3 a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};

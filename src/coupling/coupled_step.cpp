@@ -44,9 +44,7 @@ CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, S
     for (const Shape& shape : body.shapes) largest_radius_ = std::max(largest_radius_, shape.radius);
 }
 
-void CoupledStep::rebuild_list(Real skin) {
-  backend_.build_list(skin, timers_);
-}
+void CoupledStep::rebuild_list(Real skin) { backend_.build_list(skin, timers_); }
 
 void CoupledStep::start(MultibodyState& bodies) {
   if (link_.multibody()) bodies = link_.multibody()->initial_state({model_.bodies.size(), BodyWrench{}});
@@ -219,7 +217,8 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
       open = explicit_step_with_bodies(bodies, times[taken], h, taken + 1 < times.size());
   } else {
     const Index most = static_cast<Index>(times.size()) * substeps;
-    taken = static_cast<std::size_t>(backend_.verlet_run(h / substeps, most, false, timers_).closed / substeps);
+    taken =
+        static_cast<std::size_t>(backend_.verlet_run(h / substeps, most, false, timers_).closed / substeps);
   }
   counts_.steps += static_cast<std::int64_t>(taken);
   return taken;

@@ -39,7 +39,8 @@ class CoupledStep {
   // were, where a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
   // Advances both sides by up to times.size() steps of length h, the particles in substeps. times: where each
-  // step starts [s]. Returns the number of steps taken: fewer where a particle is outside the space after one.
+  // step starts [s]. Returns the number of steps taken: fewer where a particle is outside the space after
+  // one.
   std::size_t explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h);
   // The particles outside the space now. Throws SimulationError naming the first that is beyond a wall, or
   // outside at all where the deck calls that an error.

@@ -103,10 +103,10 @@ class Backend {
   virtual Real error() = 0;  // local position error of the step over the radius
   virtual void accept() = 0;
 
-  // Explicit steps. verlet_start opens the first. verlet_run closes up to `most` and opens the one after each,
-  // the last of them only if keep_open; it renews the list where needed. Bodies stay where they were placed,
-  // so that with bodies `most` is 1. Every Integrator::substeps from verlet_start a step of the bodies ends:
-  // there it stops, closed, if a particle is outside the space.
+  // Explicit steps. verlet_start opens the first. verlet_run closes up to `most` and opens the one after
+  // each, the last of them only if keep_open; it renews the list where needed. Bodies stay where they were
+  // placed, so that with bodies `most` is 1. Every Integrator::substeps from verlet_start a step of the
+  // bodies ends: there it stops, closed, if a particle is outside the space.
   virtual void verlet_start(Real h) = 0;
   virtual VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) = 0;
   // Contacts of the bodies' shapes, where they are placed now, with the particles as they were when the last

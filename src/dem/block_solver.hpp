@@ -13,8 +13,8 @@
 
 namespace scree {
 
-// Weights of the iteration d <- from_last d + from_residual D^-1 r, x <- x + d, for eigenvalues of D^-1 A between
-// low and high.
+// Weights of the iteration d <- from_last d + from_residual D^-1 r, x <- x + d, for eigenvalues of D^-1 A
+// between low and high.
 class ChebyshevWeights {
  public:
   ChebyshevWeights(Real low, Real high)

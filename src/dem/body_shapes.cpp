@@ -11,7 +11,7 @@ BodyShapes::BodyShapes(const Model& model) : connected_(model.bodies.size()) {
       items_.push_back({static_cast<int>(b), shape.offset, shape.radius, shape.material, id++});
 
   if (model.contact.connected_bodies_touch) return;
-  const auto connect = [&](const int (&body)[2]) {
+  const auto connect = [&](const int(&body)[2]) {
     if (body[0] == kGround || body[1] == kGround) return;
     connected_[static_cast<std::size_t>(body[0])].push_back(body[1]);
     connected_[static_cast<std::size_t>(body[1])].push_back(body[0]);

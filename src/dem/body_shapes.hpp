@@ -14,8 +14,8 @@ namespace scree {
 // One shape of one body; constant.
 struct ShapeItem {
   int body;
-  Vec3 offset;   // in the body frame [m]
-  Real radius;   // [m]
+  Vec3 offset;  // in the body frame [m]
+  Real radius;  // [m]
   int material;
   GlobalId global_id;  // counts on after the particles
 };

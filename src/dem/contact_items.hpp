@@ -29,8 +29,8 @@ struct LawTable {
   SCREE_HD const KelvinVoigt& get(int i, int j) const { return laws[i * materials + j]; }
 };
 
-// Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend, another
-// type of the same form on a GPU.
+// Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend,
+// another type of the same form on a GPU.
 struct PackedRows {
   const Index* offsets;  // [items + 1]
   const Index* neighbors;
@@ -40,7 +40,8 @@ struct PackedRows {
   SCREE_HD static constexpr int stride() { return 1; }
   // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order.
   template <class Touches, class Evaluate, class Add>
-  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate, const Add& add) const {
+  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
+                                 const Add& add) const {
     const Index end = offsets[i + 1];
     for (Index k = offsets[i]; k < end; ++k)
       if (const Index j = neighbors[k]; touches(j)) add(evaluate(j));
@@ -136,8 +137,8 @@ struct ContactForceItem {
   }
 };
 
-// One touching pair in the Newton matrix. In single precision: the matrix only says where the iteration goes, the
-// residual says where it ends, and the entries are most of what a matrix product reads.
+// One touching pair in the Newton matrix. In single precision: the matrix only says where the iteration goes,
+// the residual says where it ends, and the entries are most of what a matrix product reads.
 struct alignas(16) ContactEntry {
   float x, y, z;   // b [sqrt(kg)]
   Index neighbor;  // j
@@ -153,9 +154,9 @@ SCREE_HD ContactEntry contact_entry(Vec3 b, Index neighbor) {
 // b = sqrt(beta h^2 dF/dd + h gamma dF/d(d_dot)) n. Entries stand at the neighbour list's slots, packed to
 // the front of a row.
 struct ContactMatrix {
-  Index* count;          // entries of row i
+  Index* count;           // entries of row i
   ContactEntry* entries;  // [slots of the list]
-  Sym3* diagonal;        // sum of b b^T over the row, walls included [kg]
+  Sym3* diagonal;         // sum of b b^T over the row, walls included [kg]
 };
 
 // Sums over the contacts of each particle in an implicit step; "step" and "end" as in StepContact.

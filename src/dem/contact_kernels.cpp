@@ -12,25 +12,29 @@ class CpuContactKernels : public ContactKernels {
  public:
   explicit CpuContactKernels(Laws laws) : laws_(laws) {}
 
-  void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power) const override {
+  void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
+              Real* loss_power) const override {
     for_each(Serial{}, n, ContactForceItem<Elastic, Laws, PackedRows>{in, laws_, gravity, force, loss_power});
   }
   Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, const VerletViews& state,
                      Vec3* force) const override {
-    return max_over(Serial{}, n,
-                    VerletFinishItem<Elastic, Laws, PackedRows>{{in, laws_, gravity, force, state.loss_power}, state});
+    return max_over(
+        Serial{}, n,
+        VerletFinishItem<Elastic, Laws, PackedRows>{{in, laws_, gravity, force, state.loss_power}, state});
   }
   Real verlet_advance(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
                       const VerletViews& state) const override {
-    return max_over(Serial{}, n,
-                    VerletAdvanceItem<Elastic, Laws, PackedRows>{{in, laws_, gravity, nullptr, nullptr}, state});
+    return max_over(
+        Serial{}, n,
+        VerletAdvanceItem<Elastic, Laws, PackedRows>{{in, laws_, gravity, nullptr, nullptr}, state});
   }
-  void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights, const StepStart& start,
-              const StepForces& out, const ContactMatrix& matrix) const override {
+  void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
+              const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
     for_each(Serial{}, n,
              ContactSystemItem<Elastic, Laws, PackedRows>{{in, laws_, start}, gravity, weights, out, matrix});
   }
-  void shapes(const ContactViews<PackedRows>& in, Index n, const StepStart& start, ShapeContact* out) const override {
+  void shapes(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
+              ShapeContact* out) const override {
     for_each(Serial{}, n, ShapeStepItem<Elastic, Laws, PackedRows>{{in, laws_, start}, out});
   }
   void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
@@ -38,7 +42,8 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n, ShapeContactItem<Elastic, Laws, PackedRows>{in, places, laws_, out});
   }
   void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
-    for_each(Serial{}, n, ContactEnergyItem<Elastic, Laws, PackedRows>{in, laws_, out.energy, out.contacts, out.pairs});
+    for_each(Serial{}, n,
+             ContactEnergyItem<Elastic, Laws, PackedRows>{in, laws_, out.energy, out.contacts, out.pairs});
   }
 
  private:

@@ -18,17 +18,19 @@ struct EnergyOutputs {
 class ContactKernels {
  public:
   virtual ~ContactKernels() = default;
-  virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power) const = 0;
+  virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
+                      Real* loss_power) const = 0;
   // The square of the largest acceleration; a NaN if one is not finite.
-  virtual Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, const VerletViews& state,
-                             Vec3* force) const = 0;
+  virtual Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
+                             const VerletViews& state, Vec3* force) const = 0;
   // The square of the largest displacement.
   virtual Real verlet_advance(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
                               const VerletViews& state) const = 0;
   virtual void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
                       const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const = 0;
   // Contacts of shapes over an implicit step, and at one instant.
-  virtual void shapes(const ContactViews<PackedRows>& in, Index n, const StepStart& start, ShapeContact* out) const = 0;
+  virtual void shapes(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
+                      ShapeContact* out) const = 0;
   virtual void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
                       ShapeContact* out) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;

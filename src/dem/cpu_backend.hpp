@@ -105,13 +105,13 @@ class CpuBackend : public Backend {
   std::vector<Vec4> direction_;
   std::vector<Vec4> spare_position_, spare_velocity_;  // explicit steps write here while neighbours are read
   Index closed_ = 0;                                   // explicit steps since verlet_start
-  bool opened_ = false;                                // whether the last of them was closed by opening the next
+  bool opened_ = false;  // whether the last of them was closed by opening the next
   Real largest_stiffening_ = 0, force_scale_ = 0;
   // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at
   // its start and at the iterate.
   Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;
   bool in_implicit_step_ = false;
-  ParticlePack pack_;  // of start_pack
+  ParticlePack pack_;            // of start_pack
   Real displacement_bound_ = 0;  // of any item since the list was built, at most [m]
   Real step_bound_ = 0;          // of any particle in the open explicit step [m]
   Real shape_bound_ = 0;         // of any shape since list_displacement was last asked, at most [m]

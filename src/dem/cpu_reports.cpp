@@ -9,7 +9,9 @@
 namespace scree {
 Real CpuBackend::energy_of(Index i) const {
   const Vec4 v = store_.velocity[i];
-  return kinetic_energy(v.w, xyz(v)) + gravitational_energy(v.w, model_.gravity, unwrapped(store_.position[i], store_.image[i], subdomain_.period()));
+  return kinetic_energy(v.w, xyz(v)) +
+         gravitational_energy(v.w, model_.gravity,
+                              unwrapped(store_.position[i], store_.image[i], subdomain_.period()));
 }
 
 std::vector<Leaver> CpuBackend::outside() const {
@@ -42,11 +44,16 @@ ParticleLedger CpuBackend::ledger(Real verlet_step) {
   kernels_->energies(views(), n, {elastic.data(), touching.data(), pairs.data()});
   find_shape_contacts(views());
 
-  const LedgerItem item{store_.position.data(),     store_.velocity.data(),
-                        store_.acceleration.data(), store_.image.data(),
-                        store_.contact_loss.data(), store_.integrator_loss.data(),
-                        elastic.data(),             pairs.data(),
-                        model_.gravity,             subdomain_.period(),
+  const LedgerItem item{store_.position.data(),
+                        store_.velocity.data(),
+                        store_.acceleration.data(),
+                        store_.image.data(),
+                        store_.contact_loss.data(),
+                        store_.integrator_loss.data(),
+                        elastic.data(),
+                        pairs.data(),
+                        model_.gravity,
+                        subdomain_.period(),
                         verlet_step};
   Real sums[kLedgerTerms];
   reproducible_sums(n, item, sums);

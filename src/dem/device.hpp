@@ -1,5 +1,5 @@
-// The GPU's backend as the rest of the program sees it. With SCREE_CUDA the room cuda/ defines these functions,
-// without it no_device.cpp does.
+// The GPU's backend as the rest of the program sees it. With SCREE_CUDA the room cuda/ defines these
+// functions, without it no_device.cpp does.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,8 @@ std::size_t free_device_memory();
 // Device memory that the program holds now [B].
 std::size_t device_memory_in_use();
 
-// Room of a neighbour list on the device: slots per item at the start, and over what was needed where that is more.
+// Room of a neighbour list on the device: slots per item at the start, and over what was needed where that is
+// more.
 inline constexpr std::size_t kSlotsPerItem = 16;
 inline constexpr double kListSlack = 1.15;
 

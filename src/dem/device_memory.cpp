@@ -1,4 +1,5 @@
-// How much device memory a model takes: the arrays of cuda/, counted. A GPU test compares it with what they hold.
+// How much device memory a model takes: the arrays of cuda/, counted. A GPU test compares it with what they
+// hold.
 #include <algorithm>
 
 #include "dem/backend.hpp"
@@ -11,10 +12,12 @@ namespace {
 // Bytes per particle or item, by the array groups of cuda/cuda_backend.cuh.
 constexpr double kItemArrays = 2 * (sizeof(Vec4) + sizeof(Vec4) + sizeof(int) + sizeof(GlobalId));
 constexpr double kParticleArrays = 2 * (2 * sizeof(Vec3) + 3 * sizeof(Real) + sizeof(ImageCount) + 1);
-constexpr double kSortArrays = 4 * sizeof(Index) + 2 * sizeof(Index);  // keys and order twice, the library's buffers
-constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);       // counts, walls, positions at the build
+constexpr double kSortArrays =
+    4 * sizeof(Index) + 2 * sizeof(Index);  // keys and order twice, the library's buffers
+constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);  // counts, walls, positions at the build
 constexpr double kGhostArrays = 40 + kSortArrays + sizeof(Index);
-constexpr double kStepArrays = 5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
+constexpr double kStepArrays =
+    5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
 constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
 constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
@@ -28,12 +31,14 @@ struct Sizes {
 };
 
 bool equal_radii(const Model& model) {
-  const auto [smallest, largest] = std::minmax_element(model.particles.radius.begin(), model.particles.radius.end());
+  const auto [smallest, largest] =
+      std::minmax_element(model.particles.radius.begin(), model.particles.radius.end());
   return model.particles.size() == 0 || *largest <= 1.2 * *smallest;
 }
 
 // Slots of a list in slices of 32 rows, of particles as they are at the start.
-double slots_at_start(const ParticleStore& store, const ItemLayout& layout, NeighborBuilder& builder, Real skin) {
+double slots_at_start(const ParticleStore& store, const ItemLayout& layout, NeighborBuilder& builder,
+                      Real skin) {
   constexpr Index kSlice = 32;
   NeighborList list;
   builder.build(store, layout, skin, list);
@@ -54,9 +59,11 @@ Sizes sizes_of(const Model& model) {
   const Real skin = model.contact.skin;
   ParticleStore store;
   store.load(model.particles, initial_records(model.particles, subdomain));
-  const std::vector<Ghost> ghosts = exchange_halo(subdomain, model.space, store.position, builder.cutoff(skin));
+  const std::vector<Ghost> ghosts =
+      exchange_halo(subdomain, model.space, store.position, builder.cutoff(skin));
   Sizes sizes{};
-  sizes.particles = static_cast<double>(model.particles.size()), sizes.ghosts = static_cast<double>(ghosts.size());
+  sizes.particles = static_cast<double>(model.particles.size()),
+  sizes.ghosts = static_cast<double>(ghosts.size());
   sizes.items = sizes.particles + sizes.ghosts + static_cast<double>(shapes.size());
   sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, store.owned + shapes.size()).count());
   sizes.slots = kSlotsPerItem * sizes.items;
@@ -74,7 +81,8 @@ std::size_t device_memory(const Model& model) {
   const bool periodic = n.ghosts > 0;
   const double spare = periodic ? 1.125 : 1;  // arrays that grow when ghosts are found
   double bytes = n.items * kItemArrays * spare + n.particles * kParticleArrays;
-  bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays + n.particles * 2 * sizeof(Index) : 0);
+  bytes +=
+      n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays + n.particles * 2 * sizeof(Index) : 0);
   bytes += n.items * kListArrays + n.slots * sizeof(Index);
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   if (model.integrator.particles == ParticleIntegrator::hht)

@@ -16,13 +16,13 @@ SCREE_HD Vec3 unwrapped(Vec4 position, const ImageCount& image, Vec3 period) {
 }
 
 enum LedgerTerm {
-  kKinetic,          // [J]
-  kGravitational,    // [J]
-  kContactElastic,   // [J]
-  kContactLoss,      // [J]
-  kIntegratorLoss,   // [J]
-  kPairs,            // share of the number of contacts
-  kMomentum,         // three terms [kg m/s]
+  kKinetic,                          // [J]
+  kGravitational,                    // [J]
+  kContactElastic,                   // [J]
+  kContactLoss,                      // [J]
+  kIntegratorLoss,                   // [J]
+  kPairs,                            // share of the number of contacts
+  kMomentum,                         // three terms [kg m/s]
   kAngularMomentum = kMomentum + 3,  // three terms, about the origin [kg m^2/s]
   kLedgerTerms = kAngularMomentum + 3
 };

@@ -1,5 +1,5 @@
-// The explicit step in mixed precision: state and sums at about double precision, contact forces in single. Between
-// two builds of the neighbour list only; the state at rest is in double.
+// The explicit step in mixed precision: state and sums at about double precision, contact forces in single.
+// Between two builds of the neighbour list only; the state at rest is in double.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,8 @@
 
 namespace scree {
 
-// Place on a grid of quanta, modulo 2^32: the difference of two near places is exact. What another particle reads.
+// Place on a grid of quanta, modulo 2^32: the difference of two near places is exact. What another particle
+// reads.
 struct alignas(16) MixedPlace {
   std::uint32_t x, y, z;
   float radius;  // [m]
@@ -32,8 +33,8 @@ struct alignas(8) MixedFraction {
   std::uint16_t near_side;  // whether the particle may leave the space before the list expires
 };
 
-// The velocity in the middle of the step, less the one that the law sees: small, so that a single holds it to far
-// below the last bit of the velocity.
+// The velocity in the middle of the step, less the one that the law sees: small, so that a single holds it to
+// far below the last bit of the velocity.
 struct alignas(16) MixedRest {
   float x, y, z;  // [m/s]
   float loss;     // dissipated since the last conversion [J]
@@ -48,10 +49,12 @@ struct MixedViews {
 
 // Grid of quanta for pairs up to `reach` [m] apart: eight times that far before differences wrap.
 struct QuantumGrid {
-  Real quantum = 1;  // power of two [m]
+  Real quantum = 1;                         // power of two [m]
   Real fraction = 1, inverse_fraction = 1;  // 2^-16 of it
 
-  SCREE_HD std::int64_t count(Real x) const { return static_cast<std::int64_t>(std::rint(x * inverse_fraction)); }
+  SCREE_HD std::int64_t count(Real x) const {
+    return static_cast<std::int64_t>(std::rint(x * inverse_fraction));
+  }
   // The place that has moved on from x: by the difference of the low bits.
   SCREE_HD Real moved(Real x, std::uint32_t place, std::uint16_t part) const {
     const std::int64_t from = count(x);
@@ -69,7 +72,8 @@ inline QuantumGrid make_quantum_grid(Real reach) {
 }
 
 SCREE_HD MixedPlace mixed_place(const QuantumGrid& grid, Vec4 p) {
-  return {static_cast<std::uint32_t>(grid.count(p.x) >> 16), static_cast<std::uint32_t>(grid.count(p.y) >> 16),
+  return {static_cast<std::uint32_t>(grid.count(p.x) >> 16),
+          static_cast<std::uint32_t>(grid.count(p.y) >> 16),
           static_cast<std::uint32_t>(grid.count(p.z) >> 16), static_cast<float>(p.w)};
 }
 
@@ -82,8 +86,10 @@ SCREE_HD MixedPlace shifted(const QuantumGrid& grid, MixedPlace place, Vec3 shif
 }
 
 // Position of a particle that was at `from` when it was converted [m].
-SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& place, const MixedFraction& part) {
-  return {grid.moved(from.x, place.x, part.x), grid.moved(from.y, place.y, part.y), grid.moved(from.z, place.z, part.z)};
+SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlace& place,
+                             const MixedFraction& part) {
+  return {grid.moved(from.x, place.x, part.x), grid.moved(from.y, place.y, part.y),
+          grid.moved(from.z, place.z, part.z)};
 }
 
 // From the double state of an open explicit step. Ghosts' places are made from their own positions.
@@ -121,11 +127,12 @@ struct FromMixedItem {
   Real h;
 
   SCREE_HD void operator()(Index i) const {
-    const MixedMotion u = in.motion[parity][i];
+    const MixedMotion u = (parity == 0 ? in.motion[0] : in.motion[1])[i];
+    const MixedPlace place = (parity == 0 ? in.place[0] : in.place[1])[i];
     const MixedRest rest = in.rest[i];
     const Vec3 seen{u.x, u.y, u.z}, middle = seen + Vec3{rest.x, rest.y, rest.z};
     // A velocity that is not finite must not hide behind a place that always is.
-    const Vec3 x = is_finite(middle) ? mixed_position(grid, position[i], in.place[parity][i], in.fraction[i]) : middle;
+    const Vec3 x = is_finite(middle) ? mixed_position(grid, position[i], place, in.fraction[i]) : middle;
     position[i] = vec4(x, position[i].w);
     velocity[i] = vec4(seen, velocity[i].w);
     acceleration[i] = verlet_acceleration(h, seen, middle);
@@ -167,7 +174,8 @@ struct MixedAdvanceItem {
   SCREE_HD MixedPlace* places() const { return parity == 0 ? state.place[0] : state.place[1]; }
   SCREE_HD MixedMotion* motions() const { return parity == 0 ? state.motion[0] : state.motion[1]; }
 
-  SCREE_HD void add_neighbors(Index i, const MixedPlace& p, const MixedMotion& u, Vec3& f, float& loss) const {
+  SCREE_HD void add_neighbors(Index i, const MixedPlace& p, const MixedMotion& u, Vec3& f,
+                              float& loss) const {
     const MixedPlace* from = places();
     const MixedMotion* seen = motions();
     const int material = in.material[i];

@@ -1,5 +1,5 @@
-// The bodies' shapes among the items of a backend: where they are, what their contacts sum to, what they lose.
-// Few and small beside the particles, they live on the host for every backend.
+// The bodies' shapes among the items of a backend: where they are, what their contacts sum to, what they
+// lose. Few and small beside the particles, they live on the host for every backend.
 #pragma once
 
 #include <span>

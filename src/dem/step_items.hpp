@@ -82,15 +82,15 @@ struct StepNormsItem {
 
   SCREE_HD StepNorms operator()(Index i) const {
     const Real r = norm(residual[i]), mass = step.velocity[i].w;
-    const Real bound = step.hht.newmark_beta * step.h * step.h * r * (1 + step.hht.hht_alpha) /
-                       (mass * step.position[i].w);
+    const Real bound =
+        step.hht.newmark_beta * step.h * step.h * r * (1 + step.hht.hht_alpha) / (mass * step.position[i].w);
     const Real at_start = norm(step.start_force[i]) + mass * norm(step.start_acceleration[i]);
     return {r, bound, magnitude[i] + at_start, stiffening[i]};
   }
 };
 
-// Applies a share of a correction to the accelerations. Returns the size of the whole position correction over the
-// particle's radius.
+// Applies a share of a correction to the accelerations. Returns the size of the whole position correction
+// over the particle's radius.
 struct CorrectItem {
   Vec3* acceleration;
   const Vec3* correction;

@@ -8,8 +8,9 @@ std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
   if (period == Vec3{}) return ghosts;
   const HaloBox box{space.min, space.max, period, width};
   for (Index i = 0; i < static_cast<Index>(position.size()); ++i)
-    for_each_ghost(box, xyz(position[static_cast<std::size_t>(i)]),
-                   [&](Vec3 shift, std::int8_t image) { ghosts.push_back({i, shift, image}); });
+    for_each_ghost(box, xyz(position[static_cast<std::size_t>(i)]), [&](Vec3 shift, std::int8_t image) {
+      ghosts.push_back({i, shift, image});
+    });
   return ghosts;
 }
 

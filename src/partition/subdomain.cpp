@@ -19,7 +19,7 @@ Real rounding_constant(Real min, Real max) {
 Subdomain::Subdomain(const Space& space) : space_(space) {
   constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
   box_ = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
-  const auto axis = [&](int side, Real Vec3::* along) {
+  const auto axis = [&](int side, Real Vec3::*along) {
     const Real min = space.min.*along, max = space.max.*along;
     if (space.boundary[static_cast<std::size_t>(side)] == Boundary::periodic) {
       const Real constant = rounding_constant(min, max);

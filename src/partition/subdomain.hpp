@@ -12,9 +12,9 @@ struct ImageCount {
   std::int32_t x = 0, y = 0, z = 0;
 };
 
-// The position inside the periodic box that starts at min, and the periods taken off it; exact. period: 0 along
-// axes that are not periodic. Coordinates that no particle of a sound run has stay as they are; the cell sort
-// then reports them.
+// The position inside the periodic box that starts at min, and the periods taken off it; exact. period: 0
+// along axes that are not periodic. Coordinates that no particle of a sound run has stay as they are; the
+// cell sort then reports them.
 SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
   constexpr Real kMostPeriods = 1e6;
   const auto axis = [](Real& x, Real start, Real length, std::int32_t& count) {

@@ -9,13 +9,14 @@
 
 namespace scree {
 
-// F = K d^n + C d_dot along the normal while d > 0; F > 0 pushes the two apart. T: double, or single where a GPU computes forces in mixed precision.
+// F = K d^n + C d_dot along the normal while d > 0; F > 0 pushes the two apart. T: double, or single where a
+// GPU computes forces in mixed precision.
 template <class T>
 struct KelvinVoigtOf {
   T normal_stiffness = 0;  // K [N/m^n]
   T normal_damping = 0;    // C [N s/m]
   T exponent = 1;          // n [-]
-  bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
+  bool tension = false;    // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
 };
 using KelvinVoigt = KelvinVoigtOf<Real>;
 

@@ -71,11 +71,14 @@ SCREE_HD Vec3 verlet_velocity(Real h, Vec3 predicted, Vec3 a0, Vec3 a1) {
   return predicted + (h / 2) * (a1 - a0);
 }
 
-// The same step in terms of the velocity in its middle, v + (h/2) a_n, which one force carries on to the next.
+// The same step in terms of the velocity in its middle, v + (h/2) a_n, which one force carries on to the
+// next.
 SCREE_HD Vec3 verlet_middle_velocity(Real h, Vec3 predicted, Vec3 a0) { return predicted - (h / 2) * a0; }
 SCREE_HD Vec3 verlet_next_middle(Real h, Vec3 middle, Vec3 a) { return middle + h * a; }
 SCREE_HD Vec3 verlet_predicted_from_middle(Real h, Vec3 middle, Vec3 a0) { return middle + (h / 2) * a0; }
-SCREE_HD Vec3 verlet_acceleration(Real h, Vec3 predicted, Vec3 middle) { return (2 / h) * (predicted - middle); }
+SCREE_HD Vec3 verlet_acceleration(Real h, Vec3 predicted, Vec3 middle) {
+  return (2 / h) * (predicted - middle);
+}
 
 // Verlet's energy error is the difference of a function of state: this function [J].
 SCREE_HD Real verlet_energy_shift(Real h, Real mass, Vec3 a) { return mass * h * h / 8 * dot(a, a); }

@@ -12,7 +12,7 @@ namespace scree {
 struct RunOptions {
   std::string backend = "auto";  // auto, cpu, cuda
   std::string output_directory;
-  std::string restart;           // checkpoint to continue from; empty: start at t = 0
+  std::string restart;  // checkpoint to continue from; empty: start at t = 0
   std::string deck_path, resolved_deck, fingerprint, command_line;  // for the run record and the checkpoint
 };
 

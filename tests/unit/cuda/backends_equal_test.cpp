@@ -1,6 +1,6 @@
-// The CUDA backend against the CPU's, on boxes of particles and bodies at random places. Both are built without
-// contraction, and roots and divisions are exact to the last bit on both: linear laws give the same bits. pow() is
-// not: other exponents agree to round-off.
+// The CUDA backend against the CPU's, on boxes of particles and bodies at random places. Both are built
+// without contraction, and roots and divisions are exact to the last bit on both: linear laws give the same
+// bits. pow() is not: other exponents agree to round-off.
 #include <cmath>
 #include <cstring>
 
@@ -16,7 +16,10 @@ constexpr Real kRoundOff = 1e-11;  // of forces: sums of some ten terms behind a
 
 struct Pair {
   explicit Pair(const Model& of, Real skin = 0.02)
-      : model(of), motion(motion_of(model.bodies)), cpu(make_cpu_backend(model)), cuda(make_cuda_backend(model)) {
+      : model(of),
+        motion(motion_of(model.bodies)),
+        cpu(make_cpu_backend(model)),
+        cuda(make_cuda_backend(model)) {
     for (Backend* backend : {cpu.get(), cuda.get()}) {
       backend->load(initial_records(model.particles, Subdomain(model.space)), {});
       backend->place_bodies(motion);
@@ -52,7 +55,8 @@ Real difference(const std::vector<ParticleRecord>& a, const std::vector<Particle
   if (a.size() != b.size()) return INFINITY;
   Real largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i].global_id != b[i].global_id || a[i].drifting != b[i].drifting || a[i].image.x != b[i].image.x) return INFINITY;
+    if (a[i].global_id != b[i].global_id || a[i].drifting != b[i].drifting || a[i].image.x != b[i].image.x)
+      return INFINITY;
     for (const Real d :
          {difference(a[i].position, b[i].position), difference(a[i].velocity, b[i].velocity),
           difference(a[i].acceleration, b[i].acceleration), difference(a[i].force, b[i].force),
@@ -170,7 +174,8 @@ TEST_CASE("the state moves between the backends without a trace") {
 
 TEST_CASE("what is said about device memory before a run is what the run takes") {
   for (const BoxCase& c : {kBoxes[0], kBoxes[4], kBoxes[6]})
-    for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+    for (const ParticleIntegrator integrator :
+         {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
       CAPTURE(c.name, static_cast<int>(integrator));
       Model model = random_box(c, 300000, 5);
       const Real scale = c.dimension == 2 ? 60 : 14;

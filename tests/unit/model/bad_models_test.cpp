@@ -138,7 +138,8 @@ TEST_CASE("every pair of materials that can meet needs a law") {
 
 TEST_CASE("time and integrator") {
   CHECK(contains(model_error(kSmallDeck, {"time.min_step=1"}), "must be at most time.step = 0.001"));
-  CHECK(contains(model_error(kSmallDeck, {"time.control=adaptive", "time.max_step=1e-4"}), "must be at least time.step = 0.001"));
+  CHECK(contains(model_error(kSmallDeck, {"time.control=adaptive", "time.max_step=1e-4"}),
+                 "must be at least time.step = 0.001"));
   CHECK(contains(model_error(kSmallDeck, {"integrator.substeps=2"}), "must be 1, unless"));
   CHECK(contains(model_error(kSmallDeck, {"integrator.particles=velocity-verlet", "time.control=adaptive"}),
                  "the explicit method has no error estimate"));
