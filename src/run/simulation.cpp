@@ -19,8 +19,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kGpuParticles = 10000;  // --backend auto: from so many on a GPU is faster
-constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
+constexpr std::size_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
+constexpr double kProgressSeconds = 0.25;    // between progress lines on a terminal
 constexpr double kFlushSeconds =
     5;  // between writes of the history, besides those with snapshots and checkpoints
 
