@@ -20,6 +20,7 @@ CudaBackend::CudaBackend(const Model& model)
       h_solver_(1),
       mixed_(model.integrator.precision == Precision::mixed && side_.shapes().size() == 0),
       pack_(std::make_unique<PackArrays>()) {
+  results_.zero(stream_);
   laws_.upload(model.contact.laws, stream_);
   kernels_ = make_device_contact_kernels(model.contact, laws_.data());
   std::vector<WallPlane> planes;
@@ -65,7 +66,8 @@ void CudaBackend::load(const std::vector<ParticleRecord>& records, const ShapeLo
 }
 
 std::vector<ParticleRecord> CudaBackend::records() const {
-  DeviceArray<ParticleRecord> d_records(static_cast<std::size_t>(owned_));
+  DeviceArray<ParticleRecord> d_records;
+  d_records.resize_clean(static_cast<std::size_t>(owned_), stream_);
   for_each(device(), owned_, RecordItem{views_of(now_), model_.space.min, subdomain_.period(), d_records.data()});
   std::vector<ParticleRecord> out = d_records.download(stream_);
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
@@ -276,7 +278,7 @@ void CudaBackend::lay_out_items(Real skin) {
                  "cudaMemcpyAsync");
     shape_body_.upload(body, stream_);
   }
-  shape_contacts_.resize(n), h_shape_contacts_.resize(n);
+  shape_contacts_.resize_clean(n, stream_), h_shape_contacts_.resize(n);
   refresh_ghosts(now_.position.data(), now_.velocity.data());
   side_.place(layout_);
   put_shapes(now_);

@@ -62,10 +62,10 @@ struct CountDriftingItem {
 
 std::vector<Leaver> CudaBackend::outside() const {
   constexpr std::size_t kFirstRoom = 1024;
-  if (leavers_.size() == 0) leavers_.resize(kFirstRoom);
+  if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, stream_);
   Index found = 0;
   for (bool enough = false; !enough; enough = static_cast<std::size_t>(found) <= leavers_.size()) {
-    if (static_cast<std::size_t>(found) > leavers_.size()) leavers_.resize(static_cast<std::size_t>(found));
+    if (static_cast<std::size_t>(found) > leavers_.size()) leavers_.resize_clean(static_cast<std::size_t>(found), stream_);
     require_cuda(cudaMemsetAsync(result(&Results::leavers), 0, sizeof(Index), stream_), "cudaMemsetAsync");
     for_each(device(), owned_,
              LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), leavers_.data(),
@@ -141,7 +141,7 @@ void CudaBackend::start_pack() {
   const auto n = static_cast<std::size_t>(owned_);
   p.ready.wait();  // for the last pack, whose arrays are written now
   p.n = n;
-  p.packed.resize(n), p.h_packed.resize(n);
+  p.packed.resize_clean(n, stream_), p.h_packed.resize(n);
   p.elastic.resize(n), p.pairs.resize(n), p.contacts.resize(n);
   p.ids.resize(n), p.sorted_ids.resize(n), p.order.resize(n), p.sorted_order.resize(n);
   kernels_->energies(device(), views(), owned_, {p.elastic.data(), p.contacts.data(), p.pairs.data()});

@@ -86,6 +86,15 @@ class DeviceArray {
     }
     size_ = size;
   }
+  // The same for records that travel to the host whole: bytes between their members, which nobody writes, are zero.
+  void resize_clean(std::size_t size, cudaStream_t stream) {
+    if (size <= capacity_) {
+      size_ = size;
+      return;
+    }
+    resize(size);
+    zero(stream);
+  }
   // The same, with the first `keep` values kept where the array has to grow, and room for more. Waits if it grows.
   void grow(std::size_t size, std::size_t keep, cudaStream_t stream) {
     if (size > capacity_) {
