@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "dem/contact_items.hpp"
+#include "dem/shape_items.hpp"
 #include "dem/step_items.hpp"
 #include "model/model.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "dem/body_shapes.hpp"
-#include "dem/contact_items.hpp"
 #include "dem/neighbor_list.hpp"
+#include "dem/shape_items.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
 #include "partition/subdomain.hpp"

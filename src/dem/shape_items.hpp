@@ -1,0 +1,101 @@
+// What happens for one shape of a body in the contact stages. One text for the CPU and CUDA.
+#pragma once
+
+#include "dem/contact_items.hpp"
+
+namespace scree {
+
+// What the contacts of one shape of a body sum to. Every contact force passes through the shape's centre.
+struct ShapeContact {
+  Vec3 force;               // for the step: see StepContact [N]
+  Vec3 end_force;           // at the end of the step [N]
+  Sym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
+  Real step_loss = 0, end_loss = 0;  // the shape's share [W]
+  Real energy = 0;                   // the shape's share of the contacts' elastic energy [J]
+  Real pairs = 0;                    // the shape's share of the number of contacts
+  Index contacts = 0;
+};
+
+// Where the shape items are, indexed from first_shape.
+struct ShapePlaces {
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;
+};
+
+// Particles book the energies of their contacts with shapes; shapes among each other half each.
+SCREE_HD Real shape_share(Index j, Index first_shape) { return j < first_shape ? Real(0) : Real(0.5); }
+
+// Contacts of a shape item over an implicit step.
+template <class Elastic, class Laws, class Rows>
+struct ShapeStepItem {
+  StepContacts<Elastic, Laws, Rows> contacts;
+  ShapeContact* out;  // [shape items], indexed from first_shape
+
+  SCREE_HD void operator()(Index shape) const {
+    const Index i = contacts.in.first_shape + shape;
+    ShapeContact sum;
+    const auto add = [&](const StepContact& c, Vec3 normal, Real share) {
+      sum.force += c.step.force * normal;
+      sum.end_force += c.end_force * normal;
+      sum.stiffness += outer(c.step.stiffness, normal);
+      sum.damping += outer(c.step.damping, normal);
+      sum.step_loss += share * c.step.loss;
+      sum.end_loss += share * c.end_loss;
+      ++sum.contacts;
+    };
+    contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
+      add(c, normal, shape_share(j, contacts.in.first_shape));
+    });
+    contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
+    out[shape] = sum;
+  }
+};
+
+// Contacts of a shape item at one instant. The shapes may be elsewhere than in the arrays of all items.
+template <class Elastic, class Laws, class Rows>
+struct ShapeContactItem {
+  ContactViews<Rows> in;
+  ShapePlaces shapes;
+  Laws laws;
+  ShapeContact* out;  // [shape items], indexed from first_shape
+
+  SCREE_HD Vec4 position(Index j) const {
+    return j < in.first_shape ? in.position[j] : shapes.position[j - in.first_shape];
+  }
+  SCREE_HD Vec4 velocity(Index j) const {
+    return j < in.first_shape ? in.velocity[j] : shapes.velocity[j - in.first_shape];
+  }
+
+  SCREE_HD void add(ShapeContact& sum, const KelvinVoigt& law, const Overlap& o, Real rate,
+                    Real share) const {
+    const ContactForce c = contact_force<Elastic>(law, o.overlap, rate);
+    sum.force += c.force * o.normal;
+    sum.end_loss += share * c.loss;
+    sum.energy += share * Elastic::energy(law, o.overlap);
+    sum.pairs += share;
+    ++sum.contacts;
+  }
+
+  SCREE_HD void operator()(Index shape) const {
+    const Index i = in.first_shape + shape;
+    const Vec4 p = position(i), u = velocity(i);
+    ShapeContact sum;
+    in.rows.for_each_contact(
+        i, [&](Index j) { return touch(p, position(j)); }, [](Index j) { return j; },
+        [&](Index j) {
+          const Vec4 q = position(j);
+          const Overlap o = sphere_overlap(xyz(p) - xyz(q), p.w + q.w);
+          const Real rate = -dot(o.normal, xyz(u) - xyz(velocity(j)));
+          add(sum, laws.get(in.material[i], in.material[j]), o, rate, shape_share(j, in.first_shape));
+        });
+    for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
+      const WallPlane& wall = in.planes[in.walls[k]];
+      const Overlap o = wall_overlap(p, wall);
+      if (o.overlap > 0) add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
+    }
+    sum.end_force = sum.force, sum.step_loss = sum.end_loss;
+    out[shape] = sum;
+  }
+};
+
+}  // namespace scree
