@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs the tests of the CUDA backend; needs a GPU.
+# Runs the tests of the CUDA backend; needs a GPU. The verification tests among them take minutes each: with a few discs a
+# GPU waits for launches. `ctest --test-dir build/cuda -R gpu/unit` runs the others in a minute.
 #
 #     tests/gpu.sh [--sanitize]
 #
