@@ -263,9 +263,16 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
       norms = link_.multibody()->correct(link_.step_wrench());
     } while (norms.residual > limits.residual_tolerance || norms.correction > limits.correction_tolerance);
   }
-  link_.broadcast_motion(backend_);
-  backend_.shape_contacts();
-  link_.reduce_wrench(backend_);
+  {
+    const auto scope = timers_.time(Stage::broadcast_motion);
+    link_.broadcast_motion(backend_);
+  }
+  {
+    const auto scope = timers_.time(Stage::reduce_wrench);
+    backend_.shape_contacts();
+    link_.reduce_wrench(backend_);
+  }
+  const auto scope = timers_.time(Stage::accept);
   if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
   bodies.wrench = link_.end_wrench();
 }

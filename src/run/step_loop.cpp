@@ -69,12 +69,14 @@ void StepLoop::close_step(Real h) {
 
 // Particles outside the space: an error, or out of the pair search from the next step on.
 void StepLoop::leave() {
-  const auto scope = parts_.timers.time(Stage::migrate);
-  const std::vector<Leaver> leavers = parts_.step.check_inside();
-  if (leavers.empty()) return;
-  book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
-  parts_.backend.take_out(leavers);
-  parts_.step.rebuild_list(parts_.model.contact.skin);
+  {
+    const auto scope = parts_.timers.time(Stage::migrate);
+    const std::vector<Leaver> leavers = parts_.step.check_inside();
+    if (leavers.empty()) return;
+    book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
+    parts_.backend.take_out(leavers);
+  }
+  parts_.step.rebuild_list(parts_.model.contact.skin);  // has stages of its own
 }
 
 void StepLoop::output(Real h) {
