@@ -14,6 +14,15 @@
 namespace scree {
 
 using DeviceViews = ContactViews<SlicedRows>;
+using PrunedViews = ContactViews<PrunedRows<0>>;
+
+// The same for a kernel that evaluates so many entries of a row at once, with the rows that the control names.
+template <int kAtOnce>
+__device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
+  const PrunedRows<0>& r = in.rows;
+  return {in.position, in.velocity, in.material, {r.rows, r.counts, r.neighbors, r.first_shape, use, margin},
+          in.wall_offsets, in.walls, in.planes, in.first_shape};
+}
 
 // Maxima of StepNorms over the particles, on the device.
 struct SystemRequest {
@@ -34,10 +43,15 @@ struct SystemRequest {
 // Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run see
 // `stop` and change nothing.
 struct VerletControl {
+  static constexpr Real kNoRows = std::numeric_limits<Real>::infinity();
   unsigned largest;  // bits of the single that is at least the largest squared displacement of this step [m^2]
   unsigned finished_blocks;
   Real bound;               // displacement of any item since the list was built, at most [m]
   Real half_skin;           // what the list covers [m]
+  Real displacement;        // of any particle when the open step was opened, at most [m]
+  RowUse rows;              // of the open step
+  Real margin;              // of the pruned rows [m]
+  Real moved;               // displacement of any particle since they were pruned, at most [m]; kNoRows: there are none
   Index closed;             // steps, since the start of the run
   Index last;               // stop when so many are closed
   Index substeps;           // steps of the particles per step of the bodies
@@ -53,6 +67,25 @@ struct VerletControl {
   static constexpr int kClosedSteps = 4;
   Closed closed_steps[kClosedSteps];
 
+  // Books the displacement with which the open step was opened.
+  SCREE_HD void move(Real largest) {
+    displacement = largest;
+    bound += largest, moved += largest;
+    choose_rows();
+  }
+  SCREE_HD void choose_rows() {
+    constexpr Real kPrunedSteps = 32;            // that pruned rows should last
+    constexpr Real kLeastShare = Real(1) / 32;   // of the skin: far above the rounding of a test in single
+    constexpr Real kMostShare = Real(1) / 2;     // more would save too little
+    if (moved < margin / 2) {
+      rows = RowUse::pruned;
+      return;
+    }
+    const Real wanted = kPrunedSteps * displacement, least = kLeastShare * half_skin;
+    margin = 2 * (wanted > least ? wanted : least);
+    rows = margin < kMostShare * 2 * half_skin ? RowUse::prune : RowUse::all;
+    moved = rows == RowUse::prune ? 0 : kNoRows;
+  }
   // Decides whether the run goes on.
   SCREE_HD void judge(bool is_outside) {
     const Closed now{!(bound < half_skin), is_outside && (closed + 1) % substeps == 0};
@@ -63,7 +96,7 @@ struct VerletControl {
 
 // Two arrays each for position and velocity: a step reads one and writes the other.
 struct VerletRequest {
-  DeviceViews in;  // but for position and velocity
+  PrunedViews in;  // but for position and velocity
   Index n;
   Vec3 gravity;
   Vec4 *position[2], *velocity[2];
@@ -76,7 +109,7 @@ struct VerletRequest {
 
 // The same in mixed precision. in.position: the double state, as it was converted.
 struct MixedRequest {
-  DeviceViews in;
+  PrunedViews in;
   Index n;
   Vec3 gravity;
   MixedViews state;

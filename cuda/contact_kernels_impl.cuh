@@ -23,37 +23,31 @@ struct SystemItem {
 
 inline constexpr int kSystemThreads = 128;
 
-// What a warp of an implicit step's system stages.
-struct SystemStages {
-  WarpStage<Vec3, kSystemThreads>::Shared step_force, end_force, residual;
-  WarpStage<Sym3, kSystemThreads>::Shared diagonal, inverse_block;
-};
+using SystemStage = WarpStage<sizeof(Sym3), kSystemThreads>;
 
 template <class Elastic, class Laws>
 __global__ void __launch_bounds__(kSystemThreads)
     system_kernel(const __grid_constant__ SystemRequest r, const Laws laws) {
-  __shared__ SystemStages stages;
-  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize,
-              stretch = min(static_cast<Index>(warpSize), r.n - first);
-  const WarpStage<Vec3, kSystemThreads> step_force(stages.step_force), end_force(stages.end_force),
-      residual(stages.residual);
-  const WarpStage<Sym3, kSystemThreads> diagonal(stages.diagonal), inverse_block(stages.inverse_block);
+  __shared__ SystemStage::Shared shared;
+  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const SystemStage stage(shared, first, min(static_cast<Index>(warpSize), r.n - first));
+  Vec3 step_force, end_force, residual;
+  Sym3 diagonal, inverse_block;
   StepNorms norms{};
   if (i < r.n) {
     SystemItem<Elastic, Laws> item{{{r.in, laws, r.start}, r.gravity, r.weights, r.forces, r.matrix},
                                    {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
                                    {r.step, r.residual, r.forces.magnitude, r.stiffening}};
-    item.system.out.step_force = step_force.at(first), item.residual.force = step_force.at(first);
-    item.system.out.end_force = end_force.at(first);
-    item.system.matrix.diagonal = item.residual.matrix.diagonal = diagonal.at(first);
-    item.residual.residual = residual.at(first), item.norms.residual = residual.at(first);
-    item.residual.inverse_block = inverse_block.at(first);
+    item.system.out.step_force = only(step_force, i), item.residual.force = only(step_force, i);
+    item.system.out.end_force = only(end_force, i);
+    item.system.matrix.diagonal = item.residual.matrix.diagonal = only(diagonal, i);
+    item.residual.residual = only(residual, i), item.norms.residual = only(residual, i);
+    item.residual.inverse_block = only(inverse_block, i);
     norms = item(i);
   }
-  __syncwarp();
-  step_force.store(r.forces.step_force, first, stretch), end_force.store(r.forces.end_force, first, stretch);
-  diagonal.store(r.matrix.diagonal, first, stretch);
-  residual.store(r.residual, first, stretch), inverse_block.store(r.inverse_block, first, stretch);
+  stage.put(step_force, r.forces.step_force), stage.put(end_force, r.forces.end_force);
+  stage.put(diagonal, r.matrix.diagonal);
+  stage.put(residual, r.residual), stage.put(inverse_block, r.inverse_block);
   block_max(norms.residual, &r.largest->residual);
   block_max(norms.correction_bound, &r.largest->correction_bound);
   block_max(norms.force, &r.largest->force);
@@ -62,7 +56,7 @@ __global__ void __launch_bounds__(kSystemThreads)
 
 // Called by the last block of a step: the step is closed and the next one open.
 __device__ inline void close_step(VerletControl& c) {
-  c.bound += std::sqrt(static_cast<Real>(__uint_as_float(c.largest)));
+  c.move(std::sqrt(static_cast<Real>(__uint_as_float(c.largest))));
   c.largest = 0;
   ++c.closed;
   c.parity[0] ^= 1, c.parity[1] ^= 1;
@@ -70,15 +64,25 @@ __device__ inline void close_step(VerletControl& c) {
 }
 
 // Whether the particle's new place is outside. Far from the sides the old place alone says no.
-__device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_place, const Vec4* new_place,
-                                  Real d_squared) {
+__device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_place, Vec4 new_place, Real d_squared) {
   const Real margin = r.control->half_skin;
   if (d_squared < margin * margin && r.box.inside(xyz(old_place), margin)) return false;
-  return !r.box.inside(xyz(new_place[i])) && !r.drifting[i];
+  return !r.box.inside(xyz(new_place)) && !r.drifting[i];
 }
 
-// Registers are rationed for so many blocks on a multiprocessor: the kernel lives from many threads that wait.
-inline constexpr int kVerletThreads = 128, kVerletBlocks = 7, kMixedBlocks = 10;
+inline constexpr int kVerletThreads = 128;
+// Entries of a row that a launch of few threads evaluates at once.
+inline constexpr int kAtOnce = 4;
+// Registers are rationed for so many blocks on a multiprocessor: the kernels live from many threads that wait, or from
+// many entries at once.
+constexpr int verlet_blocks(int at_once) { return at_once == 0 ? 7 : 4; }
+constexpr int mixed_blocks(int at_once) { return at_once == 0 ? 10 : 6; }
+
+// Blocks of the next step may come from now on, and this one waits until the step before is done.
+__device__ inline void await_step_before() {
+  cudaTriggerProgrammaticLaunchCompletion();
+  cudaGridDependencySynchronize();
+}
 
 // A block's part in the largest displacement of a step.
 struct BlockLargest {
@@ -101,51 +105,50 @@ __device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, 
   if (atomicAdd(&block.arrived, 1u) != kVerletThreads / warpSize - 1) return;
   __threadfence_block();
   const unsigned largest = atomicMax(&block.largest, 0u);
-  if (largest > *static_cast<volatile unsigned*>(&control.largest)) atomicMax(&control.largest, largest);
+  atomicMax(&control.largest, largest);
   if (is_last_block(&control.finished_blocks)) close_step(control);
 }
 
-// What a warp of the explicit step stages.
-struct VerletStages {
-  WarpStage<Vec4, kVerletThreads>::Shared position, velocity;
-  WarpStage<Vec3, kVerletThreads>::Shared acceleration;
-};
+using VerletStage = WarpStage<sizeof(Vec4), kVerletThreads>;
 
-template <class Elastic, class Laws>
-__global__ void __launch_bounds__(kVerletThreads, kVerletBlocks)
+template <int kAtOnce, class Elastic, class Laws>
+__global__ void __launch_bounds__(kVerletThreads, verlet_blocks(kAtOnce))
     verlet_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
+  await_step_before();
   if (r.control->stop) return;
   const int p = r.control->parity[0], v = r.control->parity[1];
-  __shared__ VerletStages stages;
+  __shared__ VerletStage::Shared shared;
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
-  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize,
-              stretch = min(static_cast<Index>(warpSize), r.n - first);
-  const WarpStage<Vec4, kVerletThreads> position(stages.position), velocity(stages.velocity);
-  const WarpStage<Vec3, kVerletThreads> acceleration(stages.acceleration);
-  acceleration.load(r.state.acceleration, first, stretch);
-  __syncwarp();
+  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.n - first));
+  Vec3* const acceleration = stage.load(r.state.acceleration);
+  VerletAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
+      {views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, nullptr, nullptr}, r.state};
+  item.contacts.in.position = p == 0 ? r.position[0] : r.position[1];
+  item.contacts.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
+  Vec4 position, velocity;
+  item.state.position = only(position, i), item.state.velocity = only(velocity, i);
+  item.state.acceleration = acceleration;
+  TotalForce force;
+  if (i < r.n) force = item.contacts.total(i);
+  stage.await();
   Real d_squared = 0;
   if (i < r.n) {
-    VerletAdvanceItem<Elastic, Laws, SlicedRows> item{{r.in, laws, r.gravity, nullptr, nullptr}, r.state};
-    item.contacts.in.position = p == 0 ? r.position[0] : r.position[1];
-    item.contacts.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
-    item.state.position = position.at(first), item.state.velocity = velocity.at(first);
-    item.state.acceleration = acceleration.at(first);
-    d_squared = item(i);
-    if (is_outside(r, i, item.contacts.in.position[i], item.state.position, d_squared)) r.control->outside = 1;
+    d_squared = item.advance(i, force);
+    if (is_outside(r, i, item.contacts.in.position[i], position, d_squared)) r.control->outside = 1;
   }
-  __syncwarp();
-  position.store(p == 0 ? r.position[1] : r.position[0], first, stretch);
-  velocity.store(v == 0 ? r.velocity[1] : r.velocity[0], first, stretch);
-  acceleration.store(r.state.acceleration, first, stretch);
+  stage.store(r.state.acceleration);
+  stage.put(position, p == 0 ? r.position[1] : r.position[0]);
+  stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
 
   close_by_last_block(largest_of_step, d_squared, *r.control);
 }
 
-template <class Elastic, class Laws>
-__global__ void __launch_bounds__(kVerletThreads, kMixedBlocks)
+template <int kAtOnce, class Elastic, class Laws>
+__global__ void __launch_bounds__(kVerletThreads, mixed_blocks(kAtOnce))
     mixed_advance_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
+  await_step_before();
   if (r.control->stop) return;
   const int parity = r.control->parity[0];
   __shared__ BlockLargest largest_of_step;
@@ -153,7 +156,8 @@ __global__ void __launch_bounds__(kVerletThreads, kMixedBlocks)
   const Index i = thread_index();
   Real d_squared = 0;
   if (i < r.n) {
-    const MixedAdvanceItem<Elastic, Laws, SlicedRows> item{r.in, laws, r.gravity, r.state, parity, r.grid, r.h};
+    const MixedAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
+        views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, r.state, parity, r.grid, r.h};
     d_squared = item(i);
     const MixedFraction part = r.state.fraction[i];
     const Real margin = r.control->half_skin;
@@ -170,7 +174,8 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
   const Index i = thread_index();
   Real a_squared = 0;
   if (i < r.n) {
-    VerletFinishItem<Elastic, Laws, SlicedRows> item{{r.in, laws, r.gravity, r.force, r.state.loss_power}, r.state};
+    VerletFinishItem<Elastic, Laws, PrunedRows<0>> item{
+        {views_for<0>(r.in, RowUse::all, 0), laws, r.gravity, r.force, r.state.loss_power}, r.state};
     item.contacts.in.position = r.position[p], item.contacts.in.velocity = r.velocity[v];
     item.state.position = r.position[p], item.state.velocity = r.velocity[1 - v];
     a_squared = item(i);
@@ -181,7 +186,9 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
 template <class Elastic, class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
-  explicit ContactKernelsOf(Laws laws) : laws_(laws) {}
+  explicit ContactKernelsOf(Laws laws) : laws_(laws) {
+    prefer_cache(verlet_advance_kernel<0, Elastic, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
+  }
 
   void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
               Real* loss_power) const override {
@@ -206,14 +213,12 @@ class ContactKernelsOf : public DeviceContactKernels {
              ContactEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, out.energy, out.contacts, out.pairs});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
-    verlet_advance_kernel<Elastic>
-        <<<std::max(1u, blocks_for(r.n, kVerletThreads)), kVerletThreads, 0, device.stream>>>(r, laws_);
-    require_cuda(cudaGetLastError(), "explicit step");
+    const bool eagerly = fits(r.n, verlet_blocks(kAtOnce));
+    launch(device, r, eagerly ? verlet_advance_kernel<kAtOnce, Elastic, Laws> : verlet_advance_kernel<0, Elastic, Laws>);
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    mixed_advance_kernel<Elastic>
-        <<<std::max(1u, blocks_for(r.n, kVerletThreads)), kVerletThreads, 0, device.stream>>>(r, laws_);
-    require_cuda(cudaGetLastError(), "explicit step");
+    const bool eagerly = fits(r.n, mixed_blocks(kAtOnce));
+    launch(device, r, eagerly ? mixed_advance_kernel<kAtOnce, Elastic, Laws> : mixed_advance_kernel<0, Elastic, Laws>);
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
@@ -223,7 +228,24 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
 
  private:
+  // Whether so many particles have room side by side on the GPU, with so many blocks on a multiprocessor.
+  bool fits(Index n, int blocks) const {
+    return blocks_for(n, kVerletThreads) <= multiprocessors_ * static_cast<unsigned>(blocks);
+  }
+  template <class Request>
+  void launch(Device device, const Request& r, void (*kernel)(Request, Laws)) const {
+    // The blocks of a step come while those of the step before leave.
+    cudaLaunchAttribute overlap{};
+    overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    overlap.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t config{};
+    config.gridDim = std::max(1u, blocks_for(r.n, kVerletThreads)), config.blockDim = kVerletThreads;
+    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = 1;
+    require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");
+  }
+
   Laws laws_;
+  unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());
 };
 
 template <class Elastic>

@@ -331,7 +331,7 @@ void CudaBackend::build_list(Real skin, StageTimers& timers) {
   copy_async(list_position_.data(), now_.position.data(), items, stream_);
   h_list_shapes_ = side_.position();
   list_skin_ = skin;
-  bound_ = 0;
+  bound_ = 0, new_list_ = true;
   level_ = Level::state;
   layout_changed_ = false;
   ++list_builds_;

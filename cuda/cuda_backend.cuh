@@ -119,6 +119,7 @@ class CudaBackend : public Backend {
   int solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance);
 
   // Parts of an explicit run.
+  PrunedViews pruned_views(const Vec4* position);
   VerletRequest verlet_request(Real h);
   void settle();
   void resume_control(Index last);
@@ -196,6 +197,7 @@ class CudaBackend : public Backend {
   bool in_run_ = false;     // whether a step is open
   int parity_[2] = {0, 0};  // of the open step's position and velocity: 0 in now_, 1 in other_
   Real bound_ = 0;          // displacement of any item since the list was built, at most [m]
+  bool new_list_ = false;   // built since the control was told
   // Where the particles as the last step left them are, with the velocities that the law saw: in the state itself, or
   // where a step closed by opening the next, or closed alone, has left them.
   enum class Level { state, opened, finished } level_ = Level::state;

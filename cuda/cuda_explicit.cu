@@ -30,14 +30,16 @@ struct RunStartItem {
 };
 
 __global__ void started_kernel(VerletControl* c, const Real* largest) {
-  c->bound += std::sqrt(*largest);
+  c->move(std::sqrt(*largest));
   c->judge(c->outside != 0);
 }
 
 // Goes on after a stop: with another end, or another list.
-__global__ void resume_kernel(VerletControl* c, Index last, Real bound, Real half_skin, int position_parity,
-                              int velocity_parity) {
-  c->last = last, c->bound = bound, c->half_skin = half_skin;
+__global__ void resume_kernel(VerletControl* c, Index last, Real bound, Real half_skin, bool new_list,
+                              int position_parity, int velocity_parity) {
+  c->last = last, c->half_skin = half_skin;
+  if (new_list) c->moved = VerletControl::kNoRows, c->choose_rows();
+  c->bound = bound;
   c->parity[0] = position_parity, c->parity[1] = velocity_parity;
   c->judge(c->outside != 0);
 }
@@ -74,9 +76,15 @@ struct MixedGhostItem {
 
 }  // namespace
 
+PrunedViews CudaBackend::pruned_views(const Vec4* position) {
+  const DeviceViews v = views(position, nullptr);
+  return {v.position, v.velocity, v.material, list_.pruned_rows(v.first_shape), v.wall_offsets, v.walls, v.planes,
+          v.first_shape};
+}
+
 VerletRequest CudaBackend::verlet_request(Real h) {
   VerletRequest r{};
-  r.in = views(nullptr, nullptr);
+  r.in = pruned_views(nullptr);
   r.n = owned_, r.gravity = model_.gravity;
   r.position[0] = now_.position.data(), r.position[1] = other_.position.data();
   r.velocity[0] = now_.velocity.data(), r.velocity[1] = other_.velocity.data();
@@ -97,7 +105,7 @@ void CudaBackend::verlet_start(Real h) {
   other_.grow(now_.position.size(), static_cast<std::size_t>(owned_), 0, stream_);
   VerletControl& c = h_results_.data()->control;
   c = {};
-  c.bound = bound_, c.half_skin = list_skin_ / 2;
+  c.bound = bound_, c.half_skin = list_skin_ / 2, c.moved = VerletControl::kNoRows;
   c.last = kEndless, c.substeps = model_.integrator.substeps;
   copy_async(result(&Results::control), &c, 1, stream_);
   const VerletRequest r = verlet_request(h);
@@ -159,7 +167,9 @@ void CudaBackend::convert_from_mixed() {
 }
 
 void CudaBackend::resume_control(Index last) {
-  resume_kernel<<<1, 1, 0, stream_>>>(result(&Results::control), last, bound_, list_skin_ / 2, parity_[0], parity_[1]);
+  resume_kernel<<<1, 1, 0, stream_>>>(result(&Results::control), last, bound_, list_skin_ / 2, new_list_, parity_[0],
+                                      parity_[1]);
+  new_list_ = false;
   require_cuda(cudaGetLastError(), "explicit step");
 }
 
@@ -185,7 +195,7 @@ void CudaBackend::queue_steps(Real h, Index steps) {
   }
   if (!in_mixed_) convert_to_mixed(h);
   MixedRequest r{};
-  r.in = views(now_.position.data(), now_.velocity.data()), r.n = owned_, r.gravity = model_.gravity;
+  r.in = pruned_views(now_.position.data()), r.n = owned_, r.gravity = model_.gravity;
   r.state = mixed_views(), r.grid = quanta_, r.h = h;
   r.box = subdomain_.box(), r.drifting = now_.drifting.data(), r.control = result(&Results::control);
   const MixedGhostItem ghosts{ghost_.data(), r.state, quanta_, owned_, r.control};

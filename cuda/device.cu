@@ -10,6 +10,12 @@ std::size_t& device_bytes_in_use() {
   return bytes;
 }
 
+std::size_t multiprocessors() {
+  int count = 0;
+  require_cuda(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, 0), "cudaDeviceGetAttribute");
+  return static_cast<std::size_t>(count);
+}
+
 namespace {
 
 __global__ void trial_kernel() {}

@@ -18,6 +18,9 @@ struct Device {
   cudaStream_t stream = nullptr;
 };
 
+// Of the GPU.
+std::size_t multiprocessors();
+
 // Throws DeviceError with the runtime's text. what: the call that failed, for the message.
 inline void require_cuda(cudaError_t status, const char* what) {
   if (status != cudaSuccess) throw DeviceError(std::string("cuda: ") + what + ": " + cudaGetErrorString(status));
@@ -51,6 +54,18 @@ class Event {
  private:
   cudaEvent_t event_ = nullptr;
 };
+
+// Leaves all but `shared` bytes of a multiprocessor's fast memory, and what the driver takes for itself, to its cache.
+// Without this the driver takes more for shared memory than the blocks need.
+template <class Kernel>
+void prefer_cache(Kernel* kernel, std::size_t shared) {
+  constexpr std::size_t kDriver = 16 * 1024;  // 1 KB per block
+  int most = 0;
+  require_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerMultiprocessor, 0), "cudaDeviceGetAttribute");
+  const auto percent = static_cast<int>(std::min<std::size_t>(100, 100 * (shared + kDriver) / static_cast<std::size_t>(most)));
+  require_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, percent),
+               "cudaFuncSetAttribute");
+}
 
 // n values, queued on the stream. from and to: device and pinned memory.
 template <class T>

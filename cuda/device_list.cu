@@ -176,6 +176,11 @@ constexpr int kShortRow = 16, kLongRow = 48;
 
 DeviceList::DeviceList() : totals_(1), h_totals_(1) { h_totals_[0] = {}; }
 
+PrunedRows<0> DeviceList::pruned_rows(Index first_shape) {
+  pruned_counts_.resize(counts_.size()), pruned_.resize(neighbors_.size());
+  return {rows(), pruned_counts_.data(), pruned_.data(), first_shape, RowUse::all, 0};
+}
+
 void DeviceList::search(Device device, const ListInput& in) {
   const bool long_rows = h_totals_[0].longest > kShortRow;
   totals_.zero(device.stream);

@@ -36,6 +36,74 @@ struct SlicedRows {
       left -= 2, row += 2 * kSlice;
     }
   }
+
+  // The same for launches of so few threads that nothing else hides the loads: so many entries are tested and evaluated
+  // at once, whether they touch or not.
+  template <int kAtOnce, class Touches, class Evaluate, class Add>
+  SCREE_HD void for_each_contact_eagerly(Index i, const Touches& touches, const Evaluate& evaluate,
+                                         const Add& add) const {
+    const Index* row = neighbors + first(i);
+    Index left = counts[i];
+    Index j[kAtOnce];
+    const auto fetch = [&] {
+      for (int k = 0; k < kAtOnce; ++k) j[k] = k < left ? row[k * kSlice] : i;
+    };
+    fetch();
+    while (left > 0) {
+      bool touching[kAtOnce];
+      decltype(evaluate(i)) contact[kAtOnce];
+      for (int k = 0; k < kAtOnce; ++k) touching[k] = touches(j[k]) & (k < left);
+      for (int k = 0; k < kAtOnce; ++k) contact[k] = evaluate(j[k]);
+      left -= kAtOnce, row += kAtOnce * kSlice;
+      fetch();
+      for (int k = 0; k < kAtOnce; ++k)
+        if (touching[k]) add(contact[k]);
+    }
+  }
+};
+
+// Which rows an explicit step walks.
+enum class RowUse : int {
+  pruned,  // the pruned ones
+  prune,   // all entries, and writes down those that the next steps need
+  all      // all entries: particles so fast that pruned rows would not last
+};
+
+// Rows of an explicit step. Most entries of a list with a skin do not touch; a step that has looked at all of them
+// keeps those within a small margin of touching, and the next steps walk these alone until a particle has moved by
+// half the margin: dynamic pruning, of Pall and Hess, Comput. Phys. Commun. 184 (2013) and J. Chem. Phys. 153 (2020).
+// Entries that do not touch add nothing, so that sums have the same bits either way.
+//
+// kAtOnce: entries that are evaluated at once, eagerly; 0: those that touch, one by one.
+template <int kAtOnce>
+struct PrunedRows {
+  SlicedRows rows;
+  Index *counts, *neighbors;  // the pruned rows: [items], [slots]
+  Index first_shape;          // entries from here on stay: bodies move otherwise than particles
+  RowUse use;
+  Real margin;  // [m]
+
+  // test: as touches in PackedRows, with near(j, margin).
+  template <class Test, class Evaluate, class Add>
+  SCREE_HD void for_each_contact(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
+    if (use != RowUse::prune) {
+      const bool all = use == RowUse::all;
+      const SlicedRows walked{rows.slice_start, all ? rows.counts : counts, all ? rows.neighbors : neighbors};
+      if constexpr (kAtOnce > 0)
+        walked.for_each_contact_eagerly<kAtOnce>(i, test, evaluate, add);
+      else
+        walked.for_each_contact(i, test, evaluate, add);
+      return;
+    }
+    const Index* row = rows.neighbors + rows.first(i);
+    Index *const first_kept = neighbors + rows.first(i), *kept = first_kept;
+    for (Index left = rows.counts[i]; left > 0; --left, row += kSlice) {
+      const Index j = *row;
+      if (j >= first_shape || test.near(j, margin)) *kept = j, kept += kSlice;
+      if (test(j)) add(evaluate(j));
+    }
+    counts[i] = static_cast<Index>((kept - first_kept) / kSlice);
+  }
 };
 
 // Which bodies' shapes may touch: BodyShapes::may_touch for the device.
@@ -76,6 +144,8 @@ class DeviceList {
   void build(Device device, const ListInput& in);
 
   SlicedRows rows() const { return {slice_start_.data(), counts_.data(), neighbors_.data()}; }
+  // Room for the pruned rows is made here; they are empty after each build.
+  PrunedRows<0> pruned_rows(Index first_shape);
   const Index* wall_offsets() const { return wall_offsets_.data(); }
   const Index* walls() const { return walls_.data(); }
   std::int64_t slots() const { return static_cast<std::int64_t>(neighbors_.size()); }
@@ -91,7 +161,7 @@ class DeviceList {
   void search(Device device, const ListInput& in);
 
   DeviceArray<std::int64_t> slice_start_;
-  DeviceArray<Index> counts_, neighbors_, wall_counts_, wall_offsets_, walls_;
+  DeviceArray<Index> counts_, neighbors_, pruned_counts_, pruned_, wall_counts_, wall_offsets_, walls_;
   DeviceArray<unsigned char> scan_space_;
   DeviceArray<Totals> totals_;
   PinnedArray<Totals> h_totals_;

@@ -1,5 +1,7 @@
-// A warp's stretch of an array in shared memory, so that device memory is read and written in whole sectors.
+// A warp's stretch of an array, through shared memory: device memory is read and written in whole sectors.
 #pragma once
+
+#include <cuda_pipeline.h>
 
 #include <cstddef>
 
@@ -7,35 +9,69 @@
 
 namespace scree {
 
-// Copies n values between device and shared memory, the lanes of the warp side by side in units of 8 bytes.
-template <class T>
-__device__ void copy_by_warp(T* to, const T* from, Index n) {
-  static_assert(sizeof(T) % sizeof(double) == 0);
-  constexpr Index kUnits = sizeof(T) / sizeof(double);
-  const Index lane = static_cast<Index>(threadIdx.x) % warpSize;
-#pragma unroll
-  for (Index u = 0; u < kUnits; ++u) {
-    const Index unit = u * warpSize + lane;
-    if (unit < n * kUnits) reinterpret_cast<double*>(to)[unit] = reinterpret_cast<const double*>(from)[unit];
-  }
-}
-
-// The stretch of a block's warp. at(first) is a pointer through which the elements first ... first + 31 of the array
-// are reached: an item that reads and writes only its own element may use it in place of the array.
-template <class T, int kThreads>
+// Where the warps of a block stage arrays. kBytes: of the largest element. One array at a time, because shared memory is
+// taken from the first-level cache. All lanes of a warp call load, store and put together.
+template <std::size_t kBytes, int kThreads>
 class WarpStage {
  public:
   struct Shared {
-    alignas(16) unsigned char bytes[kThreads * sizeof(T)];
+    alignas(16) unsigned char bytes[kThreads * kBytes];
   };
-  __device__ explicit WarpStage(Shared& shared)
-      : values_(reinterpret_cast<T*>(shared.bytes) + threadIdx.x / warpSize * warpSize) {}
-  __device__ T* at(Index first) const { return values_ - first; }
-  __device__ void load(const T* array, Index first, Index n) const { copy_by_warp(values_, array + first, n); }
-  __device__ void store(T* array, Index first, Index n) const { copy_by_warp(array + first, values_, n); }
+  // The warp's elements are first ... first + n - 1.
+  __device__ WarpStage(Shared& shared, Index first, Index n)
+      : bytes_(shared.bytes + threadIdx.x / warpSize * warpSize * kBytes), first_(first), n_(n) {}
+
+  // Begins to bring the warp's elements of the array in and returns what stands for the array: an item that reads and
+  // writes only its own element may use it from await to store.
+  template <class T>
+  __device__ T* load(const T* array) const {
+    const auto* from = reinterpret_cast<const double*>(array + first_);
+    auto* to = reinterpret_cast<double*>(bytes_);
+    for (Index unit = lane(); unit < n_ * kUnits<T>; unit += warpSize)
+      __pipeline_memcpy_async(to + unit, from + unit, sizeof(double));
+    __pipeline_commit();
+    return values_of<T>() - first_;
+  }
+  __device__ void await() const {
+    __pipeline_wait_prior(0);
+    __syncwarp();
+  }
+  // Takes them back.
+  template <class T>
+  __device__ void store(T* array) const {
+    __syncwarp();
+    const auto* from = reinterpret_cast<const double*>(bytes_);
+    auto* to = reinterpret_cast<double*>(array + first_);
+#pragma unroll
+    for (Index u = 0; u < kUnits<T>; ++u)
+      if (const Index unit = u * warpSize + lane(); unit < n_ * kUnits<T>) to[unit] = from[unit];
+    __syncwarp();
+  }
+  // Each lane's value becomes its element of the array.
+  template <class T>
+  __device__ void put(const T& value, T* array) const {
+    values_of<T>()[lane()] = value;
+    store(array);
+  }
 
  private:
-  T* values_;
+  template <class T>
+  static constexpr Index kUnits = sizeof(T) / sizeof(double);  // that the lanes copy side by side
+
+  __device__ static Index lane() { return static_cast<Index>(threadIdx.x % warpSize); }
+  template <class T>
+  __device__ T* values_of() const {
+    static_assert(sizeof(T) <= kBytes && sizeof(T) % sizeof(double) == 0);
+    return reinterpret_cast<T*>(bytes_);
+  }
+  unsigned char* bytes_;
+  Index first_, n_;
 };
+
+// An array of which an item reads and writes only its own element i: that element alone.
+template <class T>
+__device__ T* only(T& element, Index i) {
+  return &element - i;
+}
 
 }  // namespace scree

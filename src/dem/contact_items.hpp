@@ -38,7 +38,8 @@ struct PackedRows {
   // Slot of the row's first entry, and from one entry to the next.
   SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
   SCREE_HD static constexpr int stride() { return 1; }
-  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order.
+  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. evaluate has
+  // no side effects: it may be called for others, too.
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
                                  const Add& add) const {
@@ -72,6 +73,19 @@ SCREE_HD bool touch(Vec4 p, Vec4 q) {
   const Real reach = p.w + q.w;
   return dot(r, r) < reach * reach;
 }
+
+// Whether other items touch the one at p, or come within a margin of that [m].
+struct TouchTest {
+  Vec4 p;
+  const Vec4* position;  // all items
+  SCREE_HD bool operator()(Index j) const { return touch(p, position[j]); }
+  SCREE_HD bool near(Index j, Real margin) const {
+    const Vec4 q = position[j];
+    const Vec3 r = xyz(p) - xyz(q);
+    const Real reach = p.w + q.w + margin;
+    return dot(r, r) < reach * reach;
+  }
+};
 
 // A particle's share of a contact's energies: half with another particle, all with a body's shape or a wall.
 SCREE_HD Real particle_share(Index j, Index first_shape) { return j < first_shape ? Real(0.5) : Real(1); }
@@ -116,13 +130,11 @@ struct ContactForceItem {
       const ContactForce c = contact_force<Elastic>(laws.get(material, in.material[j]), gap.overlap, rate);
       return PairForce{(c.force * gap.inverse_distance) * r, c.loss, j >= in.first_shape};
     };
-    in.rows.for_each_contact(
-        i, [&](Index j) { return touch(p, in.position[j]); }, evaluate,
-        [&](const PairForce& c) {
-          f += c.force;
-          loss += c.loss;
-          if (c.with_shape) shape_loss += c.loss;
-        });
+    in.rows.for_each_contact(i, TouchTest{p, in.position}, evaluate, [&](const PairForce& c) {
+      f += c.force;
+      loss += c.loss;
+      if (c.with_shape) shape_loss += c.loss;
+    });
     loss = Real(0.5) * (loss + shape_loss);  // the particle's share: half with particles, all with shapes
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
@@ -302,7 +314,7 @@ struct ContactEnergyItem {
     Real sum = 0, share = 0;
     Index n = 0;
     in.rows.for_each_contact(
-        i, [&](Index j) { return touch(p, in.position[j]); }, [](Index j) { return j; },
+        i, TouchTest{p, in.position}, [](Index j) { return j; },
         [&](Index j) {
           const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
           const Real own = particle_share(j, in.first_shape);

@@ -83,10 +83,11 @@ std::size_t device_memory(const Model& model) {
   double bytes = n.items * kItemArrays * spare + n.particles * kParticleArrays;
   bytes +=
       n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays + n.particles * 2 * sizeof(Index) : 0);
+  const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
   bytes += n.items * kListArrays + n.slots * sizeof(Index);
+  if (explicit_steps) bytes += (n.items + n.slots) * sizeof(Index);  // pruned rows
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
-  if (model.integrator.particles == ParticleIntegrator::hht)
-    bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
+  if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && model.bodies.empty())
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
   bytes += n.particles * (kOutputArrays + sizeof(ParticleRecord));

@@ -92,6 +92,34 @@ SCREE_HD Vec3 mixed_position(const QuantumGrid& grid, Vec4 from, const MixedPlac
           grid.moved(from.z, place.z, part.z)};
 }
 
+// Position of one relative to the other [m].
+SCREE_HD Vec3f mixed_difference(float quantum, const MixedPlace& p, const MixedPlace& q) {
+  const auto along = [](std::uint32_t a, std::uint32_t b) {
+    return static_cast<float>(static_cast<std::int32_t>(a - b));
+  };
+  return quantum * Vec3f{along(p.x, q.x), along(p.y, q.y), along(p.z, q.z)};
+}
+
+// TouchTest for places on the grid.
+struct MixedTouchTest {
+  MixedPlace p;
+  const MixedPlace* place;  // all items
+  float quantum;            // [m]
+  SCREE_HD bool operator()(Index j) const { return near(j, 0); }
+  SCREE_HD bool near(Index j, Real margin) const {
+    const MixedPlace q = place[j];
+    const Vec3f r = mixed_difference(quantum, p, q);
+    const float reach = p.radius + q.radius + static_cast<float>(margin);
+    return dot(r, r) < reach * reach;
+  }
+};
+
+// What one contact adds to force [N] and dissipation [W].
+struct MixedPairForce {
+  Vec3f force;
+  float loss;  // of the whole contact
+};
+
 // From the double state of an open explicit step. Ghosts' places are made from their own positions.
 struct ToMixedItem {
   const Vec4 *position, *velocity;  // all items
@@ -151,13 +179,6 @@ struct MixedAdvanceItem {
   QuantumGrid grid;
   Real h;
 
-  SCREE_HD Vec3f difference(const MixedPlace& p, const MixedPlace& q) const {
-    const auto along = [](std::uint32_t a, std::uint32_t b) {
-      return static_cast<float>(static_cast<std::int32_t>(a - b));
-    };
-    return static_cast<float>(grid.quantum) * Vec3f{along(p.x, q.x), along(p.y, q.y), along(p.z, q.z)};
-  }
-
   SCREE_HD Real operator()(Index i) const {
     const MixedPlace p = places()[i];
     const MixedMotion u = motions()[i];
@@ -179,25 +200,22 @@ struct MixedAdvanceItem {
     const MixedPlace* from = places();
     const MixedMotion* seen = motions();
     const int material = in.material[i];
+    const auto quantum = static_cast<float>(grid.quantum);
     in.rows.for_each_contact(
-        i,
-        [&](Index j) {
-          const MixedPlace q = from[j];
-          const Vec3f r = difference(p, q);
-          const float reach = p.radius + q.radius;
-          return dot(r, r) < reach * reach;
-        },
+        i, MixedTouchTest{p, from, quantum},
         [&](Index j) {
           const MixedPlace q = from[j];
           const MixedMotion w = seen[j];
-          const Vec3f r = difference(p, q), relative{u.x - w.x, u.y - w.y, u.z - w.z};
+          const Vec3f r = mixed_difference(quantum, p, q), relative{u.x - w.x, u.y - w.y, u.z - w.z};
           const GapOf<float> gap = sphere_gap(dot(r, r), p.radius + q.radius);
           const auto c = contact_force<Elastic>(in_single(laws.get(material, in.material[j])), gap.overlap,
                                                 approach_rate(r, gap.inverse_distance, relative));
-          loss += 0.5f * c.loss;
-          return (c.force * gap.inverse_distance) * r;
+          return MixedPairForce{(c.force * gap.inverse_distance) * r, c.loss};
         },
-        [&](Vec3f force) { f += in_double(force); });
+        [&](const MixedPairForce& c) {
+          f += in_double(c.force);
+          loss += 0.5f * c.loss;
+        });
   }
 
   // The distance from a wall needs the whole position.

@@ -234,8 +234,10 @@ struct VerletAdvanceItem {
   ContactForceItem<Elastic, Laws, Rows> contacts;
   VerletViews state;
 
-  SCREE_HD Real operator()(Index i) const {
-    const TotalForce total = contacts.total(i);
+  SCREE_HD Real operator()(Index i) const { return advance(i, contacts.total(i)); }
+
+  // With the force that contacts.total(i) has returned.
+  SCREE_HD Real advance(Index i, const TotalForce& total) const {
     const Vec4 v = contacts.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * total.force;
     const Vec3 v1 = verlet_velocity(state.h, xyz(v), state.acceleration[i], a);
