@@ -122,7 +122,7 @@ void CudaBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyW
 }
 
 void CudaBackend::refresh_ghosts(Vec4* position, Vec4* velocity) {
-  for_each(device(), ghosts_, GhostItem{ghost_.data(), position, velocity, owned_});
+  for_each(device(), ghosts_, GhostItem{{ghost_.data(), position, owned_}, {ghost_.data(), velocity, owned_}});
 }
 
 namespace {

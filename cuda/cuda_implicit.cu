@@ -71,13 +71,6 @@ struct FirstDirectionItem {
   }
 };
 
-struct GhostDirectionItem {
-  const Ghost* ghosts;
-  Vec4* direction;
-  Index first_ghost;
-  SCREE_HD void operator()(Index g) const { direction[first_ghost + g] = direction[ghosts[g].source]; }
-};
-
 // One step of the solve: takes the direction d into the solution and the residual, and finds the next direction.
 struct SolverItem {
   SubtractMatrixItem<SlicedRows> subtract;
@@ -233,7 +226,7 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
   for_each(device(), owned_, FirstDirectionItem{direction(), direction_[0].data(), correction_.data()});
   for (int product = 0; product < kMostProducts; ++product) {
     DeviceArray<Vec4>&d = direction_[product % 2], &next = direction_[1 - product % 2];
-    for_each(device(), ghosts_, GhostDirectionItem{ghost_.data(), d.data(), owned_});
+    for_each(device(), ghosts_, HaloItem<Vec4>{ghost_.data(), d.data(), owned_});
     weights.advance();
     SolverItem item{matrix, direction(), next.data(), correction_.data()};
     item.subtract.d = d.data(), item.subtract.residual = residual_.data();
