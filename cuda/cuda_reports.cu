@@ -63,18 +63,19 @@ struct CountDriftingItem {
 std::vector<Leaver> CudaBackend::outside() const {
   constexpr std::size_t kFirstRoom = 1024;
   if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, stream_);
-  Index found = 0;
-  for (bool enough = false; !enough; enough = static_cast<std::size_t>(found) <= leavers_.size()) {
-    if (static_cast<std::size_t>(found) > leavers_.size()) leavers_.resize_clean(static_cast<std::size_t>(found), stream_);
+  const auto find = [&] {
     require_cuda(cudaMemsetAsync(result(&Results::leavers), 0, sizeof(Index), stream_), "cudaMemsetAsync");
     for_each(device(), owned_,
              LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), leavers_.data(),
                         static_cast<Index>(leavers_.size()), result(&Results::leavers)});
-    found = fetch(&Results::leavers);
-    if (static_cast<std::size_t>(found) > leavers_.size()) continue;
+    return static_cast<std::size_t>(fetch(&Results::leavers));
+  };
+  std::vector<Leaver> leavers(find());
+  if (leavers.empty()) return leavers;
+  if (leavers.size() > leavers_.size()) {  // not all were kept; now there is room for them
+    leavers_.resize_clean(leavers.size(), stream_);
+    find();
   }
-  std::vector<Leaver> leavers(static_cast<std::size_t>(found));
-  if (found == 0) return leavers;
   require_cuda(cudaMemcpyAsync(leavers.data(), leavers_.data(), leavers.size() * sizeof(Leaver),
                                cudaMemcpyDeviceToHost, stream_),
                "cudaMemcpyAsync");
