@@ -17,12 +17,11 @@ struct LeaverItem {
   Index* count;
 
   __device__ void operator()(Index i) const {
-    const Vec4 x = in.position[i], v = in.velocity[i];
+    const Vec4 x = in.position[i];
     if (in.drifting[i] || box.inside(xyz(x))) return;
     const Index slot = atomicAdd(count, 1);
     if (slot >= room) return;
-    const Real energy = kinetic_energy(v.w, xyz(v)) +
-                        gravitational_energy(v.w, gravity, unwrapped(x, in.image[i], period));
+    const Real energy = energy_of_motion(x, in.velocity[i], in.image[i], gravity, period);
     out[slot] = {id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i]};
   }
 };

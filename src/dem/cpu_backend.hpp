@@ -75,7 +75,6 @@ class CpuBackend : public Backend {
   void report_not_finite(const std::vector<Vec3>& force) const;
   void place_shapes();
   void find_shape_contacts(const Views& views);
-  Real energy_of(Index i) const;  // kinetic and gravitational [J]
 
   const Model& model_;
   Subdomain subdomain_;
