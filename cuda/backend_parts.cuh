@@ -21,17 +21,11 @@ struct CudaBackend::PackArrays {
   std::size_t n = 0;
 };
 
-// Refreshes one ghost from its original.
+// Both updates of a ghost in one launch.
 struct GhostItem {
-  const Ghost* ghosts;
-  Vec4 *position, *velocity;
-  Index first_ghost;
-  SCREE_HD void operator()(Index g) const {
-    const Ghost ghost = ghosts[g];
-    const Vec4 p = position[ghost.source];
-    position[first_ghost + g] = vec4(xyz(p) + ghost.shift, p.w);
-    velocity[first_ghost + g] = velocity[ghost.source];
-  }
+  HaloPositionItem position;
+  HaloItem<Vec4> velocity;
+  SCREE_HD void operator()(Index g) const { position(g), velocity(g); }
 };
 
 template <class T>

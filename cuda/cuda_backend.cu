@@ -23,9 +23,7 @@ CudaBackend::CudaBackend(const Model& model)
   results_.zero(stream_);
   laws_.upload(model.contact.laws, stream_);
   kernels_ = make_device_contact_kernels(model.contact, laws_.data());
-  std::vector<WallPlane> planes;
-  for (const Wall& wall : model.walls) planes.push_back({wall.point, wall.normal, wall.material});
-  planes_.upload(planes, stream_);
+  planes_.upload(wall_planes(model), stream_);
   std::vector<Index> offsets{0}, connected;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     for (const int other : side_.shapes().connected(static_cast<int>(b))) connected.push_back(other);
@@ -122,7 +120,7 @@ void CudaBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyW
 }
 
 void CudaBackend::refresh_ghosts(Vec4* position, Vec4* velocity) {
-  for_each(device(), ghosts_, GhostItem{ghost_.data(), position, velocity, owned_});
+  for_each(device(), ghosts_, GhostItem{{ghost_.data(), position, owned_}, {ghost_.data(), velocity, owned_}});
 }
 
 namespace {

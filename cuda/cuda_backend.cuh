@@ -10,6 +10,7 @@
 #include "contact_kernels.cuh"
 #include "dem/backend.hpp"
 #include "dem/ledger_items.hpp"
+#include "dem/line_search.hpp"
 #include "device_list.cuh"
 #include "particle_arrays.cuh"
 #include "partition/halo.hpp"
@@ -191,7 +192,7 @@ class CudaBackend : public Backend {
   PinnedArray<SolverControl> h_solver_;
   Real largest_stiffening_ = 0, force_scale_ = 0;
   Real right_hand_side_norm_ = 0;
-  Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;  // see CpuBackend
+  LineSearch line_search_;  // along correction_
 
   // Explicit run.
   bool in_run_ = false;     // whether a step is open

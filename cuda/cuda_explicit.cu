@@ -52,8 +52,8 @@ struct RunGhostItem {
   const VerletControl* control;
 
   __device__ void operator()(Index g) const {
-    GhostItem{ghosts, control->parity[0] == 0 ? position[0] : position[1],
-              control->parity[1] == 0 ? velocity[0] : velocity[1], first_ghost}(g);
+    GhostItem{{ghosts, control->parity[0] == 0 ? position[0] : position[1], first_ghost},
+              {ghosts, control->parity[1] == 0 ? velocity[0] : velocity[1], first_ghost}}(g);
   }
 };
 
@@ -70,7 +70,7 @@ struct MixedGhostItem {
     MixedPlace* places = parity == 0 ? state.place[0] : state.place[1];
     MixedMotion* motions = parity == 0 ? state.motion[0] : state.motion[1];
     places[first_ghost + g] = shifted(grid, places[ghost.source], ghost.shift);
-    motions[first_ghost + g] = motions[ghost.source];
+    HaloItem<MixedMotion>{ghosts, motions, first_ghost}(g);
   }
 };
 

@@ -61,22 +61,6 @@ struct IsLargest {
   __device__ bool operator()(Index i) const { return norm(residual[i]) == *largest; }
 };
 
-struct NormItem {
-  const Vec3* vector;
-  SCREE_HD Real operator()(Index i) const { return norm(vector[i]); }
-};
-
-// Displacements of the shapes as directions of the linear solve; no other item moves.
-struct ShapeDirectionItem {
-  const Vec3* step;
-  Real inverse_weight;
-  Index first_shape;
-  Vec4* direction;
-  SCREE_HD void operator()(Index item) const {
-    direction[item] = item < first_shape ? Vec4{} : vec4(inverse_weight * step[item - first_shape], 0);
-  }
-};
-
 struct FirstDirectionItem {
   DirectionItem direction;
   Vec4* d;
@@ -85,13 +69,6 @@ struct FirstDirectionItem {
     d[i] = vec4(direction.next(i, {}), 0);
     solution[i] = {};
   }
-};
-
-struct GhostDirectionItem {
-  const Ghost* ghosts;
-  Vec4* direction;
-  Index first_ghost;
-  SCREE_HD void operator()(Index g) const { direction[first_ghost + g] = direction[ghosts[g].source]; }
 };
 
 // One step of the solve: takes the direction d into the solution and the residual, and finds the next direction.
@@ -120,11 +97,6 @@ __global__ void solver_kernel(Index n, const __grid_constant__ SolverItem item, 
   c->largest = 0;
   ++c->products;
 }
-
-// A correction overshoots if the slope behind it has risen past this share of the slope before it.
-constexpr Real kMostSlope = 0.5;
-// A correction is not shortened below this share: at a kink of the potential no share is good enough.
-constexpr Real kLeastShare = 0.05;
 
 }  // namespace
 
@@ -157,7 +129,7 @@ void CudaBackend::initial_forces() {
 
 void CudaBackend::begin_step(Real h) {
   h_ = h;
-  applied_share_ = 0;
+  line_search_ = {};
   in_implicit_step_ = true;
   const auto n = static_cast<std::size_t>(owned_), shapes = static_cast<std::size_t>(shape_items());
   std::swap(now_.position, other_.position), std::swap(now_.velocity, other_.velocity);
@@ -188,7 +160,7 @@ Real CudaBackend::step_displacement() {
 ParticleNorms CudaBackend::contact_force() {
   SystemRequest r;
   r.in = views(), r.n = owned_, r.gravity = model_.gravity;
-  r.weights = {hht_.newmark_beta * h_ * h_, h_ * hht_.newmark_gamma};
+  r.weights = {newmark_position_gain(hht_, h_), newmark_velocity_gain(hht_, h_)};
   r.start = {other_.position.data(), other_.velocity.data(), h_, model_.integrator.resolve_events};
   r.forces = step_forces(), r.matrix = matrix(), r.step = step_views();
   r.residual = residual_.data(), r.stiffening = stiffening_.data(), r.inverse_block = inverse_block_.data();
@@ -198,35 +170,25 @@ ParticleNorms CudaBackend::contact_force() {
     kernels_->shapes(device(), views(), shape_items(), r.start, shape_contacts_.data());
     fetch_shape_contacts(stream_);
   }
-  const bool line_search = applied_share_ > kLeastShare;
-  if (line_search)
+  if (line_search_.is_open())
     exact_sums(device(), owned_, SlopeItem{residual_.data(), correction_.data()}, result(&Results::slope));
   copy_async(&h_results_.data()->slope, result(&Results::slope), 1, stream_);
   const StepNorms largest = fetch(&Results::norms);
   if (!std::isfinite(largest.residual)) report_not_finite(residual_.data());
 
-  ParticleNorms norms;
   force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
-  norms.residual = largest.residual == 0 ? 0 : largest.residual / force_scale_;
-  norms.correction_bound = largest.correction_bound;
   right_hand_side_norm_ = largest.residual;
-  if (line_search) {
-    slope_ = -h_results_[0].slope.sum(0);
-    norms.overshoot = slope_ > kMostSlope * std::abs(start_slope_);
-  }
-  return norms;
+  if (line_search_.is_open()) line_search_.look(h_results_[0].slope.sum(0));
+  return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
 CorrectItem CudaBackend::correct_item(Real share) {
-  return {now_.acceleration.data(), correction_.data(), now_.position.data(), share, hht_.newmark_beta * h_ * h_};
+  return {now_.acceleration.data(), correction_.data(), now_.position.data(), share,
+          newmark_position_gain(hht_, h_)};
 }
 
-// Regula falsi for the zero of the slope between the start of the correction and the iterate.
 void CudaBackend::shorten_correction() {
-  const Real full = std::abs(start_slope_) / (std::abs(start_slope_) + slope_);
-  const Real share = applied_share_ * std::clamp(full, Real(0.1), Real(0.8));
-  max_over(device(), owned_, correct_item(share - applied_share_), result(&Results::largest));
-  applied_share_ = share;
+  max_over(device(), owned_, correct_item(line_search_.shorten()), result(&Results::largest));
   for_each(device(), owned_, NewmarkItem{step_views()});
   refresh_ghosts(now_.position.data(), now_.velocity.data());
 }
@@ -236,13 +198,15 @@ void CudaBackend::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
   const auto n = static_cast<std::size_t>(shape_items());
   if (n == 0) return;
   shape_step_.upload(side_.step(), stream_);
-  const Real weight = hht_.newmark_beta * h_ * h_;
   for_each(device(), layout_.items,
-           ShapeDirectionItem{shape_step_.data(), 1 / weight, layout_.first_shape, direction_[0].data()});
+           ShapeDirectionItem{shape_step_.data(), newmark_position_gain(hht_, h_), layout_.first_shape,
+                              direction_[0].data()});
   matrix.d = direction_[0].data();
   for_each(device(), owned_, matrix);
   max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
   right_hand_side_norm_ = fetch(&Results::largest);
+  // Without a correction the bodies alone would notice.
+  if (!std::isfinite(right_hand_side_norm_)) report_not_finite(residual_.data());
 }
 
 // Solves for correction_ in batches of products, so that the host seldom waits; returns the number of products.
@@ -262,7 +226,7 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
   for_each(device(), owned_, FirstDirectionItem{direction(), direction_[0].data(), correction_.data()});
   for (int product = 0; product < kMostProducts; ++product) {
     DeviceArray<Vec4>&d = direction_[product % 2], &next = direction_[1 - product % 2];
-    for_each(device(), ghosts_, GhostDirectionItem{ghost_.data(), d.data(), owned_});
+    for_each(device(), ghosts_, HaloItem<Vec4>{ghost_.data(), d.data(), owned_});
     weights.advance();
     SolverItem item{matrix, direction(), next.data(), correction_.data()};
     item.subtract.d = d.data(), item.subtract.residual = residual_.data();
@@ -278,24 +242,24 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
 }
 
 ParticleCorrection CudaBackend::particle_correct() {
-  const SubtractMatrixItem<SlicedRows> system{matrix(),        list_.rows(), now_.velocity.data(), 1 / (1 + hht_.hht_alpha),
-                                              nullptr,         residual_.data()};
+  const SubtractMatrixItem<SlicedRows> system{matrix(), list_.rows(), now_.velocity.data(), hht_inertia_weight(hht_),
+                                              nullptr,  residual_.data()};
   subtract_shape_steps(system);
   const Real right_hand_side = right_hand_side_norm_;
-  const Real goal = Real(0.1) * model_.integrator.residual_tolerance * force_scale_;
   ParticleCorrection out;
+  line_search_ = {};
   if (right_hand_side > 0) {
     copy_async(right_hand_side_.data(), residual_.data(), static_cast<std::size_t>(owned_), stream_);
-    out.iterations = solve(system, std::max(goal, Real(0.01) * right_hand_side));
+    out.iterations =
+        solve(system, solver_tolerance(model_.integrator.residual_tolerance, force_scale_, right_hand_side));
     max_over(device(), owned_, correct_item(1), result(&Results::largest));
     exact_sums(device(), owned_, SlopeItem{right_hand_side_.data(), correction_.data()}, result(&Results::slope));
   }
-  applied_share_ = right_hand_side > 0 ? 1 : 0;
   for_each(device(), owned_, NewmarkItem{step_views()});
   refresh_ghosts(now_.position.data(), now_.velocity.data());
   if (right_hand_side > 0) {
     copy_async(&h_results_.data()->largest, result(&Results::largest), 1, stream_);
-    start_slope_ = -fetch(&Results::slope).sum(0);
+    line_search_.open(fetch(&Results::slope).sum(0));
     out.correction = h_results_[0].largest;
   }
   return out;

@@ -17,12 +17,11 @@ struct LeaverItem {
   Index* count;
 
   __device__ void operator()(Index i) const {
-    const Vec4 x = in.position[i], v = in.velocity[i];
+    const Vec4 x = in.position[i];
     if (in.drifting[i] || box.inside(xyz(x))) return;
     const Index slot = atomicAdd(count, 1);
     if (slot >= room) return;
-    const Real energy = kinetic_energy(v.w, xyz(v)) +
-                        gravitational_energy(v.w, gravity, unwrapped(x, in.image[i], period));
+    const Real energy = energy_of_motion(x, in.velocity[i], in.image[i], gravity, period);
     out[slot] = {id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i]};
   }
 };
@@ -63,18 +62,19 @@ struct CountDriftingItem {
 std::vector<Leaver> CudaBackend::outside() const {
   constexpr std::size_t kFirstRoom = 1024;
   if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, stream_);
-  Index found = 0;
-  for (bool enough = false; !enough; enough = static_cast<std::size_t>(found) <= leavers_.size()) {
-    if (static_cast<std::size_t>(found) > leavers_.size()) leavers_.resize_clean(static_cast<std::size_t>(found), stream_);
+  const auto find = [&] {
     require_cuda(cudaMemsetAsync(result(&Results::leavers), 0, sizeof(Index), stream_), "cudaMemsetAsync");
     for_each(device(), owned_,
              LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), leavers_.data(),
                         static_cast<Index>(leavers_.size()), result(&Results::leavers)});
-    found = fetch(&Results::leavers);
-    if (static_cast<std::size_t>(found) > leavers_.size()) continue;
+    return static_cast<std::size_t>(fetch(&Results::leavers));
+  };
+  std::vector<Leaver> leavers(find());
+  if (leavers.empty()) return leavers;
+  if (leavers.size() > leavers_.size()) {  // not all were kept; now there is room for them
+    leavers_.resize_clean(leavers.size(), stream_);
+    find();
   }
-  std::vector<Leaver> leavers(static_cast<std::size_t>(found));
-  if (found == 0) return leavers;
   require_cuda(cudaMemcpyAsync(leavers.data(), leavers_.data(), leavers.size() * sizeof(Leaver),
                                cudaMemcpyDeviceToHost, stream_),
                "cudaMemcpyAsync");

@@ -13,7 +13,7 @@ cudaGraphExec_t StepGraph::find(const std::string& key) const {
   return nullptr;
 }
 
-void StepGraph::keep(const std::string& key, cudaGraph_t captured) {
+cudaGraphExec_t StepGraph::keep(const std::string& key, cudaGraph_t captured) {
   Entry& entry = entries_[oldest_];
   oldest_ = (oldest_ + 1) % entries_.size();
   if (entry.graph != nullptr) cudaGraphExecDestroy(entry.graph);
@@ -21,6 +21,7 @@ void StepGraph::keep(const std::string& key, cudaGraph_t captured) {
   const cudaError_t status = cudaGraphInstantiate(&entry.graph, captured, 0);
   cudaGraphDestroy(captured);
   require_cuda(status, "cudaGraphInstantiate");
+  return entry.graph;
 }
 
 }  // namespace scree

@@ -22,7 +22,8 @@ class StepGraph {
   template <class QueueOne>
   void queue(cudaStream_t stream, const std::string& key, int steps, const QueueOne& queue_one) {
     if (steps >= kSteps) {
-      const cudaGraphExec_t graph = find(key) != nullptr ? find(key) : capture(stream, key, queue_one);
+      cudaGraphExec_t graph = find(key);
+      if (graph == nullptr) graph = capture(stream, key, queue_one);
       for (; steps >= kSteps; steps -= kSteps) require_cuda(cudaGraphLaunch(graph, stream), "cudaGraphLaunch");
     }
     for (; steps > 0; --steps) queue_one();
@@ -34,7 +35,7 @@ class StepGraph {
     cudaGraphExec_t graph = nullptr;
   };
   cudaGraphExec_t find(const std::string& key) const;
-  void keep(const std::string& key, cudaGraph_t captured);
+  cudaGraphExec_t keep(const std::string& key, cudaGraph_t captured);
 
   template <class QueueOne>
   cudaGraphExec_t capture(cudaStream_t stream, const std::string& key, const QueueOne& queue_one) {
@@ -42,8 +43,7 @@ class StepGraph {
     for (int step = 0; step < kSteps; ++step) queue_one();
     cudaGraph_t captured = nullptr;
     require_cuda(cudaStreamEndCapture(stream, &captured), "cudaStreamEndCapture");
-    keep(key, captured);
-    return find(key);
+    return keep(key, captured);
   }
 
   // Sorting swaps the arrays of the particles, so that two keys alternate; two more are slack.

@@ -3,6 +3,7 @@
 // D.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,14 @@ class ChebyshevWeights {
 // Bounds for the particles' matrix; see BlockSolver.
 inline ChebyshevWeights solver_weights(Real largest_stiffening) {
   return ChebyshevWeights(1 / (1 + largest_stiffening), 2);
+}
+
+// The largest |residual| [N] that the solve for one Newton correction may leave. A tenth of what the Newton
+// iteration asks for, so that what is left does not keep it from ending; but no less than a hundredth of the
+// right-hand side, because the matrix is that of the contacts before the correction, and the iteration has to
+// correct what changes in any case.
+inline Real solver_tolerance(Real residual_tolerance, Real force_scale, Real right_hand_side) {
+  return std::max(Real(0.1) * residual_tolerance * force_scale, Real(0.01) * right_hand_side);
 }
 
 struct DirectionItem {

@@ -180,8 +180,8 @@ struct StepForces {
 
 // Weights of stiffness and damping in the Newton matrix.
 struct NewtonWeights {
-  Real stiffness;  // beta h^2 [s^2]
-  Real damping;    // h gamma [s]
+  Real stiffness;  // newmark_position_gain [s^2]
+  Real damping;    // newmark_velocity_gain [s]
 };
 
 // Where a step started, all items, and whether contacts that open or close within it are resolved; else the

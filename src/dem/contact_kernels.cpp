@@ -60,6 +60,12 @@ std::unique_ptr<ContactKernels> with_elastic(const Contact& contact) {
 
 }  // namespace
 
+std::vector<WallPlane> wall_planes(const Model& model) {
+  std::vector<WallPlane> planes;
+  for (const Wall& wall : model.walls) planes.push_back({wall.point, wall.normal, wall.material});
+  return planes;
+}
+
 bool is_linear(const Contact& contact) {
   return std::all_of(contact.laws.begin(), contact.laws.end(),
                      [](const KelvinVoigt& l) { return l.exponent == 1; });

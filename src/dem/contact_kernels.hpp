@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "dem/contact_items.hpp"
 #include "dem/shape_items.hpp"
@@ -36,6 +37,9 @@ class ContactKernels {
                       ShapeContact* out) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
 };
+
+// The walls in the form the items read.
+std::vector<WallPlane> wall_planes(const Model& model);
 
 // Whether all laws have exponent 1: their kernels need no pow().
 bool is_linear(const Contact& contact);

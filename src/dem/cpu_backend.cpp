@@ -15,9 +15,8 @@ CpuBackend::CpuBackend(const Model& model)
       side_(model, subdomain_),
       builder_(model, side_.shapes()),
       kernels_(make_contact_kernels(model.contact)),
-      hht_(hht_coefficients(model.integrator.hht_alpha)) {
-  for (const Wall& wall : model.walls) planes_.push_back({wall.point, wall.normal, wall.material});
-}
+      planes_(wall_planes(model)),
+      hht_(hht_coefficients(model.integrator.hht_alpha)) {}
 
 void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
   side_.losses() = shapes;

@@ -9,6 +9,7 @@
 #include "dem/backend.hpp"
 #include "dem/block_solver.hpp"
 #include "dem/contact_kernels.hpp"
+#include "dem/line_search.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/particle_store.hpp"
 #include "dem/step_items.hpp"
@@ -65,7 +66,7 @@ class CpuBackend : public Backend {
   VerletViews verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity);
   StepForces step_forces();
   CorrectItem correct_item(Real share);
-  Real slope(const std::vector<Vec3>& residual) const;
+  Real along_correction(const std::vector<Vec3>& residual) const;
   // Sizes all item arrays, fills in ghosts and shapes.
   void lay_out_items(Real skin);
   void sort_cells(Real skin);
@@ -74,7 +75,6 @@ class CpuBackend : public Backend {
   void report_not_finite(const std::vector<Vec3>& force) const;
   void place_shapes();
   void find_shape_contacts(const Views& views);
-  Real energy_of(Index i) const;  // kinetic and gravitational [J]
 
   const Model& model_;
   Subdomain subdomain_;
@@ -107,9 +107,7 @@ class CpuBackend : public Backend {
   Index closed_ = 0;                                   // explicit steps since verlet_start
   bool opened_ = false;  // whether the last of them was closed by opening the next
   Real largest_stiffening_ = 0, force_scale_ = 0;
-  // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at
-  // its start and at the iterate.
-  Real applied_share_ = 0, start_slope_ = 0, slope_ = 0;
+  LineSearch line_search_;  // along correction_
   bool in_implicit_step_ = false;
   ParticlePack pack_;            // of start_pack
   Real displacement_bound_ = 0;  // of any item since the list was built, at most [m]

@@ -8,15 +8,6 @@
 #include "dem/cpu_backend.hpp"
 
 namespace scree {
-namespace {
-
-// A correction overshoots if the slope behind it has risen past this share of the slope before it.
-constexpr Real kMostSlope = 0.5;
-// A correction is not shortened below this share: at a kink of the potential no share is good enough.
-constexpr Real kLeastShare = 0.05;
-
-}  // namespace
-
 StepViews CpuBackend::step_views() {
   return {store_.position.data(),
           store_.velocity.data(),
@@ -41,7 +32,7 @@ void CpuBackend::initial_forces() {
 
 void CpuBackend::begin_step(Real h) {
   h_ = h;
-  applied_share_ = 0;
+  line_search_ = {};
   in_implicit_step_ = true;
   start_position_ = store_.position;
   start_velocity_ = store_.velocity;
@@ -75,7 +66,7 @@ StepForces CpuBackend::step_forces() {
 
 ParticleNorms CpuBackend::contact_force() {
   const Index n = layout_.owned;
-  const NewtonWeights weights{hht_.newmark_beta * h_ * h_, h_ * hht_.newmark_gamma};
+  const NewtonWeights weights{newmark_position_gain(hht_, h_), newmark_velocity_gain(hht_, h_)};
   const StepStart start{start_position_.data(), start_velocity_.data(), h_, model_.integrator.resolve_events};
   const ContactMatrix matrix{matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()};
   kernels_->system(views(), model_.gravity, n, weights, start, step_forces(), matrix);
@@ -84,24 +75,19 @@ ParticleNorms CpuBackend::contact_force() {
            ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
                         stiffening_.data()});
 
-  ParticleNorms norms;
-  Real residual = 0;
-  force_scale_ = largest_stiffening_ = 0;
+  StepNorms largest{};
   const StepNormsItem of{step_views(), residual_.data(), force_magnitude_.data(), stiffening_.data()};
   for (Index i = 0; i < n; ++i) {
     const StepNorms one = of(i);
     if (!std::isfinite(one.residual)) report_not_finite(residual_);
-    residual = std::max(residual, one.residual);
-    norms.correction_bound = std::max(norms.correction_bound, one.correction_bound);
-    force_scale_ = std::max(force_scale_, one.force);
-    largest_stiffening_ = std::max(largest_stiffening_, one.stiffening);
+    largest.residual = std::max(largest.residual, one.residual);
+    largest.correction_bound = std::max(largest.correction_bound, one.correction_bound);
+    largest.force = std::max(largest.force, one.force);
+    largest.stiffening = std::max(largest.stiffening, one.stiffening);
   }
-  norms.residual = residual == 0 ? 0 : residual / force_scale_;
-  if (applied_share_ > kLeastShare) {
-    slope_ = -slope(residual_);
-    norms.overshoot = slope_ > kMostSlope * std::abs(start_slope_);
-  }
-  return norms;
+  force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
+  if (line_search_.is_open()) line_search_.look(along_correction(residual_));
+  return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
 GlobalId CpuBackend::worst_particle() const {
@@ -115,8 +101,7 @@ GlobalId CpuBackend::worst_particle() const {
   return worst;
 }
 
-// Residual along the last correction.
-Real CpuBackend::slope(const std::vector<Vec3>& residual) const {
+Real CpuBackend::along_correction(const std::vector<Vec3>& residual) const {
   Real sum[1];
   reproducible_sums(layout_.owned, SlopeItem{residual.data(), correction_.data()}, sum);
   return sum[0];
@@ -124,15 +109,11 @@ Real CpuBackend::slope(const std::vector<Vec3>& residual) const {
 
 CorrectItem CpuBackend::correct_item(Real share) {
   return {store_.acceleration.data(), correction_.data(), store_.position.data(), share,
-          hht_.newmark_beta * h_ * h_};
+          newmark_position_gain(hht_, h_)};
 }
 
-// Regula falsi for the zero of the slope between the start of the correction and the iterate.
 void CpuBackend::shorten_correction() {
-  const Real full = std::abs(start_slope_) / (std::abs(start_slope_) + slope_);
-  const Real share = applied_share_ * std::clamp(full, Real(0.1), Real(0.8));
-  for_each(Serial{}, layout_.owned, correct_item(share - applied_share_));
-  applied_share_ = share;
+  for_each(Serial{}, layout_.owned, correct_item(line_search_.shorten()));
   for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
   refresh_ghosts();
 }
@@ -143,36 +124,36 @@ void CpuBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWr
 
 ParticleCorrection CpuBackend::particle_correct() {
   const Index n = layout_.owned;
-  const Real weight = hht_.newmark_beta * h_ * h_;
   const SubtractMatrixItem<PackedRows> matrix{
       {matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()},
       {list_.offsets.data(), list_.neighbors.data()},
       store_.velocity.data(),
-      1 / (1 + hht_.hht_alpha),
+      hht_inertia_weight(hht_),
       direction_.data(),
       residual_.data()};
   // The bodies have already taken their correction: as a known part of the solution it moves to the right.
   if (layout_.items > layout_.first_shape) {
-    std::fill(direction_.begin(), direction_.end(), Vec4{});
-    for (Index item = layout_.first_shape; item < layout_.items; ++item)
-      direction_[item] = vec4((1 / weight) * side_.step()[item - layout_.first_shape], 0);
+    for_each(Serial{}, layout_.items,
+             ShapeDirectionItem{side_.step().data(), newmark_position_gain(hht_, h_), layout_.first_shape,
+                                direction_.data()});
     for_each(Serial{}, n, matrix);
     std::fill(direction_.begin() + layout_.first_shape, direction_.end(), Vec4{});
   }
   right_hand_side_ = residual_;
-  Real right_hand_side = 0;
-  for (Index i = 0; i < n; ++i) right_hand_side = std::max(right_hand_side, norm(residual_[i]));
-  const Real goal = Real(0.1) * model_.integrator.residual_tolerance * force_scale_;
-  const BlockSolver::System system{
-      matrix,         inverse_block_,      residual_,
-      layout_.ghosts, largest_stiffening_, std::max(goal, Real(0.01) * right_hand_side)};
+  const Real right_hand_side = max_over(Serial{}, n, NormItem{residual_.data()});
+  // The shapes' displacements may be what is not finite: without a correction the bodies alone would notice.
+  if (!std::isfinite(right_hand_side)) report_not_finite(residual_);
+  const Real tolerance =
+      solver_tolerance(model_.integrator.residual_tolerance, force_scale_, right_hand_side);
+  const BlockSolver::System system{matrix,         inverse_block_,      residual_,
+                                   layout_.ghosts, largest_stiffening_, tolerance};
   ParticleCorrection out;
+  line_search_ = {};
   if (right_hand_side > 0) {
     out.iterations = solver_.solve(system, direction_, correction_);
     out.correction = max_over(Serial{}, n, correct_item(1));
-    start_slope_ = -slope(right_hand_side_);
+    line_search_.open(along_correction(right_hand_side_));
   }
-  applied_share_ = right_hand_side > 0 ? 1 : 0;
   for_each(Serial{}, n, NewmarkItem{step_views()});
   refresh_ghosts();
   return out;

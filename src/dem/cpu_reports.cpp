@@ -7,20 +7,15 @@
 #include "dem/ledger_items.hpp"
 
 namespace scree {
-Real CpuBackend::energy_of(Index i) const {
-  const Vec4 v = store_.velocity[i];
-  return kinetic_energy(v.w, xyz(v)) +
-         gravitational_energy(v.w, model_.gravity,
-                              unwrapped(store_.position[i], store_.image[i], subdomain_.period()));
-}
-
 std::vector<Leaver> CpuBackend::outside() const {
   std::vector<Leaver> leavers;
   for (Index i = 0; i < store_.owned; ++i) {
     const Vec3 p = xyz(store_.position[i]);
     if (store_.drifting[i] || subdomain_.inside(p)) continue;
-    leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy_of(i),
-                       store_.contact_loss[i], store_.integrator_loss[i]});
+    const Real energy = energy_of_motion(store_.position[i], store_.velocity[i], store_.image[i],
+                                         model_.gravity, subdomain_.period());
+    leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy, store_.contact_loss[i],
+                       store_.integrator_loss[i]});
   }
   std::sort(leavers.begin(), leavers.end(),
             [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });

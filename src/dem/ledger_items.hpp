@@ -15,6 +15,13 @@ SCREE_HD Vec3 unwrapped(Vec4 position, const ImageCount& image, Vec3 period) {
   return xyz(position) + Vec3{image.x * period.x, image.y * period.y, image.z * period.z};
 }
 
+// Kinetic and gravitational energy of a particle [J]; velocity: mass in w.
+SCREE_HD Real energy_of_motion(Vec4 position, Vec4 velocity, const ImageCount& image, Vec3 gravity,
+                               Vec3 period) {
+  return kinetic_energy(velocity.w, xyz(velocity)) +
+         gravitational_energy(velocity.w, gravity, unwrapped(position, image, period));
+}
+
 enum LedgerTerm {
   kKinetic,                          // [J]
   kGravitational,                    // [J]

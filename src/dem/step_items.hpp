@@ -75,6 +75,11 @@ struct StepNorms {
   Real stiffening;        // ResidualItem::stiffening
 };
 
+// The largest residual over the largest force, from the maxima over all particles.
+inline Real scaled_residual(const StepNorms& largest) {
+  return largest.residual == 0 ? 0 : largest.residual / largest.force;
+}
+
 struct StepNormsItem {
   StepViews step;
   const Vec3* residual;
@@ -83,7 +88,7 @@ struct StepNormsItem {
   SCREE_HD StepNorms operator()(Index i) const {
     const Real r = norm(residual[i]), mass = step.velocity[i].w;
     const Real bound =
-        step.hht.newmark_beta * step.h * step.h * r * (1 + step.hht.hht_alpha) / (mass * step.position[i].w);
+        newmark_position_gain(step.hht, step.h) * r * (1 + step.hht.hht_alpha) / (mass * step.position[i].w);
     const Real at_start = norm(step.start_force[i]) + mass * norm(step.start_acceleration[i]);
     return {r, bound, magnitude[i] + at_start, stiffening[i]};
   }
@@ -96,7 +101,7 @@ struct CorrectItem {
   const Vec3* correction;
   const Vec4* position;  // radius in w
   Real share;
-  Real weight;  // beta h^2 [s^2]
+  Real weight;  // newmark_position_gain [s^2]
 
   SCREE_HD Real operator()(Index i) const {
     acceleration[i] += share * correction[i];
@@ -140,7 +145,7 @@ struct SubtractMatrixItem {
   ContactMatrix matrix;
   Rows rows;
   const Vec4* velocity;  // mass in w
-  Real inverse_scale;    // 1 / (1 + alpha)
+  Real inverse_scale;    // hht_inertia_weight
   const Vec4* d;         // all items
   Vec3* residual;
 
@@ -155,6 +160,24 @@ struct SubtractMatrixItem {
     }
     residual[i] -= sum;
   }
+};
+
+// Displacements of the shapes, which have been made, as directions of the linear solve; no other item moves.
+struct ShapeDirectionItem {
+  const Vec3* displacement;  // of the shapes [m]
+  Real weight;               // newmark_position_gain [s^2]
+  Index first_shape;
+  Vec4* direction;  // all items
+
+  SCREE_HD void operator()(Index item) const {
+    direction[item] = item < first_shape ? Vec4{} : vec4((1 / weight) * displacement[item - first_shape], 0);
+  }
+};
+
+struct NormItem {
+  const Vec3* vector;
+
+  SCREE_HD Real operator()(Index i) const { return norm(vector[i]); }
 };
 
 // Closes an implicit step: dissipation and the integrator's loss from the step's forces; force, acceleration

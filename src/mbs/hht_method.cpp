@@ -60,7 +60,7 @@ void HhtMethod::evaluate_residual() {
   std::fill(constraint_force_.begin(), constraint_force_.end(), 0);
   terms_.mass.multiply(1, acceleration_, inertia_force_);
   terms_.constraint_jacobian.multiply_transposed(1, multipliers_, constraint_force_);
-  const Real alpha = coefficients_.hht_alpha, scale = 1 / (1 + alpha);
+  const Real alpha = coefficients_.hht_alpha, scale = hht_inertia_weight(coefficients_);
   const std::size_t n = inertia_force_.size();
   for (std::size_t i = 0; i < n; ++i) {
     residual_[i] = scale * inertia_force_[i] + constraint_force_[i] - terms_.applied_force[i] +
@@ -73,8 +73,8 @@ void HhtMethod::evaluate_residual() {
 
 void HhtMethod::newton_matrix(std::span<Real> values) {
   system_.differentiate({end_time(), position_, velocity_}, acceleration_, multipliers_, derivatives_);
-  const Real scale = 1 / (1 + coefficients_.hht_alpha);
-  const KktWeights weights{scale, position_gain(), step_ * coefficients_.newmark_gamma,
+  const Real scale = hht_inertia_weight(coefficients_);
+  const KktWeights weights{scale, position_gain(), newmark_velocity_gain(coefficients_, step_),
                            position_gain() * scale};
   kkt_.assemble(terms_, derivatives_, weights, values);
 }

@@ -56,7 +56,7 @@ class HhtMethod {
   void apply_change(std::span<const Real> solution, MultibodyState& state) const;
 
   // Change of the position per change of the acceleration, beta h^2 [s^2].
-  Real position_gain() const { return coefficients_.newmark_beta * step_ * step_; }
+  Real position_gain() const { return newmark_position_gain(coefficients_, step_); }
   Real end_time() const { return time_ + step_; }
   Real step() const { return step_; }
 

@@ -203,17 +203,22 @@ void Hdf5File::write_text(const std::string& name, const std::string& text) {
   if (H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) fail("write dataset " + name);
 }
 
+template <class Read>
+std::string Hdf5File::read_text(hid_t type, hid_t space, const std::string& what, const Read& read) const {
+  if (H5Tget_class(type) != H5T_STRING) throw IoError(fmt::format("{}: {} is not a text", path_, what));
+  if (H5Sget_simple_extent_type(space) == H5S_NULL) return {};
+  std::string text(H5Tget_size(type), '\0');
+  if (read(text.data()) < 0) fail("read " + what);
+  return text;
+}
+
 std::string Hdf5File::read_text(const std::string& name) const {
   Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail("open dataset " + name);
   Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   Hdf5Id space(H5Dget_space(dataset), H5Sclose);
-  if (H5Tget_class(type) != H5T_STRING)
-    throw IoError(fmt::format("{}: dataset {} is not a text", path_, name));
-  if (H5Sget_simple_extent_type(space) == H5S_NULL) return {};
-  std::string text(H5Tget_size(type), '\0');
-  if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) fail("read dataset " + name);
-  return text;
+  return read_text(type, space, "dataset " + name,
+                   [&](char* to) { return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to); });
 }
 
 void Hdf5File::write_text_attribute(const std::string& object, const std::string& name,
@@ -249,12 +254,7 @@ std::string Hdf5File::read_text_attribute(const std::string& object, const std::
   if (!attribute.valid()) fail(fmt::format("read attribute {} of {}", name, object));
   Hdf5Id type(H5Aget_type(attribute), H5Tclose);
   Hdf5Id space(H5Aget_space(attribute), H5Sclose);
-  if (H5Tget_class(type) != H5T_STRING)
-    throw IoError(fmt::format("{}: attribute {} is not a text", path_, name));
-  if (H5Sget_simple_extent_type(space) == H5S_NULL) return {};
-  std::string text(H5Tget_size(type), '\0');
-  if (H5Aread(attribute, type, text.data()) < 0) fail("read attribute " + name);
-  return text;
+  return read_text(type, space, "attribute " + name, [&](char* to) { return H5Aread(attribute, type, to); });
 }
 
 void Hdf5File::create_group(const std::string& name) {

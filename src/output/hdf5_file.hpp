@@ -92,6 +92,9 @@ class Hdf5File {
   void append_rows(const std::string& name, hid_t type, const void* values, std::int64_t rows);
   void write_array(const std::string& name, hid_t type, const void* values, std::int64_t count);
   void read_array(const std::string& name, hid_t type, void* values) const;
+  // The text of a dataset or an attribute, which messages call `what`. read(to): fetches its bytes.
+  template <class Read>
+  std::string read_text(hid_t type, hid_t space, const std::string& what, const Read& read) const;
   std::int64_t value_count(const std::string& name) const;
   [[noreturn]] void fail(const std::string& action) const;
 

@@ -1,5 +1,7 @@
 #include "partition/halo.hpp"
 
+#include "base/for_each.hpp"
+
 namespace scree {
 std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
                                  std::span<const Vec4> position, Real width) {
@@ -15,15 +17,13 @@ std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
 }
 
 void update_halo(std::span<const Ghost> ghosts, std::span<Vec4> field, Index first_ghost) {
-  for (std::size_t g = 0; g < ghosts.size(); ++g)
-    field[static_cast<std::size_t>(first_ghost) + g] = field[static_cast<std::size_t>(ghosts[g].source)];
+  for_each(Serial{}, static_cast<Index>(ghosts.size()),
+           HaloItem<Vec4>{ghosts.data(), field.data(), first_ghost});
 }
 
 void update_halo_positions(std::span<const Ghost> ghosts, std::span<Vec4> position, Index first_ghost) {
-  for (std::size_t g = 0; g < ghosts.size(); ++g) {
-    const Vec4 p = position[static_cast<std::size_t>(ghosts[g].source)];
-    position[static_cast<std::size_t>(first_ghost) + g] = vec4(xyz(p) + ghosts[g].shift, p.w);
-  }
+  for_each(Serial{}, static_cast<Index>(ghosts.size()),
+           HaloPositionItem{ghosts.data(), position.data(), first_ghost});
 }
 
 }  // namespace scree

@@ -53,13 +53,36 @@ SCREE_HD void for_each_ghost(const HaloBox& box, Vec3 p, const Visit& visit) {
       }
 }
 
+// Refreshes one ghost's copy of a field; ghosts stand at field[first_ghost ...].
+template <class T>
+struct HaloItem {
+  const Ghost* ghosts;
+  T* field;
+  Index first_ghost;
+
+  SCREE_HD void operator()(Index g) const { field[first_ghost + g] = field[ghosts[g].source]; }
+};
+
+// The same for its position, which is moved by the ghost's shift.
+struct HaloPositionItem {
+  const Ghost* ghosts;
+  Vec4* position;
+  Index first_ghost;
+
+  SCREE_HD void operator()(Index g) const {
+    const Ghost ghost = ghosts[g];
+    const Vec4 p = position[ghost.source];
+    position[first_ghost + g] = vec4(xyz(p) + ghost.shift, p.w);
+  }
+};
+
 // exchange_halo: finds the ghosts that lie within `width` [m] of the box, for originals at `position`.
 std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
                                  std::span<const Vec4> position, Real width);
 
-// update_halo: refreshes the ghosts' copies of a field; ghosts stand at field[first_ghost ...].
+// update_halo: refreshes the ghosts' copies of a field.
 void update_halo(std::span<const Ghost> ghosts, std::span<Vec4> field, Index first_ghost);
-// The same for positions, which are moved by the ghosts' shifts.
+// The same for positions.
 void update_halo_positions(std::span<const Ghost> ghosts, std::span<Vec4> position, Index first_ghost);
 
 }  // namespace scree

@@ -37,9 +37,17 @@ SCREE_HD Vector newmark_velocity(const HhtCoefficients& c, Real h, Vector v, Vec
   return v + h * ((1 - c.newmark_gamma) * a0 + c.newmark_gamma * a1);
 }
 
+// Change of the position and of the velocity at the end of a step per change of the acceleration there (Eqs.
+// 1, 2) [s^2], [s].
+SCREE_HD Real newmark_position_gain(const HhtCoefficients& c, Real h) { return c.newmark_beta * h * h; }
+SCREE_HD Real newmark_velocity_gain(const HhtCoefficients& c, Real h) { return h * c.newmark_gamma; }
+
+// Weight of the inertia forces, and of the mass in the Newton matrix (Eq. 16).
+SCREE_HD Real hht_inertia_weight(const HhtCoefficients& c) { return 1 / (1 + c.hht_alpha); }
+
 // Residual of Eq. 16 without constraints [N]; f0, f1: total force at the start and the end of the step.
 SCREE_HD Vec3 hht_residual(const HhtCoefficients& c, Real mass, Vec3 a1, Vec3 f1, Vec3 f0) {
-  const Real scale = 1 / (1 + c.hht_alpha);
+  const Real scale = hht_inertia_weight(c);
   return (mass * scale) * a1 - f1 + (c.hht_alpha * scale) * f0;
 }
 

@@ -128,6 +128,11 @@ struct ContactProblem {
 
 }  // namespace
 
+TEST_CASE("the solve goes a tenth below the Newton tolerance, and no further than two digits") {
+  CHECK(solver_tolerance(1e-6, 50, 1e-4) == Approx(5e-6).epsilon(1e-14));  // a tenth of 1e-6 x 50 N
+  CHECK(solver_tolerance(1e-6, 50, 3) == Approx(0.03).epsilon(1e-14));     // a hundredth of 3 N
+}
+
 TEST_CASE("the matrix-free solve finds the solution of the dense one") {
   for (const Real stiffness : {0.0, 1.0, 10.0, 100.0})
     for (const bool ghosts : {false, true}) {

@@ -48,6 +48,20 @@ TEST_CASE("Newmark is exact for a constant acceleration and a mean for a changin
   }
 }
 
+TEST_CASE("Newmark's gains are the changes of position and velocity per change of the acceleration") {
+  for (const Real alpha : kAlphas) {
+    CAPTURE(alpha);
+    const HhtCoefficients c = hht_coefficients(alpha);
+    const Real h = kStep;
+    const Vec3 dx = newmark_displacement(c, h, kVelocity, kStart, kEnd);
+    const Vec3 v = newmark_velocity(c, h, kVelocity, kStart, kEnd);
+    const Vec3 other = kEnd + kStart;
+    CHECK(near(newmark_displacement(c, h, kVelocity, kStart, other),
+               dx + newmark_position_gain(c, h) * kStart));
+    CHECK(near(newmark_velocity(c, h, kVelocity, kStart, other), v + newmark_velocity_gain(c, h) * kStart));
+  }
+}
+
 TEST_CASE("without numerical damping, Newmark is the trapezoidal rule") {
   const HhtCoefficients c = hht_coefficients(0);
   const Vec3 v1 = newmark_velocity(c, kStep, kVelocity, kStart, kEnd);

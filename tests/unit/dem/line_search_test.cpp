@@ -1,0 +1,95 @@
+// The rule of the line search on potentials of one variable, whose minimum along the correction is known.
+#include "dem/line_search.hpp"
+
+#include <limits>
+
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kRoundOff = 1e-14;
+
+// What a search comes to: the share that is applied, and how often it was shortened. slope(share): of the
+// potential.
+struct Found {
+  Real share;
+  int looks;
+};
+template <class Slope>
+Found search_along(const Slope& slope) {
+  LineSearch search;
+  search.open(-slope(Real(0)));
+  Found found{1, 0};
+  for (; found.looks < 100; ++found.looks) {
+    if (!search.is_open()) break;
+    search.look(-slope(found.share));
+    if (!search.overshoots()) break;
+    const Real next = search.next_share(), change = search.shorten();
+    CHECK(found.share + change == Approx(next).epsilon(kRoundOff));
+    CHECK((next >= 0.1 * found.share * (1 - kRoundOff) && next <= 2 * found.share / 3));
+    found.share += change;
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("without a correction nothing overshoots") {
+  LineSearch search;
+  CHECK_FALSE(search.is_open());
+  search.look(-1);
+  CHECK_FALSE(search.overshoots());
+}
+
+TEST_CASE("a correction overshoots if it leaves more than half the slope that it started with") {
+  LineSearch search;
+  search.open(4);  // the slope is -4
+  CHECK(search.is_open());
+  CHECK_FALSE(search.overshoots());
+  for (const Real along : {3.0, 0.0, -2.0}) {
+    search.look(along);
+    CHECK_FALSE(search.overshoots());
+  }
+  search.look(-2.001);
+  CHECK(search.overshoots());
+  search.look(std::numeric_limits<Real>::quiet_NaN());
+  CHECK_FALSE(search.overshoots());
+}
+
+TEST_CASE("the minimum of a parabola is found at once") {
+  for (const Real minimum : {0.12, 0.3, 0.6}) {
+    const Found found = search_along([&](Real share) { return 5 * (share - minimum); });
+    CHECK(found.looks == 1);
+    CHECK(found.share == Approx(minimum).epsilon(kRoundOff));
+  }
+}
+
+TEST_CASE("a minimum past two thirds of the correction is not looked for") {
+  CHECK(search_along([](Real share) { return share - 0.7; }).looks == 0);
+}
+
+TEST_CASE("at a kink the search ends, at a share that lies before it or is too small to be shortened") {
+  for (const Real kink : {0.02, 0.07, 0.2, 0.5, 0.9})
+    for (const Real stiffness : {0.6, 3.0, 1e6}) {
+      CAPTURE(kink, stiffness);
+      const Found found = search_along([&](Real share) { return share < kink ? -1 : stiffness; });
+      CHECK((found.share < kink || found.share <= 0.05));
+      CHECK(found.share >= 0.005);
+      CHECK(found.looks <= 8);  // 2/3 to the eighth is less than 0.05
+    }
+}
+
+TEST_CASE("the next correction starts with all of it") {
+  LineSearch search;
+  search.open(1), search.look(-1e9);
+  search.shorten(), search.shorten();
+  CHECK_FALSE(search.is_open());
+  search.open(1);
+  CHECK((search.is_open() && !search.overshoots()));
+  search.look(-1);
+  CHECK(search.next_share() == 0.5);
+}
+
+}  // namespace scree
