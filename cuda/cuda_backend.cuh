@@ -143,7 +143,7 @@ class CudaBackend : public Backend {
   NeighborBuilder builder_;  // its grid and reach; the search is the device's
   HhtCoefficients hht_;
   // Everything that follows the particles; contacts of shapes beside an explicit step; output.
-  mutable Stream stream_, shape_stream_, copy_stream_;
+  mutable Stream stream_, shape_stream_{Priority::urgent}, copy_stream_;
 
   DeviceArray<KelvinVoigt> laws_;
   std::unique_ptr<DeviceContactKernels> kernels_;

@@ -28,10 +28,19 @@ inline void require_cuda(cudaError_t status, const char* what) {
 
 inline void wait_for(cudaStream_t stream) { require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize"); }
 
+// urgent: its blocks start before those that wait on other streams.
+enum class Priority { normal, urgent };
+
 // A stream of its own, and an event on it.
 class Stream {
  public:
-  Stream() { require_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate"); }
+  explicit Stream(Priority priority = Priority::normal) {
+    int least = 0, greatest = 0;
+    require_cuda(cudaDeviceGetStreamPriorityRange(&least, &greatest), "cudaDeviceGetStreamPriorityRange");
+    require_cuda(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking,
+                                              priority == Priority::urgent ? greatest : least),
+                 "cudaStreamCreate");
+  }
   ~Stream() { cudaStreamDestroy(stream_); }
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;

@@ -139,7 +139,8 @@ void measure_explicit(Model bed, Real h, const Options& options) {
              samples.steps, backend.list_builds() - builds, run.listed());
 }
 
-void print_stages(const StageTimers& before, const StageTimers& after) {
+// steps: between the two.
+void print_stages(const StageTimers& before, const StageTimers& after, double steps) {
   double all = 0;
   const auto seconds = [&](int s) {
     return after[static_cast<Stage>(s)].seconds - before[static_cast<Stage>(s)].seconds;
@@ -148,8 +149,9 @@ void print_stages(const StageTimers& before, const StageTimers& after) {
   std::string text;
   for (int s = 0; s < static_cast<int>(Stage::count); ++s)
     if (seconds(s) > 0)
-      text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", kStageNames[static_cast<std::size_t>(s)],
-                          100 * seconds(s) / all);
+      text += fmt::format("{}{} {:.1f} % ({:.4g} us)", text.empty() ? "" : ", ",
+                          kStageNames[static_cast<std::size_t>(s)], 100 * seconds(s) / all,
+                          1e6 * seconds(s) / steps);
   fmt::print("{:10} {}\n", "", text);
 }
 
@@ -181,13 +183,15 @@ void measure_implicit(Model bed, const Options& options) {
       static_cast<double>(run.step.counts().newton_iterations - counts.newton_iterations) / steps,
       static_cast<double>(run.step.counts().linear_iterations - counts.linear_iterations) / steps,
       options.repeats, samples.steps, run.backend->list_builds() - builds, run.listed());
-  print_stages(timers, run.timers);
+  print_stages(timers, run.timers, steps);
 }
 
 struct CoupledSamples {
   Samples samples;
   double iterations = 0;  // of the bodies' Newton loop per step
   double contacts = 0;    // of the bodies' shapes, mean of looks after each batch
+  StageTimers timers;     // of all steps
+  double steps = 0;
 };
 
 // The coupled explicit step, with bodies solved every step where the bed has some.
@@ -212,6 +216,7 @@ CoupledSamples sample_coupled(Model bed, const Options& options) {
   const StepCounts& counts = run.step.counts();
   out.iterations = static_cast<double>(counts.newton_iterations) / static_cast<double>(counts.steps);
   out.contacts /= looks;
+  out.timers = run.timers, out.steps = static_cast<double>(counts.steps);
   return out;
 }
 
@@ -228,6 +233,7 @@ void measure_net(Model bed, const Options& options) {
       bodies, speed_text(with.samples, particles), with.iterations, with.contacts);
   fmt::print("{:10} {:.4g} times as long, {:.4g} us more per step\n", "",
              with.samples.median() / without.median(), 1e6 * (with.samples.median() - without.median()));
+  print_stages({}, with.timers, with.steps);
 }
 
 void measure_all(const Options& options) {
