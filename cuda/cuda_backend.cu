@@ -103,14 +103,13 @@ const Vec4* CudaBackend::stage_shapes() {
 void CudaBackend::find_shape_contacts() {
   if (shape_items() == 0) return;
   const ShapePlaces places{now_.position.data() + layout_.first_shape, now_.velocity.data() + layout_.first_shape};
-  kernels_->shapes(device(), views(), places, shape_items(), shape_contacts_.data());
+  kernels_->shapes(device(), views(), places, shape_items(), h_shape_contacts_.data());
   fetch_shape_contacts(stream_);
 }
 
 // Waits for the stream.
 void CudaBackend::fetch_shape_contacts(cudaStream_t stream) {
   const auto n = static_cast<std::size_t>(shape_items());
-  copy_async(h_shape_contacts_.data(), shape_contacts_.data(), n, stream);
   wait_for(stream);
   std::copy(h_shape_contacts_.data(), h_shape_contacts_.data() + n, side_.contacts().begin());
 }
@@ -276,7 +275,7 @@ void CudaBackend::lay_out_items(Real skin) {
                  "cudaMemcpyAsync");
     shape_body_.upload(body, stream_);
   }
-  shape_contacts_.resize_clean(n, stream_), h_shape_contacts_.resize(n);
+  h_shape_contacts_.resize(n);
   refresh_ghosts(now_.position.data(), now_.velocity.data());
   side_.place(layout_);
   put_shapes(now_);

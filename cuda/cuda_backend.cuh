@@ -167,11 +167,10 @@ class CudaBackend : public Backend {
   DeviceArray<Index> shape_body_, connected_offsets_, connected_;
   DeviceArray<Vec4> shape_places_;  // positions, then velocities, where they are not those of all items
   DeviceArray<Vec3> shape_step_;
-  DeviceArray<ShapeContact> shape_contacts_;
   PinnedArray<Vec4> h_shape_places_;
   std::vector<Vec4> h_list_shapes_;  // positions of the shapes when the list was built
   Event places_copied_, step_queued_;
-  PinnedArray<ShapeContact> h_shape_contacts_;
+  PinnedArray<ShapeContact> h_shape_contacts_;  // written by the device: few, and awaited
   bool layout_changed_ = true;  // particles left since the list was built
   std::int64_t list_builds_ = 0;
 

@@ -44,6 +44,15 @@ __global__ void resume_kernel(VerletControl* c, Index last, Real bound, Real hal
   c->judge(c->outside != 0);
 }
 
+// Brings a shape from pinned memory to its places among the items: sooner done than two copies.
+struct PlaceItem {
+  const Vec4* places;  // positions, then velocities
+  Index shapes;
+  Vec4 *position, *velocity;
+
+  SCREE_HD void operator()(Index s) const { position[s] = places[s], velocity[s] = places[shapes + s]; }
+};
+
 // Refreshes a ghost in the arrays of the open step.
 struct RunGhostItem {
   const Ghost* ghosts;
@@ -257,14 +266,11 @@ bool CudaBackend::shapes_covered() const {
 void CudaBackend::queue_shape_contacts() {
   Vec4* position = (parity_[0] == 0 ? now_ : other_).position.data() + layout_.first_shape;
   Vec4* velocity = (parity_[1] == 0 ? now_ : other_).velocity.data() + layout_.first_shape;
-  const auto n = static_cast<std::size_t>(shape_items());
-  const Vec4* places = stage_shapes();
-  copy_async(position, places, n, shape_stream_);
-  copy_async(velocity, places + n, n, shape_stream_);
+  for_each({shape_stream_}, shape_items(), PlaceItem{stage_shapes(), shape_items(), position, velocity});
   places_copied_.record(shape_stream_);
   step_queued_.hold(shape_stream_);
   kernels_->shapes({shape_stream_}, views(position - layout_.first_shape, velocity - layout_.first_shape),
-                   {position, velocity}, shape_items(), shape_contacts_.data());
+                   {position, velocity}, shape_items(), h_shape_contacts_.data());
   copy_async(&h_results_.data()->control, result(&Results::control), 1, shape_stream_);
 }
 
@@ -295,6 +301,7 @@ bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) 
     }
     side_.book_losses(h);
     if (!keep_open || before.leaves) {
+      bound_ = control.bound;
       finish(h);
       return false;
     }
@@ -316,7 +323,7 @@ void CudaBackend::shape_contacts() {
   copy_async(shape_places_.data(), stage_shapes(), 2 * n, shape_stream_);
   places_copied_.record(shape_stream_);
   kernels_->shapes({shape_stream_}, views(position, velocity), {shape_places_.data(), shape_places_.data() + n},
-                   shape_items(), shape_contacts_.data());
+                   shape_items(), h_shape_contacts_.data());
   fetch_shape_contacts(shape_stream_);
 }
 

@@ -167,7 +167,7 @@ ParticleNorms CudaBackend::contact_force() {
   r.largest = result(&Results::norms);
   kernels_->system(device(), r);
   if (shape_items() > 0) {
-    kernels_->shapes(device(), views(), shape_items(), r.start, shape_contacts_.data());
+    kernels_->shapes(device(), views(), shape_items(), r.start, h_shape_contacts_.data());
     fetch_shape_contacts(stream_);
   }
   if (line_search_.is_open())

@@ -126,6 +126,24 @@ TEST_CASE("a list that is too short is built anew without changing the result") 
   CHECK(same(shortest, longest));
 }
 
+TEST_CASE("explicit steps do not depend on how many are asked for at once, nor on what the list covers") {
+  const auto run = [](const std::string& skin, int at_once) {
+    auto coupled = std::make_unique<Coupled>(std::vector<std::string>{
+        "integrator.particles=velocity-verlet", "integrator.substeps=20", "contact.skin=" + skin});
+    for (int n = 0; n < 120; n += at_once) {
+      std::vector<Real> times;
+      for (int k = n; k < n + at_once; ++k) times.push_back(k * kStep);
+      REQUIRE(coupled->step->explicit_steps(coupled->bodies, times, kStep) == times.size());
+    }
+    return coupled;
+  };
+  const auto narrow = run("0.002", 1), wide = run("0.2", 1), together = run("0.002", 40);
+  CHECK(narrow->backend->list_builds() > 10 * wide->backend->list_builds());
+  CHECK(narrow->backend->ledger(kStep / 20).contact_loss > 0);
+  CHECK(same(*narrow, *wide));
+  CHECK(same(*narrow, *together));
+}
+
 TEST_CASE("a run resumed from its state goes on with the same bits") {
   for (const std::string particles : {"hht", "velocity-verlet"}) {
     CAPTURE(particles);
