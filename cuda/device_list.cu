@@ -1,6 +1,5 @@
 #include "device_list.cuh"
 
-#include <algorithm>
 #include <cub/device/device_scan.cuh>
 
 #include "dem/device.hpp"
@@ -35,44 +34,18 @@ __device__ bool excluded(const ListInput& in, Index i, Index j) {
   return !in.bodies.may_touch(i - in.first_shape, j - in.first_shape);
 }
 
-// Above the rounding of a distance in single, as a share of the grid's extent.
-constexpr float kSingleRounding = 1.0f / (1 << 20);
-
-struct SearchPlaceItem {
-  const Vec4* position;
-  Vec3 origin;
-  SearchPlace* out;
-  SCREE_HD void operator()(Index i) const {
-    const Vec4 p = position[i];
-    const Vec3 r = xyz(p) - origin;
-    out[i] = {static_cast<float>(r.x), static_cast<float>(r.y), static_cast<float>(r.z), static_cast<float>(p.w)};
-  }
-};
-
-float extent(const CellGrid& grid) {
-  return static_cast<float>(std::max({grid.cells[0] / grid.inverse_size.x, grid.cells[1] / grid.inverse_size.y,
-                                      grid.layer ? 0 : grid.cells[2] / grid.inverse_size.z}));
-}
-
-// What the search of one row reads besides the input.
-struct RowSearch {
-  const SearchPlace* places;
-  float margin;  // the skin, and what rounding may take off a distance [m]
-};
-
-// Calls visit(j) for every item near enough to item i to be in its row, and some that are not, in the order of the
-// cells.
+// Calls visit(j) for every entry of row i, in the order of the cells.
 template <class Visit>
-__device__ void visit_candidates(const ListInput& in, const RowSearch& search, Index i, const Visit& visit) {
+__device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
+  const Vec4 p = in.position[i];
   const CellGrid& cells = in.grid.cells;
-  const CellPlace c = cells.place(xyz(in.position[i]));
+  const CellPlace c = cells.place(xyz(p));
   if (c.x < 0) return;
-  const SearchPlace p = search.places[i];
-  const float reach_of_i = p.radius + search.margin;
   const auto reaches = [&](Index j) {
-    const SearchPlace q = search.places[j];
-    const float x = p.x - q.x, y = p.y - q.y, z = p.z - q.z, reach = reach_of_i + q.radius;
-    return x * x + y * y + z * z < reach * reach;
+    const Vec4 q = in.position[j];
+    const Vec3 d = xyz(p) - xyz(q);
+    const Real reach = p.w + q.w + in.skin;
+    return dot(d, d) < reach * reach;
   };
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
   // Cells of one brick beside each other in x are contiguous: one run of items, or two where a brick ends.
@@ -87,21 +60,13 @@ __device__ void visit_candidates(const ListInput& in, const RowSearch& search, I
         for (Index k = 0; k < all; k += 2) {  // two at once: loads that do not wait for each other
           const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
           const bool reached = reaches(j[1]), hit[2] = {reaches(j[0]), reached && k + 1 < all};
-          if (hit[0]) visit(j[0]);
-          if (hit[1]) visit(j[1]);
+          if (hit[0] && !excluded(in, i, j[0])) visit(j[0]);
+          if (hit[1] && !excluded(in, i, j[1])) visit(j[1]);
         }
       };
       visit_runs(in.particle_starts, [](Index k) { return k; });
       if (in.other_starts != nullptr) visit_runs(in.other_starts, [&](Index k) { return in.other_items[k]; });
     }
-}
-
-// Whether a candidate is an entry of row i.
-__device__ bool belongs(const ListInput& in, Index i, Vec4 p, Index j) {
-  const Vec4 q = in.position[j];
-  const Vec3 d = xyz(p) - xyz(q);
-  const Real reach = p.w + q.w + in.skin;
-  return dot(d, d) < reach * reach && !excluded(in, i, j);
 }
 
 // Heap sort of a row in device memory by row_key.
@@ -140,51 +105,41 @@ __device__ Index near_walls(const ListInput& in, Index i) {
   return count;
 }
 
-struct FoundRow {
-  Index length;
-  bool buffered;  // sorted, in the thread's column of the buffer
-};
-
-// Finds row i, and sorts it in the buffer if its candidates have room there.
+// Finds row i, sorted in the thread's column of the buffer as far as it fits there; returns its length.
 template <int kEntries>
-__device__ FoundRow find_row(const ListInput& in, const RowSearch& search, Index i, RowBuffer<kEntries>& buffer) {
+__device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buffer) {
   const int column = static_cast<int>(threadIdx.x);
-  Index candidates = 0;
-  visit_candidates(in, search, i, [&](Index j) {
-    if (candidates < kEntries) buffer.neighbor[candidates][column] = j;
-    ++candidates;
+  Index found = 0;
+  visit_row(in, i, [&](Index j) {
+    if (found < kEntries) buffer.neighbor[found][column] = j;
+    ++found;
   });
-  const Vec4 p = in.position[i];
-  Index length = 0;
-  if (candidates > kEntries) {
-    visit_candidates(in, search, i, [&](Index j) { length += belongs(in, i, p, j); });
-    return {length, false};
-  }
-  // Tested and sorted at the end, all threads of a warp together.
-  for (Index k = 0; k < candidates; ++k) {
+  // Sorted at the end, all threads of a warp together.
+  const Index kept = min(found, kEntries);
+  for (Index k = 0; k < kept; ++k) buffer.key[k][column] = in.row_key[buffer.neighbor[k][column]];
+  for (Index k = 1; k < kept; ++k) {
+    const std::int64_t key = buffer.key[k][column];
     const Index neighbor = buffer.neighbor[k][column];
-    if (!belongs(in, i, p, neighbor)) continue;
-    const std::int64_t key = in.row_key[neighbor];
-    Index to = length++;
+    Index to = k;
     for (; to > 0 && buffer.key[to - 1][column] > key; --to) {
       buffer.key[to][column] = buffer.key[to - 1][column];
       buffer.neighbor[to][column] = buffer.neighbor[to - 1][column];
     }
     buffer.key[to][column] = key, buffer.neighbor[to][column] = neighbor;
   }
-  return {length, true};
+  return found;
 }
 
 template <int kEntries>
 __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
-    find_rows_kernel(const __grid_constant__ ListInput in, RowSearch search, RowOutputs out) {
+    find_rows_kernel(const __grid_constant__ ListInput in, RowOutputs out) {
   __shared__ RowBuffer<kEntries> buffer;
   const Index i = thread_index(), lane = static_cast<Index>(threadIdx.x) % kSlice;
   const bool has_row = i < in.active || (i >= in.first_shape && i < in.items);
-  const FoundRow found = has_row ? find_row(in, search, i, buffer) : FoundRow{0, true};
+  const Index found = has_row ? find_row(in, i, buffer) : 0;
 
-  const auto width = static_cast<Index>(__reduce_max_sync(~0u, static_cast<unsigned>(found.length)));
-  const auto sum = __reduce_add_sync(~0u, static_cast<unsigned>(found.length));
+  const auto width = static_cast<Index>(__reduce_max_sync(~0u, static_cast<unsigned>(found)));
+  const auto sum = __reduce_add_sync(~0u, static_cast<unsigned>(found));
   unsigned long long start = 0;
   if (lane == 0) {
     start = atomicAdd(&out.totals->used, static_cast<unsigned long long>(width) * kSlice);
@@ -194,20 +149,16 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
   }
   start = __shfl_sync(~0u, start, 0);
   if (i >= in.items) return;
-  out.counts[i] = found.length;
+  out.counts[i] = found;
   out.wall_counts[i] = near_walls(in, i);
   if (start + static_cast<unsigned long long>(width) * kSlice > out.capacity) return;  // the host repeats the search
   Index* row = out.neighbors + start + lane;
-  if (found.buffered) {
-    for (Index k = 0; k < found.length; ++k)
-      row[static_cast<std::int64_t>(k) * kSlice] = buffer.neighbor[k][threadIdx.x];
+  if (found <= kEntries) {
+    for (Index k = 0; k < found; ++k) row[static_cast<std::int64_t>(k) * kSlice] = buffer.neighbor[k][threadIdx.x];
   } else {
-    const Vec4 p = in.position[i];
     std::int64_t slot = 0;
-    visit_candidates(in, search, i, [&](Index j) {
-      if (belongs(in, i, p, j)) row[slot] = j, slot += kSlice;
-    });
-    sort_row(in.row_key, row, found.length);
+    visit_row(in, i, [&](Index j) { row[slot] = j, slot += kSlice; });
+    sort_row(in.row_key, row, found);
   }
 }
 
@@ -233,13 +184,12 @@ PrunedRows<0> DeviceList::pruned_rows(Index first_shape) {
 void DeviceList::search(Device device, const ListInput& in) {
   const bool long_rows = h_totals_[0].longest > kShortRow;
   totals_.zero(device.stream);
-  const RowSearch of_row{search_places_.data(), static_cast<float>(in.skin) + kSingleRounding * extent(in.grid.cells)};
   const RowOutputs out{slice_start_.data(), counts_.data(),    neighbors_.data(),
                        wall_counts_.data(), neighbors_.size(), totals_.data()};
   if (long_rows)
-    find_rows_kernel<kLongRow><<<blocks_for(in.items, 64), 64, 0, device.stream>>>(in, of_row, out);
+    find_rows_kernel<kLongRow><<<blocks_for(in.items, 64), 64, 0, device.stream>>>(in, out);
   else
-    find_rows_kernel<kShortRow><<<blocks_for(in.items, 128), 128, 0, device.stream>>>(in, of_row, out);
+    find_rows_kernel<kShortRow><<<blocks_for(in.items, 128), 128, 0, device.stream>>>(in, out);
   require_cuda(cudaGetLastError(), "neighbour list");
   copy_async(h_totals_.data(), totals_.data(), 1, device.stream);
 }
@@ -249,8 +199,6 @@ void DeviceList::build(Device device, const ListInput& in) {
   slice_start_.resize(items / kSlice + 1), counts_.resize(items);
   wall_counts_.resize(items + 1), wall_offsets_.resize(items + 1);
   if (neighbors_.size() == 0) neighbors_.resize(kSlotsPerItem * items + kSlice);
-  search_places_.resize(items);
-  for_each(device, in.items, SearchPlaceItem{in.position, in.grid.cells.origin, search_places_.data()});
   search(device, in);
 
   // The entry past the end is read, though no sum depends on it.

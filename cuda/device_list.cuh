@@ -135,12 +135,6 @@ struct ListInput {
   Real skin;                                              // [m]
 };
 
-// An item in single: half the bytes and a fraction of the arithmetic for the many candidates that are no neighbours.
-struct alignas(16) SearchPlace {
-  float x, y, z;  // from the grid's origin [m]
-  float radius;   // [m]
-};
-
 class DeviceList {
  public:
   DeviceList();
@@ -166,7 +160,6 @@ class DeviceList {
   };
   void search(Device device, const ListInput& in);
 
-  DeviceArray<SearchPlace> search_places_;
   DeviceArray<std::int64_t> slice_start_;
   DeviceArray<Index> counts_, neighbors_, pruned_counts_, pruned_, wall_counts_, wall_offsets_, walls_;
   DeviceArray<unsigned char> scan_space_;

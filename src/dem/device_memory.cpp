@@ -14,8 +14,7 @@ constexpr double kItemArrays = 2 * (sizeof(Vec4) + sizeof(Vec4) + sizeof(int) + 
 constexpr double kParticleArrays = 2 * (2 * sizeof(Vec3) + 3 * sizeof(Real) + sizeof(ImageCount) + 1);
 constexpr double kSortArrays =
     4 * sizeof(Index) + 2 * sizeof(Index);  // keys and order twice, the library's buffers
-// Counts, walls, places of the search, positions at the build.
-constexpr double kListArrays = 3 * sizeof(Index) + 4 * sizeof(float) + sizeof(Vec4);
+constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);  // counts, walls, positions at the build
 constexpr double kGhostArrays = 40 + kSortArrays + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
