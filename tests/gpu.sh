@@ -6,8 +6,8 @@
 #
 # Builds the preset cuda and runs its tests with the label gpu. With BIN=FOLDER in the environment it builds nothing and
 # runs the test programs in that folder, each as on_gpu test_...: for programs that were built elsewhere.
-# --sanitize adds compute-sanitizer's memcheck, racecheck and initcheck on unit/cuda, unit/dem and the first steps of two
-# decks. FILTER in the environment is passed to the two test programs as Catch2's choice of tests: FILTER='explicit*'.
+# --sanitize adds compute-sanitizer's memcheck, racecheck and initcheck on unit/cuda, unit/dem and the first
+# steps of three decks. FILTER in the environment is passed to the test programs as Catch2's choice of tests: FILTER='explicit*'.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -76,9 +76,15 @@ if "$sanitize"; then
     for name in unit_cuda unit_dem; do
       run "$tool test_$name" "${sanitizer[@]}" "$(program "test_$name")" "${filter[@]}"
     done
-    for deck in gas_periodic:2e-3 heap_900:0.03; do # explicit, implicit
-      run "$tool scree ${deck%:*}" "${sanitizer[@]}" "$scree" run "input/examples/${deck%:*}.toml" --backend cuda \
-        --set "time.end=${deck#*:}" --output "$scratch/results"
+    # Explicit, implicit, explicit with bodies.
+    decks=("examples/gas_periodic time.end=2e-3" "examples/heap_900 time.end=0.03"
+      "paper/net_9 time.end=0.02 integrator.particles=velocity-verlet integrator.substeps=3")
+    for deck in "${decks[@]}"; do
+      read -ra words <<<"$deck"
+      settings=()
+      for setting in "${words[@]:1}"; do settings+=(--set "$setting"); done
+      run "$tool scree ${words[0]}" "${sanitizer[@]}" "$scree" run "input/${words[0]}.toml" --backend cuda \
+        "${settings[@]}" --output "$scratch/results"
     done
   done
 fi
