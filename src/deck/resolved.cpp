@@ -28,7 +28,7 @@ class Writer {
   std::string vector_text(Vec3 v) const;
   bool left_out(const std::string& table, const Key& key) const {
     return for_fingerprint_ &&
-           ((table.empty() && key.name == "output") || (table == "time" && key.name == "end"));
+           ((table.empty() && (key.name == "output" || key.name == "parallel")) || (table == "time" && key.name == "end"));
   }
 
   int dimension_;

@@ -65,7 +65,8 @@ Real CpuBackend::step_displacement() {
   const DisplacementItem moved{start_position_.data(), store_.position.data()};
   const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
   const Real particles = max_over(Serial{}, layout_.active, moved);
-  return std::sqrt(std::max(particles, max_over(Serial{}, layout_.items - layout_.first_shape, shapes)));
+  return std::sqrt(
+      ranks_.max(std::max(particles, max_over(Serial{}, layout_.items - layout_.first_shape, shapes))));
 }
 
 StepForces CpuBackend::step_forces() {
@@ -84,18 +85,21 @@ ParticleNorms CpuBackend::contact_force() {
            ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
                         stiffening_.data()});
 
-  ParticleNorms norms;
-  Real residual = 0;
-  force_scale_ = largest_stiffening_ = 0;
+  Real largest[4] = {};  // residual, bound of the correction, force, stiffening
   const StepNormsItem of{step_views(), residual_.data(), force_magnitude_.data(), stiffening_.data()};
   for (Index i = 0; i < n; ++i) {
     const StepNorms one = of(i);
-    if (!std::isfinite(one.residual)) report_not_finite(residual_);
-    residual = std::max(residual, one.residual);
-    norms.correction_bound = std::max(norms.correction_bound, one.correction_bound);
-    force_scale_ = std::max(force_scale_, one.force);
-    largest_stiffening_ = std::max(largest_stiffening_, one.stiffening);
+    if (!(one.residual <= largest[0]) && !std::isnan(largest[0])) largest[0] = one.residual;
+    largest[1] = std::max(largest[1], one.correction_bound);
+    largest[2] = std::max(largest[2], one.force);
+    largest[3] = std::max(largest[3], one.stiffening);
   }
+  ranks_.max(largest);
+  if (!std::isfinite(largest[0])) report_not_finite(residual_);
+  ParticleNorms norms;
+  const Real residual = largest[0];
+  norms.correction_bound = largest[1];
+  force_scale_ = largest[2], largest_stiffening_ = largest[3];
   norms.residual = residual == 0 ? 0 : residual / force_scale_;
   if (applied_share_ > kLeastShare) {
     slope_ = -slope(residual_);
@@ -105,20 +109,20 @@ ParticleNorms CpuBackend::contact_force() {
 }
 
 GlobalId CpuBackend::worst_particle() const {
-  Real largest = -1;
-  GlobalId worst = -1;
-  for (Index i = 0; i < layout_.owned; ++i) {
-    const Real r = norm(residual_[i]);
-    const bool first_of_equals = r == largest && store_.global_id[i] < worst;
-    if (r > largest || first_of_equals) largest = r, worst = store_.global_id[i];
-  }
-  return worst;
+  Real own = 0;
+  for (Index i = 0; i < layout_.owned; ++i) own = std::max(own, norm(residual_[i]));
+  const Real largest = ranks_.max(own);
+  GlobalId worst = kNone;
+  for (Index i = 0; i < layout_.owned; ++i)
+    if (norm(residual_[i]) == largest) worst = std::min(worst, store_.global_id[i]);
+  worst = ranks_.min(worst);
+  return worst == kNone ? -1 : worst;
 }
 
 // Residual along the last correction.
 Real CpuBackend::slope(const std::vector<Vec3>& residual) const {
   Real sum[1];
-  reproducible_sums(layout_.owned, SlopeItem{residual.data(), correction_.data()}, sum);
+  reproducible_sums(layout_.owned, SlopeItem{residual.data(), correction_.data()}, sum, ranks_);
   return sum[0];
 }
 
@@ -138,7 +142,7 @@ void CpuBackend::shorten_correction() {
 }
 
 void CpuBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
-  side_.reduce(layout_, step, end);
+  side_.reduce(layout_, ranks_, step, end);
 }
 
 ParticleCorrection CpuBackend::particle_correct() {
@@ -162,14 +166,19 @@ ParticleCorrection CpuBackend::particle_correct() {
   right_hand_side_ = residual_;
   Real right_hand_side = 0;
   for (Index i = 0; i < n; ++i) right_hand_side = std::max(right_hand_side, norm(residual_[i]));
+  right_hand_side = ranks_.max(right_hand_side);
   const Real goal = Real(0.1) * model_.integrator.residual_tolerance * force_scale_;
-  const BlockSolver::System system{
-      matrix,         inverse_block_,      residual_,
-      layout_.ghosts, largest_stiffening_, std::max(goal, Real(0.01) * right_hand_side)};
+  const BlockSolver::System system{matrix,
+                                   inverse_block_,
+                                   residual_,
+                                   halo_,
+                                   ranks_,
+                                   largest_stiffening_,
+                                   std::max(goal, Real(0.01) * right_hand_side)};
   ParticleCorrection out;
   if (right_hand_side > 0) {
     out.iterations = solver_.solve(system, direction_, correction_);
-    out.correction = max_over(Serial{}, n, correct_item(1));
+    out.correction = ranks_.max(max_over(Serial{}, n, correct_item(1)));
     start_slope_ = -slope(right_hand_side_);
   }
   applied_share_ = right_hand_side > 0 ? 1 : 0;
@@ -178,7 +187,9 @@ ParticleCorrection CpuBackend::particle_correct() {
   return out;
 }
 
-Real CpuBackend::error() { return max_over(Serial{}, layout_.owned, StepErrorItem{step_views()}); }
+Real CpuBackend::error() {
+  return ranks_.max(max_over(Serial{}, layout_.owned, StepErrorItem{step_views()}));
+}
 
 void CpuBackend::accept() {
   for_each(Serial{}, layout_.owned,
