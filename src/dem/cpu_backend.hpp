@@ -19,7 +19,7 @@ namespace scree {
 
 class CpuBackend : public Backend {
  public:
-  CpuBackend(const Model& model, const Ranks& ranks);
+  explicit CpuBackend(const Model& model, const Ranks& ranks = {});
   std::string description() const override;
 
   void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) override;

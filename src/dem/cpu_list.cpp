@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
 #include "dem/cpu_backend.hpp"
@@ -24,8 +25,9 @@ void CpuBackend::decompose() {
   if (row_length_.size() == weight.size())
     for (std::size_t i = 0; i < weight.size(); ++i) weight[i] += row_length_[i];
   const DomainGrid grid = make_domain_grid(model_.space, builder_.cutoff(model_.contact.skin));
-  balance_.rebalances += decomposition_.exists();
-  decomposition_ = Decomposition(ranks_, grid, {store_.position.data(), weight.size()}, weight);
+  Decomposition next(ranks_, grid, {store_.position.data(), weight.size()}, weight);
+  balance_.rebalances += decomposition_.exists() && next.boxes() != decomposition_.boxes();
+  decomposition_ = std::move(next);
 }
 
 // migrate: every particle goes to the rank whose box it is in.

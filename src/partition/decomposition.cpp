@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <stdexcept>
 #include <string>
 
 #include "base/error.hpp"
@@ -48,9 +50,13 @@ double CellBox::count() const {
 // Weights per layer of the boxes that are to be cut, along the axis of each cut: one after the other.
 struct Decomposition::Histograms {
   std::vector<int> nodes;
-  std::vector<std::size_t> first;  // entry of the lowest layer, per node
+  std::vector<std::size_t> first;  // entry of the lowest layer, per node of the tree
   std::vector<std::int64_t> weight;
 };
+
+Index Decomposition::layer(const Node& node, Vec4 p) const {
+  return grid_.cell(node.axis, xyz(p).*kAxes[node.axis]);
+}
 
 Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::span<const Vec4> position,
                              std::span<const std::int64_t> weight)
@@ -58,76 +64,81 @@ Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::sp
   if (grid.count() < ranks.size())
     throw InputError("mpirun -n " + std::to_string(ranks.size()) + ": the space has only " +
                      std::to_string(static_cast<std::int64_t>(grid.count())) +
-                     " cells as wide as the halo (a largest diameter and the skin); a subdomain would be "
-                     "narrower than that: start at most so many ranks");
-  Node root{{{0, 0, 0}, {grid.cells[0], grid.cells[1], grid.cells[2]}}, 0, ranks.size()};
-  nodes_.push_back(root);
+                     " cells as wide as the halo (a largest diameter and the skin), and a subdomain must not be "
+                     "narrower; start at most so many ranks");
+  nodes_.push_back({{{0, 0, 0}, {grid.cells[0], grid.cells[1], grid.cells[2]}}, 0, ranks.size()});
   std::vector<int> node_of(position.size(), 0);
-  for (std::size_t level_begin = 0, level_end = 1; level_begin < level_end;) {
-    Histograms h;
-    std::vector<std::size_t> entry_of(nodes_.size());
-    for (std::size_t n = level_begin; n < level_end; ++n) {
-      Node& node = nodes_[n];
-      if (node.ranks == 1) {
-        boxes_[static_cast<std::size_t>(node.first_rank)] = node.box;
-        continue;
-      }
-      Real longest = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const Index layers = node.box.upper[axis] - node.box.lower[axis];
-        const Real extent = layers * grid_.edge.*kAxes[axis];
-        if (layers > 1 && extent > longest) longest = extent, node.axis = axis;
-      }
-      entry_of[n] = h.weight.size();
-      h.nodes.push_back(static_cast<int>(n)), h.first.push_back(h.weight.size());
-      h.weight.resize(h.weight.size() +
-                      static_cast<std::size_t>(node.box.upper[node.axis] - node.box.lower[node.axis]));
-    }
-    if (h.nodes.empty()) break;
-    const auto layer = [&](const Node& node, Vec4 p) { return grid_.cell(node.axis, xyz(p).*kAxes[node.axis]); };
+  const auto node = [&](std::size_t i) -> const Node& { return nodes_[static_cast<std::size_t>(node_of[i])]; };
+  for (std::size_t first = 0; first < nodes_.size();) {  // the boxes of one level of the tree after the other
+    Histograms h = lay_out_histograms(first);
+    first = nodes_.size();
     for (std::size_t i = 0; i < position.size(); ++i) {
-      const Node& node = nodes_[static_cast<std::size_t>(node_of[i])];
-      if (node.axis < 0) continue;
-      const Index at = layer(node, position[i]) - node.box.lower[node.axis];
-      h.weight[entry_of[static_cast<std::size_t>(node_of[i])] + static_cast<std::size_t>(at)] += weight[i];
+      if (node(i).axis < 0) continue;
+      const auto at = static_cast<std::size_t>(layer(node(i), position[i]) - node(i).box.lower[node(i).axis]);
+      h.weight[h.first[static_cast<std::size_t>(node_of[i])] + at] += weight[i];
     }
     ranks.sum(std::span<std::int64_t>(h.weight));
     split(h);
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      const Node& node = nodes_[static_cast<std::size_t>(node_of[i])];
-      if (node.axis >= 0) node_of[i] = node.below + (layer(node, position[i]) >= node.cut);
-    }
-    level_begin = level_end, level_end = nodes_.size();
+    for (std::size_t i = 0; i < position.size(); ++i)
+      if (node(i).axis >= 0) node_of[i] = node(i).below + (layer(node(i), position[i]) >= node(i).cut);
   }
 }
 
-// Cuts each box where the weight below comes nearest to its ranks' share, with a cell left for every rank.
-void Decomposition::split(const Histograms& h) {
-  for (std::size_t k = 0; k < h.nodes.size(); ++k) {
-    const auto n = static_cast<std::size_t>(h.nodes[k]);
-    const CellBox box = nodes_[n].box;
-    const int axis = nodes_[n].axis, ranks = nodes_[n].ranks, first_rank = nodes_[n].first_rank;
-    const Index layers = box.upper[axis] - box.lower[axis];
-    const double layer_cells = box.count() / layers;
-    const std::int64_t* weight = &h.weight[h.first[k]];
-    double total = 0;
-    for (Index layer = 0; layer < layers; ++layer) total += static_cast<double>(weight[layer]);
-
-    int ranks_below = ranks / 2;
-    Index best = 0;
-    // An uneven number of ranks on both sides only where cells are too few for even ones.
-    for (bool found = false; !found; found || --ranks_below) {
-      double below = 0, nearest = std::numeric_limits<double>::infinity();
-      for (Index cut = 1; cut < layers; ++cut) {
-        below += total > 0 ? static_cast<double>(weight[cut - 1]) : 1;
-        const double share = (total > 0 ? total : layers) * ranks_below / ranks;
-        if (cut * layer_cells < ranks_below || (layers - cut) * layer_cells < ranks - ranks_below) continue;
-        if (std::abs(below - share) < nearest) nearest = std::abs(below - share), best = cut, found = true;
-      }
+// Picks the axis of each box's cut, its longest, and makes room for the weights along it.
+Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_node) {
+  Histograms h;
+  h.first.resize(nodes_.size());
+  for (std::size_t n = first_node; n < nodes_.size(); ++n) {
+    Node& node = nodes_[n];
+    if (node.ranks == 1) {
+      boxes_[static_cast<std::size_t>(node.first_rank)] = node.box;
+      continue;
     }
-    Node lower{box, first_rank, ranks_below}, upper{box, first_rank + ranks_below, ranks - ranks_below};
-    nodes_[n].cut = lower.box.upper[axis] = upper.box.lower[axis] = box.lower[axis] + best;
-    nodes_[n].below = static_cast<int>(nodes_.size());
+    Real longest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index layers = node.box.upper[axis] - node.box.lower[axis];
+      const Real extent = layers * grid_.edge.*kAxes[axis];
+      if (layers > 1 && extent > longest) longest = extent, node.axis = axis;
+    }
+    h.nodes.push_back(static_cast<int>(n)), h.first[n] = h.weight.size();
+    const Index layers = node.box.upper[node.axis] - node.box.lower[node.axis];
+    h.weight.resize(h.weight.size() + static_cast<std::size_t>(layers));
+  }
+  return h;
+}
+
+// Ranks below the cut and the first layer above it: where the weight below comes nearest to its ranks' share,
+// with a cell left for every rank. Without any weight all cells weigh the same.
+std::pair<int, Index> Decomposition::cut_of(const Node& node, const std::int64_t* weight) const {
+  const Index layers = node.box.upper[node.axis] - node.box.lower[node.axis];
+  const double layer_cells = node.box.count() / layers;
+  const std::int64_t total = std::accumulate(weight, weight + layers, std::int64_t{0});
+  // Uneven numbers of ranks only where cells are too few for even ones.
+  for (int ranks_below = node.ranks / 2; ranks_below > 0; --ranks_below) {
+    const double share = static_cast<double>(total > 0 ? total : layers) * ranks_below / node.ranks;
+    double below = 0, nearest = std::numeric_limits<double>::infinity();
+    Index best = 0;
+    for (Index cut = 1; cut < layers; ++cut) {
+      below += total > 0 ? static_cast<double>(weight[cut - 1]) : 1;
+      const bool enough =
+          cut * layer_cells >= ranks_below && (layers - cut) * layer_cells >= node.ranks - ranks_below;
+      if (enough && std::abs(below - share) < nearest) nearest = std::abs(below - share), best = cut;
+    }
+    if (best > 0) return {ranks_below, best};
+  }
+  throw std::logic_error("a box with fewer cells than ranks");
+}
+
+void Decomposition::split(const Histograms& h) {
+  for (const int index : h.nodes) {
+    const auto n = static_cast<std::size_t>(index);
+    const Node node = nodes_[n];
+    const auto [ranks_below, layers_below] = cut_of(node, &h.weight[h.first[n]]);
+    Node lower{node.box, node.first_rank, ranks_below},
+        upper{node.box, node.first_rank + ranks_below, node.ranks - ranks_below};
+    const Index cut = node.box.lower[node.axis] + layers_below;
+    lower.box.upper[node.axis] = upper.box.lower[node.axis] = cut;
+    nodes_[n].cut = cut, nodes_[n].below = static_cast<int>(nodes_.size());
     nodes_.push_back(lower), nodes_.push_back(upper);
   }
 }

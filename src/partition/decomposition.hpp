@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/types.hpp"
@@ -31,6 +32,7 @@ DomainGrid make_domain_grid(const Space& space, Real width);
 struct CellBox {
   Index lower[3], upper[3];
   double count() const;
+  bool operator==(const CellBox&) const = default;
 };
 
 // A box of cells in space; infinite where the space ends and is not periodic.
@@ -49,7 +51,8 @@ class Decomposition {
 
   bool exists() const { return !nodes_.empty(); }
   int owner(Vec3 p) const;
-  const CellBox& cells(int rank) const { return boxes_[static_cast<std::size_t>(rank)]; }
+  // Per rank.
+  const std::vector<CellBox>& boxes() const { return boxes_; }
   const DomainGrid& grid() const { return grid_; }
   // The box of a rank, for a space with these periods.
   DomainBox box(int rank, const Subdomain& subdomain) const;
@@ -64,7 +67,10 @@ class Decomposition {
     int below = -1;
   };
   struct Histograms;
+  Histograms lay_out_histograms(std::size_t first_node);
+  Index layer(const Node& node, Vec4 p) const;
   void split(const Histograms& histograms);
+  std::pair<int, Index> cut_of(const Node& node, const std::int64_t* weight) const;
 
   DomainGrid grid_;
   std::vector<Node> nodes_;
@@ -75,7 +81,7 @@ class Decomposition {
 struct LoadBalance {
   Real imbalance = 0;           // largest weight of a rank over the mean, less 1, at the last list
   Real largest = 0;             // the largest that was met
-  std::int64_t rebalances = 0;  // decompositions after the first
+  std::int64_t rebalances = 0;  // times that the boxes were changed
   std::int64_t migrated = 0;    // particles that changed their rank
 };
 
