@@ -1,4 +1,5 @@
-// Sum of doubles as integers, without a pass for the scale first: the same bits in any order and for any split.
+// Sum of doubles as integers, without a pass for the scale first: the same bits in any order and for any
+// split.
 #pragma once
 
 #include <cmath>
@@ -10,10 +11,11 @@
 
 namespace scree {
 
-// The binary places of all doubles are cut into bins of 32, counted from the smallest. The sum keeps the bin of
-// the largest term's leading bit and the two below it; bits further down (2^-65 of that term at most) are cut
-// off every term alike. Which bins those are, and what each term adds to them, depends on no order: sums of
-// parts add up to the bits of the whole. Up to 2^31 terms. Cf. Demmel and Nguyen, IEEE Trans. Comput. 64, 2015.
+// The binary places of all doubles are cut into bins of 32, counted from the smallest. The sum keeps the bin
+// of the largest term's leading bit and the two below it; bits further down (2^-65 of that term at most) are
+// cut off every term alike. Which bins those are, and what each term adds to them, depends on no order: sums
+// of parts add up to the bits of the whole. Up to 2^31 terms. Cf. Demmel and Nguyen, IEEE Trans. Comput. 64,
+// 2015.
 class ExactSum {
  public:
   // Not finite terms make the sum a NaN.
@@ -48,8 +50,7 @@ class ExactSum {
   // The sum, rounded once.
   Real value() const {
     if (top_ == kNotFinite) return NAN;
-    const __int128 whole =
-        ((static_cast<__int128>(bin_[0]) * kBinSize + bin_[1]) * kBinSize) + bin_[2];
+    const __int128 whole = ((static_cast<__int128>(bin_[0]) * kBinSize + bin_[1]) * kBinSize) + bin_[2];
     return std::ldexp(static_cast<Real>(whole),
                       static_cast<int>(kBinBits * (top_ - kBins + 1)) - kExponentBias);
   }
@@ -57,7 +58,8 @@ class ExactSum {
  private:
   static constexpr int kMantissaBits = 52, kBinBits = 32, kBins = 3, kExponentBias = 1023;
   static constexpr std::int64_t kExponentMask = 0x7ff, kNotFinite = 1 << 20, kBinSize = 1ll << kBinBits;
-  static constexpr std::uint64_t kHiddenBit = std::uint64_t(1) << kMantissaBits, kMantissaMask = kHiddenBit - 1;
+  static constexpr std::uint64_t kHiddenBit = std::uint64_t(1) << kMantissaBits,
+                                 kMantissaMask = kHiddenBit - 1;
 
   SCREE_HD void raise(std::int64_t top) {
     for (; top_ < top && top - top_ < kBins; ++top_) bin_[2] = bin_[1], bin_[1] = bin_[0], bin_[0] = 0;

@@ -25,8 +25,8 @@ class BodyLink {
   // The functions of Multibody on rank 0; collective, and nothing without bodies.
   void set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench);
   void predict(const MultibodyState& bodies, Real t, Real h);
-  IterationNorms correct();  // with step_wrench(); the norms on every rank
-  Real error() const;        // on every rank
+  IterationNorms correct();             // with step_wrench(); the norms on every rank
+  Real error() const;                   // on every rank
   void accept(MultibodyState& bodies);  // with end_wrench()
 
   // Rank 0 -> all: motion at the current iterate of the open step, handed to the backend's shapes.

@@ -70,9 +70,9 @@ struct VerletRun {
 };
 
 // The particles of one rank on their machine. With several ranks, each has a backend, and all functions but
-// the simple getters (description, records, shape_losses, list_entries, list_builds, balance, pack_particles) are
-// collective: every rank calls them in the same order, and what they return is the same on every rank, except
-// where a comment says otherwise. So are the errors.
+// the simple getters (description, records, shape_losses, list_entries, list_builds, balance, pack_particles)
+// are collective: every rank calls them in the same order, and what they return is the same on every rank,
+// except where a comment says otherwise. So are the errors.
 class Backend {
  public:
   virtual ~Backend() = default;

@@ -124,8 +124,8 @@ class CpuBackend : public Backend {
   std::vector<Vec4> direction_;
   std::vector<Vec4> spare_position_, spare_velocity_;  // explicit steps write here while neighbours are read
   Index closed_ = 0;                                   // explicit steps since verlet_start
-  bool outside_ = false;  // whether a particle is outside the space where the open step ends, if one of the bodies
-                          // ends there
+  bool outside_ = false;  // whether a particle is outside the space where the open step ends, if one of the
+                          // bodies ends there
   bool opened_ = false;  // whether the last of them was closed by opening the next
   Real largest_stiffening_ = 0, force_scale_ = 0;
   // Line search along correction_: share of it that is applied (0: none is open), slope of the potential at

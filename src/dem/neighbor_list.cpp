@@ -18,8 +18,7 @@ namespace {
 
 // Cells for so many items, countable by an Index.
 Index most_cells(std::int64_t items) {
-  return static_cast<Index>(
-      std::min<std::int64_t>(4 * items + 4096, std::numeric_limits<Index>::max() / 2));
+  return static_cast<Index>(std::min<std::int64_t>(4 * items + 4096, std::numeric_limits<Index>::max() / 2));
 }
 
 }  // namespace
@@ -39,7 +38,8 @@ SearchCells NeighborBuilder::cells(Real skin, std::int64_t particles, const Doma
                                    Index items) const {
   SearchCells out = cells(skin, particles);
   const auto finite = [](Vec3 corner, Vec3 of_space) {
-    return Vec3{std::isfinite(corner.x) ? corner.x : of_space.x, std::isfinite(corner.y) ? corner.y : of_space.y,
+    return Vec3{std::isfinite(corner.x) ? corner.x : of_space.x,
+                std::isfinite(corner.y) ? corner.y : of_space.y,
                 std::isfinite(corner.z) ? corner.z : of_space.z};
   };
   out.own = make_cell_grid(finite(box.min, model_.space.min), finite(box.max, model_.space.max),
@@ -68,7 +68,8 @@ void NeighborBuilder::sort_into_cells(const ParticleStore& store, const ItemLayo
 }
 
 // Which pairs a row leaves out: an image of a shape sees owned particles only (its contacts with other shapes
-// are those of the original, on one rank), ghosts have no row of their own and shapes leave them to the original's images.
+// are those of the original, on one rank), ghosts have no row of their own and shapes leave them to the
+// original's images.
 bool NeighborBuilder::excluded(const ItemLayout& layout, Index i, Index j) const {
   if (i == j) return true;
   if (i < layout.first_shape) return false;

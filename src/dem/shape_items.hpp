@@ -24,9 +24,7 @@ struct ExactSym3 {
   SCREE_HD void add(const ExactSym3& part) {
     xx.add(part.xx), xy.add(part.xy), xz.add(part.xz), yy.add(part.yy), yz.add(part.yz), zz.add(part.zz);
   }
-  Sym3 value() const {
-    return {xx.value(), xy.value(), xz.value(), yy.value(), yz.value(), zz.value()};
-  }
+  Sym3 value() const { return {xx.value(), xy.value(), xz.value(), yy.value(), yz.value(), zz.value()}; }
 };
 
 // What crosses the ranks of the contacts of one shape. Every contact force passes through the shape's centre.

@@ -46,9 +46,9 @@ class ShapeSide {
   const std::vector<Vec3>& step() const { return step_; }          // displacement by the last place() [m]
   std::vector<ShapeContact>& contacts() { return contacts_; }      // filled by the backend
 
-  // reduce_wrench: brings the shapes' contacts() of all ranks to rank 0, one message per rank, and sums them up
-  // to the contact wrenches on the bodies for the step and at its end; on other ranks they come out as zero.
-  // Collective.
+  // reduce_wrench: brings the shapes' contacts() of all ranks to rank 0, one message per rank, and sums them
+  // up to the contact wrenches on the bodies for the step and at its end; on other ranks they come out as
+  // zero. Collective.
   void reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& step,
               std::vector<BodyWrench>& end) const;
   // Books the dissipation of a step of length h from contacts(): trapezoidal, like the particles' losses.

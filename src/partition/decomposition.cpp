@@ -15,7 +15,7 @@ namespace {
 // Histograms have one entry per layer of cells; more layers than this make cuts no better.
 constexpr Real kMostLayers = 1 << 14;
 
-constexpr Real Vec3::* kAxes[3] = {&Vec3::x, &Vec3::y, &Vec3::z};
+constexpr Real Vec3::*kAxes[3] = {&Vec3::x, &Vec3::y, &Vec3::z};
 
 }  // namespace
 
@@ -62,13 +62,16 @@ Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::sp
                              std::span<const std::int64_t> weight)
     : grid_(grid), boxes_(static_cast<std::size_t>(ranks.size())) {
   if (grid.count() < ranks.size())
-    throw InputError("mpirun -n " + std::to_string(ranks.size()) + ": the space has only " +
-                     std::to_string(static_cast<std::int64_t>(grid.count())) +
-                     " cells as wide as the halo (a largest diameter and the skin), and a subdomain must not be "
-                     "narrower; start at most so many ranks");
+    throw InputError(
+        "mpirun -n " + std::to_string(ranks.size()) + ": the space has only " +
+        std::to_string(static_cast<std::int64_t>(grid.count())) +
+        " cells as wide as the halo (a largest diameter and the skin), and a subdomain must not be "
+        "narrower; start at most so many ranks");
   nodes_.push_back({{{0, 0, 0}, {grid.cells[0], grid.cells[1], grid.cells[2]}}, 0, ranks.size()});
   std::vector<int> node_of(position.size(), 0);
-  const auto node = [&](std::size_t i) -> const Node& { return nodes_[static_cast<std::size_t>(node_of[i])]; };
+  const auto node = [&](std::size_t i) -> const Node& {
+    return nodes_[static_cast<std::size_t>(node_of[i])];
+  };
   for (std::size_t first = 0; first < nodes_.size();) {  // the boxes of one level of the tree after the other
     Histograms h = lay_out_histograms(first);
     first = nodes_.size();

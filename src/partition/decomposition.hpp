@@ -13,8 +13,8 @@
 
 namespace scree {
 
-// The cells that boxes are made of: a grid over the space, at least one halo wide. Points outside belong to the
-// nearest cell.
+// The cells that boxes are made of: a grid over the space, at least one halo wide. Points outside belong to
+// the nearest cell.
 struct DomainGrid {
   Vec3 min, edge;  // lower corner, edges of a cell [m]
   Index cells[3] = {1, 1, 1};

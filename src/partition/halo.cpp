@@ -160,7 +160,8 @@ void Halo::transfer(const void* packed, void* ghosts, std::size_t element) const
   const auto bytes = [&](Index entries) { return static_cast<std::size_t>(entries) * element; };
   Messages messages(ranks_);
   for (const Neighbor& n : neighbors_)
-    messages.receive(static_cast<char*>(ghosts) + bytes(n.first_received), bytes(n.received), n.rank, kFieldTag);
+    messages.receive(static_cast<char*>(ghosts) + bytes(n.first_received), bytes(n.received), n.rank,
+                     kFieldTag);
   for (const Neighbor& n : neighbors_)
     messages.send(static_cast<const char*>(packed) + bytes(n.first_sent), bytes(n.sent), n.rank, kFieldTag);
 }

@@ -68,8 +68,8 @@ class Halo {
   // Of one rank alone, whose ghosts are known.
   explicit Halo(std::vector<Ghost> own);
 
-  // exchange_halo: finds who is a ghost where, for originals at `position` (the first of the owned items), and
-  // tells the neighbours. width: reach of the halo past the box [m]. Collective.
+  // exchange_halo: finds who is a ghost where, for originals at `position` (the first of the owned items),
+  // and tells the neighbours. width: reach of the halo past the box [m]. Collective.
   void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                 const Space& space, std::span<const Vec4> position, Real width);
 
@@ -79,7 +79,8 @@ class Halo {
   // This rank's own particles across periodic sides.
   const std::vector<Ghost>& own() const { return own_; }
 
-  // update_halo: refreshes the ghosts' copies of a field of all items; ghosts stand at field[first_ghost ...].
+  // update_halo: refreshes the ghosts' copies of a field of all items; ghosts stand at field[first_ghost
+  // ...].
   template <class T>
   void update(std::span<T> field, Index first_ghost) const;
   // The same for positions, which are moved by the ghosts' shifts, and velocities, in one exchange.

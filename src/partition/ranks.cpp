@@ -122,8 +122,7 @@ bool Ranks::any(bool value) const {
 }
 
 std::int64_t Ranks::min(std::int64_t value) const {
-  if (!alone())
-    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MIN, communicator_of(communicator_));
+  if (!alone()) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MIN, communicator_of(communicator_));
   return value;
 }
 
@@ -151,7 +150,8 @@ void Ranks::sum(std::span<__int128> values) const {
   for (std::size_t k = 0; k < values.size(); ++k) {
     unsigned __int128 total = 0;
     for (int limb = 0; limb < kLimbs; ++limb)
-      total += static_cast<unsigned __int128>(limbs[k * kLimbs + static_cast<std::size_t>(limb)]) << (32 * limb);
+      total += static_cast<unsigned __int128>(limbs[k * kLimbs + static_cast<std::size_t>(limb)])
+               << (32 * limb);
     values[k] = static_cast<__int128>(total);
   }
 }

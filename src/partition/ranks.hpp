@@ -1,5 +1,5 @@
-// The ranks of a run, and the exact collectives that decisions and sums need. What a collective returns is the
-// same on every rank and for every number of ranks. One rank alone makes no MPI call.
+// The ranks of a run, and the exact collectives that decisions and sums need. What a collective returns is
+// the same on every rank and for every number of ranks. One rank alone makes no MPI call.
 #pragma once
 
 #include <cstdint>

@@ -131,9 +131,7 @@ ParticlePack gathered(const Ranks& ranks, ParticlePack p) {
 
 Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
                    const State& state)
-    : model_(model),
-      backend_(backend),
-      link_(link) {
+    : model_(model), backend_(backend), link_(link) {
   link.ranks().on_root([&] {
     history_.emplace(directory, history_columns(model, reactions_of(model, link, state)),
                      model.output.history_csv, state.history_rows);

@@ -57,7 +57,8 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
 }
 
 // The one that --backend names, or for auto the one that is likely to be faster.
-std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name, Log& log) {
+std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name,
+                                      Log& log) {
   if (name == "cpu") return make_cpu(model, ranks, "chosen by --backend", log);
   if (!ranks.alone()) {
     if (name == "auto") return make_cpu(model, ranks, "a GPU computes on one rank only in this version", log);
@@ -81,9 +82,9 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
 State read_state(const RunOptions& options) {
   const Checkpoint checkpoint = read_checkpoint(options.restart);
   if (checkpoint.text("fingerprint") != options.fingerprint)
-    throw InputError(
-        "--restart " + options.restart +
-        ": the checkpoint belongs to another deck; only time.end and the tables output and parallel may differ");
+    throw InputError("--restart " + options.restart +
+                     ": the checkpoint belongs to another deck; only time.end and the tables output and "
+                     "parallel may differ");
   return unpack(checkpoint);
 }
 

@@ -55,9 +55,9 @@ class StepLoop {
   bool implicit_;
   std::size_t batch_ = 1;  // explicit steps to take at once
   int signal_ = 0;
-  State good_;             // explicit: the copy
-  double good_cost_ = 0;   // seconds that keeping it took
-  double good_age_ = 0;    // steady clock when it was kept [s]
+  State good_;            // explicit: the copy
+  double good_cost_ = 0;  // seconds that keeping it took
+  double good_age_ = 0;   // steady clock when it was kept [s]
 };
 
 }  // namespace scree

@@ -1,8 +1,8 @@
 // Speed of explicit and implicit steps on settled beds, and what a net of bodies costs on top. Usage: bed
 // --help.
 //
-// The CPU's times are CPU seconds, the GPU's, and those of several ranks of mpirun, wall seconds around calls that
-// return when the work is done; of ranks the longest.
+// The CPU's times are CPU seconds, the GPU's, and those of several ranks of mpirun, wall seconds around calls
+// that return when the work is done; of ranks the longest.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -45,7 +45,9 @@ constexpr int kImplicitWarmUp = 5;
 
 double seconds_now(const Options& options) {
   timespec time{};
-  clock_gettime(options.on_gpu() || options.wall || !options.ranks.alone() ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &time);
+  clock_gettime(
+      options.on_gpu() || options.wall || !options.ranks.alone() ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID,
+      &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
@@ -92,7 +94,8 @@ struct Run {
     backend->load(initial_records(model.particles, Subdomain(model.space)), {});
   }
   double listed() const {
-    return static_cast<double>(ranks.sum(backend->list_entries())) / static_cast<double>(model.particles.size());
+    return static_cast<double>(ranks.sum(backend->list_entries())) /
+           static_cast<double>(model.particles.size());
   }
 
   Model model;
@@ -242,11 +245,10 @@ void measure_all(const Options& options) {
     throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
   if (options.on_gpu() && !device_trouble().empty()) throw InputError("--backend cuda: " + device_trouble());
   fmt::print("commit {}, {}, {}, {}{}{}\n", commit(),
-             options.on_gpu()          ? device_name()
+             options.on_gpu()        ? device_name()
              : options.ranks.alone() ? options.wall ? "one core, wall seconds" : "one core, CPU seconds"
                                      : fmt::format("{} ranks, wall seconds", options.ranks.size()),
-             options.precision,
-             options.dimension == 3 ? "spheres" : "discs",
+             options.precision, options.dimension == 3 ? "spheres" : "discs",
              options.integrator == "hht" ? ", implicit" : ", explicit",
              options.integrator == "hht" || options.net ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
@@ -295,7 +297,8 @@ ExitCode run(int count, char** values) {
     std::cerr << "error: --backend cuda runs on one rank\n";
     return ExitCode::bad_input;
   }
-  if (!options.ranks.is_root() && std::freopen("/dev/null", "w", stdout) == nullptr) return ExitCode::io_failed;
+  if (!options.ranks.is_root() && std::freopen("/dev/null", "w", stdout) == nullptr)
+    return ExitCode::io_failed;
   try {
     const PetscSession petsc("bed", {});
     measure_all(options);

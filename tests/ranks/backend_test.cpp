@@ -1,9 +1,11 @@
-// The particles' backend on all ranks of mpirun against one rank alone, bit for bit; failures reach every rank.
+// The particles' backend on all ranks of mpirun against one rank alone, bit for bit; failures reach every
+// rank.
+#include "dem/backend.hpp"
+
 #include <cmath>
 #include <cstring>
 
 #include "base/error.hpp"
-#include "dem/backend.hpp"
 #include "support/catch.hpp"
 #include "support/petsc_run.hpp"
 #include "unit/dem/random_box.hpp"
@@ -128,8 +130,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
 
 TEST_CASE("a particle that is not finite ends all ranks with the same message") {
   petsc();
-  for (const ParticleIntegrator integrator :
-       {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet})
+  for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet})
     for (const bool place : {false, true}) {
       CAPTURE(static_cast<int>(integrator), place);
       Model model = random_box(kBoxes[4], kParticles, 5);

@@ -202,7 +202,8 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
       for (std::size_t g = static_cast<std::size_t>(owned); g < items; ++g) {
         const Vec4 p = position[g];
         CHECK(p.w == 0.05);
-        found.emplace(id[g], halo.images()[g - static_cast<std::size_t>(owned)], p.x, p.y, p.z, velocity[g].x);
+        found.emplace(id[g], halo.images()[g - static_cast<std::size_t>(owned)], p.x, p.y, p.z,
+                      velocity[g].x);
       }
       CHECK(found.size() == static_cast<std::size_t>(halo.size()));
       CHECK((found == expected));
