@@ -36,6 +36,8 @@ CASES = {
                                    "output.history_particles=[0, 399]"], (1, 2, 3, 4)),
     "the same, particles removed": ([INPUT / "paper/net_400.toml", "time.step=5e-4", "time.end=0.85",
                                      "space.leaving=remove", "parallel.imbalance=0.05"], (1, 3)),
+    "the same, explicit": ([INPUT / "paper/net_400.toml", *EXPLICIT, "integrator.substeps=10", "time.step=5e-4",
+                            "time.end=0.85", "space.leaving=remove"], (1, 3)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
     "dam break, implicit": (DAM, (1, 2, 3, 4, 8)),
     "dam break, explicit": ([*DAM, *EXPLICIT, "integrator.substeps=3"], (1, 2, 3, 4, 8)),
