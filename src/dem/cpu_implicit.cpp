@@ -85,20 +85,22 @@ ParticleNorms CpuBackend::contact_force() {
            ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
                         stiffening_.data()});
 
-  Real largest[4] = {};  // residual, bound of the correction, force, stiffening
+  Real residual = 0, bound = 0, force = 0, stiffening = 0;
+  bool finite = true;
   const StepNormsItem of{step_views(), residual_.data(), force_magnitude_.data(), stiffening_.data()};
   for (Index i = 0; i < n; ++i) {
     const StepNorms one = of(i);
-    if (!(one.residual <= largest[0]) && !std::isnan(largest[0])) largest[0] = one.residual;
-    largest[1] = std::max(largest[1], one.correction_bound);
-    largest[2] = std::max(largest[2], one.force);
-    largest[3] = std::max(largest[3], one.stiffening);
+    finite = finite && std::isfinite(one.residual);
+    residual = std::max(residual, one.residual);
+    bound = std::max(bound, one.correction_bound);
+    force = std::max(force, one.force);
+    stiffening = std::max(stiffening, one.stiffening);
   }
+  Real largest[5] = {residual, bound, force, stiffening, finite ? Real(0) : Real(1)};
   ranks_.max(largest);
-  if (!std::isfinite(largest[0])) report_not_finite(residual_);
+  if (largest[4] != 0) report_not_finite(residual_);
   ParticleNorms norms;
-  const Real residual = largest[0];
-  norms.correction_bound = largest[1];
+  residual = largest[0], norms.correction_bound = largest[1];
   force_scale_ = largest[2], largest_stiffening_ = largest[3];
   norms.residual = residual == 0 ? 0 : residual / force_scale_;
   if (applied_share_ > kLeastShare) {

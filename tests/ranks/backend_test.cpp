@@ -81,7 +81,7 @@ bool same(const std::vector<ParticleRecord>& a, const std::vector<ParticleRecord
 }
 
 bool same(const std::vector<BodyWrench>& a, const std::vector<BodyWrench>& b) {
-  return std::memcmp(a.data(), b.data(), a.size() * sizeof(BodyWrench)) == 0;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(BodyWrench)) == 0;
 }
 
 std::string failure(const std::function<void()>& action) {
