@@ -234,15 +234,18 @@ class SignalTest(RanksTest):
         lines = [line.split() for line in listed.stdout.splitlines()]
         return [int(words[0]) for words in lines if "scree" in words[1]]
 
-    def test_a_signal_to_one_rank_stops_all_with_a_checkpoint(self):
-        run = self.start(2)
-        os.kill(self.children(run.pid)[1], signal.SIGUSR1)
-        self.assertEqual(run.wait(LIMIT), STOPPED)
-        record = self.record("out")
-        self.assertIn("stopped by signal", record["run"]["status"])
-        stopped_at = record["measures"]["simulated_time"]
-        self.run_deck(DONE, 3, DAM[0], "on", [*self.SETTINGS, f"time.end={stopped_at + 0.01}"], "--restart",
-                      self.folder / "out" / "checkpoint.h5")
+    def test_a_signal_stops_all_ranks_with_a_checkpoint(self):
+        for to_one_rank in (True, False):  # or to mpirun, as a batch system does it
+            with self.subTest(to_one_rank=to_one_rank):
+                run = self.start(2)
+                os.kill(self.children(run.pid)[1] if to_one_rank else run.pid, signal.SIGUSR1)
+                self.assertEqual(run.wait(LIMIT), STOPPED)
+                record = self.record("out")
+                self.assertIn("stopped by signal", record["run"]["status"])
+                end = record["measures"]["simulated_time"] + 0.01
+                self.run_deck(DONE, 3, DAM[0], "on", [*self.SETTINGS, f"time.end={end}"], "--restart",
+                              self.folder / "out" / "checkpoint.h5")
+                (self.folder / "out" / "checkpoint.h5").unlink()
 
     def test_a_killed_rank_ends_the_job_and_leaves_the_last_checkpoint(self):
         run = self.start(2)
