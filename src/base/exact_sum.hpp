@@ -50,6 +50,7 @@ class ExactSum {
   // The sum, rounded once.
   Real value() const {
     if (top_ == kNotFinite) return NAN;
+    if (bin_[0] == 0 && bin_[1] == 0 && bin_[2] == 0) return 0;
     const __int128 whole = ((static_cast<__int128>(bin_[0]) * kBinSize + bin_[1]) * kBinSize) + bin_[2];
     return std::ldexp(static_cast<Real>(whole),
                       static_cast<int>(kBinBits * (top_ - kBins + 1)) - kExponentBias);

@@ -28,7 +28,7 @@ struct ExactSym3 {
 };
 
 // What crosses the ranks of the contacts of one shape. Every contact force passes through the shape's centre.
-struct ShapeForces {
+struct ShapeForces {             // of no meaning without contacts
   ExactVec3 step;                // for the step: see StepContact [N]
   ExactVec3 end;                 // at the end of the step [N]
   ExactSym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
@@ -48,6 +48,16 @@ struct ShapeContact {
   Real energy = 0;                   // the shape's share of the contacts' elastic energy [J]
   Real pairs = 0;                    // the shape's share of the number of contacts
 };
+
+// Puts a sum where it belongs; most shapes touch nothing, and their forces are not written.
+SCREE_HD void store(const ShapeContact& sum, ShapeContact& out) {
+  if (sum.forces.contacts > 0) {
+    out = sum;
+    return;
+  }
+  out.forces.contacts = 0;
+  out.step_loss = out.end_loss = out.energy = out.pairs = 0;
+}
 
 // Where the shape items are, indexed from first_shape.
 struct ShapePlaces {
@@ -80,7 +90,7 @@ struct ShapeStepItem {
       add(c, normal, shape_share(j, contacts.in.first_shape));
     });
     contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
-    out[shape] = sum;
+    store(sum, out[shape]);
   }
 };
 
@@ -127,7 +137,7 @@ struct ShapeContactItem {
       if (o.overlap > 0) add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
     }
     sum.forces.step = sum.forces.end, sum.step_loss = sum.end_loss;
-    out[shape] = sum;
+    store(sum, out[shape]);
   }
 };
 

@@ -66,17 +66,26 @@ std::vector<ShapeSide::Touched> ShapeSide::touched(const ItemLayout& layout, con
   return merged;
 }
 
+template <class Visit>
+void ShapeSide::for_each_touched(const ItemLayout& layout, const Ranks& ranks, const Visit& visit) const {
+  if (!ranks.alone() || !layout.shape_images.empty()) {
+    for (const Touched& one : touched(layout, ranks)) visit(one.shape, one.forces);
+    return;
+  }
+  for (std::size_t s = 0; s < contacts_.size(); ++s)
+    if (contacts_[s].forces.contacts > 0) visit(static_cast<Index>(s), contacts_[s].forces);
+}
+
 void ShapeSide::reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& step,
                        std::vector<BodyWrench>& end) const {
   std::fill(step.begin(), step.end(), BodyWrench{});
   std::fill(end.begin(), end.end(), BodyWrench{});
-  for (const Touched& one : touched(layout, ranks)) {
-    const ShapeItem& shape = shapes_.items()[one.shape];
+  for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
+    const ShapeItem& shape = shapes_.items()[s];
     const Vec3 arm = point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
-    const ShapeForces& f = one.forces;
     add_point_force(step[shape.body], f.step.value(), arm, f.stiffness.value(), f.damping.value());
     add_point_force(end[shape.body], f.end.value(), arm, {}, {});
-  }
+  });
 }
 
 void ShapeSide::book_losses(Real h) {
@@ -110,10 +119,10 @@ ShapePack ShapeSide::pack(const ItemLayout& layout, const Ranks& ranks) const {
     pack.velocity.push_back(point.velocity);
   }
   pack.force.resize(shapes_.items().size()), pack.contacts.resize(shapes_.items().size());
-  for (const Touched& one : touched(layout, ranks)) {
-    pack.force[one.shape] = one.forces.step.value();
-    pack.contacts[one.shape] = static_cast<int>(one.forces.contacts);
-  }
+  for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
+    pack.force[s] = f.step.value();
+    pack.contacts[s] = static_cast<int>(f.contacts);
+  });
   return pack;
 }
 

@@ -68,6 +68,9 @@ class ShapeSide {
     ShapeForces forces;
   };
   std::vector<Touched> touched(const ItemLayout& layout, const Ranks& ranks) const;
+  // Calls visit(shape, forces) for the touched shapes of all ranks, on rank 0.
+  template <class Visit>
+  void for_each_touched(const ItemLayout& layout, const Ranks& ranks, const Visit& visit) const;
 
   const Subdomain& subdomain_;
   BodyShapes shapes_;
