@@ -115,7 +115,7 @@ void CudaBackend::fetch_shape_contacts(cudaStream_t stream) {
 }
 
 void CudaBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
-  side_.reduce(layout_, step, end);
+  side_.reduce(layout_, Ranks(), step, end);
 }
 
 void CudaBackend::refresh_ghosts(Vec4* position, Vec4* velocity) {

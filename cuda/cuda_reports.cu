@@ -180,7 +180,7 @@ ParticlePack CudaBackend::pack_particles() {
 
 ShapePack CudaBackend::pack_shapes() {
   find_shape_contacts();
-  return side_.pack(layout_);
+  return side_.pack(layout_, Ranks());
 }
 
 }  // namespace scree

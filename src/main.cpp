@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
@@ -14,6 +15,7 @@
 #include "mbs/petsc_session.hpp"
 #include "model/build.hpp"
 #include "output/library_versions.hpp"
+#include "partition/ranks.hpp"
 #include "run/check.hpp"
 #include "run/simulation.hpp"
 
@@ -83,35 +85,40 @@ auto naming_deck(const std::string& deck, const Action& action) {
 }
 
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
-  Log log(mpi_value(MPI_Comm_rank) != 0);
+  const Ranks ranks = Ranks::world();
+  Log log(!ranks.is_root());
   const Deck deck = load_deck(arguments.deck, arguments.overrides);
   const Model model = build_model(deck, log);
-  if (mpi_value(MPI_Comm_size) > 1)
-    throw InputError(fmt::format("mpirun -n {}: this version runs on one rank; start it with -n 1",
-                                 mpi_value(MPI_Comm_size)));
-  const PetscSession petsc("scree", line.petsc_words);
+  std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
+  ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
   RunOptions options{arguments.backend,
                      output_directory(arguments, model),
                      arguments.restart,
                      arguments.deck,
                      deck.resolved_text(),
                      deck.fingerprint(),
-                     line.text};
+                     line.text,
+                     ranks};
   const ExitCode code = naming_deck(arguments.deck, [&] { return run_simulation(model, options, log); });
-  for (const std::string& option : petsc.unused_options())
-    log.warning("PETSc option " + option + " was not used");
+  if (petsc)
+    for (const std::string& option : petsc->unused_options())
+      log.warning("PETSc option " + option + " was not used");
   return code;
 }
 
 // Everything short of running, the constraints' rank included.
 ExitCode check(const Arguments& arguments) {
-  Log log;
+  const Ranks ranks = Ranks::world();
+  Log log(!ranks.is_root());
   const Model model = build_model(load_deck(arguments.deck, arguments.overrides), log);
   std::string constraints = "";
   if (!model.bodies.empty()) {
-    const PetscSession petsc("scree", {});
-    constraints = naming_deck(arguments.deck,
-                              [&] { return "solver         " + Multibody(model).solver_description(); });
+    naming_deck(arguments.deck, [&] {
+      ranks.on_root([&] {
+        const PetscSession petsc("scree", {});
+        constraints = "solver         " + Multibody(model).solver_description();
+      });
+    });
   }
   log.info(check_report(model) + constraints);
   return ExitCode::done;
@@ -165,6 +172,7 @@ ExitCode dispatch(const CommandLine& line) {
 
 ExitCode guarded(const std::function<ExitCode()>& body) {
   const auto report = [](const char* what, ExitCode code) {
+    Ranks::world().meet(what, static_cast<int>(code));
     if (mpi_value(MPI_Comm_rank) == 0) std::cerr << "error: " << what << '\n';
     return code;
   };

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "base/hd.hpp"
 #include "base/types.hpp"
@@ -33,9 +34,16 @@ class ReproducibleScale {
   Real scale_ = 1, inverse_ = 1;
 };
 
-// Sums of N terms each: item(i).value[k] for i = 0 ... n-1, evaluated twice.
-template <int N, class Item>
-void reproducible_sums(Index n, const Item& item, Real (&sums)[N]) {
+// Where the items of one process are all there are.
+struct OneProcess {
+  void max(std::span<Real>) const {}
+  void sum(std::span<__int128>) const {}
+};
+
+// Sums of N terms each: item(i).value[k] for i = 0 ... n-1, evaluated twice. over: what takes the maxima and
+// the sums over all processes, each with items of its own; every one of them gets the sums.
+template <int N, class Item, class Over = OneProcess>
+void reproducible_sums(Index n, const Item& item, Real (&sums)[N], const Over& over = {}) {
   Real largest[N] = {};
   for (Index i = 0; i < n; ++i) {
     const auto terms = item(i);
@@ -44,6 +52,7 @@ void reproducible_sums(Index n, const Item& item, Real (&sums)[N]) {
       if (!(magnitude <= largest[k]) && !std::isnan(largest[k])) largest[k] = magnitude;  // a NaN sticks
     }
   }
+  over.max(std::span<Real>(largest));
   ReproducibleScale scale[N];
   for (int k = 0; k < N; ++k) scale[k] = ReproducibleScale(largest[k]);
   __int128 quanta[N] = {};
@@ -51,6 +60,7 @@ void reproducible_sums(Index n, const Item& item, Real (&sums)[N]) {
     const auto terms = item(i);
     for (int k = 0; k < N; ++k) quanta[k] += scale[k].quanta(terms.value[k]);
   }
+  over.sum(std::span<__int128>(quanta));
   for (int k = 0; k < N; ++k) sums[k] = scale[k].value(quanta[k]);
 }
 

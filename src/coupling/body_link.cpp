@@ -1,29 +1,47 @@
 #include "coupling/body_link.hpp"
 
-#include <mpi.h>
-
-#include <type_traits>
+#include <span>
 
 namespace scree {
-namespace {
 
-bool is_root() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank == 0;
+BodyLink::BodyLink(const Model& model, const Ranks& ranks)
+    : ranks_(ranks),
+      motion_(model.bodies.size()),
+      step_wrench_(model.bodies.size()),
+      end_wrench_(model.bodies.size()) {
+  if (model.bodies.empty()) return;
+  ranks_.on_root([&] { multibody_ = std::make_unique<Multibody>(model); });
 }
 
-}  // namespace
+void BodyLink::set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench) {
+  if (has_bodies()) ranks_.on_root([&] { bodies = multibody_->initial_state(wrench); });
+}
 
-BodyLink::BodyLink(const Model& model)
-    : motion_(model.bodies.size()), step_wrench_(model.bodies.size()), end_wrench_(model.bodies.size()) {
-  if (!model.bodies.empty() && is_root()) multibody_ = std::make_unique<Multibody>(model);
+void BodyLink::predict(const MultibodyState& bodies, Real t, Real h) {
+  if (multibody_) multibody_->predict(bodies, t, h);
+}
+
+IterationNorms BodyLink::correct() {
+  IterationNorms norms;
+  if (!has_bodies()) return norms;
+  ranks_.on_root([&] { norms = multibody_->correct(step_wrench_); });
+  ranks_.broadcast(norms);
+  return norms;
+}
+
+Real BodyLink::error() const {
+  Real error = multibody_ ? multibody_->error() : 0;
+  if (has_bodies()) ranks_.broadcast(error);
+  return error;
+}
+
+void BodyLink::accept(MultibodyState& bodies) {
+  if (has_bodies()) ranks_.on_root([&] { multibody_->accept(bodies, end_wrench_); });
+  bodies.wrench = end_wrench_;
 }
 
 void BodyLink::broadcast(Backend& backend) {
-  static_assert(std::is_trivially_copyable_v<BodyMotion>);
-  MPI_Bcast(motion_.data(), static_cast<int>(motion_.size() * sizeof(BodyMotion)), MPI_BYTE, 0,
-            MPI_COMM_WORLD);
+  ranks_.broadcast(std::span<BodyMotion>(motion_));
   backend.place_bodies(motion_);
 }
 

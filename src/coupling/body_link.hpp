@@ -7,23 +7,34 @@
 #include "dem/backend.hpp"
 #include "mbs/multibody.hpp"
 #include "model/model.hpp"
+#include "partition/ranks.hpp"
 
 namespace scree {
 
 class BodyLink {
  public:
-  // The Multibody object is made on rank 0 alone, and only if the model has bodies.
-  explicit BodyLink(const Model& model);
+  // The Multibody object is made on rank 0 alone, and only if the model has bodies. What rank 0 throws, here
+  // and below, every rank throws.
+  explicit BodyLink(const Model& model, const Ranks& ranks = {});
 
   bool has_bodies() const { return !motion_.empty(); }
   Multibody* multibody() { return multibody_.get(); }  // null on ranks other than 0
   const Multibody* multibody() const { return multibody_.get(); }
+  const Ranks& ranks() const { return ranks_; }
+
+  // The functions of Multibody on rank 0; collective, and nothing without bodies.
+  void set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench);
+  void predict(const MultibodyState& bodies, Real t, Real h);
+  IterationNorms correct();             // with step_wrench(); the norms on every rank
+  Real error() const;                   // on every rank
+  void accept(MultibodyState& bodies);  // with end_wrench()
 
   // Rank 0 -> all: motion at the current iterate of the open step, handed to the backend's shapes.
   void broadcast_motion(Backend& backend);
   // The same for an instant tau [s] after `state`, along rank 0's prediction.
   void broadcast_motion(Backend& backend, const MultibodyState& state, Real tau);
-  // All -> rank 0: contact wrench and contact stiffness per body, as Backend::reduce_wrench.
+  // All -> rank 0: contact wrench and contact stiffness per body, as Backend::reduce_wrench. The wrenches are
+  // rank 0's; zero elsewhere.
   void reduce_wrench(Backend& backend);
   // Replaces the step's wrench by the one whose trapezoidal impulse over `substeps` equal parts is their sum:
   // twice the mean force less the force at the start. sum: of the forces at the parts' ends, the outer two
@@ -37,6 +48,7 @@ class BodyLink {
  private:
   void broadcast(Backend& backend);
 
+  Ranks ranks_;
   std::unique_ptr<Multibody> multibody_;
   std::vector<BodyMotion> motion_;
   std::vector<BodyWrench> step_wrench_, end_wrench_;

@@ -47,12 +47,12 @@ CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, S
 void CoupledStep::rebuild_list(Real skin) { backend_.build_list(skin, timers_); }
 
 void CoupledStep::start(MultibodyState& bodies) {
-  if (link_.multibody()) bodies = link_.multibody()->initial_state({model_.bodies.size(), BodyWrench{}});
+  link_.set_initial_state(bodies, {model_.bodies.size(), BodyWrench{}});
   resume(bodies);
   backend_.initial_forces();
   // Only now are the contact wrenches at the start known.
   link_.reduce_wrench(backend_);
-  if (link_.multibody()) bodies = link_.multibody()->initial_state(link_.end_wrench());
+  link_.set_initial_state(bodies, link_.end_wrench());
   bodies.wrench = link_.end_wrench();
 }
 
@@ -64,7 +64,7 @@ void CoupledStep::resume(const MultibodyState& bodies) {
 void CoupledStep::open_step(const MultibodyState& bodies, Real t, Real h) {
   {
     const auto scope = timers_.time(Stage::predict);
-    if (link_.multibody()) link_.multibody()->predict(bodies, t, h);
+    link_.predict(bodies, t, h);
     backend_.begin_step(h);
   }
   const auto scope = timers_.time(Stage::broadcast_motion);
@@ -109,14 +109,14 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     undo_step(bodies);
     throw;
   } catch (const SimulationError& error) {
+    link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
     undo_step(bodies);
     ++counts_.rejected_newton;
     return {Verdict::not_converged, 0, error.what()};
   }
   const auto scope = timers_.time(Stage::accept);
   if (model_.time.control == StepControl::adaptive) {
-    outcome.error = backend_.error();
-    if (link_.multibody()) outcome.error = std::max(outcome.error, link_.multibody()->error());
+    outcome.error = std::max(backend_.error(), link_.error());
     outcome.error /= model_.time.tolerance;
     if (!(outcome.error <= 1)) {
       undo_step(bodies);
@@ -132,8 +132,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     throw;
   }
   backend_.accept();
-  if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
-  bodies.wrench = link_.end_wrench();
+  link_.accept(bodies);
   ++counts_.steps;
   return outcome;
 }
@@ -186,7 +185,7 @@ bool CoupledStep::iterate_once(Iteration& last) {
     }
     {
       const auto scope = timers_.time(Stage::mbs_correct);
-      const IterationNorms bodies = link_.multibody()->correct(link_.step_wrench());
+      const IterationNorms bodies = link_.correct();
       bodies_done =
           bodies.residual <= limits.residual_tolerance && bodies.correction <= limits.correction_tolerance;
     }
@@ -249,9 +248,9 @@ bool CoupledStep::explicit_step_with_bodies(MultibodyState& bodies, Real t, Real
 // begins, with the contacts at the bodies' corrected place.
 void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
   const Integrator& limits = model_.integrator;
-  if (link_.multibody()) {
+  {
     const auto scope = timers_.time(Stage::mbs_correct);
-    link_.multibody()->predict(bodies, t, h);
+    link_.predict(bodies, t, h);
     IterationNorms norms;
     int iteration = 0;
     do {
@@ -260,7 +259,7 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
             fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations",
                         limits.max_iterations));
       ++counts_.newton_iterations;
-      norms = link_.multibody()->correct(link_.step_wrench());
+      norms = link_.correct();
     } while (norms.residual > limits.residual_tolerance || norms.correction > limits.correction_tolerance);
   }
   {
@@ -273,8 +272,7 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
     link_.reduce_wrench(backend_);
   }
   const auto scope = timers_.time(Stage::accept);
-  if (link_.multibody()) link_.multibody()->accept(bodies, link_.end_wrench());
-  bodies.wrench = link_.end_wrench();
+  link_.accept(bodies);
 }
 
 }  // namespace scree

@@ -86,6 +86,7 @@ const TableKeys& contact_keys();
 const TableKeys& material_keys();
 const TableKeys& wall_keys();
 const TableKeys& output_keys();
+const TableKeys& parallel_keys();
 const TableKeys& body_keys();
 const TableKeys& joint_keys();
 const TableKeys& driver_keys();

@@ -21,9 +21,10 @@ const TableKeys& deck_keys() {
        table("space", space_keys()).required(),
        vector("gravity", "m/s^2").otherwise("zero").about("Acceleration of gravity."),
        table("time", time_keys()).required(), table("integrator", integrator_keys()),
-       table("contact", contact_keys()), table("output", output_keys()), tables("materials", material_keys()),
-       tables("walls", wall_keys()), tables("bodies", body_keys()), tables("joints", joint_keys()),
-       tables("drivers", driver_keys()), tables("spring_dampers", spring_damper_keys()),
+       table("contact", contact_keys()), table("output", output_keys()), table("parallel", parallel_keys()),
+       tables("materials", material_keys()), tables("walls", wall_keys()), tables("bodies", body_keys()),
+       tables("joints", joint_keys()), tables("drivers", driver_keys()),
+       tables("spring_dampers", spring_damper_keys()),
        tables("torsional_spring_dampers", torsional_spring_damper_keys()),
        tables("applied_forces", applied_force_keys()), tables("particles", particle_keys())},
       ""};
@@ -139,6 +140,19 @@ const TableKeys& contact_keys() {
            .otherwise("0.05")
            .about("Overlap at t = 0 over the smaller radius: an error past this limit, a warning below it."),
        tables("pairs", pairs)},
+      ""};
+  return keys;
+}
+
+const TableKeys& parallel_keys() {
+  static const TableKeys keys{
+      "How the particles are spread over the ranks of mpirun; no result depends on it.",
+      {real("imbalance", "")
+           .at_least(0)
+           .otherwise("0.2")
+           .about(
+               "The ranks' boxes are cut anew where the largest work of a rank is more than this share above "
+               "the mean.")},
       ""};
   return keys;
 }

@@ -27,8 +27,8 @@ class Writer {
   std::string inline_table(const DeckTable& table) const;
   std::string vector_text(Vec3 v) const;
   bool left_out(const std::string& table, const Key& key) const {
-    return for_fingerprint_ &&
-           ((table.empty() && key.name == "output") || (table == "time" && key.name == "end"));
+    return for_fingerprint_ && ((table.empty() && (key.name == "output" || key.name == "parallel")) ||
+                                (table == "time" && key.name == "end"));
   }
 
   int dimension_;

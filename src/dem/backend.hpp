@@ -14,6 +14,8 @@
 #include "dem/shape_side.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
+#include "partition/decomposition.hpp"
+#include "partition/ranks.hpp"
 
 namespace scree {
 
@@ -45,14 +47,15 @@ ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes);
 // A particle outside the space.
 struct Leaver {
   GlobalId global_id;
-  Index local_index;
+  Index local_index;                   // on its rank
   Vec3 position;                       // [m]
   bool lost;                           // beyond a side that is a wall, which no particle can leave through
   Real energy;                         // kinetic and gravitational [J]
   Real contact_loss, integrator_loss;  // booked on it so far [J]
+  int rank = 0;                        // that owns it
 };
 
-// One entry per particle, any order.
+// One entry per particle of this rank, any order.
 struct ParticlePack {
   std::vector<GlobalId> global_id;
   std::vector<Real> radius;
@@ -66,12 +69,17 @@ struct VerletRun {
   bool open = false;  // whether the step after the last of them is open
 };
 
+// The particles of one rank on their machine. With several ranks, each has a backend, and all functions but
+// the simple getters (description, records, shape_losses, list_entries, list_builds, balance, pack_particles)
+// are collective: every rank calls them in the same order, and what they return is the same on every rank,
+// except where a comment says otherwise. So are the errors.
 class Backend {
  public:
   virtual ~Backend() = default;
   virtual std::string description() const = 0;
 
-  // State of the particle side: what a checkpoint stores.
+  // State of the particle side: what a checkpoint stores. load: the records of all particles, on every rank;
+  // records: of those that this rank owns. Shapes' losses are rank 0's.
   virtual void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) = 0;
   virtual std::vector<ParticleRecord> records() const = 0;  // ordered by global id
   virtual ShapeLosses shape_losses() const = 0;
@@ -81,8 +89,9 @@ class Backend {
   virtual void place_bodies(std::span<const BodyMotion> motion) = 0;
   virtual Real list_displacement() = 0;
   virtual void build_list(Real skin, StageTimers& timers) = 0;
-  virtual std::int64_t list_entries() const = 0;
-  virtual std::int64_t list_builds() const = 0;  // since the backend was made
+  virtual std::int64_t list_entries() const = 0;  // of this rank
+  virtual std::int64_t list_builds() const = 0;   // since the backend was made
+  virtual LoadBalance balance() const { return {}; }
 
   // Start: forces and accelerations of the loaded positions and velocities.
   virtual void initial_forces() = 0;
@@ -95,7 +104,7 @@ class Backend {
   // The particle with the largest residual in the last contact_force; -1 without particles.
   virtual GlobalId worst_particle() const = 0;
   // Contact wrenches on the bodies: what the step needs, and at the end of the step; equal unless contacts
-  // open or close within it.
+  // open or close within it. On rank 0; zero elsewhere.
   virtual void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) = 0;
   virtual ParticleCorrection particle_correct() = 0;
   // Takes part of the last correction back, after contact_force has reported an overshoot.
@@ -118,12 +127,12 @@ class Backend {
   // Takes them out of the search: they drift from now on or are removed, as the deck says. The list must then
   // be built anew.
   virtual void take_out(const std::vector<Leaver>& leavers) = 0;
-  // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s].
+  // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s]. Complete on rank 0.
   virtual ParticleLedger ledger(Real verlet_step) = 0;
   // Begins to copy out what pack_particles returns: the particles as they are now, whatever steps follow.
   virtual void start_pack() = 0;
   virtual ParticlePack pack_particles() = 0;
-  virtual ShapePack pack_shapes() = 0;
+  virtual ShapePack pack_shapes() = 0;  // complete on rank 0
 
   // Whether steps go on while the host does something else.
   virtual bool computes_asynchronously() const { return false; }
@@ -136,6 +145,6 @@ class Backend {
 };
 
 // Both throw SimulationError naming stage and global id on values that are not finite.
-std::unique_ptr<Backend> make_cpu_backend(const Model& model);
+std::unique_ptr<Backend> make_cpu_backend(const Model& model, const Ranks& ranks = {});
 
 }  // namespace scree

@@ -32,10 +32,10 @@ int BlockSolver::solve(const System& system, std::vector<Vec4>& d, std::vector<V
       d[i] = vec4(step, 0);
       solution[i] += step;
     }
-    update_halo(system.ghosts, d, n);
+    system.halo.update(std::span<Vec4>(d), n);
     for_each(Serial{}, n, subtract);
     ++products;
-    if (largest_norm(system.residual) <= system.tolerance) break;
+    if (system.ranks.max(largest_norm(system.residual)) <= system.tolerance) break;
     weights.advance();
   }
   return products;

@@ -67,7 +67,8 @@ class BlockSolver {
     SubtractMatrixItem<PackedRows> matrix;  // d and residual are set by the solver
     std::span<const Sym3> inverse_block;
     std::span<Vec3> residual;  // in: right-hand side; out: what is left of it
-    std::span<const Ghost> ghosts;
+    const Halo& halo;
+    const Ranks& ranks;
     Real largest_stiffening;
     Real tolerance;  // on the largest |residual| [N]
   };

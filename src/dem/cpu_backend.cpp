@@ -1,16 +1,17 @@
-// Items, list and bodies of the serial backend. The steps are in cpu_implicit.cpp and cpu_explicit.cpp.
+// Items and bodies of the serial backend. The list is in cpu_list.cpp, the steps are in cpu_implicit.cpp and
+// cpu_explicit.cpp.
 #include "dem/cpu_backend.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/error.hpp"
 
 namespace scree {
 
-CpuBackend::CpuBackend(const Model& model)
+CpuBackend::CpuBackend(const Model& model, const Ranks& ranks)
     : model_(model),
+      ranks_(ranks),
       subdomain_(model.space),
       side_(model, subdomain_),
       builder_(model, side_.shapes()),
@@ -18,9 +19,17 @@ CpuBackend::CpuBackend(const Model& model)
       planes_(wall_planes(model)),
       hht_(hht_coefficients(model.integrator.hht_alpha)) {}
 
+std::string CpuBackend::description() const {
+  return ranks_.alone() ? "cpu (serial)" : "cpu (" + std::to_string(ranks_.size()) + " ranks)";
+}
+
+// Any part of the particles will do for a start: the first list brings them to the ranks that own them.
 void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
-  side_.losses() = shapes;
-  store_.load(model_.particles, records);
+  side_.losses() = ranks_.is_root() ? shapes : ShapeLosses{};
+  const std::size_t n = records.size(), size = static_cast<std::size_t>(ranks_.size()),
+                    rank = static_cast<std::size_t>(ranks_.rank());
+  const std::size_t first = n * rank / size, last = n * (rank + 1) / size;
+  store_.load(model_.particles, std::span(records).subspan(first, last - first));
   layout_changed_ = true;
 }
 
@@ -58,87 +67,16 @@ void CpuBackend::find_shape_contacts(const Views& views) {
                    layout_.items - layout_.first_shape, side_.contacts().data());
 }
 
+void CpuBackend::fail_if_any(GlobalId id, const char* before, const char* after) const {
+  const GlobalId first = ranks_.min(id);
+  if (first != kNone) throw SimulationError(before + std::to_string(first) + after);
+}
+
 void CpuBackend::report_not_finite(const std::vector<Vec3>& force) const {
+  GlobalId bad = kNone;
   for (Index i = 0; i < layout_.owned; ++i)
-    if (!is_finite(force[i]))
-      throw SimulationError("stage contact_force: the force on particle " +
-                            std::to_string(store_.global_id[i]) + " is not finite");
-}
-
-void CpuBackend::refresh_ghosts() {
-  update_halo_positions(layout_.ghosts, store_.position, layout_.owned);
-  update_halo(layout_.ghosts, store_.velocity, layout_.owned);
-}
-
-// Owned particles in the order of their cells; those outside at the end.
-void CpuBackend::sort_cells(Real skin) {
-  const CellGrid grid = builder_.grid(skin, store_.owned + side_.shapes().size());
-  const Index outside = grid.count();
-  std::vector<Index> cell(store_.owned), start(outside + 2, 0), from(store_.owned);
-  store_.active = 0;
-  for (Index i = 0; i < store_.owned; ++i) {
-    store_.position[i] =
-        vec4(subdomain_.wrap(xyz(store_.position[i]), store_.image[i]), store_.position[i].w);
-    cell[i] = store_.drifting[i] ? outside : grid.cell(xyz(store_.position[i]));
-    if (!is_finite(xyz(store_.position[i])))
-      throw SimulationError("stage sort_cells: the position of particle " +
-                            std::to_string(store_.global_id[i]) + " is not finite");
-    if (cell[i] < 0) cell[i] = outside;  // has left; whether it may is asked at the end of the step
-    store_.active += cell[i] != outside;
-    ++start[cell[i] + 1];
-  }
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  for (Index i = 0; i < store_.owned; ++i) from[start[cell[i]]++] = i;
-  store_.reorder(from);
-}
-
-void CpuBackend::lay_out_items(Real skin) {
-  layout_.owned = store_.owned, layout_.active = store_.active;
-  const Real width = builder_.cutoff(skin);
-  layout_.ghosts = exchange_halo(subdomain_, model_.space,
-                                 {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
-  layout_.first_shape = layout_.owned + static_cast<Index>(layout_.ghosts.size());
-
-  side_.lay_out(model_.space, width, layout_);
-
-  store_.position.resize(layout_.items), store_.velocity.resize(layout_.items);
-  store_.material.resize(layout_.items), store_.global_id.resize(layout_.items);
-  for (std::size_t g = 0; g < layout_.ghosts.size(); ++g) {
-    store_.material[layout_.owned + g] = store_.material[layout_.ghosts[g].source];
-    store_.global_id[layout_.owned + g] = store_.global_id[layout_.ghosts[g].source];
-  }
-  for (Index item = layout_.first_shape; item < layout_.items; ++item) {
-    const ShapeItem& shape = side_.shapes().items()[layout_.shape_of(item)];
-    store_.material[item] = shape.material, store_.global_id[item] = shape.global_id;
-  }
-}
-
-void CpuBackend::build_list(Real skin, StageTimers& timers) {
-  {
-    const auto scope = timers.time(Stage::sort_cells);
-    sort_cells(skin);
-  }
-  {
-    const auto scope = timers.time(Stage::exchange_halo);
-    lay_out_items(skin);
-    refresh_ghosts();
-    place_shapes();
-  }
-  const auto scope = timers.time(Stage::neighbors);
-  builder_.build(store_, layout_, skin, list_);
-  list_position_ = store_.position;
-  spare_position_ = store_.position, spare_velocity_ = store_.velocity;
-  displacement_bound_ = step_bound_ = shape_bound_ = 0;
-  layout_changed_ = false;
-  ++list_builds_;
-
-  const std::size_t slots = list_.neighbors.size(), owned = static_cast<std::size_t>(layout_.owned);
-  if (model_.integrator.particles != ParticleIntegrator::hht) return;
-  matrix_entries_.resize(slots), direction_.resize(layout_.items);
-  step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
-  force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
-  residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned),
-      matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
+    if (!is_finite(force[i])) bad = std::min(bad, store_.global_id[i]);
+  fail_if_any(bad, "stage contact_force: the force on particle ", " is not finite");
 }
 
 Real CpuBackend::list_displacement() {
@@ -154,15 +92,18 @@ Real CpuBackend::list_displacement() {
   const auto add = [&](Index i) {
     const Vec3 d = xyz(store_.position[i]) - xyz(list_position_[i]);
     const Real value = dot(d, d);
-    if (!(value <= squared)) squared = value;  // a NaN counts as expired
+    if (!(value <= squared) && !std::isnan(squared)) squared = value;  // a NaN counts as expired
   };
   for (Index i = 0; i < layout_.active; ++i) add(i);
   for (Index i = layout_.first_shape; i < layout_.items; ++i) add(i);
+  squared = ranks_.max(squared);
   if (!std::isfinite(squared)) return 2;
   displacement_bound_ = std::sqrt(squared);
   return displacement_bound_ / half_skin;
 }
 
-std::unique_ptr<Backend> make_cpu_backend(const Model& model) { return std::make_unique<CpuBackend>(model); }
+std::unique_ptr<Backend> make_cpu_backend(const Model& model, const Ranks& ranks) {
+  return std::make_unique<CpuBackend>(model, ranks);
+}
 
 }  // namespace scree

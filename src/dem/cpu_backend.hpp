@@ -1,6 +1,7 @@
 // The serial backend of one rank: the paper's CMAP.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,8 +20,8 @@ namespace scree {
 
 class CpuBackend : public Backend {
  public:
-  explicit CpuBackend(const Model& model);
-  std::string description() const override { return "cpu (serial)"; }
+  explicit CpuBackend(const Model& model, const Ranks& ranks = {});
+  std::string description() const override;
 
   void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) override;
   std::vector<ParticleRecord> records() const override;
@@ -31,6 +32,7 @@ class CpuBackend : public Backend {
   void build_list(Real skin, StageTimers& timers) override;
   std::int64_t list_entries() const override { return static_cast<std::int64_t>(list_.neighbors.size()); }
   std::int64_t list_builds() const override { return list_builds_; }
+  LoadBalance balance() const override { return balance_; }
   void initial_forces() override;
 
   void begin_step(Real h) override;
@@ -67,16 +69,28 @@ class CpuBackend : public Backend {
   StepForces step_forces();
   CorrectItem correct_item(Real share);
   Real along_correction(const std::vector<Vec3>& residual) const;
+  void share_step();
+  bool any_outside() const;
+  // Parts of build_list, in their order.
+  void wrap_positions();
+  void migrate();
+  void decompose();
+  void sort_cells(Real skin);
   // Sizes all item arrays, fills in ghosts and shapes.
   void lay_out_items(Real skin);
-  void sort_cells(Real skin);
-  void refresh_ghosts();
-  // Throws SimulationError naming the first particle whose force is not finite.
+  void size_step_arrays();
+  void measure_balance();
+  void refresh_ghosts() { halo_.update_motion(store_.position, store_.velocity, layout_.owned); }
+  // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.
   void report_not_finite(const std::vector<Vec3>& force) const;
+  // The same of a particle that only some ranks know of; id: kNone without one.
+  void fail_if_any(GlobalId id, const char* before, const char* after) const;
+  static constexpr GlobalId kNone = std::numeric_limits<GlobalId>::max();
   void place_shapes();
   void find_shape_contacts(const Views& views);
 
   const Model& model_;
+  Ranks ranks_;
   Subdomain subdomain_;
   ShapeSide side_;
   NeighborBuilder builder_;
@@ -85,6 +99,11 @@ class CpuBackend : public Backend {
   HhtCoefficients hht_;
 
   ParticleStore store_;
+  Decomposition decomposition_;  // with several ranks, from the first list on
+  LoadBalance balance_;
+  std::vector<Index> row_length_;  // of the particles when the list was built, with several ranks
+  Halo halo_;
+  SearchCells cells_;
   NeighborList list_;
   ItemLayout layout_;
   std::vector<Vec4> list_position_;  // of all items when the list was built
@@ -105,7 +124,9 @@ class CpuBackend : public Backend {
   std::vector<Vec4> direction_;
   std::vector<Vec4> spare_position_, spare_velocity_;  // explicit steps write here while neighbours are read
   Index closed_ = 0;                                   // explicit steps since verlet_start
-  bool opened_ = false;  // whether the last of them was closed by opening the next
+  bool outside_ = false;  // whether a particle is outside the space where the open step ends, if one of the
+                          // bodies ends there
+  bool opened_ = false;   // whether the last of them was closed by opening the next
   Real largest_stiffening_ = 0, force_scale_ = 0;
   LineSearch line_search_;  // along correction_
   bool in_implicit_step_ = false;

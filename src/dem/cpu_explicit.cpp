@@ -21,6 +21,14 @@ void CpuBackend::verlet_start(Real h) {
   const VerletStartItem item{verlet_views(h, store_.position, store_.velocity)};
   step_bound_ = std::sqrt(max_over(Serial{}, layout_.owned, item));
   closed_ = 0;
+  share_step();
+}
+
+// What all ranks must know of the open step.
+void CpuBackend::share_step() {
+  Real shared[2] = {step_bound_, ends_step() && any_outside() ? Real(1) : Real(0)};
+  ranks_.max(shared);
+  step_bound_ = shared[0], outside_ = shared[1] != 0;
 }
 
 VerletRun CpuBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) {
@@ -28,9 +36,10 @@ VerletRun CpuBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers
   while (run.closed < most && run.open) {
     if (list_displacement() > 1) build_list(model_.contact.skin, timers);
     const auto scope = timers.time(Stage::contact_force);
-    run.open = (keep_open || run.closed + 1 < most) && !(ends_step() && !outside().empty());
+    run.open = (keep_open || run.closed + 1 < most) && !outside_;
     run.open ? verlet_advance(h) : verlet_finish(h);
     ++run.closed, ++closed_;
+    if (run.open) share_step();
   }
   return run;
 }
@@ -58,7 +67,7 @@ void CpuBackend::verlet_finish(Real h) {
   const Real squared =
       kernels_->verlet_finish(views(), model_.gravity, layout_.owned,
                               verlet_views(h, spare_position_, spare_velocity_), store_.force.data());
-  if (!std::isfinite(squared)) report_not_finite(store_.force);
+  if (!std::isfinite(ranks_.max(squared))) report_not_finite(store_.force);
   std::swap(store_.velocity, spare_velocity_);
   opened_ = false;
   refresh_ghosts();

@@ -56,7 +56,8 @@ Real CpuBackend::step_displacement() {
   const DisplacementItem moved{start_position_.data(), store_.position.data()};
   const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
   const Real particles = max_over(Serial{}, layout_.active, moved);
-  return std::sqrt(std::max(particles, max_over(Serial{}, layout_.items - layout_.first_shape, shapes)));
+  return std::sqrt(
+      ranks_.max(std::max(particles, max_over(Serial{}, layout_.items - layout_.first_shape, shapes))));
 }
 
 StepForces CpuBackend::step_forces() {
@@ -75,35 +76,41 @@ ParticleNorms CpuBackend::contact_force() {
            ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
                         stiffening_.data()});
 
-  StepNorms largest{};
+  Real residual = 0, bound = 0, force = 0, stiffening = 0;
+  bool finite = true;
   const StepNormsItem of{step_views(), residual_.data(), force_magnitude_.data(), stiffening_.data()};
   for (Index i = 0; i < n; ++i) {
     const StepNorms one = of(i);
-    if (!std::isfinite(one.residual)) report_not_finite(residual_);
-    largest.residual = std::max(largest.residual, one.residual);
-    largest.correction_bound = std::max(largest.correction_bound, one.correction_bound);
-    largest.force = std::max(largest.force, one.force);
-    largest.stiffening = std::max(largest.stiffening, one.stiffening);
+    finite = finite && std::isfinite(one.residual);
+    residual = std::max(residual, one.residual);
+    bound = std::max(bound, one.correction_bound);
+    force = std::max(force, one.force);
+    stiffening = std::max(stiffening, one.stiffening);
   }
-  force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
+  Real maxima[5] = {residual, bound, force, stiffening, finite ? Real(0) : Real(1)};
+  ranks_.max(maxima);
+  if (maxima[4] != 0) report_not_finite(residual_);
+  StepNorms largest;
+  largest.residual = maxima[0], largest.correction_bound = maxima[1];
+  largest.force = force_scale_ = maxima[2], largest.stiffening = largest_stiffening_ = maxima[3];
   if (line_search_.is_open()) line_search_.look(along_correction(residual_));
   return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
 GlobalId CpuBackend::worst_particle() const {
-  Real largest = -1;
-  GlobalId worst = -1;
-  for (Index i = 0; i < layout_.owned; ++i) {
-    const Real r = norm(residual_[i]);
-    const bool first_of_equals = r == largest && store_.global_id[i] < worst;
-    if (r > largest || first_of_equals) largest = r, worst = store_.global_id[i];
-  }
-  return worst;
+  Real own = 0;
+  for (Index i = 0; i < layout_.owned; ++i) own = std::max(own, norm(residual_[i]));
+  const Real largest = ranks_.max(own);
+  GlobalId worst = kNone;
+  for (Index i = 0; i < layout_.owned; ++i)
+    if (norm(residual_[i]) == largest) worst = std::min(worst, store_.global_id[i]);
+  worst = ranks_.min(worst);
+  return worst == kNone ? -1 : worst;
 }
 
 Real CpuBackend::along_correction(const std::vector<Vec3>& residual) const {
   Real sum[1];
-  reproducible_sums(layout_.owned, SlopeItem{residual.data(), correction_.data()}, sum);
+  reproducible_sums(layout_.owned, SlopeItem{residual.data(), correction_.data()}, sum, ranks_);
   return sum[0];
 }
 
@@ -119,7 +126,7 @@ void CpuBackend::shorten_correction() {
 }
 
 void CpuBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
-  side_.reduce(layout_, step, end);
+  side_.reduce(layout_, ranks_, step, end);
 }
 
 ParticleCorrection CpuBackend::particle_correct() {
@@ -140,18 +147,18 @@ ParticleCorrection CpuBackend::particle_correct() {
     std::fill(direction_.begin() + layout_.first_shape, direction_.end(), Vec4{});
   }
   right_hand_side_ = residual_;
-  const Real right_hand_side = max_over(Serial{}, n, NormItem{residual_.data()});
+  const Real right_hand_side = ranks_.max(max_over(Serial{}, n, NormItem{residual_.data()}));
   // The shapes' displacements may be what is not finite: without a correction the bodies alone would notice.
   if (!std::isfinite(right_hand_side)) report_not_finite(residual_);
   const Real tolerance =
       solver_tolerance(model_.integrator.residual_tolerance, force_scale_, right_hand_side);
-  const BlockSolver::System system{matrix,         inverse_block_,      residual_,
-                                   layout_.ghosts, largest_stiffening_, tolerance};
+  const BlockSolver::System system{matrix, inverse_block_,      residual_, halo_,
+                                   ranks_, largest_stiffening_, tolerance};
   ParticleCorrection out;
   line_search_ = {};
   if (right_hand_side > 0) {
     out.iterations = solver_.solve(system, direction_, correction_);
-    out.correction = max_over(Serial{}, n, correct_item(1));
+    out.correction = ranks_.max(max_over(Serial{}, n, correct_item(1)));
     line_search_.open(along_correction(right_hand_side_));
   }
   for_each(Serial{}, n, NewmarkItem{step_views()});
@@ -159,7 +166,9 @@ ParticleCorrection CpuBackend::particle_correct() {
   return out;
 }
 
-Real CpuBackend::error() { return max_over(Serial{}, layout_.owned, StepErrorItem{step_views()}); }
+Real CpuBackend::error() {
+  return ranks_.max(max_over(Serial{}, layout_.owned, StepErrorItem{step_views()}));
+}
 
 void CpuBackend::accept() {
   for_each(Serial{}, layout_.owned,

@@ -7,28 +7,41 @@
 #include "dem/ledger_items.hpp"
 
 namespace scree {
+bool CpuBackend::any_outside() const {
+  for (Index i = 0; i < store_.owned; ++i)
+    if (!store_.drifting[i] && !subdomain_.inside(xyz(store_.position[i]))) return true;
+  return false;
+}
+
 std::vector<Leaver> CpuBackend::outside() const {
   std::vector<Leaver> leavers;
+  if (!ranks_.any(any_outside())) return leavers;
   for (Index i = 0; i < store_.owned; ++i) {
     const Vec3 p = xyz(store_.position[i]);
     if (store_.drifting[i] || subdomain_.inside(p)) continue;
     const Real energy = energy_of_motion(store_.position[i], store_.velocity[i], store_.image[i],
                                          model_.gravity, subdomain_.period());
     leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy, store_.contact_loss[i],
-                       store_.integrator_loss[i]});
+                       store_.integrator_loss[i], ranks_.rank()});
   }
+  leavers = ranks_.gather_everywhere(std::move(leavers));
   std::sort(leavers.begin(), leavers.end(),
             [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
   return leavers;
 }
 
 void CpuBackend::take_out(const std::vector<Leaver>& leavers) {
-  for (const Leaver& leaver : leavers) store_.drifting[leaver.local_index] = 1;
+  for (const Leaver& leaver : leavers)
+    if (leaver.rank == ranks_.rank()) store_.drifting[leaver.local_index] = 1;
   layout_changed_ = true;
   if (model_.space.leaving != Leaving::remove) return;
   std::vector<Index> staying;
   for (Index i = 0; i < store_.owned; ++i)
     if (!store_.drifting[i]) staying.push_back(i);
+  if (!ranks_.alone()) {
+    for (std::size_t k = 0; k < staying.size(); ++k) row_length_[k] = row_length_[staying[k]];
+    row_length_.resize(staying.size());
+  }
   store_.reorder(staying);
 }
 
@@ -51,9 +64,10 @@ ParticleLedger CpuBackend::ledger(Real verlet_step) {
                         subdomain_.period(),
                         verlet_step};
   Real sums[kLedgerTerms];
-  reproducible_sums(n, item, sums);
+  reproducible_sums(n, item, sums, ranks_);
   ParticleLedger out = make_particle_ledger(sums, side_);
   for (Index i = 0; i < n; ++i) out.drifting += store_.drifting[i];
+  out.drifting = ranks_.sum(out.drifting);
   return out;
 }
 
@@ -75,7 +89,7 @@ void CpuBackend::start_pack() {
 
 ShapePack CpuBackend::pack_shapes() {
   find_shape_contacts(views());
-  return side_.pack(layout_);
+  return side_.pack(layout_, ranks_);
 }
 
 }  // namespace scree

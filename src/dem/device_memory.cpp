@@ -41,7 +41,7 @@ double slots_at_start(const ParticleStore& store, const ItemLayout& layout, Neig
                       Real skin) {
   constexpr Index kSlice = 32;
   NeighborList list;
-  builder.build(store, layout, skin, list);
+  builder.build(store, layout, builder.cells(skin, layout.owned), skin, list);
   double slots = 0;
   for (Index first = 0; first < layout.items; first += kSlice) {
     Index width = 0;
@@ -60,7 +60,7 @@ Sizes sizes_of(const Model& model) {
   ParticleStore store;
   store.load(model.particles, initial_records(model.particles, subdomain));
   const std::vector<Ghost> ghosts =
-      exchange_halo(subdomain, model.space, store.position, builder.cutoff(skin));
+      periodic_images(subdomain, model.space, store.position, builder.cutoff(skin));
   Sizes sizes{};
   sizes.particles = static_cast<double>(model.particles.size()),
   sizes.ghosts = static_cast<double>(ghosts.size());

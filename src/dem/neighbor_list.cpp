@@ -1,6 +1,7 @@
 #include "dem/neighbor_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.hpp"
@@ -13,18 +14,47 @@ NeighborBuilder::NeighborBuilder(const Model& model, const BodyShapes& shapes)
   for (const ShapeItem& s : shapes.items()) largest_radius_ = std::max(largest_radius_, s.radius);
 }
 
+namespace {
+
+// Cells for so many items, countable by an Index.
+Index most_cells(std::int64_t items) {
+  return static_cast<Index>(std::min<std::int64_t>(4 * items + 4096, std::numeric_limits<Index>::max() / 2));
+}
+
+}  // namespace
+
 CellGrid NeighborBuilder::grid(Real skin, Index items) const {
   return make_cell_grid(model_.space.min, model_.space.max, model_.space.dimension, cutoff(skin),
-                        4 * items + 4096);
+                        most_cells(items));
+}
+
+SearchCells NeighborBuilder::cells(Real skin, std::int64_t particles) const {
+  const CellGrid space = make_cell_grid(model_.space.min, model_.space.max, model_.space.dimension,
+                                        cutoff(skin), most_cells(particles + shapes_.size()));
+  return {space, space, true};
+}
+
+SearchCells NeighborBuilder::cells(Real skin, std::int64_t particles, const DomainBox& box,
+                                   Index items) const {
+  SearchCells out = cells(skin, particles);
+  const auto finite = [](Vec3 corner, Vec3 of_space) {
+    return Vec3{std::isfinite(corner.x) ? corner.x : of_space.x,
+                std::isfinite(corner.y) ? corner.y : of_space.y,
+                std::isfinite(corner.z) ? corner.z : of_space.z};
+  };
+  out.own = make_cell_grid(finite(box.min, model_.space.min), finite(box.max, model_.space.max),
+                           model_.space.dimension, cutoff(skin), most_cells(items));
+  out.same = false;
+  return out;
 }
 
 void NeighborBuilder::sort_into_cells(const ParticleStore& store, const ItemLayout& layout,
-                                      const CellGrid& grid) {
-  cell_start_.assign(static_cast<std::size_t>(grid.count()) + 1, 0);
+                                      const SearchCells& cells) {
+  cell_start_.assign(static_cast<std::size_t>(cells.own.count()) + 1, 0);
   cell_of_.resize(static_cast<std::size_t>(layout.items));
   for (Index i = 0; i < layout.items; ++i) {
     const bool searched = i < layout.active || i >= layout.owned;
-    const Index cell = searched ? grid.cell(xyz(store.position[i])) : -1;
+    const Index cell = searched ? cells.cell(xyz(store.position[i])) : -1;
     cell_of_[i] = cell;
     if (cell >= 0) ++cell_start_[cell + 1];
   }
@@ -38,12 +68,13 @@ void NeighborBuilder::sort_into_cells(const ParticleStore& store, const ItemLayo
 }
 
 // Which pairs a row leaves out: an image of a shape sees owned particles only (its contacts with other shapes
-// are those of the original), ghosts have no row of their own and shapes leave them to the original's images.
+// are those of the original, on one rank), ghosts have no row of their own and shapes leave them to the
+// original's images.
 bool NeighborBuilder::excluded(const ItemLayout& layout, Index i, Index j) const {
   if (i == j) return true;
   if (i < layout.first_shape) return false;
   if (j < layout.owned) return false;
-  if (j < layout.first_shape || layout.is_shape_image(i)) return true;
+  if (j < layout.first_shape || layout.is_shape_image(i) || !layout.shapes_meet) return true;
   return !shapes_.may_touch(shapes_.items()[layout.shape_of(i)].body,
                             shapes_.items()[layout.shape_of(j)].body);
 }
@@ -71,7 +102,7 @@ void NeighborBuilder::order_row(const ParticleStore& store, const ItemLayout& la
                                 Index* last) const {
   const auto image = [&](Index j) {
     if (j < layout.owned) return kNoShift;
-    if (j < layout.first_shape) return layout.ghosts[j - layout.owned].image;
+    if (j < layout.first_shape) return layout.ghost_images[j - layout.owned];
     return layout.is_shape_image(j) ? layout.shape_images[j - layout.first_shape - layout.shapes].image
                                     : kNoShift;
   };
@@ -85,7 +116,7 @@ void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout
                                     NeighborList& list) const {
   list.walls.clear();
   list.wall_offsets.assign(static_cast<std::size_t>(layout.items) + 1, 0);
-  const Index last_shape = layout.first_shape + layout.shapes;
+  const Index last_shape = layout.first_shape + (layout.shapes_meet ? layout.shapes : 0);
   for (Index i = 0; i < layout.items; ++i) {
     const bool collides = i < layout.active || (i >= layout.first_shape && i < last_shape);
     for (Index w = 0; collides && w < static_cast<Index>(model_.walls.size()); ++w) {
@@ -97,9 +128,8 @@ void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout
   }
 }
 
-void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, Real skin,
-                            NeighborList& list) {
-  const CellGrid cells = grid(skin, layout.items);
+void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
+                            Real skin, NeighborList& list) {
   list.skin = skin;
   list.neighbors.clear();
   list.offsets.assign(static_cast<std::size_t>(layout.items) + 1, 0);
@@ -107,7 +137,7 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
   for (Index i = 0; i < layout.items; ++i) {
     const Index begin = static_cast<Index>(list.neighbors.size());
     const bool has_row = i < layout.active || i >= layout.first_shape;
-    if (has_row && cell_of_[i] >= 0) collect_row(store, layout, cells, i, list);
+    if (has_row && cell_of_[i] >= 0) collect_row(store, layout, cells.own, i, list);
     order_row(store, layout, list.neighbors.data() + begin, list.neighbors.data() + list.neighbors.size());
     if (list.neighbors.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
       throw SimulationError("stage neighbors: more neighbours than one rank can count");

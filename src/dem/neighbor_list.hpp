@@ -10,6 +10,7 @@
 #include "dem/particle_store.hpp"
 #include "model/model.hpp"
 #include "partition/cell_grid.hpp"
+#include "partition/decomposition.hpp"
 #include "partition/halo.hpp"
 
 namespace scree {
@@ -27,9 +28,10 @@ struct ItemLayout {
   Index owned = 0, active = 0;  // owned particles, and those of them in the search
   Index first_shape = 0;        // after owned and ghosts
   Index items = 0;
-  std::vector<Ghost> ghosts;        // of owned particles
-  std::vector<Ghost> shape_images;  // of shapes: source counts from 0 within the shapes
-  Index shapes = 0;                 // originals, before their images
+  std::vector<std::int8_t> ghost_images;  // numbers of the ghosts' shifts
+  std::vector<Ghost> shape_images;        // of shapes: source counts from 0 within the shapes
+  Index shapes = 0;                       // originals, before their images
+  bool shapes_meet = true;  // whether this rank has the contacts of shapes with each other and with walls
   // Shape of an item >= first_shape, and whether the item is an image of it.
   Index shape_of(Index item) const {
     const Index s = item - first_shape;
@@ -38,19 +40,36 @@ struct ItemLayout {
   bool is_shape_image(Index item) const { return item - first_shape >= shapes; }
 };
 
+// Cells that items are sorted into.
+struct SearchCells {
+  CellGrid space;  // the items in one of its cells are searched, on any number of ranks the same
+  CellGrid own;    // over the box of this rank; with one rank the same
+  bool same = true;
+
+  // -1 for items that are not searched.
+  Index cell(Vec3 p) const {
+    const Index cell = space.cell(p);
+    return cell < 0 || same ? cell : own.nearest(p);
+  }
+};
+
 class NeighborBuilder {
  public:
   NeighborBuilder(const Model& model, const BodyShapes& shapes);
 
   // The grid whose cells are at least one largest diameter plus skin wide.
   CellGrid grid(Real skin, Index items) const;
+  // particles, items: of all ranks and of this one, for the number of cells.
+  SearchCells cells(Real skin, std::int64_t particles) const;
+  SearchCells cells(Real skin, std::int64_t particles, const DomainBox& box, Index items) const;
   // Largest distance of centres that the list must see: largest diameter plus skin [m].
   Real cutoff(Real skin) const { return 2 * largest_radius_ + skin; }
   // Fills the list from the positions of all items.
-  void build(const ParticleStore& store, const ItemLayout& layout, Real skin, NeighborList& list);
+  void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells, Real skin,
+             NeighborList& list);
 
  private:
-  void sort_into_cells(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid);
+  void sort_into_cells(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells);
   void collect_row(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid, Index i,
                    NeighborList& list);
   bool excluded(const ItemLayout& layout, Index i, Index j) const;

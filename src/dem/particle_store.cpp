@@ -4,7 +4,7 @@
 
 namespace scree {
 
-void ParticleStore::load(const ParticleSet& set, const std::vector<ParticleRecord>& records) {
+void ParticleStore::load(const ParticleSet& set, std::span<const ParticleRecord> records) {
   const std::size_t n = records.size();
   owned = active = static_cast<Index>(n);
   position.resize(n), velocity.resize(n), material.resize(n), global_id.resize(n);
@@ -23,11 +23,32 @@ void ParticleStore::load(const ParticleSet& set, const std::vector<ParticleRecor
   }
 }
 
+ParticleRecord ParticleStore::record(Index at) const {
+  const auto i = static_cast<std::size_t>(at);
+  return {global_id[i],    xyz(position[i]), xyz(velocity[i]),   acceleration[i], force[i],
+          contact_loss[i], loss_power[i],    integrator_loss[i], image[i],        drifting[i] != 0};
+}
+
+Migrant ParticleStore::migrant(Index at) const {
+  const auto i = static_cast<std::size_t>(at);
+  return {record(at), position[i].w, velocity[i].w, material[i]};
+}
+
+void ParticleStore::add(const Migrant& particle) {
+  const ParticleRecord& r = particle.state;
+  position.push_back(vec4(r.position, particle.radius)), velocity.push_back(vec4(r.velocity, particle.mass));
+  material.push_back(static_cast<int>(particle.material)), global_id.push_back(r.global_id);
+  acceleration.push_back(r.acceleration), force.push_back(r.force);
+  contact_loss.push_back(r.contact_loss), loss_power.push_back(r.loss_power);
+  integrator_loss.push_back(r.integrator_loss);
+  image.push_back(r.image), drifting.push_back(r.drifting);
+  ++owned;
+}
+
 std::vector<ParticleRecord> ParticleStore::records() const {
-  std::vector<ParticleRecord> out(static_cast<std::size_t>(owned));
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = {global_id[i],    xyz(position[i]), xyz(velocity[i]),   acceleration[i], force[i],
-              contact_loss[i], loss_power[i],    integrator_loss[i], image[i],        drifting[i] != 0};
+  std::vector<ParticleRecord> out;
+  out.reserve(static_cast<std::size_t>(owned));
+  for (Index i = 0; i < owned; ++i) out.push_back(record(i));
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
   return out;
 }

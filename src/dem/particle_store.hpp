@@ -1,6 +1,7 @@
 // Particles of one rank: structure of arrays in cell order.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -24,6 +25,14 @@ struct ParticleRecord {
   bool drifting = false;  // has left through an open side
 };
 
+// A particle that changes its rank, complete.
+struct Migrant {
+  ParticleRecord state;
+  Real radius = 0;  // [m]
+  Real mass = 0;    // [kg]
+  std::int64_t material = 0;
+};
+
 // Items: owned particles [0, owned), ghosts [owned, owned + ghosts), shapes of bodies after them. Owned
 // particles in the pair search come first; those that drift outside stand at the end of the owned. `position`
 // and `velocity` hold all items; the other arrays the owned particles.
@@ -40,8 +49,11 @@ struct ParticleStore {
   Index owned = 0;
   Index active = 0;  // owned particles in the pair search
 
-  void load(const ParticleSet& set, const std::vector<ParticleRecord>& records);
+  void load(const ParticleSet& set, std::span<const ParticleRecord> records);
   std::vector<ParticleRecord> records() const;  // ordered by global id
+  ParticleRecord record(Index i) const;
+  Migrant migrant(Index i) const;
+  void add(const Migrant& particle);  // behind the owned; the store holds owned particles alone then
   // Puts the owned particles into the order of `from`: new i was old from[i].
   void reorder(const std::vector<Index>& from);
 };

@@ -1,20 +1,63 @@
 // What happens for one shape of a body in the contact stages. One text for the CPU and CUDA.
 #pragma once
 
+#include "base/exact_sum.hpp"
 #include "dem/contact_items.hpp"
 
 namespace scree {
 
-// What the contacts of one shape of a body sum to. Every contact force passes through the shape's centre.
+// Sums over contacts that are the same bits in any order and over any split of the contacts over ranks.
+struct ExactVec3 {
+  ExactSum x, y, z;
+
+  SCREE_HD void add(Vec3 v) { x.add(v.x), y.add(v.y), z.add(v.z); }
+  SCREE_HD void add(const ExactVec3& part) { x.add(part.x), y.add(part.y), z.add(part.z); }
+  Vec3 value() const { return {x.value(), y.value(), z.value()}; }
+};
+
+struct ExactSym3 {
+  ExactSum xx, xy, xz, yy, yz, zz;
+
+  SCREE_HD void add(const Sym3& m) {
+    xx.add(m.xx), xy.add(m.xy), xz.add(m.xz), yy.add(m.yy), yz.add(m.yz), zz.add(m.zz);
+  }
+  SCREE_HD void add(const ExactSym3& part) {
+    xx.add(part.xx), xy.add(part.xy), xz.add(part.xz), yy.add(part.yy), yz.add(part.yz), zz.add(part.zz);
+  }
+  Sym3 value() const { return {xx.value(), xy.value(), xz.value(), yy.value(), yz.value(), zz.value()}; }
+};
+
+// What crosses the ranks of the contacts of one shape. Every contact force passes through the shape's centre.
+struct ShapeForces {             // of no meaning without contacts
+  ExactVec3 step;                // for the step: see StepContact [N]
+  ExactVec3 end;                 // at the end of the step [N]
+  ExactSym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
+  std::int64_t contacts = 0;
+
+  SCREE_HD void add(const ShapeForces& part) {
+    step.add(part.step), end.add(part.end), stiffness.add(part.stiffness), damping.add(part.damping);
+    contacts += part.contacts;
+  }
+};
+
+// What the contacts of one shape item of a body sum to. The energies are those of contacts with other shapes
+// and with walls alone, which one rank sees.
 struct ShapeContact {
-  Vec3 force;               // for the step: see StepContact [N]
-  Vec3 end_force;           // at the end of the step [N]
-  Sym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
+  ShapeForces forces;
   Real step_loss = 0, end_loss = 0;  // the shape's share [W]
   Real energy = 0;                   // the shape's share of the contacts' elastic energy [J]
   Real pairs = 0;                    // the shape's share of the number of contacts
-  Index contacts = 0;
 };
+
+// Puts a sum where it belongs; most shapes touch nothing, and their forces are not written.
+SCREE_HD void store(const ShapeContact& sum, ShapeContact& out) {
+  if (sum.forces.contacts > 0) {
+    out = sum;
+    return;
+  }
+  out.forces.contacts = 0;
+  out.step_loss = out.end_loss = out.energy = out.pairs = 0;
+}
 
 // Where the shape items are, indexed from first_shape.
 struct ShapePlaces {
@@ -35,19 +78,19 @@ struct ShapeStepItem {
     const Index i = contacts.in.first_shape + shape;
     ShapeContact sum;
     const auto add = [&](const StepContact& c, Vec3 normal, Real share) {
-      sum.force += c.step.force * normal;
-      sum.end_force += c.end_force * normal;
-      sum.stiffness += outer(c.step.stiffness, normal);
-      sum.damping += outer(c.step.damping, normal);
+      sum.forces.step.add(c.step.force * normal);
+      sum.forces.end.add(c.end_force * normal);
+      sum.forces.stiffness.add(outer(c.step.stiffness, normal));
+      sum.forces.damping.add(outer(c.step.damping, normal));
       sum.step_loss += share * c.step.loss;
       sum.end_loss += share * c.end_loss;
-      ++sum.contacts;
+      ++sum.forces.contacts;
     };
     contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
       add(c, normal, shape_share(j, contacts.in.first_shape));
     });
     contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
-    out[shape] = sum;
+    store(sum, out[shape]);
   }
 };
 
@@ -69,11 +112,11 @@ struct ShapeContactItem {
   SCREE_HD void add(ShapeContact& sum, const KelvinVoigt& law, const Overlap& o, Real rate,
                     Real share) const {
     const ContactForce c = contact_force<Elastic>(law, o.overlap, rate);
-    sum.force += c.force * o.normal;
+    sum.forces.end.add(c.force * o.normal);
     sum.end_loss += share * c.loss;
     sum.energy += share * Elastic::energy(law, o.overlap);
     sum.pairs += share;
-    ++sum.contacts;
+    ++sum.forces.contacts;
   }
 
   SCREE_HD void operator()(Index shape) const {
@@ -93,8 +136,8 @@ struct ShapeContactItem {
       const Overlap o = wall_overlap(p, wall);
       if (o.overlap > 0) add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
     }
-    sum.end_force = sum.force, sum.step_loss = sum.end_loss;
-    out[shape] = sum;
+    sum.forces.step = sum.forces.end, sum.step_loss = sum.end_loss;
+    store(sum, out[shape]);
   }
 };
 

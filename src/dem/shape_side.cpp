@@ -24,7 +24,7 @@ void ShapeSide::lay_out(const Space& space, Real width, ItemLayout& layout) {
     shift_[s] = wrapped - p;
     centers[s] = vec4(wrapped, shape.radius);
   }
-  layout.shape_images = exchange_halo(subdomain_, space, centers, width);
+  layout.shape_images = periodic_images(subdomain_, space, centers, width);
   layout.items = layout.first_shape + layout.shapes + static_cast<Index>(layout.shape_images.size());
   const auto items = static_cast<std::size_t>(layout.items - layout.first_shape);
   position_.resize(items), velocity_.resize(items), contacts_.resize(items);
@@ -47,18 +47,45 @@ Real ShapeSide::place(const ItemLayout& layout) {
   return std::sqrt(squared);
 }
 
-void ShapeSide::reduce(const ItemLayout& layout, std::vector<BodyWrench>& step,
+// Ordered by shape; those of all ranks on rank 0. A shape and its images across periodic sides are one: which
+// of them a particle touches changes when the particle is brought back into the box.
+std::vector<ShapeSide::Touched> ShapeSide::touched(const ItemLayout& layout, const Ranks& ranks) const {
+  std::vector<Touched> all;
+  for (std::size_t s = 0; s < contacts_.size(); ++s)
+    if (contacts_[s].forces.contacts > 0)
+      all.push_back({layout.shape_of(layout.first_shape + static_cast<Index>(s)), contacts_[s].forces});
+  all = ranks.gather(std::move(all));
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.shape < b.shape; });
+  std::vector<Touched> merged;
+  for (const Touched& one : all) {
+    if (merged.empty() || merged.back().shape != one.shape)
+      merged.push_back(one);
+    else
+      merged.back().forces.add(one.forces);
+  }
+  return merged;
+}
+
+template <class Visit>
+void ShapeSide::for_each_touched(const ItemLayout& layout, const Ranks& ranks, const Visit& visit) const {
+  if (!ranks.alone() || !layout.shape_images.empty()) {
+    for (const Touched& one : touched(layout, ranks)) visit(one.shape, one.forces);
+    return;
+  }
+  for (std::size_t s = 0; s < contacts_.size(); ++s)
+    if (contacts_[s].forces.contacts > 0) visit(static_cast<Index>(s), contacts_[s].forces);
+}
+
+void ShapeSide::reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& step,
                        std::vector<BodyWrench>& end) const {
   std::fill(step.begin(), step.end(), BodyWrench{});
   std::fill(end.begin(), end.end(), BodyWrench{});
-  for (std::size_t s = 0; s < contacts_.size(); ++s) {
-    const ShapeContact& contact = contacts_[s];
-    if (contact.contacts == 0) continue;
-    const ShapeItem& shape = shapes_.items()[layout.shape_of(layout.first_shape + static_cast<Index>(s))];
+  for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
+    const ShapeItem& shape = shapes_.items()[s];
     const Vec3 arm = point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
-    add_point_force(step[shape.body], contact.force, arm, contact.stiffness, contact.damping);
-    add_point_force(end[shape.body], contact.end_force, arm, {}, {});
-  }
+    add_point_force(step[shape.body], f.step.value(), arm, f.stiffness.value(), f.damping.value());
+    add_point_force(end[shape.body], f.end.value(), arm, {}, {});
+  });
 }
 
 void ShapeSide::book_losses(Real h) {
@@ -81,25 +108,21 @@ Real ShapeSide::pairs() const {
   return sum;
 }
 
-ShapePack ShapeSide::pack(const ItemLayout& layout) const {
+ShapePack ShapeSide::pack(const ItemLayout& layout, const Ranks& ranks) const {
   ShapePack pack;
-  for (Index s = 0; s < layout.shapes; ++s) {
-    const ShapeItem& shape = shapes_.items()[s];
+  for (const ShapeItem& shape : shapes_.items()) {
     pack.body.push_back(shape.body);
     pack.radius.push_back(shape.radius);
     const PointMotion point = point_motion(motion_[shape.body], shape.offset);
     ImageCount unused;
     pack.position.push_back(subdomain_.wrap(point.position, unused));
     pack.velocity.push_back(point.velocity);
-    pack.force.push_back(contacts_[s].force);
-    pack.contacts.push_back(contacts_[s].contacts);
   }
-  for (std::size_t image = 0; image < layout.shape_images.size(); ++image) {
-    const Index original = layout.shape_images[image].source;
-    const ShapeContact& contact = contacts_[layout.shapes + image];
-    pack.force[original] += contact.force;
-    pack.contacts[original] += contact.contacts;
-  }
+  pack.force.resize(shapes_.items().size()), pack.contacts.resize(shapes_.items().size());
+  for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
+    pack.force[s] = f.step.value();
+    pack.contacts[s] = static_cast<int>(f.contacts);
+  });
   return pack;
 }
 

@@ -10,6 +10,7 @@
 #include "dem/shape_items.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
+#include "partition/ranks.hpp"
 #include "partition/subdomain.hpp"
 
 namespace scree {
@@ -45,8 +46,11 @@ class ShapeSide {
   const std::vector<Vec3>& step() const { return step_; }          // displacement by the last place() [m]
   std::vector<ShapeContact>& contacts() { return contacts_; }      // filled by the backend
 
-  // Contact wrenches on the bodies for the step and at its end.
-  void reduce(const ItemLayout& layout, std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) const;
+  // reduce_wrench: brings the shapes' contacts() of all ranks to rank 0, one message per rank, and sums them
+  // up to the contact wrenches on the bodies for the step and at its end; on other ranks they come out as
+  // zero. Collective.
+  void reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& step,
+              std::vector<BodyWrench>& end) const;
   // Books the dissipation of a step of length h from contacts(): trapezoidal, like the particles' losses.
   void book_losses(Real h);
   ShapeLosses& losses() { return losses_; }
@@ -54,9 +58,20 @@ class ShapeSide {
   // Shapes' share of the contacts' elastic energy [J] and of their number.
   Real elastic_energy() const;
   Real pairs() const;
-  ShapePack pack(const ItemLayout& layout) const;
+  // Collective; complete on rank 0.
+  ShapePack pack(const ItemLayout& layout, const Ranks& ranks) const;
 
  private:
+  // A shape that is touched, and what its contacts sum to.
+  struct Touched {
+    Index shape;
+    ShapeForces forces;
+  };
+  std::vector<Touched> touched(const ItemLayout& layout, const Ranks& ranks) const;
+  // Calls visit(shape, forces) for the touched shapes of all ranks, on rank 0.
+  template <class Visit>
+  void for_each_touched(const ItemLayout& layout, const Ranks& ranks, const Visit& visit) const;
+
   const Subdomain& subdomain_;
   BodyShapes shapes_;
   std::vector<BodyMotion> motion_;  // of the bodies as last set

@@ -65,6 +65,7 @@ Model build_model(const Deck& deck, Log& log) {
   build_particles(root, model, names);
   build_contact(root, model, names);
   build_output(root, names, model);
+  model.parallel.imbalance = root.table("parallel").real("imbalance");
   check_start_positions(root, model, log);
   check_steps(root, model, log);
   return model;

@@ -92,6 +92,11 @@ struct Output {
   std::vector<GlobalId> history_particles;  // global ids
 };
 
+// How the particles are spread over the ranks; no result depends on it.
+struct Parallel {
+  Real imbalance = 0.2;  // boxes are cut anew past it: largest work of a rank over the mean, less 1
+};
+
 struct Model {
   std::string title;
   Space space;
@@ -108,6 +113,7 @@ struct Model {
   TimeControl time;
   Integrator integrator;
   Output output;
+  Parallel parallel;
 };
 
 }  // namespace scree

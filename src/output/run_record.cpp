@@ -51,6 +51,7 @@ toml::table run_table(const RunRecord& record) {
                      {"backend", record.backend},
                      {"solver", record.solver},
                      {"restarted_from", record.restarted_from},
+                     {"state_hash", record.state_hash},
                      {"ranks", record.ranks}};
 }
 

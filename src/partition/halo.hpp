@@ -1,11 +1,15 @@
-// Halo: copies of particles near the other side of periodic sides (and, with several ranks, of other ranks').
+// Halo: copies of the particles near a rank's box, from other ranks and from across periodic sides.
 #pragma once
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
+#include "base/for_each.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "partition/decomposition.hpp"
+#include "partition/ranks.hpp"
 #include "partition/subdomain.hpp"
 
 namespace scree {
@@ -63,26 +67,83 @@ struct HaloItem {
   SCREE_HD void operator()(Index g) const { field[first_ghost + g] = field[ghosts[g].source]; }
 };
 
-// The same for its position, which is moved by the ghost's shift.
+// A ghost of the item at p.
+SCREE_HD Vec4 moved(const Ghost& ghost, Vec4 p) { return vec4(xyz(p) + ghost.shift, p.w); }
+
+// The same for its position.
 struct HaloPositionItem {
   const Ghost* ghosts;
   Vec4* position;
   Index first_ghost;
 
   SCREE_HD void operator()(Index g) const {
-    const Ghost ghost = ghosts[g];
-    const Vec4 p = position[ghost.source];
-    position[first_ghost + g] = vec4(xyz(p) + ghost.shift, p.w);
+    position[first_ghost + g] = moved(ghosts[g], position[ghosts[g].source]);
   }
 };
 
-// exchange_halo: finds the ghosts that lie within `width` [m] of the box, for originals at `position`.
-std::vector<Ghost> exchange_halo(const Subdomain& subdomain, const Space& space,
-                                 std::span<const Vec4> position, Real width);
+// The images across periodic sides that lie within `width` [m] of the space, for originals at `position`.
+std::vector<Ghost> periodic_images(const Subdomain& subdomain, const Space& space,
+                                   std::span<const Vec4> position, Real width);
 
-// update_halo: refreshes the ghosts' copies of a field.
-void update_halo(std::span<const Ghost> ghosts, std::span<Vec4> field, Index first_ghost);
-// The same for positions.
-void update_halo_positions(std::span<const Ghost> ghosts, std::span<Vec4> position, Index first_ghost);
+// Where the halo comes from. Ghosts stand behind the owned items: those that are images of this rank's own
+// particles first, then those of each neighbour, a contiguous range per neighbour.
+class Halo {
+ public:
+  Halo() = default;
+  // Of one rank alone, whose ghosts are known.
+  explicit Halo(std::vector<Ghost> own);
+
+  // exchange_halo: finds who is a ghost where, for originals at `position` (the first of the owned items),
+  // and tells the neighbours. width: reach of the halo past the box [m]. Collective.
+  void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
+                const Space& space, std::span<const Vec4> position, Real width);
+
+  Index size() const { return static_cast<Index>(images_.size()); }
+  // Number of the shift, per ghost.
+  const std::vector<std::int8_t>& images() const { return images_; }
+  // This rank's own particles across periodic sides.
+  const std::vector<Ghost>& own() const { return own_; }
+
+  // update_halo: refreshes the ghosts' copies of a field of all items; ghosts stand at field[first_ghost
+  // ...].
+  template <class T>
+  void update(std::span<T> field, Index first_ghost) const;
+  // The same for positions, which are moved by the ghosts' shifts, and velocities, in one exchange.
+  void update_motion(std::span<Vec4> position, std::span<Vec4> velocity, Index first_ghost) const;
+
+ private:
+  // A rank that this one exchanges ghosts with. Entries [first_sent, first_sent + sent) of sent_ go there;
+  // what comes from there are the ghosts [first_received, first_received + received).
+  struct Neighbor {
+    int rank;
+    Index first_sent = 0, sent = 0;
+    Index first_received = 0, received = 0;
+  };
+  class Messages;
+
+  void find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width);
+  void find_sent(const Decomposition& decomposition, const Subdomain& subdomain,
+                 std::span<const Vec4> position, Real width);
+  void tell_neighbors();
+  // Sends `packed`, one entry per entry of sent_, and receives the ghosts past those of this rank's own.
+  void transfer(const void* packed, void* ghosts, std::size_t element) const;
+
+  Ranks ranks_;
+  std::vector<Ghost> own_, sent_;
+  std::vector<Neighbor> neighbors_;
+  std::vector<std::int8_t> images_;
+  mutable std::vector<Vec4> buffer_[2];  // packed positions and velocities, or another field
+};
+
+template <class T>
+void Halo::update(std::span<T> field, Index first_ghost) const {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(Vec4) % sizeof(T) == 0);
+  for_each(Serial{}, static_cast<Index>(own_.size()), HaloItem<T>{own_.data(), field.data(), first_ghost});
+  if (ranks_.alone()) return;
+  buffer_[0].resize(sent_.size());
+  T* packed = reinterpret_cast<T*>(buffer_[0].data());
+  for (std::size_t k = 0; k < sent_.size(); ++k) packed[k] = field[static_cast<std::size_t>(sent_[k].source)];
+  transfer(packed, field.data() + first_ghost, sizeof(T));
+}
 
 }  // namespace scree

@@ -103,16 +103,40 @@ ParticlePack by_global_id(ParticlePack p) {
           ordered(p.velocity, order),  ordered(p.force, order),  ordered(p.contacts, order)};
 }
 
+// A particle whose motion is recorded.
+struct Traced {
+  GlobalId global_id;
+  Vec3 position, velocity;
+};
+
+std::vector<Traced> traced_of(const ParticlePack& pack, const std::vector<GlobalId>& wanted) {
+  std::vector<Traced> traced;
+  for (const GlobalId id : wanted) {
+    const auto found = std::find(pack.global_id.begin(), pack.global_id.end(), id);
+    if (found == pack.global_id.end()) continue;
+    const auto i = static_cast<std::size_t>(found - pack.global_id.begin());
+    traced.push_back({id, pack.position[i], pack.velocity[i]});
+  }
+  return traced;
+}
+
+// On rank 0, of all ranks.
+ParticlePack gathered(const Ranks& ranks, ParticlePack p) {
+  return {ranks.gather(std::move(p.global_id)), ranks.gather(std::move(p.radius)),
+          ranks.gather(std::move(p.position)),  ranks.gather(std::move(p.velocity)),
+          ranks.gather(std::move(p.force)),     ranks.gather(std::move(p.contacts))};
+}
+
 }  // namespace
 
 Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
                    const State& state)
-    : model_(model),
-      backend_(backend),
-      link_(link),
-      history_(directory, history_columns(model, reactions_of(model, link, state)), model.output.history_csv,
-               state.history_rows),
-      snapshots_(directory, model.title, static_cast<int>(state.snapshots)) {
+    : model_(model), backend_(backend), link_(link) {
+  link.ranks().on_root([&] {
+    history_.emplace(directory, history_columns(model, reactions_of(model, link, state)),
+                     model.output.history_csv, state.history_rows);
+    snapshots_.emplace(directory, model.title, static_cast<int>(state.snapshots));
+  });
   if (backend.computes_asynchronously()) backend.set_idle_work([this] { write_pending(); });
 }
 
@@ -131,7 +155,7 @@ void Recorder::history(State& state, Real h) {
   energy_row(state, row);
   body_row(state, row);
   particle_row(row);
-  history_.append(row);
+  if (history_) history_->append(row);
   ++state.history_rows;
 }
 
@@ -171,16 +195,17 @@ void Recorder::particle_row(std::vector<Real>& row) {
   if (model_.output.history_particles.empty()) return;
   write_pending();  // the backend holds one pack
   backend_.start_pack();
-  const ParticlePack pack = backend_.pack_particles();
+  const std::vector<Traced> traced =
+      link_.ranks().gather(traced_of(backend_.pack_particles(), model_.output.history_particles));
   for (const GlobalId id : model_.output.history_particles) {
-    const auto found = std::find(pack.global_id.begin(), pack.global_id.end(), id);
-    if (found == pack.global_id.end()) {  // removed
+    const auto found =
+        std::find_if(traced.begin(), traced.end(), [&](const Traced& t) { return t.global_id == id; });
+    if (found == traced.end()) {  // removed
       row.insert(row.end(), 6, std::nan(""));
       continue;
     }
-    const auto i = static_cast<std::size_t>(found - pack.global_id.begin());
-    append(row, pack.position[i]);
-    append(row, pack.velocity[i]);
+    append(row, found->position);
+    append(row, found->velocity);
   }
 }
 
@@ -201,17 +226,23 @@ void Recorder::snapshot(State& state) {
 void Recorder::write_pending() {
   if (!pending_) return;
   const PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticlePack p = by_global_id(backend_.pack_particles());
+  const ParticlePack p = by_global_id(gathered(link_.ranks(), backend_.pack_particles()));
   const ShapePack& s = snapshot.shapes;
-  snapshots_.append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
-                    {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
-                     s.force, s.contacts});
-  history_.flush();
+  link_.ranks().on_root([&] {
+    snapshots_->append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
+                       {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
+                        s.force, s.contacts});
+    history_->flush();
+  });
+}
+
+void Recorder::flush_history() {
+  if (history_) history_->flush();
 }
 
 void Recorder::flush() {
   write_pending();
-  history_.flush();
+  link_.ranks().on_root([&] { history_->flush(); });
 }
 
 }  // namespace scree

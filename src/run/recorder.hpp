@@ -31,7 +31,8 @@ class Recorder {
   void write_pending();  // where the backend fails to hand out the particles, the snapshot is given up
   // Brings all that was recorded to disk.
   void flush();
-  std::int64_t snapshots_written() const { return snapshots_.snapshots(); }
+  void flush_history();  // rank 0's part of it alone, at any time
+  std::int64_t snapshots_written() const { return snapshots_ ? snapshots_->snapshots() : 0; }
 
  private:
   // Taken; its particles are with the backend until they are written.
@@ -48,8 +49,9 @@ class Recorder {
   const Model& model_;
   Backend& backend_;
   const BodyLink& link_;
-  HistoryWriter history_;
-  SnapshotWriter snapshots_;
+  // On rank 0, which writes what all ranks recorded.
+  std::optional<HistoryWriter> history_;
+  std::optional<SnapshotWriter> snapshots_;
   std::optional<PendingSnapshot> pending_;
 };
 

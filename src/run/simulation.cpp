@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <ctime>
@@ -48,26 +49,32 @@ std::unique_ptr<Backend> make_gpu(const Model& model, Log& log) {
   return backend;
 }
 
-std::unique_ptr<Backend> make_cpu(const Model& model, const std::string& why, Log& log) {
+std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   log.info("backend cpu: " + why);
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
-  return make_cpu_backend(model);
+  return make_cpu_backend(model, ranks);
 }
 
 // The one that --backend names, or for auto the one that is likely to be faster.
-std::unique_ptr<Backend> make_backend(const Model& model, const std::string& name, Log& log) {
-  if (name == "cpu") return make_cpu(model, "chosen by --backend", log);
+std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name,
+                                      Log& log) {
+  if (name == "cpu") return make_cpu(model, ranks, "chosen by --backend", log);
+  if (!ranks.alone()) {
+    if (name == "auto") return make_cpu(model, ranks, "a GPU computes on one rank only in this version", log);
+    throw InputError("--backend cuda runs on one rank in this version; allowed with mpirun -n " +
+                     std::to_string(ranks.size()) + ": auto, cpu");
+  }
   const std::size_t particles = model.particles.size();
   if (name == "auto" && particles < kGpuParticles)
     return make_cpu(
-        model,
+        model, ranks,
         fmt::format("{} particles are fewer than {}, from which a GPU is faster", particles, kGpuParticles),
         log);
   try {
     return make_gpu(model, log);
   } catch (const InputError& error) {
-    if (name == "auto") return make_cpu(model, error.what(), log);
+    if (name == "auto") return make_cpu(model, ranks, error.what(), log);
     throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));
   }
 }
@@ -75,9 +82,9 @@ std::unique_ptr<Backend> make_backend(const Model& model, const std::string& nam
 State read_state(const RunOptions& options) {
   const Checkpoint checkpoint = read_checkpoint(options.restart);
   if (checkpoint.text("fingerprint") != options.fingerprint)
-    throw InputError(
-        "--restart " + options.restart +
-        ": the checkpoint belongs to another deck; only time.end and the table output may differ");
+    throw InputError("--restart " + options.restart +
+                     ": the checkpoint belongs to another deck; only time.end and the tables output and "
+                     "parallel may differ");
   return unpack(checkpoint);
 }
 
@@ -86,12 +93,13 @@ class Simulation {
   Simulation(const Model& model, const RunOptions& options, Log& log)
       : model_(model),
         options_(options),
+        ranks_(options.ranks),
         log_(log),
         state_(options.restart.empty() ? State{} : read_state(options)),
-        backend_(make_backend(model, options.backend, log)),
-        link_(model),
+        backend_(make_backend(model, ranks_, options.backend, log)),
+        link_(model, ranks_),
         step_(model, *backend_, link_, timers_) {
-    make_directory(options.output_directory);
+    ranks_.on_root([&] { make_directory(options.output_directory); });
     start_or_resume();
     recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
     if (options.restart.empty()) {
@@ -105,6 +113,7 @@ class Simulation {
  private:
   void start_or_resume();
   bool continues_files() const;
+  State whole(const State& own) const;
   void checkpoint(const State& state, const std::string& name);
   void progress(const State& state, Real h);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
@@ -115,6 +124,7 @@ class Simulation {
 
   const Model& model_;
   const RunOptions& options_;
+  Ranks ranks_;
   Log& log_;
   State state_;
   StageTimers timers_;
@@ -127,6 +137,8 @@ class Simulation {
   double start_cpu_ = cpu_seconds();
   Real start_time_ = 0;
   int tenths_reported_ = 0;
+  std::string state_hash_;
+  std::int64_t list_entries_ = 0, migrated_ = 0;  // of all ranks
 };
 
 void Simulation::start_or_resume() {
@@ -148,18 +160,38 @@ void Simulation::start_or_resume() {
 
 // A restart in the checkpoint's own folder goes on with its files; in another folder new files begin.
 bool Simulation::continues_files() const {
-  const std::filesystem::path folder = std::filesystem::path(options_.restart).parent_path();
-  return std::filesystem::equivalent(folder.empty() ? "." : folder, options_.output_directory) &&
-         std::filesystem::exists(options_.output_directory + "/history.h5");
+  bool same = false;
+  ranks_.on_root([&] {
+    const std::filesystem::path folder = std::filesystem::path(options_.restart).parent_path();
+    same = std::filesystem::equivalent(folder.empty() ? "." : folder, options_.output_directory) &&
+           std::filesystem::exists(options_.output_directory + "/history.h5");
+  });
+  ranks_.broadcast(same);
+  return same;
+}
+
+// On rank 0 the state with the particles of all ranks.
+State Simulation::whole(const State& own) const {
+  State all = own;
+  all.particles = ranks_.gather(own.particles);
+  std::sort(all.particles.begin(), all.particles.end(),
+            [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
+  return all;
 }
 
 void Simulation::checkpoint(const State& state, const std::string& name) {
   recorder_->flush();
-  Checkpoint out = pack(state);
-  out.texts["fingerprint"] = options_.fingerprint;
-  out.texts["deck"] = options_.resolved_deck;
-  const std::string path = options_.output_directory + "/" + name;
-  write_checkpoint(path, out);
+  const auto own_hash = static_cast<std::int64_t>(state_hash(state, ranks_.is_root()));
+  state_hash_ = fmt::format("{:016x}", static_cast<std::uint64_t>(ranks_.sum(own_hash)));
+  const auto write = [&](const State& complete) {
+    Checkpoint out = pack(complete);
+    out.texts["fingerprint"] = options_.fingerprint;
+    out.texts["deck"] = options_.resolved_deck;
+    write_checkpoint(options_.output_directory + "/" + name, out);
+  };
+  if (ranks_.alone()) return write(state);
+  const State all = whole(state);
+  ranks_.on_root([&] { write(all); });
 }
 
 void Simulation::progress(const State& state, Real h) {
@@ -169,7 +201,7 @@ void Simulation::progress(const State& state, Real h) {
   if (since < kProgressSeconds && tenths == tenths_reported_) return;
   last_progress_ = Clock::now();
   if (std::chrono::duration<double>(last_progress_ - last_flush_).count() > kFlushSeconds)
-    last_flush_ = last_progress_, recorder_->flush();
+    last_flush_ = last_progress_, ranks_.alone() ? recorder_->flush() : recorder_->flush_history();
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   log_.progress(fmt::format("t = {:.4f} of {:g} s, {} steps, h = {:.2e} s, {:.1f} s elapsed, {:.1f} s to go",
                             state.clock.time, model_.time.end, state.counts.steps, h, elapsed,
@@ -179,7 +211,7 @@ void Simulation::progress(const State& state, Real h) {
 }
 
 ExitCode Simulation::run() {
-  write_record("running", ExitCode::done);
+  ranks_.on_root([&] { write_record("running", ExitCode::done); });
   log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}", model_.particles.size(),
                         model_.bodies.size(), backend_->description(),
                         link_.multibody() ? link_.multibody()->solver_description() : "none"));
@@ -195,17 +227,18 @@ ExitCode Simulation::run() {
   } catch (const SimulationError& error) {
     return fail(loop, error);
   } catch (const IoError& error) {
-    write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
+    if (ranks_.is_root()) write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
     throw;
   }
   checkpoint(loop.complete_state(), "checkpoint.h5");
-  const std::string signal = strsignal(signal_received());
+  const std::string signal = strsignal(loop.signal());
   log_.info("stopped by signal (" + signal + "); continue with --restart " + options_.output_directory +
             "/checkpoint.h5");
   return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
 }
 
 ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
+  ranks_.meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
   log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
   keep_last_good_state(loop);
   return finish(std::string("failed: ") + error.what(), ExitCode::simulation_failed);
@@ -228,7 +261,9 @@ void Simulation::keep_last_good_state(StepLoop& loop) {
 
 ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   recorder_->flush();
-  write_record(status, code);
+  list_entries_ = ranks_.sum(backend_->list_entries());
+  migrated_ = ranks_.sum(backend_->balance().migrated);
+  ranks_.on_root([&] { write_record(status, code); });
   summarize();
   return code;
 }
@@ -242,6 +277,9 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.backend = backend_->description();
   record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
   record.restarted_from = options_.restart;
+  record.state_hash = state_hash_;
+  record.ranks = ranks_.size();
+  const LoadBalance balance = backend_->balance();
   record.wall_seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   record.cpu_seconds = cpu_seconds() - start_cpu_;
   record.timers = timers_;
@@ -252,7 +290,9 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"rejected_error", n.rejected_error},
                    {"rejected_newton", n.rejected_newton},
                    {"list_builds", backend_->list_builds()},
-                   {"list_entries", backend_->list_entries()},
+                   {"list_entries", ranks_.alone() ? backend_->list_entries() : list_entries_},
+                   {"rebalances", balance.rebalances},
+                   {"migrated", migrated_},
                    {"particles", static_cast<std::int64_t>(model_.particles.size())},
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
                    {"left", state_.carried_out.left},
@@ -261,7 +301,9 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   const BalanceState& b = state_.balance;
   record.measures = {{"simulated_time", state_.clock.time},
                      {"balance_error", b.last.accounted() - b.start},
-                     {"energy_exchanged", b.exchanged}};
+                     {"energy_exchanged", b.exchanged},
+                     {"imbalance", balance.imbalance},
+                     {"largest_imbalance", balance.largest}};
   record.warnings = log_.warnings();
   write_run_record(options_.output_directory, record);
 }

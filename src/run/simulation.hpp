@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "model/model.hpp"
+#include "partition/ranks.hpp"
 
 namespace scree {
 
@@ -14,10 +15,12 @@ struct RunOptions {
   std::string output_directory;
   std::string restart;  // checkpoint to continue from; empty: start at t = 0
   std::string deck_path, resolved_deck, fingerprint, command_line;  // for the run record and the checkpoint
+  Ranks ranks;
 };
 
 // Runs to the end and writes snapshots, history, checkpoints and the run record into the output directory.
-// A failed simulation leaves a checkpoint of its last good state. Throws InputError and IoError.
+// A failed simulation leaves a checkpoint of its last good state. Throws InputError and IoError. Collective;
+// rank 0 writes the files.
 ExitCode run_simulation(const Model& model, const RunOptions& options, Log& log);
 
 }  // namespace scree

@@ -1,5 +1,6 @@
 #include "run/state.hpp"
 
+#include <bit>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -48,6 +49,30 @@ class Reader {
     return values[0];
   }
   const Checkpoint& in_;
+};
+
+// 64-bit FNV-1a over the bits of what it visits.
+class Hasher {
+ public:
+  void operator()(const char*, const Real& value) { add(value); }
+  void operator()(const char*, const std::int64_t& value) { add(value); }
+  void operator()(const char*, const bool& value) { add(std::int64_t{value}); }
+  void operator()(const char*, const std::vector<Real>& values) {
+    for (const Real value : values) add(value);
+  }
+  void operator()(const char*, const std::vector<BodyWrench>& wrenches) {
+    for (const BodyWrench& w : wrenches) add(w.force), add(w.torque);
+  }
+  void add(const Vec3& v) { add(v.x), add(v.y), add(v.z); }
+  void add(Real value) { add(std::bit_cast<std::int64_t>(value)); }
+  void add(std::int64_t value) {
+    for (int byte = 0; byte < 8; ++byte)
+      hash_ = (hash_ ^ (static_cast<std::uint64_t>(value) >> (8 * byte) & 0xff)) * 1099511628211u;
+  }
+  std::uint64_t hash() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037u;
 };
 
 template <class Visitor, class StateType>
@@ -157,6 +182,23 @@ Checkpoint pack(const State& state) {
   visit_state(writer, state);
   pack_particles(state.particles, out);
   return out;
+}
+
+std::uint64_t state_hash(const State& state, bool with_rest) {
+  std::uint64_t sum = 0;
+  for (const ParticleRecord& p : state.particles) {
+    Hasher one;
+    one.add(p.global_id);
+    for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force}) one.add(v);
+    for (const Real value : {p.contact_loss, p.loss_power, p.integrator_loss}) one.add(value);
+    for (const std::int64_t value : {p.image.x, p.image.y, p.image.z}) one.add(value);
+    one.add(std::int64_t{p.drifting});
+    sum += one.hash();
+  }
+  if (!with_rest) return sum;
+  Hasher rest;
+  visit_state(rest, state);
+  return sum + rest.hash();
 }
 
 State unpack(const Checkpoint& checkpoint) {

@@ -34,6 +34,9 @@ struct State {
 };
 
 Checkpoint pack(const State& state);
+// Of all bits of the state; several ranks' hashes, each of the particles of its own, add up (modulo 2^64) to
+// that of the whole. with_rest: all but the particles, which one rank counts.
+std::uint64_t state_hash(const State& state, bool with_rest);
 // Throws IoError naming what is missing.
 State unpack(const Checkpoint& checkpoint);
 

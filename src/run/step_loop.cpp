@@ -33,7 +33,8 @@ StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(cons
 
 LoopEnd StepLoop::run() {
   while (!clock_.done()) {
-    if (signal_received() != 0) return LoopEnd::stopped_by_signal;
+    signal_ = static_cast<int>(ranks().max(static_cast<Real>(signal_received())));
+    if (signal_ != 0) return LoopEnd::stopped_by_signal;
     take_step();
   }
   return LoopEnd::done;
@@ -57,6 +58,7 @@ void StepLoop::take_explicit_steps(Real h) {
   const double each = (seconds_now() - start) / static_cast<double>(taken);
   batch_ = static_cast<std::size_t>(
       std::clamp(kBatchSeconds / each, 1.0, kMostSubsteps / parts_.model.integrator.substeps));
+  ranks().broadcast(batch_);  // clocks differ
   for (std::size_t k = 0; k < taken; ++k) clock_.accepted(0);
   close_step(h);
 }
@@ -89,7 +91,9 @@ void StepLoop::output(Real h) {
   if (snapshot) parts_.recorder.snapshot(state_);
   if (checkpoint) write_checkpoint_(complete_state());
   progress_(state_, h);
-  if (!implicit_ && seconds_now() - good_age_ > good_cost_ / kGoodStateShare) keep_good_state();
+  bool stale = !implicit_ && seconds_now() - good_age_ > good_cost_ / kGoodStateShare;
+  if (!implicit_) ranks().broadcast(stale);
+  if (stale) keep_good_state();
 }
 
 void StepLoop::keep_good_state() {

@@ -31,6 +31,7 @@ class StepLoop {
 
   // Steps until the end or a signal. Throws SimulationError when the run cannot go on.
   LoopEnd run();
+  int signal() const { return signal_; }  // that stopped it on some rank
   // The state as it is, complete with the particles.
   const State& complete_state();
   // After a failure. Implicit: the start of the failed step. Explicit: a copy kept some steps ago, because an
@@ -44,6 +45,7 @@ class StepLoop {
   void leave();
   void output(Real h);
   void keep_good_state();
+  const Ranks& ranks() const { return parts_.link.ranks(); }
 
   LoopParts parts_;
   State& state_;
@@ -52,9 +54,10 @@ class StepLoop {
   std::function<void(const State&, Real)> progress_;
   bool implicit_;
   std::size_t batch_ = 1;  // explicit steps to take at once
-  State good_;             // explicit: the copy
-  double good_cost_ = 0;   // seconds that keeping it took
-  double good_age_ = 0;    // steady clock when it was kept [s]
+  int signal_ = 0;
+  State good_;            // explicit: the copy
+  double good_cost_ = 0;  // seconds that keeping it took
+  double good_age_ = 0;   // steady clock when it was kept [s]
 };
 
 }  // namespace scree

@@ -161,14 +161,6 @@ class UsageTest(CommandLineTest):
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU \(estimate\); .+")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["deck.toml"])
 
-    def test_several_ranks_are_refused_once(self):
-        if not shutil.which("mpirun"):
-            self.skipTest("no mpirun")
-        launcher = ("mpirun", "--oversubscribe", "-n", "2")
-        result = self.expect(BAD_INPUT, "run", self.deck, "--output", "two", launcher=launcher)
-        self.assertEqual(result.stderr.count("error: mpirun -n 2"), 1)
-        self.assertFalse((self.folder / "two").exists())
-
 
 class DeckErrorTest(CommandLineTest):
     def test_errors_name_file_line_key_and_value(self):

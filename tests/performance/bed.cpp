@@ -1,7 +1,8 @@
 // Speed of explicit and implicit steps on settled beds, and what a net of bodies costs on top. Usage: bed
 // --help.
 //
-// The CPU's times are CPU seconds, the GPU's wall seconds around calls that return when the work is done.
+// The CPU's times are CPU seconds, the GPU's, and those of several ranks of mpirun, wall seconds around calls
+// that return when the work is done; of ranks the longest.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -30,8 +31,9 @@ struct Options {
   Index rebuild = 25;
   int repeats = 5;
   double seconds = 0.5;
-  bool net = false;
+  bool net = false, wall = false;
   std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5";
+  Ranks ranks = Ranks::world();
 
   bool on_gpu() const { return backend == "cuda"; }
 };
@@ -43,7 +45,9 @@ constexpr int kImplicitWarmUp = 5;
 
 double seconds_now(const Options& options) {
   timespec time{};
-  clock_gettime(options.on_gpu() ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &time);
+  clock_gettime(
+      options.on_gpu() || options.wall || !options.ranks.alone() ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID,
+      &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
@@ -62,7 +66,7 @@ Samples sample(
   const auto timed = [&](Index steps) {
     const double start = seconds_now(options);
     advance(steps);
-    return seconds_now(options) - start;
+    return options.ranks.max(seconds_now(options) - start);
   };
   advance(quantum);
   Index steps = quantum;
@@ -83,19 +87,22 @@ Samples sample(
 struct Run {
   Run(Model bed, const Options& options)
       : model(std::move(bed)),
-        backend(options.on_gpu() ? make_cuda_backend(model) : make_cpu_backend(model)),
-        link(model),
+        backend(options.on_gpu() ? make_cuda_backend(model) : make_cpu_backend(model, options.ranks)),
+        link(model, options.ranks),
+        ranks(options.ranks),
         step(model, *backend, link, timers) {
     backend->load(initial_records(model.particles, Subdomain(model.space)), {});
   }
   double listed() const {
-    return static_cast<double>(backend->list_entries()) / static_cast<double>(model.particles.size());
+    return static_cast<double>(ranks.sum(backend->list_entries())) /
+           static_cast<double>(model.particles.size());
   }
 
   Model model;
   StageTimers timers;
   std::unique_ptr<Backend> backend;
   BodyLink link;
+  Ranks ranks;
   CoupledStep step;
   MultibodyState bodies;
 };
@@ -244,8 +251,10 @@ void measure_all(const Options& options) {
     throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
   if (options.on_gpu() && !device_trouble().empty()) throw InputError("--backend cuda: " + device_trouble());
   fmt::print("commit {}, {}, {}, {}{}{}\n", commit(),
-             options.on_gpu() ? device_name() : "one core, CPU seconds", options.precision,
-             options.dimension == 3 ? "spheres" : "discs",
+             options.on_gpu()        ? device_name()
+             : options.ranks.alone() ? options.wall ? "one core, wall seconds" : "one core, CPU seconds"
+                                     : fmt::format("{} ranks, wall seconds", options.ranks.size()),
+             options.precision, options.dimension == 3 ? "spheres" : "discs",
              options.integrator == "hht" ? ", implicit" : ", explicit",
              options.integrator == "hht" || options.net ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
@@ -282,6 +291,7 @@ ExitCode run(int count, char** values) {
   app.add_option("--repeats", options.repeats, "samples per size")->check(CLI::PositiveNumber);
   app.add_option("--seconds", options.seconds, "length of a sample, about")->check(CLI::NonNegativeNumber);
   app.add_flag("--net", options.net, "the bed with a net of 20 bodies, solved every step, and without");
+  app.add_flag("--wall", options.wall, "wall seconds also on one core");
   app.add_option("--tile", options.tile, "file with the tile of spheres");
   try {
     app.parse(count, values);
@@ -289,6 +299,12 @@ ExitCode run(int count, char** values) {
     return app.exit(error) == 0 ? ExitCode::done : ExitCode::bad_input;
   }
   if (options.particles.empty()) options.particles = {10000, 100000, 1000000};
+  if (options.on_gpu() && !options.ranks.alone()) {
+    std::cerr << "error: --backend cuda runs on one rank\n";
+    return ExitCode::bad_input;
+  }
+  if (!options.ranks.is_root() && std::freopen("/dev/null", "w", stdout) == nullptr)
+    return ExitCode::io_failed;
   try {
     const PetscSession petsc("bed", {});
     measure_all(options);

@@ -141,6 +141,8 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
       std::vector<Vec3> residual = p.right_hand_side, solution(kParticles);
       std::vector<Vec4> d(kParticles + p.ghosts.size());
       const Real tolerance = 1e-11;
+      const Halo halo(p.ghosts);
+      const Ranks alone;
       const BlockSolver::System system{{{p.count.data(), p.entries.data(), p.diagonal.data()},
                                         {p.offsets.data(), nullptr},
                                         p.velocity.data(),
@@ -149,7 +151,8 @@ TEST_CASE("the matrix-free solve finds the solution of the dense one") {
                                         nullptr},
                                        p.inverse_block,
                                        residual,
-                                       p.ghosts,
+                                       halo,
+                                       alone,
                                        p.largest_stiffening,
                                        tolerance};
       const int products = BlockSolver().solve(system, d, solution);

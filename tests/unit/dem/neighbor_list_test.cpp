@@ -27,8 +27,8 @@ struct Items {
     store.load(model.particles, records);
     layout.owned = kParticles, layout.active = kParticles - kDrifting, layout.shapes = shapes.size();
     const Real width = builder.cutoff(kSkin);
-    layout.ghosts = exchange_halo(subdomain, model.space,
-                                  {store.position.data(), static_cast<std::size_t>(layout.active)}, width);
+    ghosts = periodic_images(subdomain, model.space,
+                             {store.position.data(), static_cast<std::size_t>(layout.active)}, width);
     add_ghosts();
     layout.first_shape = static_cast<Index>(store.position.size());
     add_shapes(model, shapes, subdomain, width);
@@ -36,7 +36,8 @@ struct Items {
   }
 
   void add_ghosts() {
-    for (const Ghost& ghost : layout.ghosts) {
+    for (const Ghost& ghost : ghosts) {
+      layout.ghost_images.push_back(ghost.image);
       const auto source = static_cast<std::size_t>(ghost.source);
       const Vec4 p = store.position[source];
       store.position.push_back(vec4(xyz(p) + ghost.shift, p.w));
@@ -54,7 +55,7 @@ struct Items {
       store.position.push_back(centers.back());
       store.global_id.push_back(shape.global_id);
     }
-    layout.shape_images = exchange_halo(subdomain, model.space, centers, width);
+    layout.shape_images = periodic_images(subdomain, model.space, centers, width);
     for (const Ghost& image : layout.shape_images) {
       const auto source = static_cast<std::size_t>(image.source);
       store.position.push_back(vec4(xyz(centers[source]) + image.shift, centers[source].w));
@@ -64,7 +65,7 @@ struct Items {
 
   int image_of(Index j) const {
     if (j < layout.owned) return kNoShift;
-    if (j < layout.first_shape) return layout.ghosts[static_cast<std::size_t>(j - layout.owned)].image;
+    if (j < layout.first_shape) return layout.ghost_images[static_cast<std::size_t>(j - layout.owned)];
     if (!layout.is_shape_image(j)) return kNoShift;
     return layout.shape_images[static_cast<std::size_t>(j - layout.first_shape - layout.shapes)].image;
   }
@@ -73,6 +74,7 @@ struct Items {
 
   ParticleStore store;
   ItemLayout layout;
+  std::vector<Ghost> ghosts;
 };
 
 // What row i must hold, by the rules of the list: particles see particles, shapes and the images of both; a
@@ -124,7 +126,7 @@ struct BuiltList {
         shapes(model),
         builder(model, shapes),
         items(model, shapes, builder) {
-    builder.build(items.store, items.layout, kSkin, list);
+    builder.build(items.store, items.layout, builder.cells(kSkin, kParticles), kSkin, list);
   }
   Model model;
   BodyShapes shapes;
@@ -158,7 +160,7 @@ TEST_CASE("the boxes of these tests have every kind of entry") {
   for (const BoxCase& box : kBoxes) {
     const BuiltList built(box, 1);
     const ItemLayout& layout = built.items.layout;
-    ghosts += layout.ghosts.size(), shape_images += layout.shape_images.size(),
+    ghosts += built.items.ghosts.size(), shape_images += layout.shape_images.size(),
         walls += built.list.walls.size();
     for (Index i = layout.first_shape; i < layout.first_shape + layout.shapes; ++i)
       for (const Entry& entry : found_row(built.items, built.list, i))

@@ -22,7 +22,7 @@ Space periodic_space(int dimension) {
 }
 
 std::vector<Ghost> ghosts_of(const Space& s, const std::vector<Vec4>& points) {
-  return exchange_halo(Subdomain(s), s, points, kWidth);
+  return periodic_images(Subdomain(s), s, points, kWidth);
 }
 
 }  // namespace
@@ -86,10 +86,14 @@ TEST_CASE("an update copies fields and moves positions by the shift") {
   REQUIRE(ghosts.size() == 3);
   position.resize(5);
   std::vector<Vec4> field{{1, 2, 3, 4}, {5, 6, 7, 8}, {}, {}, {}};
-  update_halo(ghosts, field, 2);
-  update_halo_positions(ghosts, position, 2);
+  Halo halo;
+  halo.exchange(Ranks(), {}, Subdomain(s), s, {position.data(), 2}, kWidth);
+  std::vector<Vec4> velocity{{1, 2, 3, 4}, {-5, 6, 7, 8}, {}, {}, {}};
+  halo.update(std::span<Vec4>(field), 2);
+  halo.update_motion(position, velocity, 2);
   for (std::size_t g = 0; g < 3; ++g) {
     CHECK((field[2 + g].x == 5 && field[2 + g].w == 8));
+    CHECK((velocity[2 + g].x == -5 && velocity[2 + g].w == 8));
     CHECK(xyz(position[2 + g]) == xyz(position[1]) + ghosts[g].shift);
     CHECK(position[2 + g].w == 0.04);
   }

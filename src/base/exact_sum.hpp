@@ -1,0 +1,81 @@
+// Sum of doubles as integers, without a pass for the scale first: the same bits in any order and for any
+// split.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+
+namespace scree {
+
+// The binary places of all doubles are cut into bins of 32, counted from the smallest. The sum keeps the bin
+// of the largest term's leading bit and the two below it; bits further down (2^-65 of that term at most) are
+// cut off every term alike. Which bins those are, and what each term adds to them, depends on no order: sums
+// of parts add up to the bits of the whole. Up to 2^31 terms. Cf. Demmel and Nguyen, IEEE Trans. Comput. 64,
+// 2015.
+class ExactSum {
+ public:
+  // Not finite terms make the sum a NaN.
+  SCREE_HD void add(Real term) {
+    std::int64_t bits;
+    std::memcpy(&bits, &term, sizeof bits);
+    const std::int64_t exponent = bits >> kMantissaBits & kExponentMask;
+    if (exponent == 0) return;  // zero, or too small for a normal number
+    raise(exponent == kExponentMask ? kNotFinite : exponent / kBinBits);
+    if (top_ == kNotFinite) return;
+    const std::uint64_t mantissa = (static_cast<std::uint64_t>(bits) & kMantissaMask) | kHiddenBit;
+    // The mantissa with its last bit at place exponent - 52 of all; bin k starts at place 32 k.
+    const int past = static_cast<int>(exponent % kBinBits);  // place of the leading bit in its bin
+    const int below = kMantissaBits - past;                  // bits below that bin
+    const std::int64_t sign = bits < 0 ? -1 : 1;
+    const std::int64_t depth = top_ - exponent / kBinBits;
+    add_piece(depth, sign * static_cast<std::int64_t>(mantissa >> below));
+    const std::uint64_t rest = mantissa & ((std::uint64_t(1) << below) - 1);
+    if (below <= kBinBits) {
+      add_piece(depth + 1, sign * static_cast<std::int64_t>(rest << (kBinBits - below)));
+    } else {
+      const int last = below - kBinBits;
+      add_piece(depth + 1, sign * static_cast<std::int64_t>(rest >> last));
+      const std::uint64_t end = rest & ((std::uint64_t(1) << last) - 1);
+      add_piece(depth + 2, sign * static_cast<std::int64_t>(end << (kBinBits - last)));
+    }
+  }
+  SCREE_HD void add(const ExactSum& part) {
+    raise(part.top_);
+    for (int k = 0; k < kBins; ++k) add_piece(top_ - part.top_ + k, part.bin_[k]);
+  }
+  // The sum, rounded once.
+  Real value() const {
+    if (top_ == kNotFinite) return NAN;
+    if (bin_[0] == 0 && bin_[1] == 0 && bin_[2] == 0) return 0;
+    const __int128 whole = ((static_cast<__int128>(bin_[0]) * kBinSize + bin_[1]) * kBinSize) + bin_[2];
+    return std::ldexp(static_cast<Real>(whole),
+                      static_cast<int>(kBinBits * (top_ - kBins + 1)) - kExponentBias);
+  }
+
+ private:
+  static constexpr int kMantissaBits = 52, kBinBits = 32, kBins = 3, kExponentBias = 1023;
+  static constexpr std::int64_t kExponentMask = 0x7ff, kNotFinite = 1 << 20, kBinSize = 1ll << kBinBits;
+  static constexpr std::uint64_t kHiddenBit = std::uint64_t(1) << kMantissaBits,
+                                 kMantissaMask = kHiddenBit - 1;
+
+  SCREE_HD void raise(std::int64_t top) {
+    for (; top_ < top && top - top_ < kBins; ++top_) bin_[2] = bin_[1], bin_[1] = bin_[0], bin_[0] = 0;
+    if (top_ >= top) return;
+    top_ = top;
+    bin_[0] = bin_[1] = bin_[2] = 0;
+  }
+  SCREE_HD void add_piece(std::int64_t depth, std::int64_t piece) {
+    if (depth == 0) bin_[0] += piece;
+    if (depth == 1) bin_[1] += piece;
+    if (depth == 2) bin_[2] += piece;
+  }
+
+  std::int64_t top_ = 0;  // number of the highest bin
+  std::int64_t bin_[kBins] = {};
+};
+
+}  // namespace scree

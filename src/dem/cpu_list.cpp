@@ -1,0 +1,139 @@
+// Who owns which particles, and the neighbour list of the serial backend.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "base/error.hpp"
+#include "dem/cpu_backend.hpp"
+
+namespace scree {
+
+void CpuBackend::wrap_positions() {
+  GlobalId bad = kNone;
+  for (Index i = 0; i < store_.owned; ++i) {
+    const Vec4 p = store_.position[i];
+    store_.position[i] = vec4(subdomain_.wrap(xyz(p), store_.image[i]), p.w);
+    if (!is_finite(xyz(p))) bad = std::min(bad, store_.global_id[i]);
+  }
+  fail_if_any(bad, "stage sort_cells: the position of particle ", " is not finite");
+}
+
+// Weights are what a step costs about: one for the particle, one for each entry of its row in the last list.
+void CpuBackend::decompose() {
+  std::vector<std::int64_t> weight(static_cast<std::size_t>(store_.owned), 1);
+  if (row_length_.size() == weight.size())
+    for (std::size_t i = 0; i < weight.size(); ++i) weight[i] += row_length_[i];
+  const DomainGrid grid = make_domain_grid(model_.space, builder_.cutoff(model_.contact.skin));
+  Decomposition next(ranks_, grid, {store_.position.data(), weight.size()}, weight);
+  balance_.rebalances += decomposition_.exists() && next.boxes() != decomposition_.boxes();
+  decomposition_ = std::move(next);
+}
+
+// migrate: every particle goes to the rank whose box it is in.
+void CpuBackend::migrate() {
+  if (!decomposition_.exists() || balance_.imbalance > model_.parallel.imbalance) decompose();
+  std::vector<std::vector<Migrant>> leaving(static_cast<std::size_t>(ranks_.size()));
+  std::vector<Index> staying;
+  for (Index i = 0; i < store_.owned; ++i) {
+    const int owner = decomposition_.owner(xyz(store_.position[i]));
+    if (owner == ranks_.rank())
+      staying.push_back(i);
+    else
+      leaving[static_cast<std::size_t>(owner)].push_back(store_.migrant(i));
+  }
+  balance_.migrated += store_.owned - static_cast<std::int64_t>(staying.size());
+  const std::vector<Migrant> arriving = ranks_.deal_out(leaving);
+  store_.reorder(staying);
+  for (const Migrant& particle : arriving) store_.add(particle);
+}
+
+// Owned particles in the order of their cells; those outside at the end.
+void CpuBackend::sort_cells(Real skin) {
+  const std::int64_t particles = ranks_.sum(static_cast<std::int64_t>(store_.owned));
+  cells_ = ranks_.alone() ? builder_.cells(skin, particles)
+                          : builder_.cells(skin, particles, decomposition_.box(ranks_.rank(), subdomain_),
+                                           store_.owned + side_.shapes().size());
+  const Index outside = cells_.own.count();
+  std::vector<Index> cell(store_.owned), start(outside + 2, 0), from(store_.owned);
+  store_.active = 0;
+  for (Index i = 0; i < store_.owned; ++i) {
+    cell[i] = store_.drifting[i] ? outside : cells_.cell(xyz(store_.position[i]));
+    if (cell[i] < 0) cell[i] = outside;  // has left; whether it may is asked at the end of the step
+    store_.active += cell[i] != outside;
+    ++start[cell[i] + 1];
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  for (Index i = 0; i < store_.owned; ++i) from[start[cell[i]]++] = i;
+  store_.reorder(from);
+}
+
+void CpuBackend::lay_out_items(Real skin) {
+  layout_.owned = store_.owned, layout_.active = store_.active;
+  const Real width = builder_.cutoff(skin);
+  halo_.exchange(ranks_, decomposition_, subdomain_, model_.space,
+                 {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
+  layout_.ghost_images = halo_.images();
+  layout_.first_shape = layout_.owned + halo_.size();
+  layout_.shapes_meet = ranks_.is_root();
+
+  side_.lay_out(model_.space, width, layout_);
+
+  store_.position.resize(layout_.items), store_.velocity.resize(layout_.items);
+  store_.material.resize(layout_.items), store_.global_id.resize(layout_.items);
+  halo_.update(std::span<int>(store_.material), layout_.owned);
+  halo_.update(std::span<GlobalId>(store_.global_id), layout_.owned);
+  for (Index item = layout_.first_shape; item < layout_.items; ++item) {
+    const ShapeItem& shape = side_.shapes().items()[layout_.shape_of(item)];
+    store_.material[item] = shape.material, store_.global_id[item] = shape.global_id;
+  }
+}
+
+void CpuBackend::build_list(Real skin, StageTimers& timers) {
+  {
+    const auto scope = timers.time(Stage::migrate);
+    wrap_positions();
+    if (!ranks_.alone()) migrate();
+  }
+  {
+    const auto scope = timers.time(Stage::sort_cells);
+    sort_cells(skin);
+  }
+  {
+    const auto scope = timers.time(Stage::exchange_halo);
+    lay_out_items(skin);
+    refresh_ghosts();
+    place_shapes();
+  }
+  const auto scope = timers.time(Stage::neighbors);
+  builder_.build(store_, layout_, cells_, skin, list_);
+  list_position_ = store_.position;
+  spare_position_ = store_.position, spare_velocity_ = store_.velocity;
+  displacement_bound_ = step_bound_ = shape_bound_ = 0;
+  layout_changed_ = false;
+  ++list_builds_;
+  if (!ranks_.alone()) measure_balance();
+  if (model_.integrator.particles == ParticleIntegrator::hht) size_step_arrays();
+}
+
+void CpuBackend::measure_balance() {
+  row_length_.resize(static_cast<std::size_t>(layout_.owned));
+  std::int64_t weight = layout_.owned;
+  for (Index i = 0; i < layout_.owned; ++i) {
+    row_length_[i] = list_.offsets[i + 1] - list_.offsets[i];
+    weight += row_length_[i];
+  }
+  balance_.imbalance = measure_imbalance(ranks_, weight);
+  balance_.largest = std::max(balance_.largest, balance_.imbalance);
+}
+
+void CpuBackend::size_step_arrays() {
+  const std::size_t slots = list_.neighbors.size(), owned = static_cast<std::size_t>(layout_.owned);
+  matrix_entries_.resize(slots), direction_.resize(layout_.items);
+  step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
+  force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
+  residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned),
+      matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
+}
+
+}  // namespace scree

@@ -1,0 +1,175 @@
+#include "partition/decomposition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace scree {
+namespace {
+
+// Histograms have one entry per layer of cells; more layers than this make cuts no better.
+constexpr Real kMostLayers = 1 << 14;
+
+constexpr Real Vec3::*kAxes[3] = {&Vec3::x, &Vec3::y, &Vec3::z};
+
+}  // namespace
+
+Index DomainGrid::cell(int axis, Real x) const {
+  const Real at = std::floor((x - min.*kAxes[axis]) / edge.*kAxes[axis]);
+  if (!(at > 0)) return 0;
+  return at < cells[axis] ? static_cast<Index>(at) : cells[axis] - 1;
+}
+
+Real DomainGrid::lower_side(int axis, Index cell) const {
+  return min.*kAxes[axis] + cell * edge.*kAxes[axis];
+}
+
+DomainGrid make_domain_grid(const Space& space, Real width) {
+  DomainGrid grid;
+  grid.min = space.min, grid.edge = {1, 1, 1};
+  for (int axis = 0; axis < space.dimension; ++axis) {
+    const Real length = space.max.*kAxes[axis] - space.min.*kAxes[axis];
+    const Real layers = std::clamp(std::floor(length / width), Real(1), kMostLayers);
+    grid.cells[axis] = static_cast<Index>(layers);
+    grid.edge.*kAxes[axis] = length / layers;
+  }
+  return grid;
+}
+
+double CellBox::count() const {
+  double product = 1;
+  for (int axis = 0; axis < 3; ++axis) product *= upper[axis] - lower[axis];
+  return product;
+}
+
+// Weights per layer of the boxes that are to be cut, along the axis of each cut: one after the other.
+struct Decomposition::Histograms {
+  std::vector<int> nodes;
+  std::vector<std::size_t> first;  // entry of the lowest layer, per node of the tree
+  std::vector<std::int64_t> weight;
+};
+
+Index Decomposition::layer(const Node& node, Vec4 p) const {
+  return grid_.cell(node.axis, xyz(p).*kAxes[node.axis]);
+}
+
+Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::span<const Vec4> position,
+                             std::span<const std::int64_t> weight)
+    : grid_(grid), boxes_(static_cast<std::size_t>(ranks.size())) {
+  if (grid.count() < ranks.size())
+    throw InputError(
+        "mpirun -n " + std::to_string(ranks.size()) + ": the space has only " +
+        std::to_string(static_cast<std::int64_t>(grid.count())) +
+        " cells as wide as the halo (a largest diameter and the skin), and a subdomain must not be "
+        "narrower; start at most so many ranks");
+  nodes_.push_back({{{0, 0, 0}, {grid.cells[0], grid.cells[1], grid.cells[2]}}, 0, ranks.size()});
+  std::vector<int> node_of(position.size(), 0);
+  const auto node = [&](std::size_t i) -> const Node& {
+    return nodes_[static_cast<std::size_t>(node_of[i])];
+  };
+  for (std::size_t first = 0; first < nodes_.size();) {  // the boxes of one level of the tree after the other
+    Histograms h = lay_out_histograms(first);
+    first = nodes_.size();
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      if (node(i).axis < 0) continue;
+      const auto at = static_cast<std::size_t>(layer(node(i), position[i]) - node(i).box.lower[node(i).axis]);
+      h.weight[h.first[static_cast<std::size_t>(node_of[i])] + at] += weight[i];
+    }
+    ranks.sum(std::span<std::int64_t>(h.weight));
+    split(h);
+    for (std::size_t i = 0; i < position.size(); ++i)
+      if (node(i).axis >= 0) node_of[i] = node(i).below + (layer(node(i), position[i]) >= node(i).cut);
+  }
+}
+
+// Picks the axis of each box's cut, its longest, and makes room for the weights along it.
+Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_node) {
+  Histograms h;
+  h.first.resize(nodes_.size());
+  for (std::size_t n = first_node; n < nodes_.size(); ++n) {
+    Node& node = nodes_[n];
+    if (node.ranks == 1) {
+      boxes_[static_cast<std::size_t>(node.first_rank)] = node.box;
+      continue;
+    }
+    Real longest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index layers = node.box.upper[axis] - node.box.lower[axis];
+      const Real extent = layers * grid_.edge.*kAxes[axis];
+      if (layers > 1 && extent > longest) longest = extent, node.axis = axis;
+    }
+    h.nodes.push_back(static_cast<int>(n)), h.first[n] = h.weight.size();
+    const Index layers = node.box.upper[node.axis] - node.box.lower[node.axis];
+    h.weight.resize(h.weight.size() + static_cast<std::size_t>(layers));
+  }
+  return h;
+}
+
+// Ranks below the cut and the first layer above it: where the weight below comes nearest to its ranks' share,
+// with a cell left for every rank. Without any weight all cells weigh the same.
+std::pair<int, Index> Decomposition::cut_of(const Node& node, const std::int64_t* weight) const {
+  const Index layers = node.box.upper[node.axis] - node.box.lower[node.axis];
+  const double layer_cells = node.box.count() / layers;
+  const std::int64_t total = std::accumulate(weight, weight + layers, std::int64_t{0});
+  // Uneven numbers of ranks only where cells are too few for even ones.
+  for (int ranks_below = node.ranks / 2; ranks_below > 0; --ranks_below) {
+    const double share = static_cast<double>(total > 0 ? total : layers) * ranks_below / node.ranks;
+    double below = 0, nearest = std::numeric_limits<double>::infinity();
+    Index best = 0;
+    for (Index cut = 1; cut < layers; ++cut) {
+      below += total > 0 ? static_cast<double>(weight[cut - 1]) : 1;
+      const bool enough =
+          cut * layer_cells >= ranks_below && (layers - cut) * layer_cells >= node.ranks - ranks_below;
+      if (enough && std::abs(below - share) < nearest) nearest = std::abs(below - share), best = cut;
+    }
+    if (best > 0) return {ranks_below, best};
+  }
+  throw std::logic_error("a box with fewer cells than ranks");
+}
+
+void Decomposition::split(const Histograms& h) {
+  for (const int index : h.nodes) {
+    const auto n = static_cast<std::size_t>(index);
+    const Node node = nodes_[n];
+    const auto [ranks_below, layers_below] = cut_of(node, &h.weight[h.first[n]]);
+    Node lower{node.box, node.first_rank, ranks_below},
+        upper{node.box, node.first_rank + ranks_below, node.ranks - ranks_below};
+    const Index cut = node.box.lower[node.axis] + layers_below;
+    lower.box.upper[node.axis] = upper.box.lower[node.axis] = cut;
+    nodes_[n].cut = cut, nodes_[n].below = static_cast<int>(nodes_.size());
+    nodes_.push_back(lower), nodes_.push_back(upper);
+  }
+}
+
+int Decomposition::owner(Vec3 p) const {
+  const Node* node = nodes_.data();
+  while (node->axis >= 0)
+    node = &nodes_[static_cast<std::size_t>(node->below +
+                                            (grid_.cell(node->axis, p.*kAxes[node->axis]) >= node->cut))];
+  return node->first_rank;
+}
+
+DomainBox Decomposition::box(int rank, const Subdomain& subdomain) const {
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  const CellBox& cells = boxes_[static_cast<std::size_t>(rank)];
+  DomainBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool open = subdomain.period().*kAxes[axis] == 0;
+    const bool first = cells.lower[axis] == 0, last = cells.upper[axis] == grid_.cells[axis];
+    box.min.*kAxes[axis] = first && open ? -kInfinity : grid_.lower_side(axis, cells.lower[axis]);
+    box.max.*kAxes[axis] = last && open ? kInfinity : grid_.lower_side(axis, cells.upper[axis]);
+  }
+  return box;
+}
+
+Real measure_imbalance(const Ranks& ranks, std::int64_t weight) {
+  const Real largest = ranks.max(static_cast<Real>(weight)), total = static_cast<Real>(ranks.sum(weight));
+  return total > 0 ? largest * ranks.size() / total - 1 : 0;
+}
+
+}  // namespace scree

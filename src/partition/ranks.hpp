@@ -1,0 +1,141 @@
+// The ranks of a run, and the exact collectives that decisions and sums need. What a collective returns is
+// the same on every rank and for every number of ranks. One rank alone makes no MPI call.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+class Ranks {
+ public:
+  Ranks() = default;  // one rank alone
+  // All ranks of the job; one alone where MPI has not been started.
+  static Ranks world();
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  bool is_root() const { return rank_ == 0; }
+  bool alone() const { return size_ == 1; }
+  int communicator() const { return communicator_; }  // Fortran handle; for the other parts of this room
+
+  // Largest of values >= 0; a NaN on one rank makes the result a NaN.
+  Real max(Real value) const;
+  void max(std::span<Real> values) const;
+  bool any(bool value) const;
+  // Smallest of the ranks' values.
+  std::int64_t min(std::int64_t value) const;
+  // Exact sums; those of 128 bits modulo 2^128.
+  std::int64_t sum(std::int64_t value) const;
+  void sum(std::span<std::int64_t> values) const;
+  void sum(std::span<__int128> values) const;
+
+  // Rank 0's value on every rank.
+  template <class T>
+  void broadcast(T& value) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (!alone()) broadcast_bytes(&value, sizeof(T));
+  }
+  template <class T>
+  void broadcast(std::span<T> values) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (!alone()) broadcast_bytes(values.data(), values.size_bytes());
+  }
+  // All ranks' entries in the order of the ranks: on rank 0, nothing elsewhere. One message per rank.
+  template <class T>
+  std::vector<T> gather(std::vector<T> values) const;
+  // The same on every rank.
+  template <class T>
+  std::vector<T> gather_everywhere(std::vector<T> values) const;
+  // Sends to[r] to rank r; what arrives comes in the order of the senders.
+  template <class T>
+  std::vector<T> deal_out(const std::vector<std::vector<T>>& to) const;
+
+  // Runs an action of rank 0 that may throw. What it throws (bad input, simulation, device, file), every rank
+  // throws, with the same message.
+  template <class Action>
+  void on_root(const Action& action) const {
+    if (alone()) return action();
+    std::exception_ptr failure;
+    try {
+      if (is_root()) action();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    share_failure(failure);
+  }
+
+  // To be called by every rank on its way out with an error that all ranks should have. Where some do not
+  // come, the error is this rank's alone: its message is printed and the job ends with the exit code.
+  void meet(const char* message, int exit_code) const;
+
+ private:
+  void broadcast_bytes(void* data, std::size_t bytes) const;
+  void share_failure(std::exception_ptr failure) const;
+  // element: size of one entry [B].
+  void send_to_root(const void* data, std::size_t count, std::size_t element) const;
+  std::size_t arriving(int sender, std::size_t element) const;  // entries in its next message
+  void receive(int sender, void* data, std::size_t count, std::size_t element) const;
+  std::vector<int> counts_of(std::size_t own) const;
+  void gather_bytes(const void* own, const std::vector<int>& counts, std::size_t element, void* all) const;
+  std::vector<int> deal_counts(const std::vector<int>& sent) const;
+  void deal_bytes(const void* sent, const std::vector<int>& sent_counts, void* received,
+                  const std::vector<int>& received_counts, std::size_t element) const;
+
+  int rank_ = 0, size_ = 1, communicator_ = 0;
+};
+
+template <class T>
+std::vector<T> Ranks::gather(std::vector<T> values) const {
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (alone()) return values;
+  if (!is_root()) {
+    send_to_root(values.data(), values.size(), sizeof(T));
+    return {};
+  }
+  for (int sender = 1; sender < size_; ++sender) {
+    const std::size_t before = values.size(), count = arriving(sender, sizeof(T));
+    values.resize(before + count);
+    receive(sender, values.data() + before, count, sizeof(T));
+  }
+  return values;
+}
+
+template <class T>
+std::vector<T> Ranks::gather_everywhere(std::vector<T> values) const {
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (alone()) return values;
+  const std::vector<int> counts = counts_of(values.size());
+  std::size_t total = 0;
+  for (const int count : counts) total += static_cast<std::size_t>(count);
+  std::vector<T> all(total);
+  gather_bytes(values.data(), counts, sizeof(T), all.data());
+  return all;
+}
+
+template <class T>
+std::vector<T> Ranks::deal_out(const std::vector<std::vector<T>>& to) const {
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (alone()) return to[0];
+  std::vector<int> sent;
+  std::vector<T> out;
+  for (const std::vector<T>& part : to) {
+    sent.push_back(static_cast<int>(part.size()));
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  const std::vector<int> received = deal_counts(sent);
+  std::size_t total = 0;
+  for (const int count : received) total += static_cast<std::size_t>(count);
+  std::vector<T> in(total);
+  deal_bytes(out.data(), sent, in.data(), received, sizeof(T));
+  return in;
+}
+
+}  // namespace scree

@@ -1,0 +1,165 @@
+// The particles' backend on all ranks of mpirun against one rank alone, bit for bit; failures reach every
+// rank.
+#include "dem/backend.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "support/catch.hpp"
+#include "support/petsc_run.hpp"
+#include "unit/dem/random_box.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr int kParticles = 150;
+constexpr Real kSkin = 0.15;
+
+struct RankedBox {
+  RankedBox(const Model& of, const Ranks& on)
+      : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make_cpu_backend(model, on)) {
+    start(initial_records(model.particles, Subdomain(model.space)));
+  }
+  void start(const std::vector<ParticleRecord>& records) {
+    backend->load(records, {});
+    backend->place_bodies(motion);
+    backend->build_list(kSkin, timers);
+    backend->initial_forces();
+  }
+  std::vector<ParticleRecord> records() const {
+    std::vector<ParticleRecord> all = ranks.gather_everywhere(backend->records());
+    std::sort(all.begin(), all.end(), [](auto& a, auto& b) { return a.global_id < b.global_id; });
+    return all;
+  }
+  void renew_list() {
+    if (backend->list_displacement() > 0.5) backend->build_list(kSkin, timers);
+  }
+
+  Ranks ranks;
+  Model model;
+  std::vector<BodyMotion> motion;
+  std::unique_ptr<Backend> backend;
+  StageTimers timers;
+};
+
+void hht_step(RankedBox& box, Real h) {
+  Backend& backend = *box.backend;
+  backend.begin_step(h);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const ParticleNorms norms = backend.contact_force();
+    if (norms.overshoot) {
+      backend.shorten_correction();
+      continue;
+    }
+    if (norms.residual <= 1e-10) return backend.accept();
+    backend.place_bodies(box.motion);
+    backend.particle_correct();
+  }
+  FAIL("no convergence");
+}
+
+void step(RankedBox& box, Real h) {
+  if (box.model.integrator.particles == ParticleIntegrator::hht) return hht_step(box, h);
+  box.backend->verlet_start(h);
+  box.backend->place_bodies(box.motion);
+  box.backend->verlet_run(h, 1, false, box.timers);
+}
+
+bool same(const std::vector<ParticleRecord>& a, const std::vector<ParticleRecord>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Real* p = &a[i].position.x;
+    const Real* q = &b[i].position.x;
+    const bool equal = a[i].global_id == b[i].global_id && std::memcmp(p, q, 15 * sizeof(Real)) == 0 &&
+                       a[i].image.x == b[i].image.x && a[i].image.y == b[i].image.y &&
+                       a[i].image.z == b[i].image.z && a[i].drifting == b[i].drifting;
+    if (!equal) return false;
+  }
+  return true;
+}
+
+bool same(const std::vector<BodyWrench>& a, const std::vector<BodyWrench>& b) {
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(BodyWrench)) == 0;
+}
+
+std::string failure(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const SimulationError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("particles, wrenches and sums have the bits of one rank") {
+  petsc();
+  const Ranks world = Ranks::world();
+  for (const BoxCase& c : kBoxes)
+    for (const ParticleIntegrator integrator :
+         {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+      CAPTURE(c.name, static_cast<int>(integrator));
+      Model model = random_box(c, kParticles, 21);
+      model.integrator.particles = integrator;
+      model.parallel.imbalance = 0;  // boxes are cut anew with every list
+      RankedBox one(model, Ranks()), many(model, world);
+      CHECK(same(one.records(), many.records()));
+      for (int k = 0; k < 25; ++k) {
+        for (RankedBox* box : {&one, &many}) step(*box, 2e-4), box->renew_list();
+        if (k == 12) many.backend->build_list(3 * kSkin, many.timers);  // wider than a cell of the boxes
+      }
+      CHECK(same(one.records(), many.records()));
+      if (c.exponent == 1 || integrator == ParticleIntegrator::hht) {
+        std::vector<BodyWrench> a[2], b[2];
+        for (int k = 0; k < 2; ++k) a[k].resize(model.bodies.size()), b[k].resize(model.bodies.size());
+        one.backend->reduce_wrench(a[0], a[1]), many.backend->reduce_wrench(b[0], b[1]);
+        if (world.is_root()) CHECK((same(a[0], b[0]) && same(a[1], b[1])));
+      }
+      const ParticleLedger p = one.backend->ledger(0), q = many.backend->ledger(0);
+      if (!world.is_root()) continue;
+      CHECK((p.kinetic == q.kinetic && p.gravitational == q.gravitational));
+      CHECK((p.contact_elastic == q.contact_elastic && p.contact_loss == q.contact_loss));
+      CHECK((p.integrator_loss == q.integrator_loss && p.momentum == q.momentum));
+      CHECK((p.angular_momentum == q.angular_momentum && p.contacts == q.contacts));
+      CHECK(p.drifting == q.drifting);
+    }
+}
+
+TEST_CASE("a particle that is not finite ends all ranks with the same message") {
+  petsc();
+  for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet})
+    for (const bool place : {false, true}) {
+      CAPTURE(static_cast<int>(integrator), place);
+      Model model = random_box(kBoxes[4], kParticles, 5);
+      model.integrator.particles = integrator;
+      RankedBox box(model, Ranks::world());
+      std::vector<ParticleRecord> records = initial_records(model.particles, Subdomain(model.space));
+      (place ? records[17].position : records[17].velocity).x = std::nan("");
+      const std::string message = failure([&] {
+        box.start(records);
+        step(box, 1e-4);
+      });
+      CHECK(message.find("is not finite") != std::string::npos);
+      if (place) CHECK(message == "stage sort_cells: the position of particle 17 is not finite");
+      std::string of_all;
+      for (int rank = 0; rank < Ranks::world().size(); ++rank) of_all += message;
+      const std::vector<char> own(message.begin(), message.end()),
+          all = Ranks::world().gather_everywhere(own);
+      CHECK(std::string(all.begin(), all.end()) == of_all);
+      // All ranks came to the same end: the next collective is the same one everywhere.
+      CHECK(Ranks::world().sum(std::int64_t{1}) == Ranks::world().size());
+    }
+}
+
+TEST_CASE("the particle with the largest residual is the same on any number of ranks") {
+  petsc();
+  const Model model = random_box(kBoxes[1], kParticles, 2);
+  RankedBox one(model, Ranks()), many(model, Ranks::world());
+  for (RankedBox* box : {&one, &many}) box->backend->begin_step(1e-3), box->backend->contact_force();
+  CHECK(one.backend->worst_particle() == many.backend->worst_particle());
+}
+
+}  // namespace scree

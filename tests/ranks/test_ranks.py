@@ -1,0 +1,262 @@
+"""The program under mpirun: the same bits on any number of ranks, after a restart on another number too; failures end
+all ranks. Usage: SCREE=path/to/scree MPIEXEC=path/to/mpirun python3 test_ranks.py"""
+
+import json
+import math
+import os
+import pathlib
+import signal
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+
+try:
+    import h5py
+except ImportError:  # snapshots are then not compared
+    h5py = None
+
+SCREE = os.environ["SCREE"]
+MPIEXEC = os.environ.get("MPIEXEC", "mpirun")
+HERE = pathlib.Path(__file__).resolve().parent
+INPUT = HERE.parent.parent / "input"
+LIMIT = 120  # [s] for any one run: past it, the run hangs
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_rmaps_base_oversubscribe="1")
+
+DONE, BAD_INPUT, FAILED, IO_FAILED, STOPPED = 0, 2, 3, 4, 5
+
+EXPLICIT = ["integrator.particles=velocity-verlet"]
+IMPLICIT = ["integrator.particles=hht"]
+GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
+DAM = [HERE / "dam_break.toml"]
+CASES = {
+    "5.3 net and 400 particles": ([INPUT / "paper/net_400.toml", "time.step=5e-4", "time.end=0.85",
+                                   "output.history_particles=[0, 399]"], (1, 2, 3, 4)),
+    "the same, particles removed": ([INPUT / "paper/net_400.toml", "time.step=5e-4", "time.end=0.85",
+                                     "space.leaving=remove", "parallel.imbalance=0.05"], (1, 3)),
+    "the same, explicit": ([INPUT / "paper/net_400.toml", *EXPLICIT, "integrator.substeps=10", "time.step=5e-4",
+                            "time.end=0.85", "space.leaving=remove"], (1, 3)),
+    "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
+    "dam break, implicit": (DAM, (1, 2, 3, 4, 8)),
+    "dam break, explicit": ([*DAM, *EXPLICIT, "integrator.substeps=3"], (1, 2, 3, 4, 8)),
+    "periodic gas, implicit": ([*GAS, *IMPLICIT], (1, 2, 3, 4, 8)),
+    "periodic gas, explicit": ([*GAS, *EXPLICIT], (1, 2, 3, 4, 8)),
+}
+
+# Alone in a periodic box, far from each other: they keep their velocity, digit for digit.
+LONELY = """[space]
+dimension = 2
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+x_min = "periodic"
+x_max = "periodic"
+y_min = "periodic"
+y_max = "periodic"
+
+[time]
+end = 1.0
+step = 1e-3
+
+[[contact.pairs]]
+stiffness = 1e5
+
+[[particles]]
+name = "two"
+kind = "row"
+count = 2
+origin = [0.25, 0.5]
+spacing = [0.5, 0.0]
+radius = 0.05
+mass = 1.0
+velocity = [0.0, 0.123456789]
+"""
+VELOCITY = 0.123456789
+
+
+class RanksTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="scree_ranks_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def command(self, ranks, deck, output, overrides, *words):
+        settings = [word for override in overrides for word in ("--set", override)]
+        return [MPIEXEC, "-n", str(ranks), SCREE, "run", str(deck), "--backend", "cpu", "--output",
+                str(self.folder / output), *settings, *map(str, words)]
+
+    def run_deck(self, code, ranks, deck, output, overrides=(), *words):
+        result = subprocess.run(self.command(ranks, deck, output, overrides, *words), cwd=self.folder, env=ENVIRONMENT,
+                                capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def record(self, output):
+        return json.loads((self.folder / output / "run_record.json").read_text())
+
+    def hash(self, output):
+        return self.record(output)["run"]["state_hash"]
+
+    def bytes_of(self, output, name):
+        return (self.folder / output / name).read_bytes()
+
+
+    def datasets(self, output, name):
+        """Contents of an HDF5 file, without the times of day that are in it; None without h5py or file."""
+        path = self.folder / output / name
+        if h5py is None or not path.exists():
+            return None
+        contents = {}
+        with h5py.File(path) as file:
+            file.visititems(lambda at, item: contents.update({at: item[()].tobytes()})
+                            if isinstance(item, h5py.Dataset) else None)
+        return contents
+
+
+class SameBitsTest(RanksTest):
+    def test_every_number_of_ranks_gives_the_bits_of_one(self):
+        for name, ((deck, *overrides), counts) in CASES.items():
+            migrated = 0
+            for ranks in counts:
+                with self.subTest(case=name, ranks=ranks):
+                    output = f"{name} {ranks}"
+                    self.run_deck(DONE, ranks, deck, output, [*overrides, "output.history_csv=true"])
+                    record, first = self.record(output), f"{name} 1"
+                    self.assertEqual(record["run"]["ranks"], ranks)
+                    self.assertEqual(self.hash(output), self.hash(first))
+                    for count in ("steps", "newton_iterations", "linear_iterations", "list_builds", "left"):
+                        self.assertEqual(record["counts"][count], self.record(first)["counts"][count], count)
+                    self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))
+                    for series in ("particles.vtkhdf", "bodies.vtkhdf"):
+                        self.assertEqual(self.datasets(output, series), self.datasets(first, series))
+                    self.assertGreaterEqual(record["counts"]["steps"], 500 if "adaptive" in name else 1000)
+                    migrated += record["counts"]["migrated"]
+            self.assertGreater(migrated, 0, name)
+
+    def test_uneven_loads_move_the_boxes(self):
+        deck, *overrides = CASES["dam break, explicit"][0]
+        self.run_deck(DONE, 4, deck, "dam", [*overrides, "parallel.imbalance=0.1"])
+        record = self.record("dam")
+        self.assertGreater(record["counts"]["rebalances"], 0)
+        self.assertGreater(record["measures"]["largest_imbalance"], 0.1)
+
+    def test_a_restart_on_another_number_of_ranks_continues_the_run(self):
+        for how in (IMPLICIT, [*EXPLICIT, "integrator.substeps=3"]):
+            with self.subTest(how=how):
+                settings = [*how, "output.checkpoint_interval=0.06", "output.snapshot_interval=0.06"]
+                name = how[0]
+                self.run_deck(DONE, 1, DAM[0], f"whole {name}", [*settings, "time.end=0.12"])
+                self.run_deck(DONE, 3, DAM[0], f"parts {name}", [*settings, "time.end=0.06"])
+                checkpoint = self.folder / f"parts {name}" / "checkpoint.h5"
+                self.run_deck(DONE, 2, DAM[0], f"parts {name}", [*settings, "time.end=0.12"], "--restart", checkpoint)
+                self.assertEqual(self.hash(f"parts {name}"), self.hash(f"whole {name}"))
+                self.assertEqual(self.record(f"parts {name}")["counts"]["history_rows"],
+                                 self.record(f"whole {name}")["counts"]["history_rows"])
+
+
+class FailureTest(RanksTest):
+    def assert_one_message(self, result, *words):
+        self.assertEqual(result.stderr.count("error:"), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+    def test_bad_input_is_reported_once(self):
+        deck = self.write("bad.toml", LONELY.replace("step = 1e-3", "stp = 1e-3"))
+        self.assert_one_message(self.run_deck(BAD_INPUT, 2, deck, "out"), "time.stp", "did you mean")
+        self.assert_one_message(self.run_deck(IO_FAILED, 2, self.folder / "none.toml", "out"), "none.toml")
+
+    def test_bad_input_that_only_rank_0_sees_is_reported_once(self):
+        self.write("out", "a file where the results should go")
+        deck = self.write("deck.toml", LONELY)
+        self.assert_one_message(self.run_deck(IO_FAILED, 3, deck, "out"), "output folder")
+        result = self.run_deck(BAD_INPUT, 2, deck, "results", (), "--", "no_option")
+        self.assert_one_message(result, "no_option")
+
+    def test_subdomains_narrower_than_the_halo_are_refused(self):
+        deck = self.write("deck.toml", LONELY.replace("periodic", "wall"))
+        result = self.run_deck(BAD_INPUT, 4, deck, "out", ["contact.skin=0.6"])
+        self.assert_one_message(result, "mpirun -n 4", "narrower", "only")
+
+    def test_ranks_without_particles_are_fine(self):
+        deck = self.write("deck.toml", LONELY)
+        for ranks in (1, 8):
+            self.run_deck(DONE, ranks, deck, f"out {ranks}")
+        self.assertEqual(self.hash("out 8"), self.hash("out 1"))
+
+    def test_a_value_that_is_not_finite_on_one_rank_ends_all(self):
+        for how in (IMPLICIT, EXPLICIT):
+            with self.subTest(how=how):
+                deck = self.write("deck.toml", LONELY)
+                self.run_deck(DONE, 1, deck, "start", [*how, "time.end=0.1"])
+                checkpoint = self.folder / "start" / "checkpoint_end.h5"
+                content = checkpoint.read_bytes()
+                healthy = struct.pack("<d", VELOCITY)
+                self.assertEqual(content.count(healthy), 2)
+                checkpoint.write_bytes(content.replace(healthy, struct.pack("<d", math.nan), 1))
+                result = self.run_deck(FAILED, 2, deck, "out", how, "--restart", checkpoint)
+                # Without a list that covers its motion, an implicit step does not come to look at forces.
+                words = ("particle 0", "not finite") if how == EXPLICIT else ("stage neighbors",)
+                self.assert_one_message(result, *words)
+                self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
+
+    def test_the_gpu_is_refused(self):
+        deck = self.write("deck.toml", LONELY)
+        result = subprocess.run([MPIEXEC, "-n", "2", SCREE, "run", str(deck), "--backend", "cuda"], cwd=self.folder,
+                                env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(result.returncode, BAD_INPUT, result.stderr)
+        self.assert_one_message(result, "--backend cuda runs on one rank in this version")
+
+
+class SignalTest(RanksTest):
+    SETTINGS = [*EXPLICIT, "integrator.substeps=3", "time.end=40", "output.checkpoint_interval=0.02"]
+
+    def start(self, ranks):
+        """A run that would take long, once it has written a checkpoint."""
+        run = subprocess.Popen(self.command(ranks, DAM[0], "out", self.SETTINGS), cwd=self.folder, env=ENVIRONMENT,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(run.kill)
+        checkpoint = self.folder / "out" / "checkpoint.h5"
+        deadline = time.monotonic() + LIMIT
+        while not checkpoint.exists():
+            self.assertLess(time.monotonic(), deadline)
+            self.assertIsNone(run.poll())
+            time.sleep(0.05)
+        return run
+
+    def children(self, parent):
+        listed = subprocess.run(["ps", "-o", "pid=,comm=", "--ppid", str(parent)], capture_output=True, text=True)
+        lines = [line.split() for line in listed.stdout.splitlines()]
+        return [int(words[0]) for words in lines if "scree" in words[1]]
+
+    def test_a_signal_stops_all_ranks_with_a_checkpoint(self):
+        for to_one_rank in (True, False):  # or to mpirun, as a batch system does it
+            with self.subTest(to_one_rank=to_one_rank):
+                run = self.start(2)
+                os.kill(self.children(run.pid)[1] if to_one_rank else run.pid, signal.SIGUSR1)
+                self.assertEqual(run.wait(LIMIT), STOPPED)
+                record = self.record("out")
+                self.assertIn("stopped by signal", record["run"]["status"])
+                end = record["measures"]["simulated_time"] + 0.01
+                self.run_deck(DONE, 3, DAM[0], "on", [*self.SETTINGS, f"time.end={end}"], "--restart",
+                              self.folder / "out" / "checkpoint.h5")
+                (self.folder / "out" / "checkpoint.h5").unlink()
+
+    def test_a_killed_rank_ends_the_job_and_leaves_the_last_checkpoint(self):
+        run = self.start(2)
+        os.kill(self.children(run.pid)[1], signal.SIGKILL)
+        self.assertNotEqual(run.wait(LIMIT), DONE)
+        with self.subTest("the checkpoint is complete"):
+            result = subprocess.run(self.command(1, DAM[0], "on", [*self.SETTINGS, "time.end=0.0"], "--restart",
+                                                 self.folder / "out" / "checkpoint.h5"), cwd=self.folder,
+                                    env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+            self.assertIn("time.end", result.stderr)  # it was read
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
