@@ -2,6 +2,7 @@
 // queued and nothing waits. The CPU's counterpart is src/dem/contact_kernels.hpp.
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "dem/contact_items.hpp"
@@ -74,9 +75,9 @@ struct VerletControl {
     choose_rows();
   }
   SCREE_HD void choose_rows() {
-    constexpr Real kPrunedSteps = 32;            // that pruned rows should last
-    constexpr Real kLeastShare = Real(1) / 32;   // of the skin: far above the rounding of a test in single
-    constexpr Real kMostShare = Real(1) / 2;     // more would save too little
+    constexpr Real kPrunedSteps = 32;           // that pruned rows should last
+    constexpr Real kLeastShare = Real(1) / 32;  // of the skin: particles nearly at rest start to move, too
+    constexpr Real kMostShare = Real(1) / 2;    // of the skin: more would save too little
     if (moved < margin / 2) {
       rows = RowUse::pruned;
       return;
@@ -97,7 +98,7 @@ struct VerletControl {
 // Two arrays each for position and velocity: a step reads one and writes the other.
 struct VerletRequest {
   PrunedViews in;  // but for position and velocity
-  Index n;
+  Index n, active;  // the others drift outside: the list need not cover their motion
   Vec3 gravity;
   Vec4 *position[2], *velocity[2];
   VerletViews state;  // likewise
@@ -110,7 +111,7 @@ struct VerletRequest {
 // The same in mixed precision. in.position: the double state, as it was converted.
 struct MixedRequest {
   PrunedViews in;
-  Index n;
+  Index n, active;
   Vec3 gravity;
   MixedViews state;
   QuantumGrid grid;

@@ -72,7 +72,7 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_plac
 
 inline constexpr int kVerletThreads = 128;
 // Entries of a row that a launch of few threads evaluates at once.
-inline constexpr int kAtOnce = 4;
+inline constexpr int kFewThreadsAtOnce = 4;
 // Registers are rationed for so many blocks on a multiprocessor: the kernels live from many threads that wait, or from
 // many entries at once.
 constexpr int verlet_blocks(int at_once) { return at_once == 0 ? 7 : 4; }
@@ -80,8 +80,10 @@ constexpr int mixed_blocks(int at_once) { return at_once == 0 ? 10 : 6; }
 
 // Blocks of the next step may come from now on, and this one waits until the step before is done.
 __device__ inline void await_step_before() {
+#if __CUDA_ARCH__ >= 900
   cudaTriggerProgrammaticLaunchCompletion();
   cudaGridDependencySynchronize();
+#endif
 }
 
 // A block's part in the largest displacement of a step.
@@ -93,8 +95,10 @@ struct BlockLargest {
   }
 };
 
-// Every thread calls this at its end: the last block closes the step.
+// Every thread calls this at its end: the last block closes the step. d_squared: of the thread's particle, 0 for one
+// outside the search.
 __device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, VerletControl& control) {
+  __syncwarp();  // lane 0 speaks for all: it sees what they wrote
   // Singles that round up keep the order of the doubles, and a NaN stays the largest.
   const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
   const unsigned warp_largest = __reduce_max_sync(~0u, bits);
@@ -142,7 +146,7 @@ __global__ void __launch_bounds__(kVerletThreads, verlet_blocks(kAtOnce))
   stage.put(position, p == 0 ? r.position[1] : r.position[0]);
   stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
 
-  close_by_last_block(largest_of_step, d_squared, *r.control);
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, *r.control);
 }
 
 template <int kAtOnce, class Elastic, class Laws>
@@ -165,7 +169,7 @@ __global__ void __launch_bounds__(kVerletThreads, mixed_blocks(kAtOnce))
         !r.box.inside(mixed_position(r.grid, r.in.position[i], (parity == 0 ? r.state.place[1] : r.state.place[0])[i], part)))
       r.control->outside = 1;
   }
-  close_by_last_block(largest_of_step, d_squared, *r.control);
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, *r.control);
 }
 
 template <class Elastic, class Laws>
@@ -213,12 +217,14 @@ class ContactKernelsOf : public DeviceContactKernels {
              ContactEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, out.energy, out.contacts, out.pairs});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
-    const bool eagerly = fits(r.n, verlet_blocks(kAtOnce));
-    launch(device, r, eagerly ? verlet_advance_kernel<kAtOnce, Elastic, Laws> : verlet_advance_kernel<0, Elastic, Laws>);
+    const bool eagerly = fits(r.n, verlet_blocks(kFewThreadsAtOnce));
+    launch(device, r, eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
+                              : verlet_advance_kernel<0, Elastic, Laws>);
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    const bool eagerly = fits(r.n, mixed_blocks(kAtOnce));
-    launch(device, r, eagerly ? mixed_advance_kernel<kAtOnce, Elastic, Laws> : mixed_advance_kernel<0, Elastic, Laws>);
+    const bool eagerly = fits(r.n, mixed_blocks(kFewThreadsAtOnce));
+    launch(device, r, eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
+                              : mixed_advance_kernel<0, Elastic, Laws>);
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
@@ -240,11 +246,13 @@ class ContactKernelsOf : public DeviceContactKernels {
     overlap.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
     config.gridDim = std::max(1u, blocks_for(r.n, kVerletThreads)), config.blockDim = kVerletThreads;
-    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = 1;
+    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = overlaps_ ? 1 : 0;
     require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");
   }
 
   Laws laws_;
+  // Kernels compiled for older generations do not wait for the step before.
+  bool overlaps_ = generation_of(verlet_advance_kernel<0, Elastic, Laws>) >= 90;
   unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());
 };
 

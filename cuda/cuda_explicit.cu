@@ -18,6 +18,7 @@ constexpr Index kEndless = std::numeric_limits<Index>::max();
 // Opens the first step of a run.
 struct RunStartItem {
   VerletStartItem start;
+  Index active;
   OpenBox box;
   const std::uint8_t* drifting;
   VerletControl* control;
@@ -25,7 +26,7 @@ struct RunStartItem {
   __device__ Real operator()(Index i) const {
     const Real squared = start(i);
     if (!box.inside(xyz(start.state.position[i])) && !drifting[i]) control->outside = 1;
-    return squared;
+    return i < active ? squared : 0;
   }
 };
 
@@ -94,7 +95,7 @@ PrunedViews CudaBackend::pruned_views(const Vec4* position) {
 VerletRequest CudaBackend::verlet_request(Real h) {
   VerletRequest r{};
   r.in = pruned_views(nullptr);
-  r.n = owned_, r.gravity = model_.gravity;
+  r.n = owned_, r.active = layout_.active, r.gravity = model_.gravity;
   r.position[0] = now_.position.data(), r.position[1] = other_.position.data();
   r.velocity[0] = now_.velocity.data(), r.velocity[1] = other_.velocity.data();
   r.state = {nullptr, nullptr,
@@ -120,7 +121,7 @@ void CudaBackend::verlet_start(Real h) {
   const VerletRequest r = verlet_request(h);
   VerletViews state = r.state;
   state.position = now_.position.data(), state.velocity = now_.velocity.data();
-  max_over(device(), owned_, RunStartItem{{state}, r.box, r.drifting, r.control}, result(&Results::largest));
+  max_over(device(), owned_, RunStartItem{{state}, r.active, r.box, r.drifting, r.control}, result(&Results::largest));
   started_kernel<<<1, 1, 0, stream_>>>(r.control, result(&Results::largest));
   require_cuda(cudaGetLastError(), "explicit step");
   wait_for(stream_);  // the host's copy of the control is free again
@@ -204,7 +205,8 @@ void CudaBackend::queue_steps(Real h, Index steps) {
   }
   if (!in_mixed_) convert_to_mixed(h);
   MixedRequest r{};
-  r.in = pruned_views(now_.position.data()), r.n = owned_, r.gravity = model_.gravity;
+  r.in = pruned_views(now_.position.data()), r.n = owned_, r.active = layout_.active;
+  r.gravity = model_.gravity;
   r.state = mixed_views(), r.grid = quanta_, r.h = h;
   r.box = subdomain_.box(), r.drifting = now_.drifting.data(), r.control = result(&Results::control);
   const MixedGhostItem ghosts{ghost_.data(), r.state, quanta_, owned_, r.control};
@@ -281,8 +283,8 @@ VerletRun CudaBackend::run_with_shapes(Real h, Index most, bool keep_open, Stage
   return run;
 }
 
-// One step with bodies; returns whether the next is open. The host waits for the contacts of the shapes only, and solves for the bodies' motion while
-// the particles' kernel runs.
+// One step with bodies; returns whether the next is open. The host waits for the contacts of the shapes only, and solves
+// for the bodies' motion while the particles' kernel runs.
 bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) {
   for (;;) {
     if (layout_changed_ || !shapes_covered()) build_list(model_.contact.skin, timers), resume_control(kEndless);
@@ -291,6 +293,7 @@ bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) 
     queue_shape_contacts();
     places_copied_.hold(stream_);
     if (keep_open) queue_steps(h, 1);
+    if (idle_work_) idle_work_();
     fetch_shape_contacts(shape_stream_);
     const VerletControl& control = h_results_[0].control;
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];

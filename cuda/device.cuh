@@ -76,6 +76,14 @@ void prefer_cache(Kernel* kernel, std::size_t shared) {
                "cudaFuncSetAttribute");
 }
 
+// What the code of a kernel that this GPU runs was compiled for: 90 for generation 9.0.
+template <class Kernel>
+int generation_of(Kernel* kernel) {
+  cudaFuncAttributes attributes{};
+  require_cuda(cudaFuncGetAttributes(&attributes, kernel), "cudaFuncGetAttributes");
+  return attributes.ptxVersion;
+}
+
 // n values, queued on the stream. from and to: device and pinned memory.
 template <class T>
 void copy_async(T* to, const T* from, std::size_t n, cudaStream_t stream) {

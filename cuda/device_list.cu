@@ -199,6 +199,8 @@ void DeviceList::build(Device device, const ListInput& in) {
   slice_start_.resize(items / kSlice + 1), counts_.resize(items);
   wall_counts_.resize(items + 1), wall_offsets_.resize(items + 1);
   if (neighbors_.size() == 0) neighbors_.resize(kSlotsPerItem * items + kSlice);
+  h_totals_[0].entries = 0;
+  if (in.items == 0) return;
   search(device, in);
 
   // The entry past the end is read, though no sum depends on it.
@@ -221,7 +223,7 @@ void DeviceList::build(Device device, const ListInput& in) {
     h_totals_[0].wall_entries = wall_entries;
   }
   walls_.resize(static_cast<std::size_t>(h_totals_[0].wall_entries));
-  if (h_totals_[0].wall_entries == 0 || in.items == 0) return;
+  if (h_totals_[0].wall_entries == 0) return;
   fill_walls_kernel<<<blocks_for(in.items), kThreadsPerBlock, 0, device.stream>>>(in, wall_offsets_.data(),
                                                                                   walls_.data());
   require_cuda(cudaGetLastError(), "walls");

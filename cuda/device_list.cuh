@@ -144,7 +144,7 @@ class DeviceList {
   void build(Device device, const ListInput& in);
 
   SlicedRows rows() const { return {slice_start_.data(), counts_.data(), neighbors_.data()}; }
-  // Room for the pruned rows is made here; they are empty after each build.
+  // Room for the pruned rows is made here. After a build they hold nothing of use until a step with RowUse::prune.
   PrunedRows<0> pruned_rows(Index first_shape);
   const Index* wall_offsets() const { return wall_offsets_.data(); }
   const Index* walls() const { return walls_.data(); }

@@ -28,6 +28,7 @@ constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
 struct Sizes {
   double particles, ghosts, items, cells, slots;
+  bool shapes;  // whether bodies have some
 };
 
 bool equal_radii(const Model& model) {
@@ -62,6 +63,7 @@ Sizes sizes_of(const Model& model) {
   const std::vector<Ghost> ghosts =
       periodic_images(subdomain, model.space, store.position, builder.cutoff(skin));
   Sizes sizes{};
+  sizes.shapes = shapes.size() > 0;
   sizes.particles = static_cast<double>(model.particles.size()),
   sizes.ghosts = static_cast<double>(ghosts.size());
   sizes.items = sizes.particles + sizes.ghosts + static_cast<double>(shapes.size());
@@ -88,7 +90,7 @@ std::size_t device_memory(const Model& model) {
   if (explicit_steps) bytes += (n.items + n.slots) * sizeof(Index);  // pruned rows
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
-  if (model.integrator.precision == Precision::mixed && model.bodies.empty())
+  if (model.integrator.precision == Precision::mixed && !n.shapes)
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
   bytes += n.particles * (kOutputArrays + sizeof(ParticleRecord));
   return static_cast<std::size_t>(bytes);

@@ -118,6 +118,26 @@ TEST_CASE("fused explicit steps give the bits of single ones") {
   }
 }
 
+TEST_CASE("steps go on without a particle or a shape") {
+  for (const auto integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+    Model model = random_box(kBoxes[0], 0, 1);
+    model.integrator.particles = integrator;
+    LoadedBox box(model);
+    if (integrator == ParticleIntegrator::velocity_verlet) {
+      box.backend->verlet_start(1e-4);
+      CHECK(box.backend->verlet_run(1e-4, 3, false, box.timers).closed == 3);
+    } else {
+      box.backend->begin_step(1e-4);
+      CHECK(box.backend->contact_force().residual == 0);
+      CHECK(box.backend->particle_correct().correction == 0);
+      box.backend->accept();
+    }
+    CHECK(box.backend->list_displacement() == 0);
+    CHECK(box.backend->ledger(0).kinetic == 0);
+    CHECK(box.backend->records().empty());
+  }
+}
+
 TEST_CASE("steps conserve momentum without gravity, walls and bodies") {
   for (const BoxCase& c : kBoxes)
     for (const ParticleIntegrator integrator :
