@@ -205,6 +205,18 @@ class FailureTest(RanksTest):
                 self.assert_one_message(result, *words)
                 self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
 
+    def test_one_rank_without_memory_ends_all(self):
+        many = LONELY
+        for old, new in (("periodic", "wall"), ("max = [1.0, 1.0]", "max = [130.0, 130.0]"), ('"row"', '"lattice"'),
+                         ("count = 2", "size = [1000, 1000]"), ("spacing = [0.5, 0.0]", "spacing = [0.12, 0.12]")):
+            many = many.replace(old, new)
+        deck = self.write("deck.toml", many)
+        run = [SCREE, "run", str(deck), "--output", str(self.folder / "out"), "--set", EXPLICIT[0]]
+        short = f"ulimit -v 640000; exec {' '.join(run)}"  # [KiB]
+        result = subprocess.run([MPIEXEC, "-n", "1", *run, ":", "-n", "1", "bash", "-c", short], cwd=self.folder,
+                                env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertNotEqual(result.returncode, DONE, result.stdout + result.stderr)
+
     def test_the_gpu_is_refused(self):
         deck = self.write("deck.toml", LONELY)
         result = subprocess.run([MPIEXEC, "-n", "2", SCREE, "run", str(deck), "--backend", "cuda"], cwd=self.folder,
