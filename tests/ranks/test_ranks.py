@@ -21,7 +21,7 @@ SCREE = os.environ["SCREE"]
 MPIEXEC = os.environ.get("MPIEXEC", "mpirun")
 HERE = pathlib.Path(__file__).resolve().parent
 INPUT = HERE.parent.parent / "input"
-LIMIT = 120  # [s] for any one run: past it, the run hangs
+LIMIT = 300  # [s] for any one run: past it, the run hangs
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                    OMPI_MCA_rmaps_base_oversubscribe="1")
 
@@ -32,16 +32,16 @@ IMPLICIT = ["integrator.particles=hht"]
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
 DAM = [HERE / "dam_break.toml"]
 CASES = {
-    "5.3 net and 400 particles": ([INPUT / "paper/net_400.toml", "time.step=5e-4", "time.end=0.85",
+    "5.3 net and 400 particles": ([INPUT / "paper/net_400.toml", "time.step=5e-4", "time.end=0.6",
                                    "output.history_particles=[0, 399]"], (1, 2, 3, 4)),
     "the same, particles removed": ([INPUT / "paper/net_400.toml", "time.step=5e-4", "time.end=0.85",
                                      "space.leaving=remove", "parallel.imbalance=0.05"], (1, 3)),
     "the same, explicit": ([INPUT / "paper/net_400.toml", *EXPLICIT, "integrator.substeps=10", "time.step=5e-4",
                             "time.end=0.85", "space.leaving=remove"], (1, 3)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
-    "dam break, implicit": (DAM, (1, 2, 3, 4, 8)),
+    "dam break, implicit": (DAM, (1, 2, 3, 4)),
     "dam break, explicit": ([*DAM, *EXPLICIT, "integrator.substeps=3"], (1, 2, 3, 4, 8)),
-    "periodic gas, implicit": ([*GAS, *IMPLICIT], (1, 2, 3, 4, 8)),
+    "periodic gas, implicit": ([*GAS, *IMPLICIT], (1, 2, 3, 4)),
     "periodic gas, explicit": ([*GAS, *EXPLICIT], (1, 2, 3, 4, 8)),
 }
 
@@ -204,6 +204,18 @@ class FailureTest(RanksTest):
                 words = ("particle 0", "not finite") if how == EXPLICIT else ("stage neighbors",)
                 self.assert_one_message(result, *words)
                 self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
+
+    def test_one_rank_without_memory_ends_all(self):
+        many = LONELY
+        for old, new in (("periodic", "wall"), ("max = [1.0, 1.0]", "max = [130.0, 130.0]"), ('"row"', '"lattice"'),
+                         ("count = 2", "size = [1000, 1000]"), ("spacing = [0.5, 0.0]", "spacing = [0.12, 0.12]")):
+            many = many.replace(old, new)
+        deck = self.write("deck.toml", many)
+        run = [SCREE, "run", str(deck), "--output", str(self.folder / "out"), "--set", EXPLICIT[0]]
+        short = f"ulimit -v 640000; exec {' '.join(run)}"  # [KiB]
+        result = subprocess.run([MPIEXEC, "-n", "1", *run, ":", "-n", "1", "bash", "-c", short], cwd=self.folder,
+                                env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertNotEqual(result.returncode, DONE, result.stdout + result.stderr)
 
     def test_the_gpu_is_refused(self):
         deck = self.write("deck.toml", LONELY)
