@@ -3,6 +3,7 @@
 #   tests/performance/run_gpu.sh BUILD_DIR OUT_DIR [PART ...]
 # PART: copy explicit implicit net table4 profile (default: all). A part that fails is named at the end, and the
 # others still run. SCREE_COMMIT names the commit where the build does not know it. BUDGET: seconds per run of table4.
+# SAMPLES: options of bed for other samples than its own choice (five of 0.5 s): SAMPLES="--repeats 3 --seconds 0.15".
 set -uo pipefail
 if (($# < 2)); then
   echo "usage: tests/performance/run_gpu.sh BUILD_DIR OUT_DIR [copy explicit implicit net table4 profile]" >&2
@@ -13,7 +14,8 @@ shift 2
 parts=("$@")
 ((${#parts[@]} == 0)) && parts=(copy explicit implicit net table4 profile)
 here=$(dirname "${BASH_SOURCE[0]}")
-bed=$build/tests/performance/bed
+read -ra samples <<<"${SAMPLES:-}"
+bed=("$build/tests/performance/bed" "${samples[@]}")
 mkdir -p "$out" || exit 4
 
 heading() {
@@ -29,24 +31,24 @@ explicit() {
   local precision rebuild status=0
   for precision in double mixed; do
     for rebuild in 25 0; do
-      "$bed" --backend cuda --precision "$precision" --rebuild "$rebuild" \
+      "${bed[@]}" --backend cuda --precision "$precision" --rebuild "$rebuild" \
         --particles 10000 100000 1000000 4000000 16000000 || status=1
     done
-    "$bed" --backend cuda --precision "$precision" --rebuild 0 --dimension 2 \
+    "${bed[@]}" --backend cuda --precision "$precision" --rebuild 0 --dimension 2 \
       --particles 10000 100000 1000000 || status=1
   done
-  "$bed" --particles 10000 100000 1000000 --repeats 3 || status=1
+  "${bed[@]}" --particles 10000 100000 1000000 --repeats 3 || status=1
   return $status
 }
 
 implicit() {
   local status=0
-  "$bed" --backend cuda --integrator hht --particles 10000 100000 1000000 4000000 || status=1
-  "$bed" --integrator hht --particles 10000 100000 --repeats 3 || status=1
+  "${bed[@]}" --backend cuda --integrator hht --particles 10000 100000 1000000 4000000 || status=1
+  "${bed[@]}" --integrator hht --particles 10000 100000 --repeats 3 || status=1
   return $status
 }
 
-net() { "$bed" --backend cuda --net --particles 10000 100000 1000000 4000000; }
+net() { "${bed[@]}" --backend cuda --net --particles 10000 100000 1000000 4000000; }
 
 table4() {
   python3 "$here/table4.py" "$build/scree" --backends cpu cuda --budget "${BUDGET:-30}" --out "$out/table4"
