@@ -37,14 +37,14 @@ explicit() {
     "${bed[@]}" --backend cuda --precision "$precision" --rebuild 0 --dimension 2 \
       --particles 10000 100000 1000000 || status=1
   done
-  "${bed[@]}" --particles 10000 100000 1000000 --repeats 3 || status=1
+  "${bed[@]}" --particles 10000 100000 1000000 || status=1
   return $status
 }
 
 implicit() {
   local status=0
   "${bed[@]}" --backend cuda --integrator hht --particles 10000 100000 1000000 4000000 || status=1
-  "${bed[@]}" --integrator hht --particles 10000 100000 --repeats 3 || status=1
+  "${bed[@]}" --integrator hht --particles 10000 100000 || status=1
   return $status
 }
 
