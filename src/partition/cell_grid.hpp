@@ -54,12 +54,13 @@ struct CellGrid {
 inline CellGrid make_cell_grid(Vec3 min, Vec3 max, int dimension, Real min_cell, Index max_cells) {
   const Vec3 extent = max - min;
   const auto cells_along = [](Real length, Real size) { return std::max(1.0, std::floor(length / size)); };
-  Real size = min_cell;
+  const Real longest = std::max({extent.x, extent.y, extent.z});
+  Real size = min_cell > 0 ? min_cell : longest;  // where nothing has a size, one cell does
   const auto total = [&] {
     return (cells_along(extent.x, size) + 2) * (cells_along(extent.y, size) + 2) *
            (dimension == 3 ? cells_along(extent.z, size) + 2 : 1);
   };
-  while (total() > max_cells && cells_along(std::max({extent.x, extent.y, extent.z}), size) > 1) size *= 1.25;
+  while (total() > max_cells && cells_along(longest, size) > 1) size *= 1.25;
   CellGrid grid;
   grid.layer = dimension == 2;
   const auto axis = [&](Real start, Real length, Real& origin, Real& inverse, Index& cells) {

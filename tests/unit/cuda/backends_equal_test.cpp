@@ -41,7 +41,8 @@ struct Pair {
 Model dense_box(const BoxCase& box, ParticleIntegrator integrator, int particles = kParticles) {
   Model model = random_box(box, particles, 33);
   // More room than the small boxes of the other tests: some ten neighbours each.
-  const Real scale = (box.dimension == 2 ? 3.5 : 2) * std::pow(Real(particles) / kParticles, Real(1) / box.dimension);
+  const Real scale =
+      (box.dimension == 2 ? 3.5 : 2) * std::pow(Real(particles) / kParticles, Real(1) / box.dimension);
   for (Vec3* corner : {&model.space.min, &model.space.max}) *corner = scale * *corner;
   for (Vec3& position : model.particles.position) position = scale * position;
   model.integrator.particles = integrator;
@@ -164,8 +165,8 @@ TEST_CASE("explicit steps are the same on both backends") {
     }
 }
 
-// Steps so short that rows are pruned several times between two lists; particles so few and so many that either form of
-// the step's kernel is used.
+// Steps so short that rows are pruned several times between two lists; particles so few and so many that
+// either form of the step's kernel is used.
 TEST_CASE("many short explicit steps are the same on both backends") {
   for (const BoxCase& c : {kBoxes[1], kBoxes[5]})
     for (const int particles : {kParticles, 80000}) {
@@ -174,7 +175,8 @@ TEST_CASE("many short explicit steps are the same on both backends") {
       model.contact.skin = 0.02;
       Pair pair(model, model.contact.skin);
       const Index at_once = model.bodies.empty() ? 300 : 1;
-      for (Backend* backend : {pair.cpu.get(), pair.cuda.get()}) take_steps(*backend, pair, 300, at_once, 1e-5);
+      for (Backend* backend : {pair.cpu.get(), pair.cuda.get()})
+        take_steps(*backend, pair, 300, at_once, 1e-5);
       CHECK(pair.cuda->list_builds() > 1);
       CHECK(pair.cuda->list_builds() < 30);
       CHECK(difference(pair.cpu->records(), pair.cuda->records()) == 0);
@@ -191,9 +193,9 @@ TEST_CASE("the state moves between the backends without a trace") {
 
 TEST_CASE("what is said about device memory before a run is what the run takes") {
   for (const BoxCase& c : {kBoxes[0], kBoxes[4], kBoxes[6]})
-    for (const auto& [integrator, precision] :
-         {std::pair{ParticleIntegrator::hht, Precision::full}, {ParticleIntegrator::velocity_verlet, Precision::full},
-          {ParticleIntegrator::velocity_verlet, Precision::mixed}}) {
+    for (const auto& [integrator, precision] : {std::pair{ParticleIntegrator::hht, Precision::full},
+                                                {ParticleIntegrator::velocity_verlet, Precision::full},
+                                                {ParticleIntegrator::velocity_verlet, Precision::mixed}}) {
       CAPTURE(c.name, static_cast<int>(integrator), static_cast<int>(precision));
       Model model = random_box(c, 300000, 5);
       const Real scale = c.dimension == 2 ? 60 : 14;

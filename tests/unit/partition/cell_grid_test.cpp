@@ -81,6 +81,15 @@ TEST_CASE("cells are at least as wide as asked and at most as many") {
   }
 }
 
+TEST_CASE("where nothing has a size the space is one cell") {
+  for (const int dimension : {2, 3}) {
+    const CellGrid grid = make_cell_grid({-1, -1, -1}, {1, 2, 3}, dimension, 0, 100);
+    CHECK(grid.cells[0] == 3);
+    CHECK(grid.cells[1] == 3);
+    CHECK(grid.cells[2] == (dimension == 3 ? 3 : 1));
+  }
+}
+
 TEST_CASE("points outside the grid and points that are not numbers have no cell") {
   const CellGrid grid = grid_of(kGrids[1]);
   const Real nan = std::nan(""), infinity = INFINITY;
