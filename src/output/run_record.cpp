@@ -70,6 +70,7 @@ toml::table cost_table(const RunRecord& record) {
   getrusage(RUSAGE_SELF, &usage);
   toml::table table;
   insert_number(table, "wall_seconds", record.wall_seconds);
+  insert_number(table, "loop_seconds", record.loop_seconds);
   insert_number(table, "cpu_seconds", record.cpu_seconds);
   table.insert_or_assign("peak_memory_kib", static_cast<std::int64_t>(usage.ru_maxrss));
   return table;

@@ -22,6 +22,7 @@ struct RunRecord {
   std::string state_hash;  // of the state in the last checkpoint; empty before the first
   int ranks = 1;
   double wall_seconds = 0, cpu_seconds = 0;
+  double loop_seconds = 0;  // wall time of the steps, output between them included
   StageTimers timers;
   std::vector<std::pair<std::string, std::int64_t>>
       counts;                                            // steps, iterations, rejections, list builds, ...

@@ -135,6 +135,7 @@ class Simulation {
   std::string started_ = utc_now();
   Clock::time_point start_ = Clock::now(), last_progress_ = start_, last_flush_ = start_;
   double start_cpu_ = cpu_seconds();
+  double loop_seconds_ = 0;
   Real start_time_ = 0;
   int tenths_reported_ = 0;
   std::string state_hash_;
@@ -220,7 +221,10 @@ ExitCode Simulation::run() {
       parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) { progress(s, h); });
   try {
-    if (loop.run() == LoopEnd::done) {
+    const Clock::time_point start = Clock::now();
+    const LoopEnd end = loop.run();
+    loop_seconds_ = std::chrono::duration<double>(Clock::now() - start).count();
+    if (end == LoopEnd::done) {
       checkpoint(loop.complete_state(), "checkpoint_end.h5");
       return finish("done", ExitCode::done);
     }
@@ -281,6 +285,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.ranks = ranks_.size();
   const LoadBalance balance = backend_->balance();
   record.wall_seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  record.loop_seconds = loop_seconds_;
   record.cpu_seconds = cpu_seconds() - start_cpu_;
   record.timers = timers_;
   const StepCounts& n = step_.counts();

@@ -10,8 +10,8 @@ higher; they begin at the impact, the block a hundredth of a diameter above the 
 
 A run that takes longer than --budget is stopped; what it has simulated is the window of that case, and of the backends
 after it. The time for one second is then the time per simulated second of the window. It is the wall time of the step
-loop: from the first run record, which the program writes before the first step, to the last checkpoint, which it begins
-after the last one, less the output within. The wall time of the whole run, start and files included, stands beside it.
+loop, from the run record, less the output within. The wall time of the whole run, start and files included, stands
+beside it.
 
 Writes DIR/table4.csv, a row after each run: the same command again goes on where it was stopped. Then DIR/table4.md
 and, where there is matplotlib, DIR/fig15.png.
@@ -107,19 +107,19 @@ def run_case(arguments, method, particles, backend, window):
     command = [arguments.scree, "run", str(deck), "--output", str(folder), "--backend", backend]
     for key, value in settings.items():
         command += ["--set", f"{key}={value}"]
-    status, loop_seconds = run_for(command, folder, arguments.budget)
+    status = run_for(command, folder, arguments.budget)
     row = {"method": method, "particles": particles, "nets": nets_for(particles), "backend": backend, "status": status,
            "start": "rest" if from_rest else "impact"}
     if status == "done":
-        row |= read_record(folder / "run_record.json", loop_seconds)
+        row |= read_record(folder / "run_record.json")
     for large in folder.glob("*.h5"):  # snapshots and checkpoints of a million particles
         large.unlink()
     return row
 
 
 def run_for(command, folder, budget):
-    """Runs the command, with a signal to stop after the budget. Returns status and time of the step loop [s]."""
-    start = end = signalled = None
+    """Runs the command, with a signal to stop after the budget, which begins with the first step. Returns the status."""
+    start = signalled = None
     begun = time.monotonic()
     with open(folder / "log", "w") as log:
         process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
@@ -128,33 +128,30 @@ def run_for(command, folder, budget):
                 now = time.monotonic()
                 if start is None and (folder / "run_record.json").exists():
                     start = now
-                elif start is not None and end is None and any(folder.glob("checkpoint*")):
-                    end = now
                 if start is None and now > begun + START_SECONDS:
-                    return f"failed: not set up after {START_SECONDS} s", None
-                if start is not None and end is None and signalled is None and now > start + budget:
+                    return f"failed: not set up after {START_SECONDS} s"
+                if start is not None and signalled is None and now > start + budget:
                     process.send_signal(signal.SIGTERM)
                     signalled = now
                 if signalled is not None and now > signalled + STOP_SECONDS:
-                    return f"failed: did not stop within {STOP_SECONDS} s of the signal", None
+                    return f"failed: did not stop within {STOP_SECONDS} s of the signal"
                 time.sleep(POLL_SECONDS)
         finally:
             if process.poll() is None:
                 process.kill()
                 process.wait()
     if process.returncode not in (0, 5):  # done, stopped by a signal
-        return f"failed: exit code {process.returncode}; see {folder.name}/log", None
-    if end is None:
-        return "failed: too short to be timed", None
-    return "done", end - start
+        return f"failed: exit code {process.returncode}; see {folder.name}/log"
+    return "done"
 
 
-def read_record(path, loop_seconds):
+def read_record(path):
     record = json.loads(path.read_text())
     counts, simulated = record["counts"], record["measures"]["simulated_time"]
     if not counts["steps"]:
         return {"status": "failed: no step within the budget"}
-    stepping = loop_seconds - sum(stage["seconds"] for stage in record["stages"] if stage["stage"] == "output")
+    output = sum(stage["seconds"] for stage in record["stages"] if stage["stage"] == "output")
+    stepping = record["cost"]["loop_seconds"] - output
     return {"bodies": counts["bodies"], "simulated": simulated, "steps": counts["steps"],
             "newton": counts["newton_iterations"], "linear": counts["linear_iterations"],
             "stepping_seconds": stepping, "wall_seconds": record["cost"]["wall_seconds"],
