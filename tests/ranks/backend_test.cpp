@@ -44,24 +44,8 @@ struct RankedBox {
   StageTimers timers;
 };
 
-void hht_step(RankedBox& box, Real h) {
-  Backend& backend = *box.backend;
-  backend.begin_step(h);
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const ParticleNorms norms = backend.contact_force();
-    if (norms.overshoot) {
-      backend.shorten_correction();
-      continue;
-    }
-    if (norms.residual <= 1e-10) return backend.accept();
-    backend.place_bodies(box.motion);
-    backend.particle_correct();
-  }
-  FAIL("no convergence");
-}
-
 void step(RankedBox& box, Real h) {
-  if (box.model.integrator.particles == ParticleIntegrator::hht) return hht_step(box, h);
+  if (box.model.integrator.particles == ParticleIntegrator::hht) return hht_step(*box.backend, box.motion, h);
   box.backend->verlet_start(h);
   box.backend->place_bodies(box.motion);
   box.backend->verlet_run(h, 1, false, box.timers);

@@ -12,6 +12,7 @@
 #include "partition/halo.hpp"
 #include "partition/subdomain.hpp"
 #include "support/backends.hpp"
+#include "support/catch.hpp"
 
 namespace scree {
 
@@ -136,6 +137,22 @@ struct LoadedBox {
   std::unique_ptr<Backend> backend = make_test_backend(model);
   StageTimers timers;
 };
+
+// An HHT step of the particles alone, the bodies held at `motion`.
+inline void hht_step(Backend& backend, const std::vector<BodyMotion>& motion, Real h) {
+  backend.begin_step(h);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const ParticleNorms norms = backend.contact_force();
+    if (norms.overshoot) {
+      backend.shorten_correction();
+      continue;
+    }
+    if (norms.residual <= 1e-10) return backend.accept();
+    backend.place_bodies(motion);
+    backend.particle_correct();
+  }
+  FAIL("no convergence");
+}
 
 // A particle or a shape for the search by brute force.
 struct BruteItem {
