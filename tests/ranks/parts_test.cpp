@@ -140,7 +140,7 @@ TEST_CASE("boxes fill the grid, own their points, and weigh as much as layers of
       const Vec3 p = xyz(all.position[i]);
       const int owner = boxes.owner(p);
       const CellBox& box = boxes.boxes()[static_cast<std::size_t>(owner)];
-      const Index at[3] = {grid.cell(0, p.x), grid.cell(1, p.y), grid.cell(2, p.z)};
+      const Index at[3] = {grid.cell(0, p), grid.cell(1, p), grid.cell(2, p)};
       for (int axis = 0; axis < 3; ++axis) CHECK((at[axis] >= box.lower[axis] && at[axis] < box.upper[axis]));
       weight[static_cast<std::size_t>(owner)] += all.weight[i], total += all.weight[i];
     }
