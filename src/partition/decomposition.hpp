@@ -49,13 +49,18 @@ struct CellBox {
 // A box of cells in space; infinite where the space ends and is not periodic.
 struct DomainBox {
   Vec3 min, max;  // [m]
-  SCREE_HD bool contains(Vec3 p) const {
-    return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
+  // Whether p lies inside, or outside by at most `width` [m].
+  SCREE_HD bool reaches(Vec3 p, Real width) const {
+    return p.x >= min.x - width && p.x <= max.x + width && p.y >= min.y - width && p.y <= max.y + width &&
+           p.z >= min.z - width && p.z <= max.z + width;
   }
 };
 
-// A box of the bisection, as owner_of() walks them: cells below `cut` along `axis` belong to the box `below`, the
-// others to below + 1; axis -1: all of it belongs to a rank.
+// The sides of boxes come from a product and a sum: this share more of a width covers their round-off.
+inline constexpr Real kBoxRoundOff = 1e-9;
+
+// A box of the bisection, as owner_of() walks them: cells below `cut` along `axis` belong to the box `below`,
+// the others to below + 1; axis -1: all of it belongs to a rank.
 struct DomainCut {
   int axis = -1;
   Index cut = 0;

@@ -3,17 +3,17 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/for_each.hpp"
+#include "partition/entry_type.hpp"
 
 namespace scree {
 namespace {
 
 constexpr int kCountTag = 21, kFieldTag = 22, kPositionTag = 23, kVelocityTag = 24;
-
-// Boxes come from a product and a sum: this share more covers their round-off.
-constexpr Real kRoundOff = 1e-9;
 
 // Whether `box`, moved by s periods, comes within the width of `other`.
 bool comes_near(const DomainBox& box, Vec3 shift, const DomainBox& other, Real width) {
@@ -22,11 +22,6 @@ bool comes_near(const DomainBox& box, Vec3 shift, const DomainBox& other, Real w
            box.max.*axis + shift.*axis >= other.min.*axis - width;
   };
   return along(&Vec3::x) && along(&Vec3::y) && along(&Vec3::z);
-}
-
-bool within(Vec3 p, const DomainBox& box, Real width) {
-  return p.x >= box.min.x - width && p.x <= box.max.x + width && p.y >= box.min.y - width &&
-         p.y <= box.max.y + width && p.z >= box.min.z - width && p.z <= box.max.z + width;
 }
 
 // Calls visit(shift [m], image) for the shifts by whole periods, none included.
@@ -38,6 +33,12 @@ void for_each_shift(Vec3 period, const Visit& visit) {
       for (int x = -most(period.x); x <= most(period.x); ++x)
         visit(Vec3{x * period.x, y * period.y, z * period.z},
               static_cast<std::int8_t>((z + 1) * 9 + (y + 1) * 3 + x + 1));
+}
+
+void check_countable(std::size_t ghosts) {
+  if (ghosts > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    throw SimulationError(
+        "stage exchange_halo: more ghosts than one rank can count; more ranks have fewer each");
 }
 
 }  // namespace
@@ -55,23 +56,29 @@ std::vector<Ghost> periodic_images(const Subdomain& subdomain, const Space& spac
   return ghosts;
 }
 
-// Messages under way; all of them are done when it goes.
+// Messages of entries of one size [B] under way; all of them are done when it goes. Nothing may throw while
+// it is there: the others would wait for messages that are never sent.
 class Halo::Messages {
  public:
-  explicit Messages(const Ranks& ranks) : communicator_(MPI_Comm_f2c(ranks.communicator())) {}
+  // most: number of messages.
+  Messages(const Ranks& ranks, std::size_t element, std::size_t most)
+      : communicator_(MPI_Comm_f2c(ranks.communicator())), type_(element) {
+    requests_.reserve(most);
+  }
   ~Messages() { MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
   Messages(const Messages&) = delete;
   Messages& operator=(const Messages&) = delete;
 
-  void receive(void* data, std::size_t bytes, int rank, int tag) {
-    MPI_Irecv(data, static_cast<int>(bytes), MPI_BYTE, rank, tag, communicator_, &requests_.emplace_back());
+  void receive(void* data, Index entries, int rank, int tag) {
+    MPI_Irecv(data, entries, type_, rank, tag, communicator_, &requests_.emplace_back());
   }
-  void send(const void* data, std::size_t bytes, int rank, int tag) {
-    MPI_Isend(data, static_cast<int>(bytes), MPI_BYTE, rank, tag, communicator_, &requests_.emplace_back());
+  void send(const void* data, Index entries, int rank, int tag) {
+    MPI_Isend(data, entries, type_, rank, tag, communicator_, &requests_.emplace_back());
   }
 
  private:
   MPI_Comm communicator_;
+  EntryType type_;
   std::vector<MPI_Request> requests_;
 };
 
@@ -103,7 +110,7 @@ void Halo::find_neighbors(const Decomposition& decomposition, const Subdomain& s
                     high = decomposition.box(std::max(self, other), subdomain);
     bool near = false;
     for_each_shift(subdomain.period(), [&](Vec3 shift, std::int8_t) {
-      near = near || comes_near(low, shift, high, width * (1 + 4 * kRoundOff));
+      near = near || comes_near(low, shift, high, width * (1 + 4 * kBoxRoundOff));
     });
     if (near) neighbors_.push_back({other});
   }
@@ -117,7 +124,7 @@ void Halo::find_sent(const Decomposition& decomposition, const Subdomain& subdom
     std::int8_t image;
     std::vector<Ghost>* ghosts;
   };
-  const Real reach = width * (1 + kRoundOff);
+  const Real reach = width * (1 + kBoxRoundOff);
   const DomainBox own = decomposition.box(ranks_.rank(), subdomain);
   std::vector<std::vector<Ghost>> ghosts(neighbors_.size());
   std::vector<Target> targets;
@@ -133,10 +140,13 @@ void Halo::find_sent(const Decomposition& decomposition, const Subdomain& subdom
   for (std::size_t k = 0; k < neighbors_.size(); ++k) add_targets(neighbors_[k].rank, ghosts[k]);
   for (Index i = 0; i < static_cast<Index>(position.size()); ++i) {
     const Vec3 p = xyz(position[static_cast<std::size_t>(i)]);
-    if (within(p, own, -reach)) continue;  // too far from every side to be a ghost
+    if (own.reaches(p, -reach)) continue;  // too far from every side to be a ghost
     for (const Target& t : targets)
-      if (within(p + t.shift, t.box, reach)) t.ghosts->push_back({i, t.shift, t.image});
+      if (t.box.reaches(p + t.shift, reach)) t.ghosts->push_back({i, t.shift, t.image});
   }
+  std::size_t all = 0;
+  for (const std::vector<Ghost>& list : ghosts) all += list.size();
+  check_countable(all);
   for (std::size_t k = 0; k < neighbors_.size(); ++k) {
     neighbors_[k].first_sent = static_cast<Index>(sent_.size());
     neighbors_[k].sent = static_cast<Index>(ghosts[k].size());
@@ -146,13 +156,17 @@ void Halo::find_sent(const Decomposition& decomposition, const Subdomain& subdom
 
 void Halo::tell_neighbors() {
   {
-    Messages messages(ranks_);
-    for (Neighbor& n : neighbors_) messages.receive(&n.received, sizeof n.received, n.rank, kCountTag);
-    for (const Neighbor& n : neighbors_) messages.send(&n.sent, sizeof n.sent, n.rank, kCountTag);
+    Messages messages(ranks_, sizeof(Index), 2 * neighbors_.size());
+    for (Neighbor& n : neighbors_) messages.receive(&n.received, 1, n.rank, kCountTag);
+    for (const Neighbor& n : neighbors_) messages.send(&n.sent, 1, n.rank, kCountTag);
   }
+  std::size_t ghosts = own_.size();
+  for (const Neighbor& n : neighbors_) ghosts += static_cast<std::size_t>(n.received);
+  check_countable(ghosts);
   auto next = static_cast<Index>(own_.size());
   for (Neighbor& n : neighbors_) n.first_received = next, next += n.received;
-  images_.resize(static_cast<std::size_t>(next));
+  images_.resize(ghosts);
+  for (std::vector<Vec4>& buffer : buffer_) buffer.resize(sent_.size());
   std::vector<std::int8_t> sent(sent_.size());
   std::transform(sent_.begin(), sent_.end(), sent.begin(), [](const Ghost& g) { return g.image; });
   transfer(sent.data(), images_.data(), sizeof(std::int8_t));
@@ -160,12 +174,11 @@ void Halo::tell_neighbors() {
 
 void Halo::transfer(const void* packed, void* ghosts, std::size_t element) const {
   const auto bytes = [&](Index entries) { return static_cast<std::size_t>(entries) * element; };
-  Messages messages(ranks_);
+  Messages messages(ranks_, element, 2 * neighbors_.size());
   for (const Neighbor& n : neighbors_)
-    messages.receive(static_cast<char*>(ghosts) + bytes(n.first_received), bytes(n.received), n.rank,
-                     kFieldTag);
+    messages.receive(static_cast<char*>(ghosts) + bytes(n.first_received), n.received, n.rank, kFieldTag);
   for (const Neighbor& n : neighbors_)
-    messages.send(static_cast<const char*>(packed) + bytes(n.first_sent), bytes(n.sent), n.rank, kFieldTag);
+    messages.send(static_cast<const char*>(packed) + bytes(n.first_sent), n.sent, n.rank, kFieldTag);
 }
 
 void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity, Index first_ghost) const {
@@ -175,21 +188,18 @@ void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity, Ind
     for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), velocity.data(), first_ghost});
   };
   if (ranks_.alone()) return copy_own();
-  Messages messages(ranks_);
+  Messages messages(ranks_, sizeof(Vec4), 4 * neighbors_.size());
   for (const Neighbor& n : neighbors_) {
-    const std::size_t bytes = static_cast<std::size_t>(n.received) * sizeof(Vec4);
-    messages.receive(position.data() + first_ghost + n.first_received, bytes, n.rank, kPositionTag);
-    messages.receive(velocity.data() + first_ghost + n.first_received, bytes, n.rank, kVelocityTag);
+    messages.receive(position.data() + first_ghost + n.first_received, n.received, n.rank, kPositionTag);
+    messages.receive(velocity.data() + first_ghost + n.first_received, n.received, n.rank, kVelocityTag);
   }
-  for (std::vector<Vec4>& buffer : buffer_) buffer.resize(sent_.size());
   for (std::size_t k = 0; k < sent_.size(); ++k) {
     const auto source = static_cast<std::size_t>(sent_[k].source);
     buffer_[0][k] = moved(sent_[k], position[source]), buffer_[1][k] = velocity[source];
   }
   for (const Neighbor& n : neighbors_) {
-    const std::size_t bytes = static_cast<std::size_t>(n.sent) * sizeof(Vec4);
-    messages.send(buffer_[0].data() + n.first_sent, bytes, n.rank, kPositionTag);
-    messages.send(buffer_[1].data() + n.first_sent, bytes, n.rank, kVelocityTag);
+    messages.send(buffer_[0].data() + n.first_sent, n.sent, n.rank, kPositionTag);
+    messages.send(buffer_[1].data() + n.first_sent, n.sent, n.rank, kVelocityTag);
   }
   copy_own();
 }

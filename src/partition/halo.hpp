@@ -132,7 +132,9 @@ class Halo {
   std::vector<Ghost> own_, sent_;
   std::vector<Neighbor> neighbors_;
   std::vector<std::int8_t> images_;
-  mutable std::vector<Vec4> buffer_[2];  // packed positions and velocities, or another field
+  // Packed positions and velocities, or another field, in the order of sent_. As large as they must be from
+  // exchange() on: an allocation that fails later leaves the other ranks waiting.
+  mutable std::vector<Vec4> buffer_[2];
 };
 
 template <class T>
@@ -140,7 +142,6 @@ void Halo::update(std::span<T> field, Index first_ghost) const {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(Vec4) % sizeof(T) == 0);
   for_each(Serial{}, static_cast<Index>(own_.size()), HaloItem<T>{own_.data(), field.data(), first_ghost});
   if (ranks_.alone()) return;
-  buffer_[0].resize(sent_.size());
   T* packed = reinterpret_cast<T*>(buffer_[0].data());
   for (std::size_t k = 0; k < sent_.size(); ++k) packed[k] = field[static_cast<std::size_t>(sent_[k].source)];
   transfer(packed, field.data() + first_ghost, sizeof(T));

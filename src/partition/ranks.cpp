@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "partition/entry_type.hpp"
 
 namespace scree {
 namespace {
@@ -23,28 +24,6 @@ MPI_Comm communicator_of(int handle) { return MPI_Comm_f2c(handle); }
 std::int64_t ordered_bits(Real value) {
   return std::bit_cast<std::int64_t>(std::isnan(value) ? std::numeric_limits<Real>::quiet_NaN()
                                                        : std::abs(value));
-}
-
-// One type per entry, so that counts count entries: bytes would pass 2^31 sooner.
-class EntryType {
- public:
-  explicit EntryType(std::size_t bytes) {
-    MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type_);
-    MPI_Type_commit(&type_);
-  }
-  ~EntryType() { MPI_Type_free(&type_); }
-  EntryType(const EntryType&) = delete;
-  EntryType& operator=(const EntryType&) = delete;
-  operator MPI_Datatype() const { return type_; }
-
- private:
-  MPI_Datatype type_;
-};
-
-int mpi_count(std::size_t count) {
-  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw std::length_error("more entries on one rank than MPI counts");
-  return static_cast<int>(count);
 }
 
 std::vector<int> offsets_of(const std::vector<int>& counts) {
