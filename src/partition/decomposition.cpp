@@ -69,7 +69,8 @@ Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::sp
     for (std::size_t i = 0; i < position.size(); ++i) {
       const DomainCut& cut = cuts_[node_of[i]];
       if (cut.axis >= 0)
-        node_of[i] = static_cast<std::size_t>(cut.below + (grid_.cell(cut.axis, xyz(position[i])) >= cut.cut));
+        node_of[i] =
+            static_cast<std::size_t>(cut.below + (grid_.cell(cut.axis, xyz(position[i])) >= cut.cut));
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -17,8 +18,10 @@ class EntryType {
     MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type_);
     MPI_Type_commit(&type_);
   }
-  ~EntryType() { MPI_Type_free(&type_); }
-  EntryType(const EntryType&) = delete;
+  EntryType(EntryType&& other) noexcept : type_(std::exchange(other.type_, MPI_DATATYPE_NULL)) {}
+  ~EntryType() {
+    if (type_ != MPI_DATATYPE_NULL) MPI_Type_free(&type_);
+  }
   EntryType& operator=(const EntryType&) = delete;
   operator MPI_Datatype() const { return type_; }
 

@@ -1,7 +1,8 @@
-// Which ranks exchange ghosts, and what of a rank's box they need: the part of the halo that is the same wherever the
-// particles live.
+// Which ranks exchange ghosts, and what of a rank's box they need: the part of the halo that is the same
+// wherever the particles live.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,57 +18,65 @@ namespace scree {
 // Number of no shift among the 27 by whole periods.
 inline constexpr std::int8_t kNoShift = 13;
 
-// A rank that this one exchanges ghosts with. Entries [first_sent, first_sent + sent) of what is sent go there; what
-// comes from there are the ghosts [first_received, first_received + received).
+// A rank that this one exchanges ghosts with. Entries [first_sent, first_sent + sent) of what is sent go
+// there; what comes from there are the ghosts [first_received, first_received + received).
 struct HaloNeighbor {
   int rank;
   Index first_sent = 0, sent = 0;
   Index first_received = 0, received = 0;
 };
 
-// Particles whose image by `shift` lies in the box are ghosts there.
+// Particles whose image by `shift` comes within reach of the box are ghosts there.
 struct HaloTarget {
-  DomainBox box;      // grown by the halo's width
+  DomainBox box;
   Vec3 shift;         // [m]
   std::int8_t image;  // number of the shift
-  int neighbor;       // index of the neighbour, kItself for images of the rank's own particles
+  int neighbor;       // index of the neighbour, or kItself: images of the rank's own particles
 
   static constexpr int kItself = -1;
-  SCREE_HD bool takes(Vec3 p) const { return box.contains(p + shift); }
+};
+
+// A field of the ghosts on its way: one entry of `element` bytes per entry that is sent, and per ghost. The
+// first ghosts, images of own particles, are not received.
+struct HaloMessage {
+  const void* packed;
+  void* ghosts;
+  std::size_t element;
 };
 
 class HaloPlan {
  public:
   HaloPlan() = default;
-  // width: reach of the halo past the boxes [m]. All ranks come to plans that fit each other.
+  // width: how far the halo reaches past the boxes [m]. All ranks come to plans that fit each other.
   HaloPlan(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain, Real width);
 
   // Those of the rank itself first, then those of one neighbour after the other.
   const std::vector<HaloTarget>& targets() const { return targets_; }
-  // Particles in here are ghosts nowhere.
-  const DomainBox& inner() const { return inner_; }
+  const DomainBox& box() const { return box_; }  // of this rank
+  Real reach() const { return reach_; }          // the width, and what covers its round-off [m]
   const std::vector<HaloNeighbor>& neighbors() const { return neighbors_; }
 
-  // Once the ghosts are known: tells the neighbours how many come, and learns how many come from them. own: ghosts
-  // that are images of this rank's own particles; sent: entries per neighbour. Called by all ranks.
-  void set_counts(Index own, std::span<const Index> sent);
+  // Once the ghosts are known, tells the neighbours how many come, and learns how many come from them. own:
+  // ghosts that are images of this rank's own particles; sent: entries per neighbour. Called by all ranks.
+  // Throws SimulationError where they are more than an Index can count.
+  void set_counts(std::size_t own, std::span<const std::size_t> sent);
   Index own() const { return own_; }
   Index sent() const { return sent_; }
   Index ghosts() const { return ghosts_; }  // own images and received ones
 
-  // Sends `packed`, with `element` bytes per entry, and receives the ghosts behind the own images: `ghosts` points to
-  // the first of all ghosts. Done on return.
-  void transfer(const void* packed, void* ghosts, std::size_t element) const;
+  // Sends and receives all of the messages; done on return. In memory that MPI can read and write.
+  void transfer(std::span<const HaloMessage> messages) const;
 
  private:
-  class Messages;
+  class Transfers;
   void find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width);
-  void find_targets(const Decomposition& decomposition, const Subdomain& subdomain, Real width);
+  void find_targets(const Decomposition& decomposition, const Subdomain& subdomain);
 
   Ranks ranks_;
   std::vector<HaloNeighbor> neighbors_;
   std::vector<HaloTarget> targets_;
-  DomainBox inner_;
+  DomainBox box_{};
+  Real reach_ = 0;
   Index own_ = 0, sent_ = 0, ghosts_ = 0;
 };
 
