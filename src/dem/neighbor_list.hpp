@@ -48,13 +48,17 @@ struct SearchCells {
   DomainBox box{};  // of this rank, unless same
   Real reach = 0;   // of the list past the box [m]
 
-  // -1 for items that are not searched.
+  // In `own`; x is -1 for items that are not searched.
+  SCREE_HD CellPlace place(Vec3 p) const {
+    const CellPlace c = space.place(p);
+    return c.x < 0 || same ? c : own.nearest_place(p);
+  }
   Index cell(Vec3 p) const {
-    const Index cell = space.cell(p);
-    return cell < 0 || same ? cell : own.nearest(p);
+    const CellPlace c = place(p);
+    return c.x < 0 ? -1 : own.index(c.x, c.y, c.z);
   }
   // Whether a shape there can touch a particle of this rank.
-  bool reaches(Vec3 p) const { return same || box.reaches(p, reach); }
+  SCREE_HD bool reaches(Vec3 p) const { return same || box.reaches(p, reach); }
 };
 
 class NeighborBuilder {

@@ -47,7 +47,7 @@ struct CellGrid {
             along((p.y - origin.y) * inverse_size.y, cells[1]),
             layer ? 0 : along((p.z - origin.z) * inverse_size.z, cells[2])};
   }
-  SCREE_HD Index nearest(Vec3 p) const {
+  Index nearest(Vec3 p) const {
     const CellPlace c = nearest_place(p);
     return index(c.x, c.y, c.z);
   }

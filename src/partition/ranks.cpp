@@ -1,6 +1,9 @@
 #include "partition/ranks.hpp"
 
 #include <mpi.h>
+#if __has_include(<mpi-ext.h>)
+#include <mpi-ext.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -75,6 +78,24 @@ Ranks Ranks::world() {
   MPI_Comm_size(MPI_COMM_WORLD, &ranks.size_);
   ranks.communicator_ = MPI_Comm_c2f(MPI_COMM_WORLD);
   return ranks;
+}
+
+int Ranks::local_rank() const {
+  if (alone()) return 0;
+  MPI_Comm host;
+  MPI_Comm_split_type(communicator_of(communicator_), MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host);
+  int local = 0;
+  MPI_Comm_rank(host, &local);
+  MPI_Comm_free(&host);
+  return local;
+}
+
+bool Ranks::mpi_takes_device_memory() {
+#if defined(MPIX_CUDA_AWARE_SUPPORT) && MPIX_CUDA_AWARE_SUPPORT
+  return MPIX_Query_cuda_support() == 1;
+#else
+  return false;
+#endif
 }
 
 Real Ranks::max(Real value) const {

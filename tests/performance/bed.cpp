@@ -87,7 +87,7 @@ Samples sample(
 struct Run {
   Run(Model bed, const Options& options)
       : model(std::move(bed)),
-        backend(options.on_gpu() ? make_cuda_backend(model) : make_cpu_backend(model, options.ranks)),
+        backend(options.on_gpu() ? make_cuda_backend(model, options.ranks) : make_cpu_backend(model, options.ranks)),
         link(model, options.ranks),
         ranks(options.ranks),
         step(model, *backend, link, timers) {
@@ -299,10 +299,6 @@ ExitCode run(int count, char** values) {
     return app.exit(error) == 0 ? ExitCode::done : ExitCode::bad_input;
   }
   if (options.particles.empty()) options.particles = {10000, 100000, 1000000};
-  if (options.on_gpu() && !options.ranks.alone()) {
-    std::cerr << "error: --backend cuda runs on one rank\n";
-    return ExitCode::bad_input;
-  }
   if (!options.ranks.is_root() && std::freopen("/dev/null", "w", stdout) == nullptr)
     return ExitCode::io_failed;
   try {

@@ -19,7 +19,7 @@ constexpr Real kSkin = 0.15;
 
 struct RankedBox {
   RankedBox(const Model& of, const Ranks& on)
-      : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make_cpu_backend(model, on)) {
+      : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make_test_backend(model, on)) {
     start(initial_records(model.particles, Subdomain(model.space)));
   }
   void start(const std::vector<ParticleRecord>& records) {
