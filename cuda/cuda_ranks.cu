@@ -118,7 +118,7 @@ void CudaBackend::measure_balance() {
 }
 
 std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks) {
-  choose_device(ranks.local_rank());
+  if (!ranks.alone()) choose_device(ranks.local_rank());
   std::string trouble = device_trouble();
   if (trouble.empty()) {
     const std::size_t needed = device_memory(model) / static_cast<std::size_t>(ranks.size()), free = free_device_memory();

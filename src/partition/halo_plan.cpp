@@ -109,7 +109,7 @@ void HaloPlan::set_counts(std::size_t own, std::span<const std::size_t> sent) {
     all += sent[k];
   }
   sent_ = countable(all);
-  {
+  if (!neighbors_.empty()) {
     const EntryType type(sizeof(Index));
     Transfers transfers(ranks_, 2 * neighbors_.size());
     for (HaloNeighbor& n : neighbors_) transfers.receive(&n.received, 1, type, n.rank, kCountTag);
