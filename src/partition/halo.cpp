@@ -101,6 +101,11 @@ void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, cons
   if (!ranks.alone()) tell_neighbors();
 }
 
+Index Halo::receivers() const {
+  return static_cast<Index>(
+      std::count_if(neighbors_.begin(), neighbors_.end(), [](const Neighbor& n) { return n.sent > 0; }));
+}
+
 // Both of two ranks come to the same answer: the lower one's box is moved.
 void Halo::find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width) {
   const int self = ranks_.rank();
