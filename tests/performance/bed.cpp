@@ -14,6 +14,7 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
@@ -93,13 +94,13 @@ Samples sample(
 }
 
 Measured measured(const Samples& samples, const Model& bed, std::int64_t list_builds) {
-  return {static_cast<std::int64_t>(bed.particles.size()),
-          bed.bodies.size(),
-          samples.median(),
-          samples.seconds.front(),
-          samples.seconds.back(),
-          static_cast<double>(samples.steps) * static_cast<double>(samples.seconds.size()),
-          list_builds};
+  const auto count = static_cast<double>(samples.seconds.size());
+  Measured out;
+  out.particles = static_cast<std::int64_t>(bed.particles.size()), out.bodies = bed.bodies.size();
+  out.seconds = samples.median(), out.fastest = samples.seconds.front(), out.slowest = samples.seconds.back();
+  out.mean = std::accumulate(samples.seconds.begin(), samples.seconds.end(), 0.0) / count;
+  out.steps = static_cast<double>(samples.steps) * count, out.list_builds = list_builds;
+  return out;
 }
 
 // A bed on its backend.
@@ -289,11 +290,13 @@ void measure_all(const Options& options) {
              options.integrator == "hht" || options.net ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
                                    : ", list rebuilds where needed");
+  const std::string rebuild = options.net                   ? "coupled"
+                              : options.integrator == "hht" ? "0"
+                                                            : fmt::format("{}", options.rebuild);
   BedReport report(
       options.csv,
       fmt::format("{},\"{}\",{},{},{},{},{}", commit(), options.on_gpu() ? device_name() : processor_name(),
-                  options.backend, options.precision, options.dimension, options.integrator,
-                  options.net || options.integrator == "hht" ? 0 : options.rebuild),
+                  options.backend, options.precision, options.dimension, options.integrator, rebuild),
       options.ranks);
   std::vector<Vec3> discs;
   if (options.dimension == 2) discs = settled_discs();
