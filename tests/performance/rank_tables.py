@@ -30,16 +30,17 @@ def per_particle(run):
 
 def row(run, efficiency):
     seconds = run.seconds_per_step
-    return [str(run.ranks), f"{run.particles:,}", f"{1e3 * seconds:.4g} ({1e3 * run.fastest:.4g} to {1e3 * run.slowest:.4g})",
+    return [str(run.ranks), f"{run.particles:,}",
+            f"{1e3 * seconds:.4g} ({1e3 * run.fastest:.4g} to {1e3 * run.slowest:.4g})",
             f"{run.particles / seconds:.3g}", f"{100 * efficiency:.1f} %", f"{100 * run.largest('imbalance'):.2f} %",
             f"{100 * sum(run.of_all('ghosts')) / run.particles:.2f} %",
             f"{1e-3 * run.largest('halo_bytes'):,.4g} to {run.largest('receivers')}",
             f"{100 * run.largest('update_halo') / run.mean:.1f} %", f"{per_particle(run):.0f}"]
 
 
-COLUMNS = ["ranks", "particles", "ms per step (fastest to slowest sample)", "particle-steps/s", "efficiency", "imbalance",
-           "ghosts", "kB sent per halo update, to ranks (largest)", "halo update of the step (slowest rank)",
-           "memory per particle [B]"]
+COLUMNS = ["ranks", "particles", "ms per step (fastest to slowest sample)", "particle-steps/s", "efficiency",
+           "imbalance", "ghosts", "kB sent per halo update, to ranks (largest)",
+           "halo update of the step (slowest rank)", "memory per particle [B]"]
 
 
 def scalings(runs):
@@ -72,8 +73,8 @@ def bodies(runs):
     """Runs with bodies against those without, of as many ranks and particles."""
     rows = []
     for run in runs:
-        bare = [r for r in runs if r.bodies == 0 and run.bodies > 0 and (r.ranks, r.particles) == (run.ranks, run.particles)]
-        if bare:
+        bare = [r for r in runs if r.bodies == 0 and (r.ranks, r.particles) == (run.ranks, run.particles)]
+        if run.bodies > 0 and bare:
             more = run.seconds_per_step - bare[0].seconds_per_step
             rows.append([str(run.ranks), f"{run.particles:,}", str(run.bodies), f"{1e3 * bare[0].seconds_per_step:.4g}",
                          f"{1e3 * run.seconds_per_step:.4g}", f"{100 * more / bare[0].seconds_per_step:.1f} %",
@@ -86,15 +87,17 @@ def report(runs):
     for series in dict.fromkeys(run.series() for run in runs):
         alike = [run for run in runs if run.series() == series]
         commits = ", ".join(dict.fromkeys(run.commit for run in alike))
-        out.append(f"## {', '.join(f'{name} {value}' for name, value in zip(rank_runs.KIND[1:], series))}; commit {commits}\n")
+        what = ", ".join(f"{name} {value}" for name, value in zip(rank_runs.KIND[1:], series))
+        out.append(f"## {what}; commit {commits}\n")
         for count in sorted({run.bodies for run in alike}):
             for (kind, size), group in scalings([run for run in alike if run.bodies == count]).items():
-                out.append(f"{kind} scaling, {size:,} particles{' per rank' if kind == 'Weak' else ''}, {count} bodies:\n")
+                per_rank = " per rank" if kind == "Weak" else ""
+                out.append(f"{kind} scaling, {size:,} particles{per_rank}, {count} bodies:\n")
                 out.append(table(COLUMNS, [row(*entry) for entry in group]))
         if rows := bodies(alike):
             out.append("What bodies cost:\n")
-            out.append(table(["ranks", "particles", "bodies", "ms per step without", "with", "longer", "of that rank 0 solves [us]"],
-                             rows))
+            out.append(table(["ranks", "particles", "bodies", "ms per step without", "with", "longer",
+                              "of that rank 0 solves [us]"], rows))
         for run in alike:
             out.append(f"Stages per step, {run.ranks} rank(s), {run.particles:,} particles, {run.bodies} bodies, "
                        f"{run.mean * 1e6:.4g} us per step (mean):\n")
