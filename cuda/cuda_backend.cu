@@ -331,7 +331,7 @@ void CudaBackend::build_list(Real skin, StageTimers& timers) {
   level_ = Level::state;
   layout_changed_ = false;
   ++list_builds_;
-  if (!ranks_.alone()) measure_balance();
+  measure_balance();
   if (model_.integrator.particles == ParticleIntegrator::hht) size_step_arrays();
 }
 

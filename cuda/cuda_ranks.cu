@@ -112,6 +112,9 @@ void CudaBackend::migrate() {
 }
 
 void CudaBackend::measure_balance() {
+  balance_.halo = {owned_, halo_.size(), halo_.plan().receivers(),
+                   std::int64_t{halo_.plan().sent()} * 2 * static_cast<std::int64_t>(sizeof(Vec4))};
+  if (ranks_.alone()) return;
   counted_rows_ = owned_;
   balance_.imbalance = measure_imbalance(ranks_, owned_ + list_.entries());
   balance_.largest = std::max(balance_.largest, balance_.imbalance);

@@ -47,6 +47,7 @@ class DeviceHalo {
   // the stream. Collective.
   void find(Device device, const HaloPlan& plan, const Vec4* position, Index n);
   Index size() const { return plan_.ghosts(); }
+  const HaloPlan& plan() const { return plan_; }
   // What the ghosts' fields are filled from: for_each over entries() with an item that puts into fields, then exchange.
   Index entries() const { return plan_.own() + plan_.sent(); }
   const Ghost* ghosts() const { return ghost_.data(); }

@@ -111,12 +111,20 @@ class Decomposition {
   std::vector<CellBox> boxes_;  // per rank
 };
 
-// How evenly the work lies on the ranks.
+// A rank's particles, and what it sends to other ranks.
+struct HaloSize {
+  std::int64_t owned = 0, ghosts = 0;
+  std::int64_t neighbors = 0;  // ranks that it sends to
+  std::int64_t bytes = 0;      // sent per update of positions and velocities [B]
+};
+
+// How evenly the work lies on the ranks, and what this one has of it at the last list.
 struct LoadBalance {
   Real imbalance = 0;           // largest weight of a rank over the mean, less 1, at the last list
   Real largest = 0;             // the largest that was met
   std::int64_t rebalances = 0;  // times that the boxes were changed
   std::int64_t migrated = 0;    // particles that changed their rank
+  HaloSize halo;                // of this rank
 };
 
 // Largest over mean, less 1; 0 where there is no weight. Collective.

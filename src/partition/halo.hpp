@@ -98,6 +98,9 @@ class Halo {
                 const Space& space, std::span<const Vec4> position, Real width);
 
   Index size() const { return static_cast<Index>(images_.size()); }
+  // Entries that one update sends, and the ranks that get some.
+  Index sent() const { return static_cast<Index>(sent_.size()); }
+  Index receivers() const { return plan_.receivers(); }
   // Number of the shift, per ghost.
   const std::vector<std::int8_t>& images() const { return images_; }
   // This rank's own particles across periodic sides.

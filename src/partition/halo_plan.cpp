@@ -123,6 +123,11 @@ void HaloPlan::set_counts(std::size_t own, std::span<const std::size_t> sent) {
   own_ = countable(own), ghosts_ = countable(ghosts);
 }
 
+Index HaloPlan::receivers() const {
+  return static_cast<Index>(
+      std::count_if(neighbors_.begin(), neighbors_.end(), [](const HaloNeighbor& n) { return n.sent > 0; }));
+}
+
 void HaloPlan::transfer(std::span<const HaloMessage> messages) const {
   if (neighbors_.empty()) return;
   std::vector<EntryType> types;

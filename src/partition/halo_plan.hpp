@@ -63,6 +63,7 @@ class HaloPlan {
   Index own() const { return own_; }
   Index sent() const { return sent_; }
   Index ghosts() const { return ghosts_; }  // own images and received ones
+  Index receivers() const;                  // neighbours that something is sent to
 
   // Sends and receives all of the messages; done on return. In memory that MPI can read and write.
   void transfer(std::span<const HaloMessage> messages) const;

@@ -102,6 +102,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
         one.backend->reduce_wrench(a[0], a[1]), many.backend->reduce_wrench(b[0], b[1]);
         if (world.is_root()) CHECK((same(a[0], b[0]) && same(a[1], b[1])));
       }
+      CHECK(world.sum(many.backend->balance().halo.owned) == kParticles);
       const ParticleLedger p = one.backend->ledger(0), q = many.backend->ledger(0);
       if (!world.is_root()) continue;
       CHECK((p.kinetic == q.kinetic && p.gravitational == q.gravitational));

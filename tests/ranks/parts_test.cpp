@@ -207,6 +207,11 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
       }
       CHECK(found.size() == static_cast<std::size_t>(halo.size()));
       CHECK((found == expected));
+      const auto received =
+          static_cast<std::int64_t>(halo.size()) - static_cast<std::int64_t>(halo.own().size());
+      CHECK(ranks.sum(std::int64_t{halo.sent()}) == ranks.sum(received));
+      CHECK((halo.receivers() > 0) == (halo.sent() > 0));
+      CHECK(halo.receivers() < ranks.size());
     }
 }
 
