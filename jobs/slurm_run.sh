@@ -61,6 +61,7 @@ export SRUN_CPUS_PER_TASK=${SLURM_CPUS_PER_TASK:-1}
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
 
 run='' warned=false ended=false
+# shellcheck disable=SC2317 # the traps call it
 ask_for_checkpoint() {
   say "$1: asking the run for a checkpoint"
   if [[ -n "$run" ]]; then kill -USR1 "$run" 2>/dev/null || true; fi # srun and mpirun pass it on to the ranks

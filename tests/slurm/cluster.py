@@ -3,6 +3,7 @@ there are. It lives in a temporary folder, needs no systemd and no cgroups, and 
 
 import os
 import pathlib
+import pwd
 import shutil
 import signal
 import socket
@@ -12,7 +13,7 @@ import time
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "scontrol", "scancel")
 NODES, CPUS, GPUS = ("n0", "n1"), 8, 2
-START_LIMIT = 30  # [s]
+LIMIT = 30  # [s] for starting, and for ending
 PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
 
 CONFIGURATION = """ClusterName=test
@@ -74,6 +75,7 @@ class Cluster:
                                 OMPI_MCA_mpi_yield_when_idle="1",  # more ranks than cores, which srun does not tell
                                 # Shared memory would take equal local ranks of the two nodes for one.
                                 OMPI_MCA_pml="ob1", OMPI_MCA_btl="self,tcp", OMPI_MCA_btl_tcp_if_include="lo")
+        self.user = pwd.getpwuid(os.getuid()).pw_name
         self.daemons = {}
 
     def start(self):
@@ -105,10 +107,9 @@ class Cluster:
         ports = [each.getsockname()[1] for each in sockets]
         for each in sockets:
             each.close()
-        user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout.strip()
         (self.folder / "slurm.conf").write_text(
-            CONFIGURATION.format(folder=self.folder, host=socket.gethostname().split(".")[0], user=user, ports=ports,
-                                 cpus=CPUS, gpus=GPUS))
+            CONFIGURATION.format(folder=self.folder, host=socket.gethostname().split(".")[0], user=self.user,
+                                 ports=ports, cpus=CPUS, gpus=GPUS))
 
     def launch(self, program, *words, name=None):
         with open(self.folder / f"{name or program}.log", "wb") as log:
@@ -120,7 +121,7 @@ class Cluster:
         return nodes.returncode == 0 and nodes.stdout.split() == ["idle"] * len(NODES)
 
     def wait_for(self, condition, what):
-        deadline = time.monotonic() + START_LIMIT
+        deadline = time.monotonic() + LIMIT
         while not condition():
             ended = [name for name, daemon in self.daemons.items() if daemon.poll() is not None]
             if ended or time.monotonic() > deadline:
@@ -148,10 +149,14 @@ class Cluster:
         return {process: command for process, command, environment in processes() if own in environment}
 
     def stop(self):
-        """Ends the daemons. Returns what was alive after that, which it kills."""
-        if "slurmctld" in self.daemons:
-            self.run("scancel", "--signal=KILL", "--full", "--state=RUNNING")
-            self.run("scancel", "--state=PENDING")
+        """Ends jobs and daemons. Returns the processes that were alive after that, which it kills."""
+        if all(daemon.poll() is None for daemon in self.daemons.values()) and self.daemons:
+            self.run("scancel", "--user", self.user)
+            self.run("scancel", "--user", self.user, "--signal=KILL", "--full")
+            deadline = time.monotonic() + LIMIT
+            # Those that end steps report to slurmctld and wait for its answer: the daemons must outlive them.
+            while "slurmstepd" in self.left_over().values() and time.monotonic() < deadline:
+                time.sleep(0.1)
         for daemon in reversed(self.daemons.values()):
             daemon.terminate()
         for daemon in self.daemons.values():
