@@ -98,10 +98,10 @@ class SlurmTest(unittest.TestCase):
         for rank in ranks:
             os.kill(rank, number)
 
-    def warn(self, job, ranks):
-        """The signal that SLURM sends before the time limit, to a job whose ranks are halted; they go on."""
+    def warn(self, job, ranks, number="USR1"):
+        """The signal that SLURM sends before the time limit, or another, to a job whose ranks are halted; they go on."""
         known = self.log(job).count("asking the run")
-        self.assertEqual(cluster.run("scancel", "--batch", "--signal=USR1", job).returncode, 0)
+        self.assertEqual(cluster.run("scancel", "--batch", f"--signal={number}", job).returncode, 0)
         self.until(lambda: self.log(job).count("asking the run") > known, job)
         self.send(signal.SIGCONT, ranks)
 
@@ -161,6 +161,10 @@ class RunTest(SlurmTest):
                     for rank, line in enumerate(lines):
                         self.assertIn(f"rank {rank} of {ranks}: node n{rank // 2}, local rank {rank % 2}, ", line)
                         self.assertIn(f"GPU {rank % 2} of 0 1", line)
+        alone = cluster.run("srun", "--nodes=1", "--ntasks=2", "--gpus-per-task=1", "jobs/mapping.sh", cwd=ROOT)
+        self.assertEqual(len(alone.stdout.splitlines()), 2, alone.stdout + alone.stderr)
+        for rank, line in enumerate(sorted(alone.stdout.splitlines())):
+            self.assertTrue(line.endswith(f"GPU {rank} of {rank}"), alone.stdout + alone.stderr)
 
 
 class EndTest(SlurmTest):
@@ -211,6 +215,12 @@ class EndTest(SlurmTest):
         self.assertIn("stopped by signal", self.record()["status"])
         self.finish(self.submit("long", settings=LONG))
         self.assert_bits("long", 1)
+
+    def test_a_job_with_mpirun_can_be_ended_with_a_checkpoint(self):
+        job = self.submit("long", settings=LONG, options=["--ntasks=2"], environment=MPIRUN)
+        self.warn(job, self.halted(job), "TERM")
+        self.assertIn("ends with exit code 5", self.finish(job, "FAILED", STOPPED))
+        self.assertIn("stopped by signal", self.record()["status"])
 
     def test_a_job_without_requeues_ends_with_a_checkpoint(self):
         job = self.submit("one_node", settings=LONG)
