@@ -25,10 +25,12 @@ DONE, BAD_INPUT, STOPPED = 0, 2, 5
 ENDED = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY", "BOOT_FAIL")
 MPIRUN = {"SCREE_LAUNCHER": "mpirun"}
 
-cluster = Cluster()
+cluster = None  # the tests share one
 
 
 def setUpModule():
+    global cluster
+    cluster = Cluster()
     unittest.addModuleCleanup(stop)
     cluster.start()
     for name, settings in ("short", SHORT), ("long", LONG):
@@ -108,9 +110,12 @@ class SlurmTest(unittest.TestCase):
     def record(self, results=None):
         return json.loads(((results or self.results) / "run_record.json").read_text())["run"]
 
-    def assert_bits(self, of, ranks, results=None):
-        """The run is done, has the bits of a run on one rank without interruption, and had so many ranks."""
+    def assert_bits(self, of, ranks, results=None, continued=False):
+        """The run is done, has the bits of a run on one rank without interruption, and had so many ranks. Whether its
+        last part continued from a checkpoint."""
         record = self.record(results)
+        checkpoint = str(self.results / "checkpoint.h5") if continued else ""
+        self.assertEqual(record["restarted_from"], checkpoint)
         self.assertEqual((record["status"], record["ranks"]), ("done", ranks))
         self.assertEqual(record["state_hash"], self.record(cluster.folder / of)["state_hash"])
 
@@ -180,7 +185,7 @@ class EndTest(SlurmTest):
         self.assertIn("start 1 on n0: begins", log)
         self.assertIn("back in the queue", log)
         self.assertIn(f"start 2 on n0: continues from {self.results}/checkpoint.h5", log)
-        self.assert_bits("long", 2)
+        self.assert_bits("long", 2, continued=True)
 
     def test_the_same_with_mpirun_up_to_the_last_requeue(self):
         environment = {**MPIRUN, "SCREE_REQUEUES": "1"}
@@ -193,7 +198,7 @@ class EndTest(SlurmTest):
         self.assertIn("stopped by signal", self.record()["status"])
 
         self.finish(self.submit("one_node", settings=LONG))  # on one rank now
-        self.assert_bits("long", 1)
+        self.assert_bits("long", 1, continued=True)
         ended = self.record()["ended"]
         self.assertIn("done already", self.finish(self.submit("long", settings=LONG)))
         self.assertEqual(self.record()["ended"], ended)
@@ -203,7 +208,7 @@ class EndTest(SlurmTest):
         self.halted(job)  # SLURM lets the ranks go on to end them
         self.assertEqual(cluster.run("scontrol", "requeue", job).returncode, 0)
         self.assertIn("continues from", self.finish(job, restarts=1))
-        self.assert_bits("long", 2)
+        self.assert_bits("long", 2, continued=True)
 
     def test_a_cancelled_job_leaves_a_checkpoint_and_does_not_come_back(self):
         job = self.submit("long", settings=LONG, options=["--ntasks=2"])
@@ -214,7 +219,7 @@ class EndTest(SlurmTest):
         self.assertEqual((shown["JobState"], shown["Restarts"]), ("CANCELLED", "0"), self.log(job))
         self.assertIn("stopped by signal", self.record()["status"])
         self.finish(self.submit("long", settings=LONG))
-        self.assert_bits("long", 1)
+        self.assert_bits("long", 1, continued=True)
 
     def test_a_job_with_mpirun_can_be_ended_with_a_checkpoint(self):
         job = self.submit("long", settings=LONG, options=["--ntasks=2"], environment=MPIRUN)
