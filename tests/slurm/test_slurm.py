@@ -204,7 +204,7 @@ class EndTest(SlurmTest):
         self.assertEqual(self.record()["ended"], ended)
 
     def test_a_job_that_slurm_puts_back_continues(self):
-        job = self.submit("long", settings=LONG, options=["--ntasks=2"])
+        job = self.submit("long", settings=LONG, options=["--nodes=2", "--ntasks-per-node=1"])
         self.halted(job)  # SLURM lets the ranks go on to end them
         self.assertEqual(cluster.run("scontrol", "requeue", job).returncode, 0)
         self.assertIn("continues from", self.finish(job, restarts=1))
