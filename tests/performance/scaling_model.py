@@ -123,7 +123,7 @@ class Model:
         return math.exp(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 
     def crossing(self, bodies, ranks):
-        """Seconds for the bytes of motion and wrenches. The halo's bytes cost more: packing, and waits for the slowest."""
+        """Seconds for the bytes of motion and wrenches. Those of the halo cost more: packing, and waits."""
         if ranks == 1:
             return 0.0
         return bodies * (MOTION_BYTES * math.log2(ranks) + WRENCH_BYTES) / self.network.bandwidth
