@@ -6,6 +6,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "model/id_range.hpp"
 #include "model/model.hpp"
 #include "partition/subdomain.hpp"
 
@@ -58,7 +59,9 @@ struct ParticleStore {
   void reorder(const std::vector<Index>& from);
 };
 
-// Start of the simulation: positions and velocities of the model, the rest zero.
+// Start of the simulation: positions and velocities of the model, the rest zero. Of the particles with these
+// ids, or of all.
+std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain, IdRange ids);
 std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain);
 
 }  // namespace scree

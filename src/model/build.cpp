@@ -158,6 +158,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.history_interval = table.real("history_interval");
   output.checkpoint_interval = table.real("checkpoint_interval");
   output.history_csv = table.boolean("history_csv");
+  output.compression = static_cast<int>(table.integer("compression"));
   output.history_reactions = table.integer("history_reactions");
   for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
     const Real interval = table.real(key);

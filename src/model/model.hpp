@@ -87,8 +87,9 @@ struct Output {
   Real history_interval = 0;     // [s]; 0: every step
   Real checkpoint_interval = 0;  // [s] of simulated time; 0: only on failure and signal
   bool history_csv = false;
-  std::int64_t history_reactions = 100;     // joints and drivers, the first so many
-  std::vector<int> history_bodies;          // indices into Model::bodies
+  int compression = 0;                   // of particles in snapshots and checkpoints: 0, or deflate's level
+  std::int64_t history_reactions = 100;  // joints and drivers, the first so many
+  std::vector<int> history_bodies;       // indices into Model::bodies
   std::vector<GlobalId> history_particles;  // global ids
 };
 

@@ -12,6 +12,7 @@
 
 #include "dem/device.hpp"
 #include "output/run_record.hpp"
+#include "partition/id_order.hpp"
 #include "run/signals.hpp"
 #include "run/step_loop.hpp"
 
@@ -80,7 +81,7 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
 }
 
 State read_state(const RunOptions& options) {
-  const Checkpoint checkpoint = read_checkpoint(options.restart);
+  const Checkpoint checkpoint = read_checkpoint(options.restart, options.ranks);
   if (checkpoint.text("fingerprint") != options.fingerprint)
     throw InputError("--restart " + options.restart +
                      ": the checkpoint belongs to another deck; only time.end and the tables output and "
@@ -113,13 +114,14 @@ class Simulation {
  private:
   void start_or_resume();
   bool continues_files() const;
-  State whole(const State& own) const;
-  void checkpoint(const State& state, const std::string& name);
+  // Takes the state's particles away.
+  void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
   void keep_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
   void write_record(const std::string& status, ExitCode code);
+  void record_io_failure(const IoError& error);
   void summarize() const;
 
   const Model& model_;
@@ -145,10 +147,13 @@ class Simulation {
 void Simulation::start_or_resume() {
   if (options_.restart.empty()) {
     state_.clock = StepClock(model_).state();
-    backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
+    const IdRange own =
+        id_range(static_cast<std::int64_t>(model_.particles.size()), ranks_.rank(), ranks_.size());
+    backend_->load(initial_records(model_.particles, Subdomain(model_.space), own), {});
     step_.start(state_.bodies);
   } else {
     backend_->load(state_.particles, state_.shapes);
+    state_.particles = {};
     step_.counts() = state_.counts;
     if (state_.clock.time > model_.time.end)
       throw InputError(fmt::format("--restart {}: the checkpoint is at t = {:.9g} s, past time.end = {:g} s",
@@ -171,28 +176,20 @@ bool Simulation::continues_files() const {
   return same;
 }
 
-// On rank 0 the state with the particles of all ranks.
-State Simulation::whole(const State& own) const {
-  State all = own;
-  all.particles = ranks_.gather(own.particles);
-  std::sort(all.particles.begin(), all.particles.end(),
-            [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
-  return all;
-}
-
-void Simulation::checkpoint(const State& state, const std::string& name) {
+// Each rank writes its share of the ids.
+void Simulation::checkpoint(State& state, const std::string& name) {
   recorder_->flush();
   const auto own_hash = static_cast<std::int64_t>(state_hash(state, ranks_.is_root()));
   state_hash_ = fmt::format("{:016x}", static_cast<std::uint64_t>(ranks_.sum(own_hash)));
-  const auto write = [&](const State& complete) {
-    Checkpoint out = pack(complete);
-    out.texts["fingerprint"] = options_.fingerprint;
-    out.texts["deck"] = options_.resolved_deck;
-    write_checkpoint(options_.output_directory + "/" + name, out);
-  };
-  if (ranks_.alone()) return write(state);
-  const State all = whole(state);
-  ranks_.on_root([&] { write(all); });
+  std::vector<GlobalId> ids;
+  for (const ParticleRecord& p : state.particles) ids.push_back(p.global_id);
+  const IdOrder order(ranks_, static_cast<std::int64_t>(model_.particles.size()), ids);
+  state.particles = order.apply(std::move(state.particles));
+  Checkpoint out = pack(state);
+  out.texts["fingerprint"] = options_.fingerprint;
+  out.texts["deck"] = options_.resolved_deck;
+  write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
+  state.particles = {};
 }
 
 void Simulation::progress(const State& state, Real h) {
@@ -218,7 +215,7 @@ ExitCode Simulation::run() {
                         link_.multibody() ? link_.multibody()->solver_description() : "none"));
   const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
   StepLoop loop(
-      parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
+      parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) { progress(s, h); });
   try {
     const Clock::time_point start = Clock::now();
@@ -231,7 +228,7 @@ ExitCode Simulation::run() {
   } catch (const SimulationError& error) {
     return fail(loop, error);
   } catch (const IoError& error) {
-    if (ranks_.is_root()) write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
+    record_io_failure(error);
     throw;
   }
   checkpoint(loop.complete_state(), "checkpoint.h5");
@@ -239,6 +236,15 @@ ExitCode Simulation::run() {
   log_.info("stopped by signal (" + signal + "); continue with --restart " + options_.output_directory +
             "/checkpoint.h5");
   return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
+}
+
+// The record may meet the same trouble: what counts is the first.
+void Simulation::record_io_failure(const IoError& error) {
+  if (!ranks_.is_root()) return;
+  try {
+    write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
+  } catch (const IoError&) {
+  }
 }
 
 ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
