@@ -50,6 +50,7 @@ struct ParticleStore {
   Index owned = 0;
   Index active = 0;  // owned particles in the pair search
 
+  // records: of particles that are in the set.
   void load(const ParticleSet& set, std::span<const ParticleRecord> records);
   std::vector<ParticleRecord> records() const;  // ordered by global id
   ParticleRecord record(Index i) const;
@@ -59,8 +60,8 @@ struct ParticleStore {
   void reorder(const std::vector<Index>& from);
 };
 
-// Start of the simulation: positions and velocities of the model, the rest zero. Of the particles with these
-// ids, or of all.
+// Start of the simulation: positions and velocities of the model, the rest zero. Of those of the set's
+// particles with these ids, or of all.
 std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain, IdRange ids);
 std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain);
 

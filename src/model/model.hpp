@@ -104,7 +104,7 @@ struct Model {
   Vec3 gravity;  // [m/s^2]
   Contact contact;
   std::vector<Wall> walls;  // the deck's planes, then the sides of the space that are walls
-  ParticleSet particles;    // start state
+  ParticleSet particles;    // start state; this rank's part
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<Driver> drivers;

@@ -216,8 +216,7 @@ void Recorder::snapshot(State& state) {
 void Recorder::write_pending() {
   if (!pending_) return;
   const PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticlePack p = in_id_order(link_.ranks(), static_cast<std::int64_t>(model_.particles.size()),
-                                     backend_.pack_particles());
+  const ParticlePack p = in_id_order(link_.ranks(), model_.particles.totals.count, backend_.pack_particles());
   const ShapePack& s = snapshot.shapes;
   snapshots_->append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,

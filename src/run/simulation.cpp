@@ -21,8 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
-constexpr double kProgressSeconds = 0.25;    // between progress lines on a terminal
+constexpr std::int64_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
+constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
 constexpr double kFlushSeconds =
     5;  // between writes of the history, besides those with snapshots and checkpoints
 
@@ -66,7 +66,7 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
     throw InputError("--backend cuda runs on one rank in this version; allowed with mpirun -n " +
                      std::to_string(ranks.size()) + ": auto, cpu");
   }
-  const std::size_t particles = model.particles.size();
+  const std::int64_t particles = model.particles.totals.count;
   if (name == "auto" && particles < kGpuParticles)
     return make_cpu(
         model, ranks,
@@ -114,6 +114,7 @@ class Simulation {
  private:
   void start_or_resume();
   bool continues_files() const;
+  std::vector<ParticleRecord> in_id_order(std::vector<ParticleRecord> records) const;
   // Takes the state's particles away.
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
@@ -147,12 +148,10 @@ class Simulation {
 void Simulation::start_or_resume() {
   if (options_.restart.empty()) {
     state_.clock = StepClock(model_).state();
-    const IdRange own =
-        id_range(static_cast<std::int64_t>(model_.particles.size()), ranks_.rank(), ranks_.size());
-    backend_->load(initial_records(model_.particles, Subdomain(model_.space), own), {});
+    backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
   } else {
-    backend_->load(state_.particles, state_.shapes);
+    backend_->load(in_id_order(std::move(state_.particles)), state_.shapes);
     state_.particles = {};
     step_.counts() = state_.counts;
     if (state_.clock.time > model_.time.end)
@@ -176,15 +175,18 @@ bool Simulation::continues_files() const {
   return same;
 }
 
-// Each rank writes its share of the ids.
+// Each rank gets the records of its share of the ids: what it writes, and what its part of the model has.
+std::vector<ParticleRecord> Simulation::in_id_order(std::vector<ParticleRecord> records) const {
+  std::vector<GlobalId> ids;
+  for (const ParticleRecord& p : records) ids.push_back(p.global_id);
+  return IdOrder(ranks_, model_.particles.totals.count, ids).apply(std::move(records));
+}
+
 void Simulation::checkpoint(State& state, const std::string& name) {
   recorder_->flush();
   const auto own_hash = static_cast<std::int64_t>(state_hash(state, ranks_.is_root()));
   state_hash_ = fmt::format("{:016x}", static_cast<std::uint64_t>(ranks_.sum(own_hash)));
-  std::vector<GlobalId> ids;
-  for (const ParticleRecord& p : state.particles) ids.push_back(p.global_id);
-  const IdOrder order(ranks_, static_cast<std::int64_t>(model_.particles.size()), ids);
-  state.particles = order.apply(std::move(state.particles));
+  state.particles = in_id_order(std::move(state.particles));
   Checkpoint out = pack(state);
   out.texts["fingerprint"] = options_.fingerprint;
   out.texts["deck"] = options_.resolved_deck;
@@ -210,8 +212,8 @@ void Simulation::progress(const State& state, Real h) {
 
 ExitCode Simulation::run() {
   ranks_.on_root([&] { write_record("running", ExitCode::done); });
-  log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}", model_.particles.size(),
-                        model_.bodies.size(), backend_->description(),
+  log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}",
+                        model_.particles.totals.count, model_.bodies.size(), backend_->description(),
                         link_.multibody() ? link_.multibody()->solver_description() : "none"));
   const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
   StepLoop loop(
@@ -304,7 +306,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"list_entries", ranks_.alone() ? backend_->list_entries() : list_entries_},
                    {"rebalances", balance.rebalances},
                    {"migrated", migrated_},
-                   {"particles", static_cast<std::int64_t>(model_.particles.size())},
+                   {"particles", model_.particles.totals.count},
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
                    {"left", state_.carried_out.left},
                    {"history_rows", state_.history_rows},
