@@ -1,7 +1,11 @@
 #include "dem/particle_store.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
+#include <string>
+
+#include "base/error.hpp"
 
 namespace scree {
 
@@ -9,6 +13,9 @@ void ParticleStore::load(const ParticleSet& set, std::span<const ParticleRecord>
   const std::size_t n = records.size();
   if (std::ssize(records) > set.totals.count)
     throw std::logic_error("ParticleStore::load: the particles were not counted");
+  if (n > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    throw InputError(std::to_string(n) + " particles on one rank; a rank can have at most " +
+                     std::to_string(std::numeric_limits<Index>::max()) + ": more ranks are needed");
   owned = active = static_cast<Index>(n);
   position.resize(n), velocity.resize(n), material.resize(n), global_id.resize(n);
   acceleration.resize(n), force.resize(n), image.resize(n), drifting.resize(n);

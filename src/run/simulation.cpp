@@ -80,13 +80,18 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
   }
 }
 
+// A file may be unreadable where one rank's rows are.
 State read_state(const RunOptions& options) {
-  const Checkpoint checkpoint = read_checkpoint(options.restart, options.ranks);
-  if (checkpoint.text("fingerprint") != options.fingerprint)
-    throw InputError("--restart " + options.restart +
-                     ": the checkpoint belongs to another deck; only time.end and the tables output and "
-                     "parallel may differ");
-  return unpack(checkpoint);
+  State state;
+  options.ranks.together([&] {
+    const Checkpoint checkpoint = read_checkpoint(options.restart, options.ranks);
+    if (checkpoint.text("fingerprint") != options.fingerprint)
+      throw InputError("--restart " + options.restart +
+                       ": the checkpoint belongs to another deck; only time.end and the tables output and "
+                       "parallel may differ");
+    state = unpack(checkpoint);
+  });
+  return state;
 }
 
 class Simulation {
