@@ -47,13 +47,11 @@ DeviceViews CudaBackend::views(const Vec4* position, const Vec4* velocity) const
           list_.walls(), planes_.data(), layout_.first_shape};
 }
 
-// Any part of the particles will do for a start: the first list brings them to the ranks that own them.
 void CudaBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
   side_.losses() = ranks_.is_root() ? shapes : ShapeLosses{};
-  const std::size_t size = static_cast<std::size_t>(ranks_.size()), rank = static_cast<std::size_t>(ranks_.rank());
-  const std::size_t first = records.size() * rank / size, n = records.size() * (rank + 1) / size - first;
+  const std::size_t n = records.size();
   ParticleStore store;
-  store.load(model_.particles, std::span(records).subspan(first, n));
+  store.load(model_.particles, records);
   owned_ = store.owned;
   std::vector<std::int64_t> keys(n);
   for (std::size_t i = 0; i < n; ++i) keys[i] = row_key(store.global_id[i], kNoShift);

@@ -124,7 +124,7 @@ std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& rank
   if (!ranks.alone()) choose_device(ranks.local_rank());
   std::string trouble = device_trouble();
   if (trouble.empty()) {
-    const std::size_t needed = device_memory(model) / static_cast<std::size_t>(ranks.size()), free = free_device_memory();
+    const std::size_t needed = device_memory(model), free = free_device_memory();
     if (needed > free)
       trouble = "the model needs about " + std::to_string(needed / 1000000) + " MB of device memory, " +
                 std::to_string(free / 1000000) + " MB are free on " + device_name();

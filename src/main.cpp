@@ -16,6 +16,7 @@
 #include "model/build.hpp"
 #include "output/library_versions.hpp"
 #include "partition/ranks.hpp"
+#include "partition/shared_model.hpp"
 #include "run/check.hpp"
 #include "run/simulation.hpp"
 
@@ -88,7 +89,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
   const Deck deck = load_deck(arguments.deck, arguments.overrides);
-  const Model model = build_model(deck, log);
+  const Model model = build_model(deck, log, RanksShare(ranks));
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
   RunOptions options{arguments.backend,
@@ -110,7 +111,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
 ExitCode check(const Arguments& arguments) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
-  const Model model = build_model(load_deck(arguments.deck, arguments.overrides), log);
+  const Model model = build_model(load_deck(arguments.deck, arguments.overrides), log, RanksShare(ranks));
   std::string constraints = "";
   if (!model.bodies.empty()) {
     naming_deck(arguments.deck, [&] {

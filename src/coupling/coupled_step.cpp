@@ -39,7 +39,7 @@ struct CoupledStep::Iteration {
 
 CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
     : model_(model), backend_(backend), link_(link), timers_(timers) {
-  for (const Real radius : model.particles.radius) largest_radius_ = std::max(largest_radius_, radius);
+  largest_radius_ = model.particles.totals.largest_radius;
   for (const Body& body : model.bodies)
     for (const Shape& shape : body.shapes) largest_radius_ = std::max(largest_radius_, shape.radius);
 }

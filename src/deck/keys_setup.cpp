@@ -201,6 +201,10 @@ const TableKeys& output_keys() {
            .at_least(0)
            .otherwise("0.0")
            .about("Simulated time between checkpoints; 0: only on failure and on a signal."),
+       integer("compression")
+           .within(0, 9)
+           .otherwise("0")
+           .about("Of snapshots and checkpoints: 0, none; 1 to 9, deflate from fast to small."),
        boolean("history_csv").otherwise("false").about("Whether the history is also written as CSV."),
        texts("history_bodies").otherwise("[]").about("Bodies, or rows of bodies, whose motion is recorded."),
        integer("history_reactions")

@@ -78,8 +78,9 @@ class Backend {
   virtual ~Backend() = default;
   virtual std::string description() const = 0;
 
-  // State of the particle side: what a checkpoint stores. load: the records of all particles, on every rank;
-  // records: of those that this rank owns. Shapes' losses are rank 0's.
+  // State of the particle side: what a checkpoint stores. load: of particles that this rank's part of the
+  // model has; the first list brings them to the ranks that own them; records: of those that this rank owns.
+  // Shapes' losses are rank 0's.
   virtual void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) = 0;
   virtual std::vector<ParticleRecord> records() const = 0;  // ordered by global id
   virtual ShapeLosses shape_losses() const = 0;

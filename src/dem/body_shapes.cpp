@@ -5,7 +5,7 @@
 namespace scree {
 
 BodyShapes::BodyShapes(const Model& model) : connected_(model.bodies.size()) {
-  GlobalId id = static_cast<GlobalId>(model.particles.size());
+  GlobalId id = model.particles.totals.count;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const Shape& shape : model.bodies[b].shapes)
       items_.push_back({static_cast<int>(b), shape.offset, shape.radius, shape.material, id++});

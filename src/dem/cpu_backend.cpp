@@ -23,13 +23,9 @@ std::string CpuBackend::description() const {
   return ranks_.alone() ? "cpu (serial)" : "cpu (" + std::to_string(ranks_.size()) + " ranks)";
 }
 
-// Any part of the particles will do for a start: the first list brings them to the ranks that own them.
 void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
   side_.losses() = ranks_.is_root() ? shapes : ShapeLosses{};
-  const std::size_t n = records.size(), size = static_cast<std::size_t>(ranks_.size()),
-                    rank = static_cast<std::size_t>(ranks_.rank());
-  const std::size_t first = n * rank / size, last = n * (rank + 1) / size;
-  store_.load(model_.particles, std::span(records).subspan(first, last - first));
+  store_.load(model_.particles, records);
   layout_changed_ = true;
 }
 

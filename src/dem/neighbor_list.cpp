@@ -10,7 +10,7 @@ namespace scree {
 
 NeighborBuilder::NeighborBuilder(const Model& model, const BodyShapes& shapes)
     : model_(model), shapes_(shapes) {
-  for (const Real r : model.particles.radius) largest_radius_ = std::max(largest_radius_, r);
+  largest_radius_ = model.particles.totals.largest_radius;
   for (const ShapeItem& s : shapes.items()) largest_radius_ = std::max(largest_radius_, s.radius);
 }
 

@@ -1,21 +1,31 @@
 #include "dem/particle_store.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "base/error.hpp"
 
 namespace scree {
 
 void ParticleStore::load(const ParticleSet& set, std::span<const ParticleRecord> records) {
   const std::size_t n = records.size();
+  if (std::ssize(records) > set.totals.count)
+    throw std::logic_error("ParticleStore::load: the particles were not counted");
+  if (n > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    throw InputError(std::to_string(n) + " particles on one rank; a rank can have at most " +
+                     std::to_string(std::numeric_limits<Index>::max()) + ": more ranks are needed");
   owned = active = static_cast<Index>(n);
   position.resize(n), velocity.resize(n), material.resize(n), global_id.resize(n);
   acceleration.resize(n), force.resize(n), image.resize(n), drifting.resize(n);
   contact_loss.resize(n), loss_power.resize(n), integrator_loss.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const ParticleRecord& r = records[i];
-    const auto id = static_cast<std::size_t>(r.global_id);
-    position[i] = vec4(r.position, set.radius[id]);
-    velocity[i] = vec4(r.velocity, set.mass[id]);
-    material[i] = set.material[id];
+    const auto at = static_cast<std::size_t>(r.global_id - set.first_id);
+    position[i] = vec4(r.position, set.radius[at]);
+    velocity[i] = vec4(r.velocity, set.mass[at]);
+    material[i] = set.material[at];
     global_id[i] = r.global_id;
     acceleration[i] = r.acceleration, force[i] = r.force;
     contact_loss[i] = r.contact_loss, loss_power[i] = r.loss_power, integrator_loss[i] = r.integrator_loss;
@@ -71,16 +81,21 @@ void ParticleStore::reorder(const std::vector<Index>& from) {
   owned = static_cast<Index>(from.size());
 }
 
-std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain) {
-  std::vector<ParticleRecord> records(set.size());
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    ParticleRecord& r = records[i];
-    r.global_id = static_cast<GlobalId>(i);
+std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain, IdRange ids) {
+  std::vector<ParticleRecord> records(static_cast<std::size_t>(ids.size()));
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    ParticleRecord& r = records[k];
+    r.global_id = ids.first + static_cast<GlobalId>(k);
+    const auto i = static_cast<std::size_t>(r.global_id - set.first_id);
     r.position = subdomain.wrap(snap(set.position[i], subdomain.snap_constant()), r.image);
     r.image = {};
     r.velocity = set.velocity[i];
   }
   return records;
+}
+
+std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain) {
+  return initial_records(set, subdomain, set.ids());
 }
 
 }  // namespace scree

@@ -6,6 +6,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "model/id_range.hpp"
 #include "model/model.hpp"
 #include "partition/subdomain.hpp"
 
@@ -49,6 +50,7 @@ struct ParticleStore {
   Index owned = 0;
   Index active = 0;  // owned particles in the pair search
 
+  // records: of particles that are in the set.
   void load(const ParticleSet& set, std::span<const ParticleRecord> records);
   std::vector<ParticleRecord> records() const;  // ordered by global id
   ParticleRecord record(Index i) const;
@@ -58,7 +60,9 @@ struct ParticleStore {
   void reorder(const std::vector<Index>& from);
 };
 
-// Start of the simulation: positions and velocities of the model, the rest zero.
+// Start of the simulation: positions and velocities of the model, the rest zero. Of those of the set's
+// particles with these ids, or of all.
+std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain, IdRange ids);
 std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain);
 
 }  // namespace scree

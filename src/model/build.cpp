@@ -50,7 +50,7 @@ Wall side_wall(const Space& space, int side) {
 
 }  // namespace
 
-Model build_model(const Deck& deck, Log& log) {
+Model build_model(const Deck& deck, Log& log, const Share& share) {
   const DeckTable& root = deck.root;
   Model model;
   ModelNames names;
@@ -62,11 +62,11 @@ Model build_model(const Deck& deck, Log& log) {
   build_bodies(root, model, names);
   build_joints(root, model, names);
   build_force_elements(root, model, names);
-  build_particles(root, model, names);
+  build_particles(root, model, names, share);
   build_contact(root, model, names);
   build_output(root, names, model);
   build_parallel(root, model);
-  check_start_positions(root, model, log);
+  check_start_positions(root, model, share, log);
   check_steps(root, model, log);
   return model;
 }
@@ -168,6 +168,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.history_interval = table.real("history_interval");
   output.checkpoint_interval = table.real("checkpoint_interval");
   output.history_csv = table.boolean("history_csv");
+  output.compression = static_cast<int>(table.integer("compression"));
   output.history_reactions = table.integer("history_reactions");
   for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
     const Real interval = table.real(key);
@@ -182,7 +183,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
                                         : find_row(names, name, table, "history_bodies");
     for (const int body : bodies) add_once(output.history_bodies, body);
   }
-  const auto count = static_cast<std::int64_t>(model.particles.size());
+  const std::int64_t count = model.particles.totals.count;
   for (const std::int64_t id : table.integers("history_particles")) {
     if (id >= count) {
       table.fail(

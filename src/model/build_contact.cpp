@@ -52,7 +52,9 @@ void check_pairs(const DeckTable& table, const Model& model, const std::vector<b
 
 // Smallest and largest radius of particles and shapes [m]; 0 where there are none.
 std::pair<Real, Real> radius_range(const Model& model) {
-  std::vector<Real> radii = model.particles.radius;
+  const ParticleTotals& particles = model.particles.totals;
+  std::vector<Real> radii;
+  if (particles.count > 0) radii = {particles.smallest_radius, particles.largest_radius};
   for (const Body& body : model.bodies) {
     for (const Shape& shape : body.shapes) radii.push_back(shape.radius);
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
@@ -13,7 +14,9 @@ namespace scree {
 
 namespace {
 
-// One group while it is built. Random numbers are drawn in the order radius, mass, position, velocity.
+// One group while it is built: the part of it that this rank has. Random numbers are drawn in the order
+// radius, mass, position, velocity, those of all its particles on every rank, so that a particle does not
+// depend on who has it.
 class Group {
  public:
   Group(const DeckTable& table, const ModelNames& names, const Model& model)
@@ -22,20 +25,27 @@ class Group {
         random_(static_cast<std::uint64_t>(table.integer("seed"))),
         kind_(table.text("kind")),
         material_(find_material(names, table, "material")),
-        density_(names.densities[static_cast<std::size_t>(material_)]) {}
+        density_(names.densities[static_cast<std::size_t>(material_)]),
+        count_(count_of()) {}
 
-  void append_to(ParticleSet& particles);
+  std::int64_t count() const { return count_; }
+  bool is_random() const { return kind_ == "random"; }
+  // Adds the particles of `part`, counted in the group. placed: what stands there already, for a random
+  // group.
+  void append_to(ParticleSet& particles, IdRange part, const std::vector<StartItem>& placed);
 
  private:
+  std::int64_t count_of();
   void place_regular();
-  void place_random(const std::vector<Real>& radius);
-  std::vector<Real> radii(std::size_t count);
+  void place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii);
+  std::vector<Real> radii();
   std::vector<Real> masses(const std::vector<Real>& radius);
   std::vector<Real> masses_from_density(const std::vector<Real>& radius);
-  std::vector<Vec3> velocities(std::size_t count);
+  std::vector<Vec3> velocities();
   std::array<std::int64_t, 3> lattice_size() const;
   Vec3 lattice_origin() const;
   std::vector<Vec3> vectors_of(const std::string& prefix) const;
+  bool has_column(const std::string& name) const { return file_ && file_->has(name); }
 
   const DeckTable& table_;
   const Model& model_;
@@ -43,25 +53,41 @@ class Group {
   std::string kind_;
   int material_;
   Real density_;
-  ParticleColumns columns_;  // of a file
+  std::optional<ParticleFile> file_;
+  std::int64_t count_;
+  IdRange part_;
+  ParticleColumns columns_;  // of the file's part
   std::vector<Vec3> position_;
 };
 
-void Group::append_to(ParticleSet& particles) {
+// Of the whole group.
+std::int64_t Group::count_of() {
   const bool counted = kind_ == "row" || kind_ == "random";
   if (counted && !table_.has("count")) table_.fail("count", "missing; it must be an integer of at least 1");
-  if (kind_ == "file") columns_ = read_particle_file(table_.text("file"), model_.space.dimension);
-  if (kind_ != "random") place_regular();
-  const std::size_t n =
-      kind_ == "random" ? static_cast<std::size_t>(table_.integer("count")) : position_.size();
-  const std::vector<Real> radius = radii(n), mass = masses(radius);
-  if (kind_ == "random") place_random(radius);
-  const std::vector<Vec3> velocity = velocities(n);
+  if (counted) return table_.integer("count");
+  if (kind_ == "list") return std::ssize(table_.vectors("positions"));
+  if (kind_ == "file") return file_.emplace(table_.text("file"), model_.space.dimension).count();
+  const std::array<std::int64_t, 3> size = lattice_size();
+  const std::int64_t places = size[0] * size[1] * size[2];
+  const std::int64_t count = table_.has("count") ? table_.integer("count") : places;
+  if (count > places)
+    table_.fail("count", fmt::format("must be at most {}, the places of the lattice", places));
+  return count;
+}
+
+void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<StartItem>& placed) {
+  part_ = part;
+  if (file_) columns_ = file_->read(part);
+  if (!is_random()) place_regular();
+  const RandomNumbers before_radii = random_;
+  const std::vector<Real> radius = radii(), mass = masses(radius);
+  if (is_random()) place_random(placed, before_radii);
+  const std::vector<Vec3> velocity = velocities();
   particles.position.insert(particles.position.end(), position_.begin(), position_.end());
   particles.velocity.insert(particles.velocity.end(), velocity.begin(), velocity.end());
   particles.radius.insert(particles.radius.end(), radius.begin(), radius.end());
   particles.mass.insert(particles.mass.end(), mass.begin(), mass.end());
-  particles.material.insert(particles.material.end(), n, material_);
+  particles.material.insert(particles.material.end(), radius.size(), material_);
 }
 
 std::array<std::int64_t, 3> Group::lattice_size() const {
@@ -88,41 +114,39 @@ Vec3 Group::lattice_origin() const {
 }
 
 void Group::place_regular() {
+  if (kind_ == "file") {
+    position_ = vectors_of("");
+    return;
+  }
+  position_.reserve(static_cast<std::size_t>(part_.size()));
   if (kind_ == "list") {
-    position_ = table_.vectors("positions");
+    const std::vector<Vec3>& all = table_.vectors("positions");
+    position_.assign(all.begin() + part_.first, all.begin() + part_.last);
   } else if (kind_ == "row") {
     if (!table_.has("origin")) table_.fail("origin", "missing; it must be the centre of the first particle");
-    for (std::int64_t i = 0; i < table_.integer("count"); ++i) {
-      position_.push_back(table_.vector("origin") + static_cast<Real>(i) * table_.vector("spacing"));
-    }
-  } else if (kind_ == "lattice") {
-    const std::array<std::int64_t, 3> size = lattice_size();
-    const std::int64_t places = size[0] * size[1] * size[2];
-    const std::int64_t count = table_.has("count") ? table_.integer("count") : places;
-    if (count > places)
-      table_.fail("count", fmt::format("must be at most {}, the places of the lattice", places));
-    position_ = lattice_positions(lattice_origin(), table_.vector("spacing"), size, count);
+    const Vec3 origin = table_.vector("origin"), spacing = table_.vector("spacing");
+    for (std::int64_t i = part_.first; i < part_.last; ++i)
+      position_.push_back(origin + static_cast<Real>(i) * spacing);
   } else {
-    position_ = vectors_of("");
+    const std::array<std::int64_t, 3> size = lattice_size();
+    const Vec3 origin = lattice_origin(), spacing = table_.vector("spacing");
+    for (std::int64_t i = part_.first; i < part_.last; ++i)
+      position_.push_back(lattice_position(origin, spacing, size, i));
   }
 }
 
-void Group::place_random(const std::vector<Real>& radius) {
-  PackingBox box{table_.vector("min"), table_.vector("max"), model_.space.dimension, table_.real("gap"),
-                 table_.integer("tries")};
-  Obstacles obstacles{model_.particles.position, model_.particles.radius};
-  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-    for (const Shape& shape : model_.bodies[b].shapes) {
-      obstacles.position.push_back(to_global_point(model_, static_cast<int>(b), shape.offset));
-      obstacles.radius.push_back(shape.radius);
-    }
-  }
-  position_ = random_packing(box, radius, obstacles, random_);
-  if (position_.size() == radius.size()) return;
-  table_.fail("count",
-              fmt::format("only {} particles found a place in {} tries each; a larger box (min, max), "
-                          "fewer or smaller particles are needed",
-                          position_.size(), box.tries));
+// Each place depends on all before it: every rank finds all places, and keeps its part of them.
+void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii) {
+  const PackingBox box{table_.vector("min"), table_.vector("max"), model_.space.dimension, table_.real("gap"),
+                       table_.integer("tries")};
+  const std::vector<Real> radius = draw(table_.table("radius"), count_, {0, count_}, before_radii);
+  const std::vector<Vec3> places = random_packing(box, radius, placed, random_);
+  if (places.size() < radius.size())
+    table_.fail("count",
+                fmt::format("only {} particles found a place in {} tries each; a larger box (min, max), "
+                            "fewer or smaller particles are needed",
+                            places.size(), box.tries));
+  position_.assign(places.begin() + part_.first, places.begin() + part_.last);
 }
 
 // Components PREFIXx, PREFIXy, PREFIXz of the file.
@@ -135,25 +159,25 @@ std::vector<Vec3> Group::vectors_of(const std::string& prefix) const {
   return vectors;
 }
 
-std::vector<Real> Group::radii(std::size_t count) {
-  if (columns_.contains("radius")) {
+std::vector<Real> Group::radii() {
+  if (has_column("radius")) {
     if (table_.has("radius")) table_.fail("radius", "not used: the file has a column radius");
     return columns_.at("radius");
   }
   if (!table_.has("radius"))
     table_.fail("radius", "missing; it must be a number above 0 [m] or a distribution");
-  return draw(table_.table("radius"), count, random_);
+  return draw(table_.table("radius"), count_, part_, random_);
 }
 
 std::vector<Real> Group::masses(const std::vector<Real>& radius) {
   if (table_.has("mass") && table_.has("density")) table_.fail("density", "not used together with mass");
-  if (columns_.contains("mass")) {
+  if (has_column("mass")) {
     for (const char* key : {"mass", "density"}) {
       if (table_.has(key)) table_.fail(key, "not used: the file has a column mass");
     }
     return columns_.at("mass");
   }
-  return table_.has("mass") ? draw(table_.table("mass"), radius.size(), random_)
+  return table_.has("mass") ? draw(table_.table("mass"), count_, part_, random_)
                             : masses_from_density(radius);
 }
 
@@ -161,7 +185,7 @@ std::vector<Real> Group::masses_from_density(const std::vector<Real>& radius) {
   if (!table_.has("density") && density_ == 0) {
     table_.fail("mass", "missing; the group needs mass or density, or a material with a density");
   }
-  std::vector<Real> mass = table_.has("density") ? draw(table_.table("density"), radius.size(), random_)
+  std::vector<Real> mass = table_.has("density") ? draw(table_.table("density"), count_, part_, random_)
                                                  : std::vector<Real>(radius.size(), density_);
   const Real thickness = table_.real("thickness");
   for (std::size_t i = 0; i < radius.size(); ++i) {
@@ -171,23 +195,59 @@ std::vector<Real> Group::masses_from_density(const std::vector<Real>& radius) {
   return mass;
 }
 
-std::vector<Vec3> Group::velocities(std::size_t count) {
-  std::vector<Vec3> velocity = columns_.contains("vx") ? vectors_of("v") : std::vector<Vec3>(count);
+std::vector<Vec3> Group::velocities() {
+  std::vector<Vec3> velocity =
+      has_column("vx") ? vectors_of("v") : std::vector<Vec3>(static_cast<std::size_t>(part_.size()));
+  const Vec3 common = table_.vector("velocity");
+  for (Vec3& v : velocity) v += common;
   const Real bound = table_.real("random_velocity");
-  for (Vec3& v : velocity) {
-    v += table_.vector("velocity");
-    if (bound == 0) continue;
+  for (std::int64_t i = 0; bound > 0 && i < count_; ++i) {
     const Real x = random_.uniform(-bound, bound), y = random_.uniform(-bound, bound);
-    v += Vec3{x, y, model_.space.dimension == 3 ? random_.uniform(-bound, bound) : 0};
+    const Vec3 v{x, y, model_.space.dimension == 3 ? random_.uniform(-bound, bound) : 0};
+    if (i >= part_.first && i < part_.last) velocity[static_cast<std::size_t>(i - part_.first)] += v;
   }
   return velocity;
 }
 
+// What stands already where a random group is placed: all ranks' particles and the bodies' shapes.
+std::vector<StartItem> placed_items(const Model& model, const Share& share) {
+  std::vector<StartItem> items;
+  for (std::size_t i = 0; i < model.particles.size(); ++i)
+    items.push_back({model.particles.position[i], model.particles.radius[i]});
+  items = share.everywhere(std::move(items));
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const Shape& shape : model.bodies[b].shapes)
+      items.push_back({to_global_point(model, static_cast<int>(b), shape.offset), shape.radius});
+  return items;
+}
+
+// The ids of `range` that are in a group whose first particle has the id `first`, counted in the group.
+IdRange part_of_group(IdRange range, GlobalId first, std::int64_t count) {
+  const auto within = [&](GlobalId id) { return std::clamp<GlobalId>(id - first, 0, count); };
+  return {within(range.first), within(range.last)};
+}
+
 }  // namespace
 
-void build_particles(const DeckTable& deck, Model& model, const ModelNames& names) {
-  for (const DeckTable& table : deck.tables("particles"))
-    Group(table, names, model).append_to(model.particles);
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share) {
+  // Counts of 10^9 a group are far from overflow, whatever number of groups a deck can have.
+  std::vector<Group> groups;
+  std::int64_t count = 0;
+  share.together([&] {
+    for (const DeckTable& table : deck.tables("particles"))
+      count += groups.emplace_back(table, names, model).count();
+  });
+  const IdRange own = share.part(count);
+  model.particles.first_id = own.first;
+  GlobalId first = 0;
+  for (Group& group : groups) {
+    const std::vector<StartItem> placed =
+        group.is_random() ? placed_items(model, share) : std::vector<StartItem>{};
+    share.together(
+        [&] { group.append_to(model.particles, part_of_group(own, first, group.count()), placed); });
+    first += group.count();
+  }
+  count_particles(model.particles, model.contact.materials(), share);
 }
 
 }  // namespace scree

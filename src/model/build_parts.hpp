@@ -15,7 +15,7 @@ void build_time(const DeckTable& deck, Model& model);                           
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
-void build_particles(const DeckTable& deck, Model& model, const ModelNames& names);
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_parallel(const DeckTable& deck, Model& model);
@@ -25,7 +25,7 @@ TimeFunction build_time_function(const DeckTable& table);
 
 // Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
 // for smaller overlaps.
-void check_start_positions(const DeckTable& deck, const Model& model, Log& log);
+void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);
 // Warns of steps far above the contact time; refuses explicit steps past the stability limit.
 void check_steps(const DeckTable& deck, const Model& model, Log& log);
 

@@ -22,22 +22,6 @@ bool fits(const PackingBox& box, Real radius) {
   return extent.x >= 2 * radius && extent.y >= 2 * radius && (box.dimension == 2 || extent.z >= 2 * radius);
 }
 
-Real largest(const std::vector<Real>& values) {
-  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
-}
-
-Real draw_normal(const DeckTable& table, RandomNumbers& random) {
-  // A window that the distribution almost never meets is a mistake in the deck.
-  constexpr int kMostDraws = 100000;
-  const Real mean = table.real("mean"), sd = table.real("sd"), min = table.real("min"),
-             max = table.real("max");
-  for (int i = 0; i < kMostDraws; ++i) {
-    const Real value = mean + sd * random.normal();
-    if (value >= min && value <= max) return value;
-  }
-  table.fail("mean", fmt::format("{} draws found no value from {} to {}", kMostDraws, min, max));
-}
-
 void check_distribution(const DeckTable& table) {
   const std::string& kind = table.text("kind");
   if ((kind == "uniform" || kind == "normal") && table.real("min") > table.real("max")) {
@@ -51,37 +35,67 @@ void check_distribution(const DeckTable& table) {
   }
 }
 
-Real draw_table(const std::vector<Real>& values, const std::vector<Real>& weights, RandomNumbers& random) {
-  Real rest = random.uniform() * std::accumulate(weights.begin(), weights.end(), Real(0));
-  for (std::size_t i = 0; i + 1 < values.size(); ++i) {
-    rest -= weights[i];
-    if (rest < 0) return values[i];
+// A distribution's numbers, looked up once: there may be many values to draw.
+class Distribution {
+ public:
+  explicit Distribution(const DeckTable& table) : table_(table), kind_(table.text("kind")) {
+    check_distribution(table);
+    if (kind_ == "constant") constant_ = table.real("value");
+    if (kind_ == "uniform" || kind_ == "normal") min_ = table.real("min"), max_ = table.real("max");
+    if (kind_ == "normal") mean_ = table.real("mean"), sd_ = table.real("sd");
+    if (kind_ != "table") return;
+    values_ = table.reals("values");
+    weights_ = table.has("weights") ? table.reals("weights") : std::vector<Real>(values_.size(), 1);
   }
-  return values.back();
-}
+  bool is_constant() const { return kind_ == "constant"; }
+  Real draw(RandomNumbers& random) const {
+    if (is_constant()) return constant_;
+    if (kind_ == "uniform") return random.uniform(min_, max_);
+    return kind_ == "normal" ? draw_normal(random) : draw_table(random);
+  }
+
+ private:
+  Real draw_normal(RandomNumbers& random) const {
+    // A window that the distribution almost never meets is a mistake in the deck.
+    constexpr int kMostDraws = 100000;
+    for (int i = 0; i < kMostDraws; ++i) {
+      const Real value = mean_ + sd_ * random.normal();
+      if (value >= min_ && value <= max_) return value;
+    }
+    table_.fail("mean", fmt::format("{} draws found no value from {} to {}", kMostDraws, min_, max_));
+  }
+  Real draw_table(RandomNumbers& random) const {
+    Real rest = random.uniform() * std::accumulate(weights_.begin(), weights_.end(), Real(0));
+    for (std::size_t i = 0; i + 1 < values_.size(); ++i) {
+      rest -= weights_[i];
+      if (rest < 0) return values_[i];
+    }
+    return values_.back();
+  }
+
+  const DeckTable& table_;
+  std::string kind_;
+  Real constant_ = 0, min_ = 0, max_ = 0, mean_ = 0, sd_ = 0;
+  std::vector<Real> values_, weights_;
+};
 
 }  // namespace
 
-std::vector<Vec3> lattice_positions(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 3>& size,
-                                    std::int64_t count) {
-  std::vector<Vec3> positions;
-  positions.reserve(static_cast<std::size_t>(count));
-  for (std::int64_t i = 0; i < count; ++i) {
-    const auto x = static_cast<Real>(i % size[0]);
-    const auto y = static_cast<Real>(i / size[0] % size[1]);
-    const auto z = static_cast<Real>(i / (size[0] * size[1]));
-    positions.push_back(origin + Vec3{x * spacing.x, y * spacing.y, z * spacing.z});
-  }
-  return positions;
+Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 3>& size, std::int64_t i) {
+  const auto x = static_cast<Real>(i % size[0]);
+  const auto y = static_cast<Real>(i / size[0] % size[1]);
+  const auto z = static_cast<Real>(i / (size[0] * size[1]));
+  return origin + Vec3{x * spacing.x, y * spacing.y, z * spacing.z};
 }
 
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
-                                 const Obstacles& obstacles, RandomNumbers& random) {
-  const Real own = largest(radius);
-  const Real reach = own + std::max(own, largest(obstacles.radius)) + box.gap;
-  PointBins bins(box.min, box.max, reach, radius.size() + obstacles.position.size());
-  Obstacles placed = obstacles;
-  for (const Vec3 position : obstacles.position) bins.insert(position);
+                                 const std::vector<StartItem>& obstacles, RandomNumbers& random) {
+  const Real own = radius.empty() ? 0 : *std::max_element(radius.begin(), radius.end());
+  Real largest = own;
+  for (const StartItem& item : obstacles) largest = std::max(largest, item.radius);
+  PointBins bins(box.min, box.max, own + largest + box.gap, radius.size() + obstacles.size());
+  std::vector<StartItem> placed = obstacles;
+  for (const StartItem& item : obstacles) bins.insert(item.position);
 
   std::vector<std::size_t> order(radius.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -94,33 +108,28 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
     for (std::int64_t attempt = 0; attempt < box.tries && !found && fits(box, r); ++attempt) {
       const Vec3 place = random_place(box, r, random);
       found = bins.for_near(place, [&](int other) {
-        const auto j = static_cast<std::size_t>(other);
-        return norm(place - placed.position[j]) >= r + placed.radius[j] + box.gap;
+        const StartItem& item = placed[static_cast<std::size_t>(other)];
+        return norm(place - item.position) >= r + item.radius + box.gap;
       });
       positions[order[n]] = place;
     }
     if (!found) return std::vector<Vec3>(n);
     bins.insert(positions[order[n]]);
-    placed.position.push_back(positions[order[n]]);
-    placed.radius.push_back(r);
+    placed.push_back({positions[order[n]], r});
   }
   return positions;
 }
 
-std::vector<Real> draw(const DeckTable& distribution, std::size_t count, RandomNumbers& random) {
-  check_distribution(distribution);
-  const std::string& kind = distribution.text("kind");
-  if (kind == "constant") return std::vector<Real>(count, distribution.real("value"));
-  std::vector<Real> weights;
-  if (kind == "table") {
-    weights = distribution.has("weights") ? distribution.reals("weights")
-                                          : std::vector<Real>(distribution.reals("values").size(), 1);
+std::vector<Real> draw(const DeckTable& table, std::int64_t count, IdRange part, RandomNumbers& random) {
+  const Distribution distribution(table);
+  std::vector<Real> values(static_cast<std::size_t>(part.size()));
+  if (distribution.is_constant()) {
+    std::fill(values.begin(), values.end(), distribution.draw(random));
+    return values;
   }
-  std::vector<Real> values(count);
-  for (Real& value : values) {
-    if (kind == "uniform") value = random.uniform(distribution.real("min"), distribution.real("max"));
-    if (kind == "normal") value = draw_normal(distribution, random);
-    if (kind == "table") value = draw_table(distribution.reals("values"), weights, random);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const Real value = distribution.draw(random);
+    if (i >= part.first && i < part.last) values[static_cast<std::size_t>(i - part.first)] = value;
   }
   return values;
 }

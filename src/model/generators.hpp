@@ -9,18 +9,12 @@
 #include "base/vec3.hpp"
 #include "deck/deck.hpp"
 #include "model/random.hpp"
+#include "model/share.hpp"
 
 namespace scree {
 
-// The first `count` places of a lattice, filled along x, then y, then z. size: places per axis.
-std::vector<Vec3> lattice_positions(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 3>& size,
-                                    std::int64_t count);
-
-// Circles or spheres that were placed already.
-struct Obstacles {
-  std::vector<Vec3> position;  // [m]
-  std::vector<Real> radius;    // [m]
-};
+// Place i of a lattice that is filled along x, then y, then z. size: places per axis.
+Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 3>& size, std::int64_t i);
 
 struct PackingBox {
   Vec3 min, max;  // holds the particles entirely [m]
@@ -33,10 +27,11 @@ struct PackingBox {
 // keeps clear of everything there already. Result: one position per radius, in the order of the radii; fewer,
 // the number placed, where a particle found no place.
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
-                                 const Obstacles& obstacles, RandomNumbers& random);
+                                 const std::vector<StartItem>& obstacles, RandomNumbers& random);
 
-// `count` values of a distribution (a quantity of the deck). Throws InputError on bounds or weights that make
-// none.
-std::vector<Real> draw(const DeckTable& distribution, std::size_t count, RandomNumbers& random);
+// Entries [part.first, part.last) of `count` values of a distribution (a quantity of the deck): all of them
+// are drawn one after the other, as many as there are. Throws InputError on bounds or weights that make none.
+std::vector<Real> draw(const DeckTable& distribution, std::int64_t count, IdRange part,
+                       RandomNumbers& random);
 
 }  // namespace scree

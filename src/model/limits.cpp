@@ -59,12 +59,11 @@ bool bodies_can_meet(const Model& model) {
 
 std::vector<MaterialUse> material_uses(const Model& model) {
   std::vector<MaterialUse> uses(static_cast<std::size_t>(model.contact.materials()));
-  const ParticleSet& particles = model.particles;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    MaterialUse& use = uses[static_cast<std::size_t>(particles.material[i])];
-    ++use.particles;
-    take_smaller(use.smallest_radius, particles.radius[i]);
-    take_smaller(use.smallest_particle_mass, particles.mass[i]);
+  for (std::size_t m = 0; m < uses.size(); ++m) {
+    const ParticleTotals::OfMaterial& particles = model.particles.totals.materials[m];
+    uses[m].particles = particles.count;
+    uses[m].smallest_radius = particles.smallest_radius;
+    uses[m].smallest_particle_mass = particles.smallest_mass;
   }
   for (const Body& body : model.bodies) {
     for (const Shape& shape : body.shapes) {

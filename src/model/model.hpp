@@ -87,8 +87,9 @@ struct Output {
   Real history_interval = 0;     // [s]; 0: every step
   Real checkpoint_interval = 0;  // [s] of simulated time; 0: only on failure and signal
   bool history_csv = false;
-  std::int64_t history_reactions = 100;     // joints and drivers, the first so many
-  std::vector<int> history_bodies;          // indices into Model::bodies
+  int compression = 0;                   // of particles in snapshots and checkpoints: 0, or deflate's level
+  std::int64_t history_reactions = 100;  // joints and drivers, the first so many
+  std::vector<int> history_bodies;       // indices into Model::bodies
   std::vector<GlobalId> history_particles;  // global ids
 };
 
@@ -107,7 +108,7 @@ struct Model {
   Vec3 gravity;  // [m/s^2]
   Contact contact;
   std::vector<Wall> walls;  // the deck's planes, then the sides of the space that are walls
-  ParticleSet particles;    // start state
+  ParticleSet particles;    // start state; this rank's part
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<Driver> drivers;

@@ -56,27 +56,53 @@ std::vector<std::string> parse_header(const std::vector<std::string>& cells, int
   return cells;
 }
 
-ParticleColumns read_csv(const std::string& path, int dimension) {
-  std::ifstream file(path);
-  if (!file) throw IoError(path + ": cannot be read");
+// A CSV's table, line by line.
+class CsvTable {
+ public:
+  explicit CsvTable(const std::string& path) : path_(path), file_(path) {
+    if (!file_) throw IoError(path + ": cannot be read");
+  }
+  // The next line that says something, as cells; false at the end.
+  bool next(std::vector<std::string>& cells) {
+    for (std::string line; std::getline(file_, line);) {
+      ++number_;
+      cells = split_line(line);
+      if (!cells.front().starts_with("#") && !(cells.size() == 1 && cells.front().empty())) return true;
+    }
+    return false;
+  }
+  std::string place() const { return fmt::format("{}:{}", path_, number_); }
+
+ private:
+  std::string path_;
+  std::ifstream file_;
+  int number_ = 0;
+};
+
+// Names of the columns; empty for an empty file. Counts the rows.
+std::vector<std::string> look_through_csv(const std::string& path, int dimension, std::int64_t& count) {
+  CsvTable table(path);
+  std::vector<std::string> header, cells;
+  if (!table.next(cells)) return {};
+  header = parse_header(cells, dimension, table.place());
+  for (count = 0; table.next(cells); ++count) {
+    if (cells.size() == header.size()) continue;
+    throw InputError(
+        fmt::format("{}: {} values; must be {}, as the header", table.place(), cells.size(), header.size()));
+  }
+  return header;
+}
+
+ParticleColumns read_csv(const std::string& path, const std::vector<std::string>& header, IdRange rows) {
   ParticleColumns columns;
-  std::vector<std::string> header;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const std::vector<std::string> cells = split_line(line);
-    const std::string place = fmt::format("{}:{}", path, number);
-    if (cells.front().starts_with("#") || (cells.size() == 1 && cells.front().empty())) continue;
-    if (header.empty()) {
-      header = parse_header(cells, dimension, place);
-      for (const std::string& name : header) columns[name];
-      continue;
-    }
-    if (cells.size() != header.size()) {
-      throw InputError(
-          fmt::format("{}: {} values; must be {}, as the header", place, cells.size(), header.size()));
-    }
+  for (const std::string& name : header) columns[name];
+  CsvTable table(path);
+  std::vector<std::string> cells;
+  table.next(cells);
+  for (std::int64_t row = 0; row < rows.last && table.next(cells); ++row) {
+    if (row < rows.first) continue;
     for (std::size_t i = 0; i < cells.size(); ++i)
-      columns[header[i]].push_back(parse_cell(cells[i], header[i], place));
+      columns[header[i]].push_back(parse_cell(cells[i], header[i], table.place()));
   }
   return columns;
 }
@@ -114,60 +140,114 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-ParticleColumns read_hdf5(const std::string& path, int dimension) {
+Handle open_hdf5(const std::string& path) {
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+}
+
+[[noreturn]] void fail_dataset(const std::string& path, const std::string& name) {
+  throw InputError(fmt::format("{}: dataset {} must hold numbers, one per particle", path, name));
+}
+
+// Lengths of the columns that the file has.
+std::map<std::string, std::int64_t> look_through_hdf5(const std::string& path, int dimension) {
   const QuietHdf5 quiet;
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Handle file = open_hdf5(path);
   if (!file.valid()) throw IoError(path + ": cannot be read as HDF5");
-  ParticleColumns columns;
+  std::map<std::string, std::int64_t> lengths;
   for (const std::string& name : known_columns(dimension)) {
     if (H5Lexists(file.get(), name.c_str(), H5P_DEFAULT) <= 0) continue;
     const Handle dataset(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
     const Handle space(dataset.valid() ? H5Dget_space(dataset.get()) : H5I_INVALID_HID, H5Sclose);
-    const hssize_t count = space.valid() ? H5Sget_simple_extent_npoints(space.get()) : -1;
-    std::vector<Real> values(static_cast<std::size_t>(std::max<hssize_t>(count, 0)));
-    if (count < 0 || (count > 0 && H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                                           values.data()) < 0)) {
-      throw InputError(fmt::format("{}: dataset {} must hold numbers", path, name));
-    }
-    columns[name] = std::move(values);
+    if (!space.valid() || H5Sget_simple_extent_ndims(space.get()) != 1) fail_dataset(path, name);
+    lengths[name] = H5Sget_simple_extent_npoints(space.get());
   }
+  return lengths;
+}
+
+std::vector<Real> read_dataset(const std::string& path, hid_t file, const std::string& name, IdRange rows) {
+  std::vector<Real> values(static_cast<std::size_t>(rows.size()));
+  if (values.empty()) return values;
+  const Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const hsize_t first = static_cast<hsize_t>(rows.first), count = static_cast<hsize_t>(rows.size());
+  const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &first, nullptr, &count, nullptr) < 0 ||
+      H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)
+    fail_dataset(path, name);
+  return values;
+}
+
+ParticleColumns read_hdf5(const std::string& path, const std::vector<std::string>& names, IdRange rows) {
+  const QuietHdf5 quiet;
+  const Handle file = open_hdf5(path);
+  if (!file.valid()) throw IoError(path + ": cannot be read as HDF5");
+  ParticleColumns columns;
+  for (const std::string& name : names) columns[name] = read_dataset(path, file.get(), name, rows);
   return columns;
 }
 
-void require(const ParticleColumns& columns, const std::string& name, const std::string& path) {
-  if (columns.contains(name)) return;
-  throw InputError(fmt::format("{}: column {} is missing", path, name));
-}
-
-void check_columns(const ParticleColumns& columns, int dimension, const std::string& path) {
+void check_names(const std::vector<std::string>& names, int dimension, const std::string& path) {
+  const auto has = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const auto require = [&](const std::string& name) {
+    if (!has(name)) throw InputError(fmt::format("{}: column {} is missing", path, name));
+  };
   const std::vector<std::string> axes =
       dimension == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"};
-  const bool moving = columns.contains("vx") || columns.contains("vy") || columns.contains("vz");
+  const bool moving = has("vx") || has("vy") || has("vz");
   for (const std::string& axis : axes) {
-    require(columns, axis, path);
-    if (moving) require(columns, "v" + axis, path);
+    require(axis);
+    if (moving) require("v" + axis);
   }
+}
+
+// first: row of the first value.
+void check_values(const ParticleColumns& columns, std::int64_t first, const std::string& path) {
   for (const auto& [name, values] : columns) {
-    if (values.size() != columns.at("x").size()) {
-      throw InputError(fmt::format("{}: column {} has {} values; must be {}, as x", path, name, values.size(),
-                                   columns.at("x").size()));
-    }
     const bool positive = name == "radius" || name == "mass";
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (std::isfinite(values[i]) && (!positive || values[i] > 0)) continue;
-      throw InputError(fmt::format("{}: particle {}: {} = {}: must be a {}finite number", path, i, name,
-                                   values[i], positive ? "positive, " : ""));
+      throw InputError(fmt::format("{}: particle {}: {} = {}: must be a {}finite number", path,
+                                   first + static_cast<std::int64_t>(i), name, values[i],
+                                   positive ? "positive, " : ""));
     }
   }
 }
 
 }  // namespace
 
-ParticleColumns read_particle_file(const std::string& path, int dimension) {
-  const bool hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
-  const ParticleColumns columns = hdf5 ? read_hdf5(path, dimension) : read_csv(path, dimension);
-  check_columns(columns, dimension, path);
+ParticleFile::ParticleFile(const std::string& path, int dimension)
+    : path_(path), hdf5_(path.ends_with(".h5") || path.ends_with(".hdf5")) {
+  if (!hdf5_) {
+    columns_ = look_through_csv(path, dimension, count_);
+    check_names(columns_, dimension, path);
+    return;
+  }
+  const std::map<std::string, std::int64_t> lengths = look_through_hdf5(path, dimension);
+  for (const auto& [name, length] : lengths) columns_.push_back(name);
+  check_names(columns_, dimension, path);
+  count_ = lengths.at("x");
+  for (const auto& [name, length] : lengths) {
+    if (length != count_)
+      throw InputError(
+          fmt::format("{}: column {} has {} values; must be {}, as x", path, name, length, count_));
+  }
+}
+
+bool ParticleFile::has(const std::string& column) const {
+  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+}
+
+ParticleColumns ParticleFile::read(IdRange rows) const {
+  const ParticleColumns columns = hdf5_ ? read_hdf5(path_, columns_, rows) : read_csv(path_, columns_, rows);
+  check_values(columns, rows.first, path_);
   return columns;
+}
+
+ParticleColumns read_particle_file(const std::string& path, int dimension) {
+  const ParticleFile file(path, dimension);
+  return file.read({0, file.count()});
 }
 
 }  // namespace scree

@@ -5,18 +5,38 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "model/share.hpp"
 
 namespace scree {
 
-// Structure of arrays, one entry per particle. The global id is the deck's order, counted from 0.
+// Of all ranks' particles; lengths and masses are 0 where there are none.
+struct ParticleTotals {
+  struct OfMaterial {
+    std::int64_t count = 0;
+    Real smallest_radius = 0, smallest_mass = 0;  // [m], [kg]
+  };
+  std::int64_t count = 0;
+  Real smallest_radius = 0, largest_radius = 0;  // [m]
+  Real smallest_mass = 0, largest_mass = 0;      // [kg]
+  std::vector<OfMaterial> materials;             // as many as Contact::material_names
+};
+
+// Structure of arrays, one entry per particle of this rank. The global id is the deck's order, counted from
+// 0; these are the particles from first_id on.
 struct ParticleSet {
   std::vector<Vec3> position;  // [m]
   std::vector<Vec3> velocity;  // [m/s]
   std::vector<Real> radius;    // [m]
   std::vector<Real> mass;      // [kg]
   std::vector<int> material;   // index into Contact::material_names
+  GlobalId first_id = 0;
+  ParticleTotals totals;
 
   std::size_t size() const { return position.size(); }
+  IdRange ids() const { return {first_id, first_id + static_cast<GlobalId>(size())}; }
 };
+
+// Counts the particles anew, after they were changed. materials: their number. Collective.
+void count_particles(ParticleSet& particles, int materials, const Share& share = Share());
 
 }  // namespace scree

@@ -17,35 +17,63 @@ namespace {
 // Phase that a body on one contact may turn in a step of a staggered run, and should.
 constexpr Real kMostBodyPhase = 0.7, kGoodBodyPhase = 0.3;
 
-// Particles and the bodies' shapes at t = 0, in this order.
-struct StartItems {
-  std::vector<Vec3> position;  // [m]
-  std::vector<Real> radius;    // [m]
-  std::vector<int> body;       // of a shape; kGround for a particle
+// Numbers of items: particles by their ids, then shapes, then walls.
+class ItemNames {
+ public:
+  explicit ItemNames(const Model& model) : model_(model), particles_(model.particles.totals.count) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+      body_.insert(body_.end(), model.bodies[b].shapes.size(), static_cast<int>(b));
+  }
+  // Of a shape; kGround for a particle.
+  int body(std::int64_t number) const {
+    return number < particles_ ? kGround : body_[static_cast<std::size_t>(number - particles_)];
+  }
+  std::int64_t first_wall() const { return particles_ + std::ssize(body_); }
+  std::string name(std::int64_t number) const {
+    if (number < particles_) return fmt::format("particle {}", number);
+    if (number < first_wall())
+      return fmt::format("body \"{}\"", model_.bodies[static_cast<std::size_t>(body(number))].name);
+    return fmt::format("wall \"{}\"", model_.walls[static_cast<std::size_t>(number - first_wall())].name);
+  }
+
+ private:
+  const Model& model_;
+  std::int64_t particles_;
+  std::vector<int> body_;  // of each shape
 };
 
-// The largest overlap so far, over the smaller radius.
+// The largest overlap so far, over the smaller radius; of equal ones the first by number.
 struct WorstOverlap {
   Real ratio = 0;
-  std::string first, second;
+  std::int64_t first = 0, second = 0;
+  void meet(Real other, std::int64_t a, std::int64_t b) {
+    if (other > ratio || (other == ratio && ratio > 0 && std::pair(b, a) < std::pair(second, first)))
+      ratio = other, first = a, second = b;
+  }
 };
 
-StartItems collect_items(const Model& model) {
-  StartItems items{model.particles.position, model.particles.radius, {}};
-  items.body.assign(model.particles.size(), kGround);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    for (const Shape& shape : model.bodies[b].shapes) {
-      items.position.push_back(to_global_point(model, static_cast<int>(b), shape.offset));
-      items.radius.push_back(shape.radius);
-      items.body.push_back(static_cast<int>(b));
-    }
-  }
-  return items;
+// Of all ranks.
+WorstOverlap worst_of_all(const WorstOverlap& own, const Share& share) {
+  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+  WorstOverlap worst{share.max(own.ratio), 0, 0};
+  worst.second = share.min(own.ratio == worst.ratio ? own.second : kNone);
+  worst.first = share.min(own.ratio == worst.ratio && own.second == worst.second ? own.first : kNone);
+  return worst;
 }
 
-std::string item_name(const Model& model, const StartItems& items, std::size_t i) {
-  if (items.body[i] == kGround) return fmt::format("particle {}", i);
-  return fmt::format("body \"{}\"", model.bodies[static_cast<std::size_t>(items.body[i])].name);
+// This rank's particles; the last rank has the shapes, too.
+std::vector<StartItem> collect_items(const Model& model, const Share& share) {
+  std::vector<StartItem> items;
+  const ParticleSet& particles = model.particles;
+  items.reserve(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    items.push_back(
+        {particles.position[i], particles.radius[i], particles.first_id + static_cast<std::int64_t>(i)});
+  std::int64_t number = particles.totals.count;
+  for (std::size_t b = 0; b < model.bodies.size() && share.rank() == share.size() - 1; ++b)
+    for (const Shape& shape : model.bodies[b].shapes)
+      items.push_back({to_global_point(model, static_cast<int>(b), shape.offset), shape.radius, number++});
+  return items;
 }
 
 bool is_inside(const Space& space, Vec3 p) {
@@ -56,15 +84,15 @@ bool is_inside(const Space& space, Vec3 p) {
          (space.dimension == 2 || within(kZMin, p.z, space.min.z, space.max.z));
 }
 
-void check_inside(const DeckTable& deck, const Model& model, const StartItems& items) {
+void check_inside(const DeckTable& deck, const Model& model, const std::vector<StartItem>& items) {
   const Space& space = model.space;
-  for (std::size_t i = 0; i < items.position.size(); ++i) {
-    const Vec3 p = items.position[i];
+  for (const StartItem& item : items) {
+    const Vec3 p = item.position;
     if (is_inside(space, p)) continue;
     deck.table("space").fail(
         "max", fmt::format("{} starts at ({}, {}, {}), outside the space from ({}, {}, {}) to ({}, {}, {})",
-                           item_name(model, items, i), p.x, p.y, p.z, space.min.x, space.min.y, space.min.z,
-                           space.max.x, space.max.y, space.max.z));
+                           ItemNames(model).name(item.number), p.x, p.y, p.z, space.min.x, space.min.y,
+                           space.min.z, space.max.x, space.max.y, space.max.z));
   }
 }
 
@@ -93,42 +121,69 @@ bool may_touch(const Model& model, const std::vector<std::pair<int, int>>& conne
          !std::binary_search(connected.begin(), connected.end(), pair);
 }
 
-void find_pair_overlaps(const Model& model, const StartItems& items, WorstOverlap& worst) {
-  if (items.radius.empty()) return;
-  const Space& space = model.space;
-  const Real reach = 2 * *std::max_element(items.radius.begin(), items.radius.end());
+struct Box {
+  Vec3 min, max;  // [m]
+};
+
+// Around all of them; there is at least one.
+Box box_around(const std::vector<StartItem>& items) {
+  Box box{items.front().position, items.front().position};
+  for (const StartItem& item : items) {
+    const Vec3 p = item.position;
+    box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
+    box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
+  }
+  return box;
+}
+
+bool is_within(const Box& box, Vec3 p, Real margin) {
+  return p.x >= box.min.x - margin && p.x <= box.max.x + margin && p.y >= box.min.y - margin &&
+         p.y <= box.max.y + margin && p.z >= box.min.z - margin && p.z <= box.max.z + margin;
+}
+
+// reach: two items farther away from each other than this do not overlap [m].
+void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items, Real reach,
+                        WorstOverlap& worst) {
+  if (items.empty()) return;
+  const ItemNames names(model);
   const std::vector<std::pair<int, int>> connected = connected_bodies(model);
-  PointBins bins(space.min, space.max, reach, items.position.size());
-  for (const Vec3 p : items.position) bins.insert(p);
-  Space grown = space;
-  grown.min -= Vec3{reach, reach, reach};
-  grown.max += Vec3{reach, reach, reach};
-  for (const Vec3 shift : image_shifts(space)) {
-    for (std::size_t i = 0; i < items.position.size(); ++i) {
-      const Vec3 p = items.position[i] + shift;
-      if (!is_inside(grown, p)) continue;
-      bins.for_near(p, [&](int other) {
-        const auto j = static_cast<std::size_t>(other);
-        const Real overlap = items.radius[i] + items.radius[j] - norm(p - items.position[j]);
-        const Real ratio = overlap / std::min(items.radius[i], items.radius[j]);
-        if (j < i && ratio > worst.ratio && may_touch(model, connected, items.body[i], items.body[j])) {
-          worst = {ratio, item_name(model, items, j), item_name(model, items, i)};
-        }
+  const Box box = box_around(items);
+  PointBins bins(box.min, box.max, reach, items.size());
+  for (const StartItem& item : items) bins.insert(item.position);
+  for (const Vec3 shift : image_shifts(model.space)) {
+    for (const StartItem& item : items) {
+      const Vec3 p = item.position + shift;
+      if (!is_within(box, p, reach)) continue;
+      bins.for_near(p, [&](int number) {
+        const StartItem& other = items[static_cast<std::size_t>(number)];
+        if (other.number >= item.number) return true;
+        const Real overlap = item.radius + other.radius - norm(p - other.position);
+        const Real ratio = overlap / std::min(item.radius, other.radius);
+        if (ratio >= worst.ratio && ratio > 0 &&
+            may_touch(model, connected, names.body(item.number), names.body(other.number)))
+          worst.meet(ratio, other.number, item.number);
         return true;
       });
     }
   }
 }
 
-void find_wall_overlaps(const Model& model, const StartItems& items, WorstOverlap& worst) {
-  for (const Wall& wall : model.walls) {
-    for (std::size_t i = 0; i < items.position.size(); ++i) {
-      const Real overlap = items.radius[i] - dot(wall.normal, items.position[i] - wall.point);
-      const Real ratio = overlap / items.radius[i];
-      if (ratio > worst.ratio)
-        worst = {ratio, item_name(model, items, i), fmt::format("wall \"{}\"", wall.name)};
+void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items, WorstOverlap& worst) {
+  const std::int64_t first_wall = ItemNames(model).first_wall();
+  for (std::size_t w = 0; w < model.walls.size(); ++w) {
+    const Wall& wall = model.walls[w];
+    for (const StartItem& item : items) {
+      const Real overlap = item.radius - dot(wall.normal, item.position - wall.point);
+      worst.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));
     }
   }
+}
+
+Real largest_radius(const Model& model) {
+  Real largest = model.particles.totals.largest_radius;
+  for (const Body& body : model.bodies)
+    for (const Shape& shape : body.shapes) largest = std::max(largest, shape.radius);
+  return largest;
 }
 
 // n = 1 has an exact limit, other exponents an estimate: an error and a warning.
@@ -153,7 +208,7 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
 // The bodies see the contact force at the end of their step, while the particles take substeps: staggered,
 // and stable only while the step is short against the oscillation of a body on its contacts.
 void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
-  if (model.integrator.particles != ParticleIntegrator::velocity_verlet || model.particles.size() == 0)
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet || model.particles.totals.count == 0)
     return;
   const std::vector<MaterialUse> uses = material_uses(model);
   Real fastest = 0;
@@ -178,18 +233,22 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
 
 }  // namespace
 
-void check_start_positions(const DeckTable& deck, const Model& model, Log& log) {
+void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log) {
   // Round-off of exactly touching neighbours.
   constexpr Real kRoundOff = 1e-9;
-  const StartItems items = collect_items(model);
-  check_inside(deck, model, items);
-  WorstOverlap worst;
-  find_pair_overlaps(model, items, worst);
-  find_wall_overlaps(model, items, worst);
+  std::vector<StartItem> items = collect_items(model, share);
+  share.together([&] { check_inside(deck, model, items); });
+  WorstOverlap own;
+  find_wall_overlaps(model, items, own);
+  const Real reach = 2 * largest_radius(model);
+  items = share.near_each_other(std::move(items), model.space, reach);
+  share.together([&] { find_pair_overlaps(model, items, reach, own); });
+  const WorstOverlap worst = worst_of_all(own, share);
   if (worst.ratio <= kRoundOff) return;
   const DeckTable& contact = deck.table("contact");
+  const ItemNames names(model);
   const std::string finding = fmt::format("{} and {} overlap at t = 0 by {:.4g} of the smaller radius",
-                                          worst.first, worst.second, worst.ratio);
+                                          names.name(worst.first), names.name(worst.second), worst.ratio);
   const Real limit = contact.real("max_start_overlap");
   if (worst.ratio > limit)
     contact.fail("max_start_overlap", fmt::format("{}; allowed: at most {}", finding, limit));

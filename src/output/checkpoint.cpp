@@ -3,20 +3,25 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <memory>
 
 #include "base/error.hpp"
+#include "model/id_range.hpp"
 #include "output/durable_file.hpp"
 #include "output/hdf5_file.hpp"
+#include "output/shared_rows.hpp"
 
 namespace scree {
 
 namespace {
 
 // The file's first word to a reader; a new layout gets a new number.
-const std::string kFormat = "scree checkpoint 1";
+const std::string kFormat = "scree checkpoint 2";
 
 // In the file, each kind of value has a group of its own.
 const std::string kReals = "/reals/", kIntegers = "/integers/", kTexts = "/texts/";
+const std::string kRealRows = "/real_rows/", kIntegerRows = "/integer_rows/";
+constexpr std::int64_t kRowsPerChunk = 8192;
 
 template <class Value>
 const Value& find(const std::map<std::string, Value>& values, const std::string& name,
@@ -27,14 +32,85 @@ const Value& find(const std::map<std::string, Value>& values, const std::string&
   return found->second;
 }
 
-void write_file(const std::string& path, const Checkpoint& checkpoint) {
-  Hdf5File file(path, Hdf5Access::create);
-  for (const std::string& group : {kReals, kIntegers, kTexts}) file.create_group(group);
+template <class T>
+using RowMap = std::map<std::string, CheckpointRows<T>>;
+
+void write_small(Hdf5File& file, const Checkpoint& checkpoint) {
+  for (const std::string& group : {kReals, kIntegers, kTexts, kRealRows, kIntegerRows})
+    file.create_group(group);
   for (const auto& [name, values] : checkpoint.reals) file.write_array(kReals + name, values);
   for (const auto& [name, values] : checkpoint.integers) file.write_array(kIntegers + name, values);
   for (const auto& [name, text] : checkpoint.texts) file.write_text(kTexts + name, text);
   file.write_text_attribute("/", "format", kFormat);
+}
+
+// Rows of an array: of all ranks, and this rank's.
+struct Extent {
+  std::int64_t all;
+  RowPart own;
+};
+
+template <class T>
+std::map<std::string, Extent> extents_of(const RowMap<T>& arrays, const Ranks& ranks) {
+  std::map<std::string, Extent> extents;
+  for (const auto& [name, rows] : arrays)
+    extents[name] = {ranks.sum(rows.count), {ranks.sum_below(rows.count), rows.count}};
+  return extents;
+}
+
+template <class T>
+void make_room(Hdf5File& file, const std::string& group, const RowMap<T>& arrays,
+               const std::map<std::string, Extent>& extents, int compression) {
+  for (const auto& [name, rows] : arrays) {
+    file.create_rows<T>(group + name, {rows.width, kRowsPerChunk, true, compression}, {"", ""});
+    file.resize_rows(group + name, extents.at(name).all);
+  }
+}
+
+template <class T>
+void write_rows(SharedRows& file, const std::string& group, const RowMap<T>& arrays,
+                const std::map<std::string, Extent>& extents) {
+  for (const auto& [name, rows] : arrays) {
+    std::vector<T> piece;
+    file.write_pieces<T>(
+        group + name, rows.width, extents.at(name).own,
+        [&, &rows = rows](std::int64_t first, std::int64_t count) {
+          piece.resize(static_cast<std::size_t>(count) * static_cast<std::size_t>(rows.width));
+          rows.copy(first, count, piece.data());
+          return piece.data();
+        });
+  }
+}
+
+void write_file(const std::string& path, const Checkpoint& checkpoint, const Ranks& ranks, int compression) {
+  const auto reals = extents_of(checkpoint.real_rows, ranks);
+  const auto integers = extents_of(checkpoint.integer_rows, ranks);
+  ranks.on_root([&] {
+    Hdf5File file(path, Hdf5Access::create);
+    write_small(file, checkpoint);
+    make_room(file, kRealRows, checkpoint.real_rows, reals, compression);
+    make_room(file, kIntegerRows, checkpoint.integer_rows, integers, compression);
+    file.close();
+  });
+  SharedRows file(ranks, path);
+  write_rows(file, kRealRows, checkpoint.real_rows, reals);
+  write_rows(file, kIntegerRows, checkpoint.integer_rows, integers);
   file.close();
+}
+
+template <class T>
+RowMap<T> find_rows(const std::shared_ptr<const Hdf5File>& file, const std::string& group,
+                    const Ranks& ranks) {
+  RowMap<T> arrays;
+  for (const std::string& name : file->dataset_names(group)) {
+    const std::string dataset = group + name;
+    const IdRange part = id_range(file->rows(dataset), ranks.rank(), ranks.size());
+    arrays[name] = {file->width(dataset), part.size(),
+                    [file, dataset, part](std::int64_t first, std::int64_t count, T* to) {
+                      file->read_rows(dataset, part.first + first, count, to);
+                    }};
+  }
+  return arrays;
 }
 
 }  // namespace
@@ -47,37 +123,48 @@ const std::vector<std::int64_t>& Checkpoint::integer_array(const std::string& na
   return find(integers, name, *this);
 }
 
+const CheckpointRows<Real>& Checkpoint::real_row_array(const std::string& name) const {
+  return find(real_rows, name, *this);
+}
+
+const CheckpointRows<std::int64_t>& Checkpoint::integer_row_array(const std::string& name) const {
+  return find(integer_rows, name, *this);
+}
+
 const std::string& Checkpoint::text(const std::string& name) const { return find(texts, name, *this); }
 
-void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
+void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, const Ranks& ranks,
+                      int compression) {
   const std::string beside = path + ".tmp";
   try {
-    write_file(beside, checkpoint);
-    sync_file(beside);
-    replace_file(beside, path);
+    write_file(beside, checkpoint, ranks, compression);
+    ranks.together([&] { sync_file(beside); });
+    ranks.on_root([&] { replace_file(beside, path); });
   } catch (...) {
-    std::remove(beside.c_str());
+    if (ranks.is_root()) std::remove(beside.c_str());
     throw;
   }
 }
 
-Checkpoint read_checkpoint(const std::string& path) {
-  const Hdf5File file(path, Hdf5Access::read);
-  if (!file.has_attribute("/", "format") || file.read_text_attribute("/", "format") != kFormat) {
+Checkpoint read_checkpoint(const std::string& path, const Ranks& ranks) {
+  const auto file = std::make_shared<const Hdf5File>(path, Hdf5Access::read);
+  if (!file->has_attribute("/", "format") || file->read_text_attribute("/", "format") != kFormat) {
     throw IoError(
         fmt::format("{}: not a checkpoint of this program (its format is not \"{}\")", path, kFormat));
   }
   Checkpoint checkpoint;
   checkpoint.path = path;
-  for (const std::string& name : file.dataset_names(kReals)) {
-    checkpoint.reals[name] = file.read_array<Real>(kReals + name);
+  for (const std::string& name : file->dataset_names(kReals)) {
+    checkpoint.reals[name] = file->read_array<Real>(kReals + name);
   }
-  for (const std::string& name : file.dataset_names(kIntegers)) {
-    checkpoint.integers[name] = file.read_array<std::int64_t>(kIntegers + name);
+  for (const std::string& name : file->dataset_names(kIntegers)) {
+    checkpoint.integers[name] = file->read_array<std::int64_t>(kIntegers + name);
   }
-  for (const std::string& name : file.dataset_names(kTexts)) {
-    checkpoint.texts[name] = file.read_text(kTexts + name);
+  for (const std::string& name : file->dataset_names(kTexts)) {
+    checkpoint.texts[name] = file->read_text(kTexts + name);
   }
+  checkpoint.real_rows = find_rows<Real>(file, kRealRows, ranks);
+  checkpoint.integer_rows = find_rows<std::int64_t>(file, kIntegerRows, ranks);
   return checkpoint;
 }
 

@@ -7,43 +7,24 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "output/hdf5_parts.hpp"
 
 namespace scree {
 
 namespace {
-
-// Rows [offset, offset + count) of a dataset: what one snapshot or, with several writers, one rank writes.
-struct RowRange {
-  std::int64_t offset = 0, count = 0;
-};
 
 // Once a write has failed (a full disk), the library's exit handlers write again and crash. So they are
 // refused: the one at exit here, the one in MPI_Finalize by starting the library before MPI. Every file is
 // closed by its owner.
 [[maybe_unused]] const bool kNoExitHandlers = H5dont_atexit() >= 0 && H5open() >= 0;
 
-// Owner of one identifier; negative where the call that made it failed.
-class Hdf5Id {
- public:
-  Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Hdf5Id() {
-    if (id_ >= 0) close_(id_);
-  }
-  Hdf5Id(Hdf5Id&& other) : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
-  operator hid_t() const { return id_; }
-  bool valid() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
 herr_t keep_description(unsigned level, const H5E_error2_t* error, void* reason) {
   if (level == 0) *static_cast<std::string*>(reason) = error->desc;
   return 0;
 }
 
-// What the library's innermost function says, shortened to the system's message where it carries one.
+}  // namespace
+
 std::string library_reason() {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_description, &reason);
@@ -55,21 +36,25 @@ std::string library_reason() {
   return reason.empty() ? "no reason given" : reason;
 }
 
-// Shape of a dataset: {rows, width}, width 1 for a vector, {1, 1} for a scalar.
 std::array<hsize_t, 2> shape_of(hid_t space) {
   std::array<hsize_t, 2> shape = {1, 1};
   if (H5Sget_simple_extent_ndims(space) <= 2) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
   return shape;
 }
 
-bool write_range(hid_t dataset, hid_t type, RowRange range, const void* values) {
-  Hdf5Id space(H5Dget_space(dataset), H5Sclose);
-  const std::array<hsize_t, 2> start = {static_cast<hsize_t>(range.offset), 0};
-  const std::array<hsize_t, 2> count = {static_cast<hsize_t>(range.count), shape_of(space)[1]};
-  H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-  Hdf5Id memory(H5Screate_simple(H5Sget_simple_extent_ndims(space), count.data(), nullptr), H5Sclose);
-  return H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, values) >= 0;
+RowSelection::RowSelection(hid_t dataset, std::int64_t first, std::int64_t count)
+    : file(H5Dget_space(dataset), H5Sclose), memory(H5I_INVALID_HID, H5Sclose) {
+  const std::array<hsize_t, 2> start = {static_cast<hsize_t>(first), 0};
+  const std::array<hsize_t, 2> size = {static_cast<hsize_t>(count), shape_of(file)[1]};
+  memory = Hdf5Id(H5Screate_simple(H5Sget_simple_extent_ndims(file), size.data(), nullptr), H5Sclose);
+  if (count > 0) {
+    H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+  } else {
+    H5Sselect_none(file), H5Sselect_none(memory);
+  }
 }
+
+namespace {
 
 // ASCII where the text allows it: some readers of VTKHDF expect no other.
 Hdf5Id text_type(const std::string& text) {
@@ -123,16 +108,24 @@ void Hdf5File::close() {
   if (!flushed) throw IoError(fmt::format("{}: cannot write: {}", path_, reason));
 }
 
-void Hdf5File::create_rows(const std::string& name, hid_t type, int width, std::int64_t chunk_rows,
+void Hdf5File::create_rows(const std::string& name, hid_t type, const RowStorage& storage,
                            const DatasetLabel& label) {
-  const int dimensions = width == 1 ? 1 : 2;
-  const hsize_t shape[2] = {0, static_cast<hsize_t>(width)};
-  const hsize_t limit[2] = {H5S_UNLIMITED, static_cast<hsize_t>(width)};
-  const hsize_t chunk[2] = {static_cast<hsize_t>(chunk_rows), static_cast<hsize_t>(width)};
+  const int dimensions = storage.width == 1 ? 1 : 2;
+  const auto width = static_cast<hsize_t>(storage.width);
+  const hsize_t shape[2] = {0, width}, limit[2] = {H5S_UNLIMITED, width};
+  const hsize_t chunk[2] = {static_cast<hsize_t>(storage.chunk_rows), width};
   {
     Hdf5Id space(H5Screate_simple(dimensions, shape, limit), H5Sclose);
     Hdf5Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(layout, dimensions, chunk);
+    if (storage.shared) {
+      H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER);  // every row is written
+      // A collective write cannot make room. Of compressed chunks without a place HDF5 1.10 takes one rank's
+      // for another's, and waits for it forever.
+      H5Pset_alloc_time(layout, H5D_ALLOC_TIME_EARLY);
+    }
+    if (storage.compression > 0)
+      H5Pset_shuffle(layout), H5Pset_deflate(layout, static_cast<unsigned>(storage.compression));
     Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, making_groups(), layout, H5P_DEFAULT),
                    H5Dclose);
     if (!dataset.valid()) fail("create dataset " + name);
@@ -146,10 +139,12 @@ void Hdf5File::append_rows(const std::string& name, hid_t type, const void* valu
   if (!dataset.valid()) fail("open dataset " + name);
   if (rows == 0) return;
   std::array<hsize_t, 2> shape = shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose));
-  const RowRange range{static_cast<std::int64_t>(shape[0]), rows};
+  const auto first = static_cast<std::int64_t>(shape[0]);
   shape[0] += static_cast<hsize_t>(rows);
   if (H5Dset_extent(dataset, shape.data()) < 0) fail("extend dataset " + name);
-  if (!write_range(dataset, type, range, values)) fail("write dataset " + name);
+  const RowSelection selected(dataset, first, rows);
+  if (H5Dwrite(dataset, type, selected.memory, selected.file, H5P_DEFAULT, values) < 0)
+    fail("write dataset " + name);
 }
 
 void Hdf5File::resize_rows(const std::string& name, std::int64_t rows) {
@@ -164,6 +159,29 @@ std::int64_t Hdf5File::rows(const std::string& name) const {
   Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail("open dataset " + name);
   return static_cast<std::int64_t>(shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose))[0]);
+}
+
+int Hdf5File::width(const std::string& name) const {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  return static_cast<int>(shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose))[1]);
+}
+
+void Hdf5File::read_rows(const std::string& name, hid_t type, std::int64_t first, std::int64_t count,
+                         void* to) const {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  check_type(dataset, type, name);
+  const RowSelection selected(dataset, first, count);
+  if (H5Dread(dataset, type, selected.memory, selected.file, H5P_DEFAULT, to) < 0)
+    fail("read dataset " + name);
+}
+
+void Hdf5File::check_type(hid_t dataset, hid_t type, const std::string& name) const {
+  Hdf5Id file_type(H5Dget_type(dataset), H5Tclose);
+  if (H5Tequal(file_type, type) <= 0) {
+    throw IoError(fmt::format("{}: dataset {} holds another type than expected", path_, name));
+  }
 }
 
 void Hdf5File::write_array(const std::string& name, hid_t type, const void* values, std::int64_t count) {
@@ -186,10 +204,7 @@ std::int64_t Hdf5File::value_count(const std::string& name) const {
 void Hdf5File::read_array(const std::string& name, hid_t type, void* values) const {
   Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail("open dataset " + name);
-  Hdf5Id file_type(H5Dget_type(dataset), H5Tclose);
-  if (H5Tequal(file_type, type) <= 0) {
-    throw IoError(fmt::format("{}: dataset {} holds another type than expected", path_, name));
-  }
+  check_type(dataset, type, name);
   if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) fail("read dataset " + name);
 }
 

@@ -24,6 +24,15 @@ struct DatasetLabel {
   std::string unit, description;
 };
 
+// How a dataset of rows lies in its file.
+struct RowStorage {
+  int width = 1;
+  std::int64_t chunk_rows = 1;
+  // For rows that SharedRows writes: they have their places in the file before they are written.
+  bool shared = false;
+  int compression = 0;  // 0: none; 1 to 9: deflate, of shared rows
+};
+
 // The library's type for a value in memory; files hold the same type.
 template <class T>
 hid_t hdf5_type() {
@@ -45,17 +54,23 @@ class Hdf5File {
 
   // ---- extensible datasets of shape [rows] (width 1) or [rows][width] ----
   template <class T>
-  void create_rows(const std::string& name, int width, std::int64_t chunk_rows, const DatasetLabel& label) {
-    create_rows(name, hdf5_type<T>(), width, chunk_rows, label);
+  void create_rows(const std::string& name, const RowStorage& storage, const DatasetLabel& label) {
+    create_rows(name, hdf5_type<T>(), storage, label);
   }
   // values: rows x width.
   template <class T>
   void append_rows(const std::string& name, const T* values, std::int64_t rows) {
     append_rows(name, hdf5_type<T>(), values, rows);
   }
-  // Rows past the new number are cut off, or filled with zeros.
+  // Rows past the new number are cut off; new ones hold nothing until SharedRows writes them.
   void resize_rows(const std::string& name, std::int64_t rows);
   std::int64_t rows(const std::string& name) const;
+  int width(const std::string& name) const;
+  // Rows [first, first + count), row by row. Throws also where the file holds another type.
+  template <class T>
+  void read_rows(const std::string& name, std::int64_t first, std::int64_t count, T* to) const {
+    read_rows(name, hdf5_type<T>(), first, count, to);
+  }
 
   // ---- datasets of fixed size ----
   template <class T>
@@ -87,11 +102,12 @@ class Hdf5File {
   std::vector<std::string> dataset_names(const std::string& group) const;
 
  private:
-  void create_rows(const std::string& name, hid_t type, int width, std::int64_t chunk_rows,
-                   const DatasetLabel& label);
+  void create_rows(const std::string& name, hid_t type, const RowStorage& storage, const DatasetLabel& label);
   void append_rows(const std::string& name, hid_t type, const void* values, std::int64_t rows);
   void write_array(const std::string& name, hid_t type, const void* values, std::int64_t count);
   void read_array(const std::string& name, hid_t type, void* values) const;
+  void read_rows(const std::string& name, hid_t type, std::int64_t first, std::int64_t count, void* to) const;
+  void check_type(hid_t dataset, hid_t type, const std::string& name) const;
   // The text of a dataset or an attribute, which messages call `what`. read(to): fetches its bytes.
   template <class Read>
   std::string read_text(hid_t type, hid_t space, const std::string& what, const Read& read) const;

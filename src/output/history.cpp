@@ -82,9 +82,10 @@ void HistoryWriter::cut(std::int64_t keep) {
     }
   }
   if (!longer) return;
-  file_.update([&](Hdf5File& file) {
-    for (const HistoryColumn& column : columns_) file.resize_rows(dataset_path(column), keep);
-  });
+  file_.update({[&](Hdf5File& file) {
+                  for (const HistoryColumn& column : columns_) file.resize_rows(dataset_path(column), keep);
+                },
+                {}});
 }
 
 void HistoryWriter::append(const std::vector<Real>& row) {
@@ -100,7 +101,7 @@ void HistoryWriter::write_rows(Hdf5File& file, std::int64_t rows_before) const {
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const std::string path = dataset_path(columns_[c]);
     if (rows_before == 0) {
-      file.create_rows<Real>(path, 1, kRowsPerChunk, {columns_[c].unit, columns_[c].description});
+      file.create_rows<Real>(path, {1, kRowsPerChunk}, {columns_[c].unit, columns_[c].description});
     }
     file.append_rows(path, buffer_[c].data(), std::ssize(buffer_[c]));
   }
@@ -109,7 +110,7 @@ void HistoryWriter::write_rows(Hdf5File& file, std::int64_t rows_before) const {
 void HistoryWriter::flush() {
   if (buffer_.empty() || buffer_.front().empty()) return;
   const std::int64_t rows_before = rows_ - std::ssize(buffer_.front());
-  file_.update([&](Hdf5File& file) { write_rows(file, rows_before); });
+  file_.update({[&](Hdf5File& file) { write_rows(file, rows_before); }, {}});
   if (!csv_path_.empty()) append_text_file(csv_path_, csv_rows(buffer_));
   for (auto& column : buffer_) column.clear();
 }

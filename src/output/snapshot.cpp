@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "output/vtkhdf_series.hpp"
 
 namespace scree {
 
@@ -26,8 +25,10 @@ PointField number(const char* name, const char* description, std::span<const int
   return {name, {"1", description}, 1, values.data()};
 }
 
-PointSnapshot particle_points(Real time, const ParticleSnapshot& particles) {
-  PointSnapshot snapshot{time, std::ssize(particles.position), components(particles.position), {}};
+PointSnapshot particle_points(Real time, const ParticleSnapshot& particles, const Ranks& ranks) {
+  const std::int64_t own = std::ssize(particles.position);
+  PointSnapshot snapshot{
+      time, ranks.sum(own), {ranks.sum_below(own), own}, components(particles.position), {}};
   snapshot.fields = {{"global_id",
                       {"1", "identity of the particle, counted from 0 in the deck's order"},
                       1,
@@ -40,7 +41,8 @@ PointSnapshot particle_points(Real time, const ParticleSnapshot& particles) {
 }
 
 PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
-  PointSnapshot snapshot{time, std::ssize(bodies.position), components(bodies.position), {}};
+  const std::int64_t shapes = std::ssize(bodies.position);
+  PointSnapshot snapshot{time, shapes, {0, shapes}, components(bodies.position), {}};
   snapshot.fields = {
       number("body", "body that the shape belongs to, counted from 0 in the deck's order", bodies.body),
       scalar("radius", "m", "radius of the shape", bodies.radius),
@@ -54,23 +56,27 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
 
 }  // namespace
 
-SnapshotWriter::SnapshotWriter(const std::string& directory, const std::string& title, int keep)
-    : particles_(std::make_unique<VtkHdfSeries>(directory, "particles", title, keep)),
-      bodies_(std::make_unique<VtkHdfSeries>(directory, "bodies", title, keep)),
-      snapshots_(keep) {
-  if (particles_->snapshots() != keep)
-    throw IoError(particles_->path() + ": missing, the restarted run needs it");
+SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions& options)
+    : ranks_(options.ranks), particles_(directory, "particles", options), snapshots_(options.keep) {
+  ranks_.on_root([&] {
+    SeriesOptions alone = options;
+    alone.ranks = {};
+    bodies_.emplace(directory, "bodies", alone);
+  });
+  if (particles_.snapshots() != snapshots_)
+    throw IoError(particles_.path() + ": missing, the restarted run needs it");
 }
 
-SnapshotWriter::~SnapshotWriter() = default;
-
 void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies) {
-  if (!bodies.position.empty() && bodies_->snapshots() != snapshots_) {
+  ranks_.on_root([&] {
+    if (bodies.position.empty() || bodies_->snapshots() == snapshots_) return;
     throw IoError(fmt::format("{}: holds {} snapshots where {} were written", bodies_->path(),
                               bodies_->snapshots(), snapshots_));
-  }
-  particles_->append(particle_points(time, particles));
-  if (!bodies.position.empty()) bodies_->append(body_points(time, bodies));
+  });
+  particles_.append(particle_points(time, particles, ranks_));
+  ranks_.on_root([&] {
+    if (!bodies.position.empty()) bodies_->append(body_points(time, bodies));
+  });
   ++snapshots_;
 }
 

@@ -1,16 +1,18 @@
 // Snapshots: one VTKHDF time series per kind (particles, bodies) and an .xdmf that refers to the same data.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "output/vtkhdf_series.hpp"
 
 namespace scree {
 
-// Views of what one snapshot stores; one entry per particle, ordered by global id.
+// Views of what one snapshot stores; one entry per particle of this rank, ordered by global id on the rank
+// and from rank to rank.
 struct ParticleSnapshot {
   std::span<const GlobalId> global_id;
   std::span<const Real> radius;    // [m]
@@ -20,7 +22,7 @@ struct ParticleSnapshot {
   std::span<const int> contacts;   // number of touching neighbours and walls
 };
 
-// One entry per shape (disc or sphere) of every body.
+// One entry per shape (disc or sphere) of every body; on rank 0.
 struct BodySnapshot {
   std::span<const int> body;               // index into the model's bodies
   std::span<const Real> radius;            // [m]
@@ -32,23 +34,23 @@ struct BodySnapshot {
   std::span<const int> contacts;
 };
 
-class VtkHdfSeries;
-
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
 // bodies.xdmf. The files are complete, closed and on disk after every append, and readable at every instant,
-// a kill in the middle of an append included.
+// a kill in the middle of an append included. All ranks write the particles, rank 0 the bodies; the
+// constructor and append() are collective.
 class SnapshotWriter {
  public:
-  // keep: number of snapshots to keep when a restarted run continues existing files (later ones are cut off);
-  // 0 starts new files and removes old ones. Throws IoError where the files hold fewer.
-  SnapshotWriter(const std::string& directory, const std::string& title, int keep);
-  ~SnapshotWriter();
+  // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
+  // cut off); 0 starts new files and removes old ones. Throws IoError where the files hold fewer.
+  SnapshotWriter(const std::string& directory, const SeriesOptions& options);
   // Throws IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies);
   int snapshots() const { return snapshots_; }
 
  private:
-  std::unique_ptr<VtkHdfSeries> particles_, bodies_;
+  Ranks ranks_;
+  VtkHdfSeries particles_;
+  std::optional<VtkHdfSeries> bodies_;  // on rank 0
   int snapshots_ = 0;
 };
 

@@ -11,7 +11,8 @@ namespace scree {
 
 namespace fs = std::filesystem;
 
-TwinFile::TwinFile(const std::string& path) : path_(path), spare_(path + ".spare"), old_(path + ".old") {
+TwinFile::TwinFile(const std::string& path, const Ranks& ranks)
+    : ranks_(ranks), path_(path), spare_(path + ".spare"), old_(path + ".old") {
   drop_spare();
 }
 
@@ -19,33 +20,49 @@ TwinFile::~TwinFile() { drop_spare(); }
 
 void TwinFile::drop_spare() {
   has_spare_ = false;
+  if (!ranks_.is_root()) return;
   std::error_code ignored;  // nothing to remove is the usual case
   fs::remove(spare_, ignored);
   fs::remove(old_, ignored);
 }
 
-bool TwinFile::exists() const { return fs::exists(path_); }
+bool TwinFile::exists() const {
+  bool there = false;
+  ranks_.on_root([&] { there = fs::exists(path_); });
+  ranks_.broadcast(there);
+  return there;
+}
 
 void TwinFile::remove() {
   drop_spare();
-  std::error_code error;
-  fs::remove(path_, error);
-  if (error) throw IoError(fmt::format("{}: cannot remove: {}", path_, error.message()));
+  ranks_.on_root([&] {
+    std::error_code error;
+    fs::remove(path_, error);
+    if (error) throw IoError(fmt::format("{}: cannot remove: {}", path_, error.message()));
+  });
 }
 
-void TwinFile::change_spare(const std::function<void(Hdf5File&)>& change, Hdf5Access access) {
-  Hdf5File file(spare_, access);
-  change(file);
-  file.close();
+void TwinFile::change_spare(const Change& change, Hdf5Access access) {
+  ranks_.on_root([&] {
+    Hdf5File file(spare_, access);
+    if (change.layout) change.layout(file);
+    file.close();
+  });
+  if (!change.rows) return;
+  SharedRows rows(ranks_, spare_);
+  change.rows(rows);
+  rows.close();
 }
 
 void TwinFile::copy_to_spare() {
-  std::error_code error;
-  fs::copy_file(path_, spare_, fs::copy_options::overwrite_existing, error);
-  if (error) throw IoError(fmt::format("{}: cannot copy to {}: {}", path_, spare_, error.message()));
+  ranks_.on_root([&] {
+    std::error_code error;
+    fs::copy_file(path_, spare_, fs::copy_options::overwrite_existing, error);
+    if (error) throw IoError(fmt::format("{}: cannot copy to {}: {}", path_, spare_, error.message()));
+  });
 }
 
-void TwinFile::update(const std::function<void(Hdf5File&)>& change) {
+void TwinFile::update(const Change& change) {
   try {
     const bool grows = exists();
     if (grows && !has_spare_) copy_to_spare();
@@ -58,7 +75,7 @@ void TwinFile::update(const std::function<void(Hdf5File&)>& change) {
   if (has_spare_) catch_up(change);
 }
 
-void TwinFile::catch_up(const std::function<void(Hdf5File&)>& change) {
+void TwinFile::catch_up(const Change& change) {
   try {
     change_spare(change, Hdf5Access::modify);
   } catch (const IoError&) {
@@ -68,19 +85,23 @@ void TwinFile::catch_up(const std::function<void(Hdf5File&)>& change) {
   }
 }
 
+// Every rank's machine may hold some of the file that is not on disk yet.
 void TwinFile::swap_in() {
-  sync_file(spare_);
-  // Two names for the visible copy, so that it outlives the rename; without hard links it is copied next
-  // time.
-  std::error_code no_link;
-  fs::remove(old_, no_link);
-  fs::create_hard_link(path_, old_, no_link);
-  replace_file(spare_, path_);
-  has_spare_ = false;
-  if (no_link) return;
-  std::error_code error;
-  fs::rename(old_, spare_, error);
-  has_spare_ = !error;
+  ranks_.together([&] { sync_file(spare_); });
+  bool kept = false;
+  ranks_.on_root([&] {
+    // Two names for the visible copy, so that it outlives the rename; without hard links it is copied next
+    // time.
+    std::error_code error;
+    fs::remove(old_, error);
+    fs::create_hard_link(path_, old_, error);
+    const bool linked = !error;
+    replace_file(spare_, path_);
+    if (linked) fs::rename(old_, spare_, error);
+    kept = linked && !error;
+  });
+  ranks_.broadcast(kept);
+  has_spare_ = kept;
 }
 
 }  // namespace scree

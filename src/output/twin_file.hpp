@@ -12,14 +12,17 @@
 #include <string>
 
 #include "output/hdf5_file.hpp"
+#include "output/shared_rows.hpp"
 
 namespace scree {
 
+// A file of several ranks: all functions but path() are collective, and fail on every rank where they fail on
+// one.
 class TwinFile {
  public:
   // Removes what a killed run may have left beside PATH (PATH.spare, PATH.old). PATH itself is not touched.
-  explicit TwinFile(const std::string& path);
-  ~TwinFile();  // removes the copy
+  explicit TwinFile(const std::string& path, const Ranks& ranks = {});
+  ~TwinFile();  // removes the copy; not collective
   TwinFile(const TwinFile&) = delete;
   TwinFile& operator=(const TwinFile&) = delete;
 
@@ -27,17 +30,24 @@ class TwinFile {
   bool exists() const;
   void remove();  // throws IoError
 
+  // What happens to the file in one update: rank 0 does what only one can do, room for rows included, then
+  // all ranks write their rows. Either may be missing.
+  struct Change {
+    std::function<void(Hdf5File&)> layout;
+    std::function<void(SharedRows&)> rows;
+  };
   // Runs `change` on the file, a new and empty one if there is none. It runs once per copy, so it must do the
   // same again. All of it or nothing becomes visible. Throws IoError.
-  void update(const std::function<void(Hdf5File&)>& change);
+  void update(const Change& change);
 
  private:
   void copy_to_spare();
-  void change_spare(const std::function<void(Hdf5File&)>& change, Hdf5Access access);
+  void change_spare(const Change& change, Hdf5Access access);
   void swap_in();
-  void catch_up(const std::function<void(Hdf5File&)>& change);
+  void catch_up(const Change& change);
   void drop_spare();
 
+  Ranks ranks_;
   std::string path_, spare_, old_;
   bool has_spare_ = false;  // spare_ has the same content as path_
 };

@@ -28,22 +28,29 @@ void append_one(Hdf5File& file, const std::string& name, T value) {
 // Large enough to be written at the disk's speed, small enough not to bloat the file of a small run.
 std::int64_t points_per_chunk(std::int64_t points) { return std::clamp<std::int64_t>(points, 128, 65536); }
 
-void create_field(Hdf5File& file, const PointField& field, std::int64_t chunk) {
+void create_field(Hdf5File& file, const PointField& field, RowStorage storage) {
+  storage.width = field.width;
   const auto create = [&]<class T>(const T*) {
-    file.create_rows<T>(kPointData + field.name, field.width, chunk, field.label);
+    file.create_rows<T>(kPointData + field.name, storage, field.label);
   };
   std::visit(create, field.values);
 }
 
-void append_field(Hdf5File& file, const PointField& field, std::int64_t points) {
-  const auto append = [&](const auto* values) { file.append_rows(kPointData + field.name, values, points); };
-  std::visit(append, field.values);
+void write_field(SharedRows& file, const PointField& field, RowPart part) {
+  const auto write = [&](const auto* values) {
+    file.write(kPointData + field.name, field.width, part, values);
+  };
+  std::visit(write, field.values);
+}
+
+void add_rows(Hdf5File& file, const std::string& name, std::int64_t rows) {
+  file.resize_rows(name, file.rows(name) + rows);
 }
 
 void create_steps(Hdf5File& file) {
   const auto create = [&]<class T>(T, const std::string& name, int width, const std::string& unit,
                                    const std::string& description) {
-    file.create_rows<T>(kSteps + name, width, kStepsPerChunk, {unit, description});
+    file.create_rows<T>(kSteps + name, {width, kStepsPerChunk}, {unit, description});
   };
   create(Real{}, "Values", 1, "s", "time of each snapshot");
   create(std::int64_t{}, "PartOffsets", 1, "1", "part that holds the vertices of each snapshot");
@@ -56,48 +63,52 @@ void create_steps(Hdf5File& file) {
   file.write_integer_attribute(kSteps, "NSteps", {0});
 }
 
-void create_topology(Hdf5File& file, std::int64_t chunk) {
-  const auto create = [&](const std::string& name, std::int64_t chunk_rows, const std::string& description) {
-    file.create_rows<std::int64_t>(kRoot + name, 1, chunk_rows, {"1", description});
+void create_topology(Hdf5File& file, const RowStorage& of_points) {
+  const auto create = [&](const std::string& name, const RowStorage& storage,
+                          const std::string& description) {
+    file.create_rows<std::int64_t>(kRoot + name, storage, {"1", description});
   };
-  create("NumberOfPoints", kStepsPerChunk, "points of each part");
-  create("Vertices/Connectivity", chunk, "point of each vertex, counted from the part's first");
-  create("Vertices/Offsets", chunk,
+  const RowStorage of_parts{1, kStepsPerChunk};
+  create("NumberOfPoints", of_parts, "points of each part");
+  create("Vertices/Connectivity", of_points, "point of each vertex, counted from the part's first");
+  create("Vertices/Offsets", of_points,
          "first connectivity id of each vertex, and their number: one more row per part");
   file.link(kRoot + "NumberOfPoints", kRoot + "Vertices/NumberOfCells");
   file.link(kRoot + "NumberOfPoints", kRoot + "Vertices/NumberOfConnectivityIds");
-  create("Lines/NumberOfCells", kStepsPerChunk, "cells of each part: none");
-  create("Lines/Offsets", kStepsPerChunk, "one 0 per part");
-  create("Lines/Connectivity", kStepsPerChunk, "empty");
+  create("Lines/NumberOfCells", of_parts, "cells of each part: none");
+  create("Lines/Offsets", of_parts, "one 0 per part");
+  create("Lines/Connectivity", of_parts, "empty");
   file.link(kRoot + "Lines/NumberOfCells", kRoot + "Lines/NumberOfConnectivityIds");
   file.link(kRoot + "Lines", kRoot + "Polygons");
   file.link(kRoot + "Lines", kRoot + "Strips");
 }
 
-void append_part(Hdf5File& file, std::int64_t points) {
-  std::vector<std::int64_t> count(static_cast<std::size_t>(points) + 1);
-  std::iota(count.begin(), count.end(), 0);
-  append_one(file, kRoot + "NumberOfPoints", points);
-  file.append_rows(kRoot + "Vertices/Connectivity", count.data(), points);
-  file.append_rows(kRoot + "Vertices/Offsets", count.data(), points + 1);
-  append_one(file, kRoot + "Lines/NumberOfCells", std::int64_t{0});
-  append_one(file, kRoot + "Lines/Offsets", std::int64_t{0});
+// Row k of a part holds k.
+void write_numbers(SharedRows& file, const std::string& name, std::int64_t first_row, RowPart numbers) {
+  std::vector<std::int64_t> piece;
+  file.write_pieces<std::int64_t>(name, 1, {first_row + numbers.first, numbers.count},
+                                  [&](std::int64_t first, std::int64_t count) {
+                                    piece.resize(static_cast<std::size_t>(count));
+                                    std::iota(piece.begin(), piece.end(), numbers.first + first);
+                                    return piece.data();
+                                  });
 }
 
 }  // namespace
 
-VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name, const std::string& title,
-                           int keep)
+VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name,
+                           const SeriesOptions& options)
     : name_(name),
-      title_(title),
       xdmf_path_(directory + "/" + name + ".xdmf"),
-      file_(directory + "/" + name + ".vtkhdf") {
+      options_(options),
+      file_(directory + "/" + name + ".vtkhdf", options.ranks) {
+  const int keep = options.keep;
   if (keep == 0 || !file_.exists()) {
     file_.remove();
     remove_xdmf();
     return;
   }
-  read_places();
+  options.ranks.together([&] { read_places(); });
   if (snapshots() < keep) {
     throw IoError(fmt::format("{}: holds {} snapshots, but the restarted run has written {}", path(),
                               snapshots(), keep));
@@ -133,7 +144,7 @@ void VtkHdfSeries::cut(std::size_t keep) {
   const SnapshotPlace last = places_.back();
   const std::int64_t steps = static_cast<std::int64_t>(keep), parts = last.part + 1;
   const std::int64_t cells = last.first_cell + last.points;
-  file_.update([&](Hdf5File& file) {
+  const auto shorten = [&](Hdf5File& file) {
     file.write_integer_attribute(kSteps, "NSteps", {steps});
     for (const char* name : {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets"}) {
       file.resize_rows(kSteps + name, steps);
@@ -147,24 +158,27 @@ void VtkHdfSeries::cut(std::size_t keep) {
     for (const std::string& name : file.dataset_names(kPointData)) {
       file.resize_rows(kPointData + name, last.first_point + last.points);
     }
-  });
+  };
+  file_.update({shorten, {}});
 }
 
 void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
-  const std::int64_t chunk = points_per_chunk(first.points);
+  const RowStorage storage{1, points_per_chunk(first.points), true, options_.compression};
   file.create_group(kSteps);
   file.write_integer_attribute("/VTKHDF", "Version", {2, 0});
   file.write_text_attribute("/VTKHDF", "Type", "PolyData");
   create_steps(file);
-  create_topology(file, chunk);
-  file.create_rows<Real>(kRoot + "Points", 3, chunk, {"m", "position"});
+  create_topology(file, storage);
+  RowStorage vectors = storage;
+  vectors.width = 3;
+  file.create_rows<Real>(kRoot + "Points", vectors, {"m", "position"});
   for (const PointField& field : first.fields) {
-    create_field(file, field, chunk);
+    create_field(file, field, storage);
     // Every field has as many rows as Points, so it begins where they begin.
     file.link(kSteps + "PointOffsets", kSteps + "PointDataOffsets/" + field.name);
   }
   file.create_group("/Scree");
-  file.write_text_attribute("/Scree", "title", title_);
+  file.write_text_attribute("/Scree", "title", options_.title);
   file.write_text_attribute("/Scree", "version", version());
   file.write_text_attribute("/Scree", "commit", commit());
 }
@@ -180,11 +194,22 @@ SnapshotPlace VtkHdfSeries::next_place(const PointSnapshot& snapshot) const {
   return place;
 }
 
-void VtkHdfSeries::write(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const {
+bool VtkHdfSeries::starts_part(const SnapshotPlace& place) const {
+  return places_.empty() || place.part != places_.back().part;
+}
+
+void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
+                             const SnapshotPlace& place) const {
   if (places_.empty()) lay_out(file, snapshot);
-  if (places_.empty() || place.part != places_.back().part) append_part(file, snapshot.points);
-  file.append_rows(kRoot + "Points", snapshot.position, snapshot.points);
-  for (const PointField& field : snapshot.fields) append_field(file, field, snapshot.points);
+  if (starts_part(place)) {
+    append_one(file, kRoot + "NumberOfPoints", snapshot.points);
+    add_rows(file, kRoot + "Vertices/Connectivity", snapshot.points);
+    add_rows(file, kRoot + "Vertices/Offsets", snapshot.points + 1);
+    append_one(file, kRoot + "Lines/NumberOfCells", std::int64_t{0});
+    append_one(file, kRoot + "Lines/Offsets", std::int64_t{0});
+  }
+  add_rows(file, kRoot + "Points", snapshot.points);
+  for (const PointField& field : snapshot.fields) add_rows(file, kPointData + field.name, snapshot.points);
   append_one(file, kSteps + "Values", snapshot.time);
   append_one(file, kSteps + "PartOffsets", place.part);
   append_one(file, kSteps + "NumberOfParts", std::int64_t{1});
@@ -194,20 +219,37 @@ void VtkHdfSeries::write(Hdf5File& file, const PointSnapshot& snapshot, const Sn
   file.write_integer_attribute(kSteps, "NSteps", {static_cast<std::int64_t>(places_.size()) + 1});
 }
 
+void VtkHdfSeries::write_rows(SharedRows& file, const PointSnapshot& snapshot,
+                              const SnapshotPlace& place) const {
+  const RowPart own = snapshot.own;
+  if (starts_part(place)) {
+    write_numbers(file, kRoot + "Vertices/Connectivity", place.first_cell, own);
+    // One more than there are vertices: the last rank's.
+    const bool last = options_.ranks.rank() == options_.ranks.size() - 1;
+    write_numbers(file, kRoot + "Vertices/Offsets", place.first_cell + place.part,
+                  {own.first, own.count + (last ? 1 : 0)});
+  }
+  const RowPart part{place.first_point + own.first, own.count};
+  file.write(kRoot + "Points", 3, part, snapshot.position);
+  for (const PointField& field : snapshot.fields) write_field(file, field, part);
+}
+
 void VtkHdfSeries::append(const PointSnapshot& snapshot) {
   const SnapshotPlace place = next_place(snapshot);
-  file_.update([&](Hdf5File& file) { write(file, snapshot, place); });
+  file_.update({[&](Hdf5File& file) { make_room(file, snapshot, place); },
+                [&](SharedRows& file) { write_rows(file, snapshot, place); }});
   places_.push_back(place);
-  write_xdmf(snapshot);
+  options_.ranks.on_root([&] { write_xdmf(snapshot); });
 }
 
 void VtkHdfSeries::remove_xdmf() const {
+  if (!options_.ranks.is_root()) return;
   std::error_code none_there;
   std::filesystem::remove(xdmf_path_, none_there);
 }
 
 void VtkHdfSeries::write_xdmf(const PointSnapshot& snapshot) {
-  const XdmfSeries series{name_, title_, name_ + ".vtkhdf", &snapshot.fields};
+  const XdmfSeries series{name_, options_.title, name_ + ".vtkhdf", &snapshot.fields};
   for (; xdmf_snapshots_ < places_.size(); ++xdmf_snapshots_) {
     xdmf_grids_ += xdmf_grid(series, places_[xdmf_snapshots_]);
   }

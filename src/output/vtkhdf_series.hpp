@@ -16,7 +16,7 @@
 
 namespace scree {
 
-// One field of one snapshot: values[point][width], width 1 or 3.
+// One field of this rank's points of one snapshot: values[point][width], width 1 or 3.
 struct PointField {
   std::string name;
   DatasetLabel label;
@@ -26,8 +26,9 @@ struct PointField {
 
 struct PointSnapshot {
   Real time = 0;                   // [s]
-  std::int64_t points = 0;         // may differ from snapshot to snapshot, and be 0
-  const Real* position = nullptr;  // [points][3] [m]
+  std::int64_t points = 0;         // of all ranks; may differ from snapshot to snapshot, and be 0
+  RowPart own;                     // of these, this rank's
+  const Real* position = nullptr;  // [own.count][3] [m]
   std::vector<PointField> fields;  // the same names and widths in every snapshot
 };
 
@@ -38,11 +39,18 @@ struct SnapshotPlace {
   std::int64_t part = 0, first_cell = 0;     // in NumberOfPoints; in Vertices/Connectivity
 };
 
+struct SeriesOptions {
+  std::string title;
+  int keep = 0;         // snapshots to keep
+  int compression = 0;  // of new files, RowStorage::compression
+  Ranks ranks = {};     // that have the points; the constructor and append() are collective
+};
+
 class VtkHdfSeries {
  public:
   // Continues DIRECTORY/NAME.vtkhdf where there is one and keep > 0, cutting off all but its first `keep`
   // snapshots; otherwise starts anew. Throws IoError where the file has fewer.
-  VtkHdfSeries(const std::string& directory, const std::string& name, const std::string& title, int keep);
+  VtkHdfSeries(const std::string& directory, const std::string& name, const SeriesOptions& options);
 
   // Adds a snapshot to the .vtkhdf, then rewrites the .xdmf. Throws IoError; the files then hold what they
   // held.
@@ -55,11 +63,14 @@ class VtkHdfSeries {
   void cut(std::size_t keep);
   void lay_out(Hdf5File& file, const PointSnapshot& first) const;
   SnapshotPlace next_place(const PointSnapshot& snapshot) const;
-  void write(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
+  bool starts_part(const SnapshotPlace& place) const;
+  void make_room(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
+  void write_rows(SharedRows& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
   void remove_xdmf() const;
   void write_xdmf(const PointSnapshot& snapshot);
 
-  std::string name_, title_, xdmf_path_;
+  std::string name_, xdmf_path_;
+  SeriesOptions options_;
   TwinFile file_;
   std::vector<SnapshotPlace> places_;
   std::string xdmf_grids_;  // of the first xdmf_snapshots_ snapshots

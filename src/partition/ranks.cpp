@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <thread>
@@ -31,11 +32,21 @@ std::int64_t ordered_bits(Real value) {
 
 std::vector<int> offsets_of(const std::vector<int>& counts) {
   std::vector<int> offsets(counts.size());
-  for (std::size_t r = 1; r < counts.size(); ++r) offsets[r] = offsets[r - 1] + counts[r - 1];
+  for (std::size_t r = 1; r < counts.size(); ++r)
+    offsets[r] =
+        mpi_count(static_cast<std::size_t>(offsets[r - 1]) + static_cast<std::size_t>(counts[r - 1]));
   return offsets;
 }
 
+// Calls visit(first, count) for the pieces of [0, count) that one MPI call can take.
+template <class Visit>
+void in_pieces(std::size_t count, std::size_t most, const Visit& visit) {
+  for (std::size_t first = 0; first < count; first += most) visit(first, std::min(most, count - first));
+}
+
 constexpr int kDealTag = 11, kGatherTag = 12;
+// Of a collective, and of one message [B]: MPI libraries lose larger ones now and then.
+constexpr std::size_t kMostEntries = std::size_t{1} << 28, kMostBytes = std::size_t{1} << 30;
 
 // Kinds of failure that rank 0 shares.
 enum Failure { kNone, kInput, kSimulation, kDevice, kFile };
@@ -58,6 +69,11 @@ Caught caught(const std::exception_ptr& failure) {
   } catch (const std::exception& error) {
     return {kSimulation, error.what()};
   }
+}
+
+int exit_code_of(Failure kind) {
+  if (kind == kInput) return static_cast<int>(ExitCode::bad_input);
+  return static_cast<int>(kind == kFile ? ExitCode::io_failed : ExitCode::simulation_failed);
 }
 
 [[noreturn]] void throw_as(const Caught& failure) {
@@ -132,9 +148,17 @@ std::int64_t Ranks::sum(std::int64_t value) const {
 }
 
 void Ranks::sum(std::span<std::int64_t> values) const {
-  if (alone() || values.empty()) return;
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_INT64_T, MPI_SUM,
-                communicator_of(communicator_));
+  if (alone()) return;
+  in_pieces(values.size(), kMostEntries, [&](std::size_t first, std::size_t count) {
+    MPI_Allreduce(MPI_IN_PLACE, values.data() + first, mpi_count(count), MPI_INT64_T, MPI_SUM,
+                  communicator_of(communicator_));
+  });
+}
+
+std::int64_t Ranks::sum_below(std::int64_t value) const {
+  std::int64_t below = 0;
+  if (!alone()) MPI_Exscan(&value, &below, 1, MPI_INT64_T, MPI_SUM, communicator_of(communicator_));
+  return is_root() ? 0 : below;  // rank 0's is not defined
 }
 
 // In limbs of 32 bits each, which add up without overflow over 2^31 ranks.
@@ -156,42 +180,71 @@ void Ranks::sum(std::span<__int128> values) const {
   }
 }
 
-void Ranks::broadcast_bytes(void* data, std::size_t bytes) const {
-  if (bytes == 0) return;
-  MPI_Bcast(data, static_cast<int>(bytes), MPI_BYTE, 0, communicator_of(communicator_));
+void Ranks::broadcast_bytes(void* data, std::size_t bytes, int from) const {
+  in_pieces(bytes, kMostBytes, [&](std::size_t first, std::size_t count) {
+    MPI_Bcast(static_cast<char*>(data) + first, mpi_count(count), MPI_BYTE, from,
+              communicator_of(communicator_));
+  });
 }
 
-void Ranks::share_failure(std::exception_ptr failure) const {
+void Ranks::share_failure(std::exception_ptr failure, int from) const {
   Caught own = caught(failure);
-  int head[2] = {own.kind, static_cast<int>(own.message.size())};
-  broadcast_bytes(head, sizeof head);
+  std::int64_t head[2] = {own.kind, std::ssize(own.message)};
+  broadcast_bytes(head, sizeof head, from);
   if (head[0] == kNone) return;
   own.kind = static_cast<Failure>(head[0]);
   own.message.resize(static_cast<std::size_t>(head[1]));
-  broadcast_bytes(own.message.data(), own.message.size());
+  broadcast_bytes(own.message.data(), own.message.size(), from);
   throw_as(own);
 }
 
-void Ranks::meet(const char* message, int exit_code) const {
-  if (alone()) return;
-  constexpr auto kPatience = std::chrono::seconds(5);
-  MPI_Request request;
-  MPI_Ibarrier(communicator_of(communicator_), &request);
+namespace {
+
+// Waits until a collective that this rank has begun is done, but no longer than that.
+bool done_within(MPI_Request& request, std::chrono::seconds patience) {
   const auto start = std::chrono::steady_clock::now();
-  for (int here = 0;;) {
-    MPI_Test(&request, &here, MPI_STATUS_IGNORE);
-    if (here) return;
+  for (int done = 0;;) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done) return true;
     const auto waited = std::chrono::steady_clock::now() - start;
-    if (waited > kPatience) break;
+    if (waited > patience) return false;
     // Where all come, which is the rule, they come at once.
     if (waited < std::chrono::milliseconds(20))
       std::this_thread::yield();
     else
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+}
+
+}  // namespace
+
+void Ranks::share_any_failure(std::exception_ptr failure) const {
+  constexpr auto kPatience = std::chrono::seconds(20);  // others may be writing large files
+  const int own = failure ? rank_ : size_;
+  int first = size_;
+  MPI_Request request;
+  MPI_Iallreduce(&own, &first, 1, MPI_INT, MPI_MIN, communicator_of(communicator_), &request);
+  if (!failure) {
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
+  } else if (!done_within(request, kPatience)) {
+    const Caught what = caught(failure);
+    end_job(what.message.c_str(), exit_code_of(what.kind));
+  }
+  if (first < size_) share_failure(first == rank_ ? failure : nullptr, first);
+}
+
+void Ranks::meet(const char* message, int exit_code) const {
+  if (alone()) return;
+  MPI_Request request;
+  MPI_Ibarrier(communicator_of(communicator_), &request);
+  if (!done_within(request, std::chrono::seconds(5))) end_job(message, exit_code);
+}
+
+void Ranks::end_job(const char* message, int exit_code) const {
   std::fprintf(stderr, "error: rank %d: %s\n", rank_, message);
   std::fflush(nullptr);
   MPI_Abort(communicator_of(communicator_), exit_code);
+  std::abort();  // not reached
 }
 
 std::vector<int> Ranks::counts_of(std::size_t own) const {
@@ -229,31 +282,68 @@ void Ranks::receive(int sender, void* data, std::size_t count, std::size_t eleme
            MPI_STATUS_IGNORE);
 }
 
-std::vector<int> Ranks::deal_counts(const std::vector<int>& sent) const {
-  std::vector<int> received(sent.size());
-  MPI_Alltoall(sent.data(), 1, MPI_INT, received.data(), 1, MPI_INT, communicator_of(communicator_));
+void Ranks::hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int64_t)>& give,
+                         const std::function<void(int, std::int64_t, Bytes)>& take) const {
+  const std::vector<std::int64_t> of_rank = gather(std::vector<std::int64_t>{pieces});
+  if (!is_root()) {
+    for (std::int64_t k = 0; k < pieces; ++k) {
+      const Bytes piece = give(k);
+      send_to_root(piece.data(), piece.size(), 1);
+    }
+  }
+  std::exception_ptr failure;  // the others' pieces are received all the same: they could not go on
+  const auto taken = [&](int rank, std::int64_t k, Bytes piece) {
+    try {
+      if (!failure) take(rank, k, piece);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  };
+  for (std::int64_t k = 0; is_root() && k < pieces; ++k) taken(0, k, give(k));
+  std::vector<std::byte> piece;
+  for (int sender = 1; is_root() && sender < size_; ++sender)
+    for (std::int64_t k = 0; k < of_rank[static_cast<std::size_t>(sender)]; ++k) {
+      piece.resize(arriving(sender, 1));
+      receive(sender, piece.data(), piece.size(), 1);
+      taken(sender, k, piece);
+    }
+  on_root([&] {
+    if (failure) std::rethrow_exception(failure);
+  });
+}
+
+std::vector<std::int64_t> Ranks::deal_counts(const std::vector<std::int64_t>& sent) const {
+  std::vector<std::int64_t> received(sent.size());
+  MPI_Alltoall(sent.data(), 1, MPI_INT64_T, received.data(), 1, MPI_INT64_T, communicator_of(communicator_));
   return received;
 }
 
-void Ranks::deal_bytes(const void* sent, const std::vector<int>& sent_counts, void* received,
-                       const std::vector<int>& received_counts, std::size_t element) const {
+// The pieces of a long message arrive in the order in which they were sent.
+void Ranks::deal_bytes(const void* sent, const std::vector<std::int64_t>& sent_counts, void* received,
+                       const std::vector<std::int64_t>& received_counts, std::size_t element) const {
   const EntryType type(element);
   const MPI_Comm communicator = communicator_of(communicator_);
-  const std::vector<int> from = offsets_of(sent_counts), to = offsets_of(received_counts);
+  const std::size_t most = std::max<std::size_t>(1, kMostBytes / element);
   std::vector<MPI_Request> requests;
+  char* to = static_cast<char*>(received);
   for (int r = 0; r < size_; ++r) {
-    const auto at = static_cast<std::size_t>(r);
-    if (received_counts[at] > 0)
-      MPI_Irecv(static_cast<char*>(received) + static_cast<std::size_t>(to[at]) * element,
-                received_counts[at], type, r, kDealTag, communicator, &requests.emplace_back());
+    const auto count = static_cast<std::size_t>(received_counts[static_cast<std::size_t>(r)]);
+    in_pieces(count, most, [&](std::size_t first, std::size_t piece) {
+      MPI_Irecv(to + first * element, mpi_count(piece), type, r, kDealTag, communicator,
+                &requests.emplace_back());
+    });
+    to += count * element;
   }
+  const char* from = static_cast<const char*>(sent);
   for (int r = 0; r < size_; ++r) {
-    const auto at = static_cast<std::size_t>(r);
-    if (sent_counts[at] > 0)
-      MPI_Isend(static_cast<const char*>(sent) + static_cast<std::size_t>(from[at]) * element,
-                sent_counts[at], type, r, kDealTag, communicator, &requests.emplace_back());
+    const auto count = static_cast<std::size_t>(sent_counts[static_cast<std::size_t>(r)]);
+    in_pieces(count, most, [&](std::size_t first, std::size_t piece) {
+      MPI_Isend(from + first * element, mpi_count(piece), type, r, kDealTag, communicator,
+                &requests.emplace_back());
+    });
+    from += count * element;
   }
-  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  MPI_Waitall(mpi_count(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
 }  // namespace scree

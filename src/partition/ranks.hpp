@@ -2,8 +2,11 @@
 // the same on every rank and for every number of ranks. One rank alone makes no MPI call.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
+#include <numeric>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -40,6 +43,8 @@ class Ranks {
   std::int64_t sum(std::int64_t value) const;
   void sum(std::span<std::int64_t> values) const;
   void sum(std::span<__int128> values) const;
+  // Sum of the values of the ranks below this one.
+  std::int64_t sum_below(std::int64_t value) const;
 
   // Rank 0's value on every rank.
   template <class T>
@@ -52,7 +57,9 @@ class Ranks {
     static_assert(std::is_trivially_copyable_v<T>);
     if (!alone()) broadcast_bytes(values.data(), values.size_bytes());
   }
-  // All ranks' entries in the order of the ranks: on rank 0, nothing elsewhere. One message per rank.
+  // All ranks' entries in the order of the ranks: on rank 0, nothing elsewhere. One message per rank. Throws
+  // std::length_error where a rank has more entries than an int counts, as gather_everywhere does where all
+  // have.
   template <class T>
   std::vector<T> gather(std::vector<T> values) const;
   // The same on every rank.
@@ -61,6 +68,16 @@ class Ranks {
   // Sends to[r] to rank r; what arrives comes in the order of the senders.
   template <class T>
   std::vector<T> deal_out(const std::vector<std::vector<T>>& to) const;
+  // The same for values that stand in the order of their receivers, counts[r] of them for rank r.
+  template <class T>
+  std::vector<T> deal_out(std::span<const T> values, const std::vector<std::int64_t>& counts) const;
+
+  // Hands pieces of bytes of all ranks to rank 0, one after the other, rank by rank: give(k) returns this
+  // rank's piece k, take(rank, k, piece) runs on rank 0, which holds one piece at a time. A piece must be
+  // short of 2 GiB. What `take` throws, every rank throws. Collective.
+  using Bytes = std::span<const std::byte>;
+  void hand_to_root(std::int64_t pieces, const std::function<Bytes(std::int64_t)>& give,
+                    const std::function<void(int, std::int64_t, Bytes)>& take) const;
 
   // Runs an action of rank 0 that may throw. What it throws (bad input, simulation, device, file), every rank
   // throws, with the same message.
@@ -76,22 +93,39 @@ class Ranks {
     share_failure(failure);
   }
 
+  // Runs an action that every rank takes part in, and that may throw on some of them. Where it does, all
+  // ranks throw what the lowest of those threw. Where one threw and others do not return, because they wait
+  // for it within the action, its message is printed and the job ends.
+  template <class Action>
+  void together(const Action& action) const {
+    if (alone()) return action();
+    std::exception_ptr failure;
+    try {
+      action();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    share_any_failure(failure);
+  }
+
   // To be called by every rank on its way out with an error that all ranks should have. Where some do not
   // come, the error is this rank's alone: its message is printed and the job ends with the exit code.
   void meet(const char* message, int exit_code) const;
 
  private:
-  void broadcast_bytes(void* data, std::size_t bytes) const;
-  void share_failure(std::exception_ptr failure) const;
+  void broadcast_bytes(void* data, std::size_t bytes, int from = 0) const;
+  void share_failure(std::exception_ptr failure, int from = 0) const;
+  void share_any_failure(std::exception_ptr failure) const;
+  [[noreturn]] void end_job(const char* message, int exit_code) const;
   // element: size of one entry [B].
   void send_to_root(const void* data, std::size_t count, std::size_t element) const;
   std::size_t arriving(int sender, std::size_t element) const;  // entries in its next message
   void receive(int sender, void* data, std::size_t count, std::size_t element) const;
   std::vector<int> counts_of(std::size_t own) const;
   void gather_bytes(const void* own, const std::vector<int>& counts, std::size_t element, void* all) const;
-  std::vector<int> deal_counts(const std::vector<int>& sent) const;
-  void deal_bytes(const void* sent, const std::vector<int>& sent_counts, void* received,
-                  const std::vector<int>& received_counts, std::size_t element) const;
+  std::vector<std::int64_t> deal_counts(const std::vector<std::int64_t>& sent) const;
+  void deal_bytes(const void* sent, const std::vector<std::int64_t>& sent_counts, void* received,
+                  const std::vector<std::int64_t>& received_counts, std::size_t element) const;
 
   int rank_ = 0, size_ = 1, communicator_ = 0;
 };
@@ -125,21 +159,26 @@ std::vector<T> Ranks::gather_everywhere(std::vector<T> values) const {
 }
 
 template <class T>
-std::vector<T> Ranks::deal_out(const std::vector<std::vector<T>>& to) const {
+std::vector<T> Ranks::deal_out(std::span<const T> values, const std::vector<std::int64_t>& counts) const {
   static_assert(std::is_trivially_copyable_v<T>);
+  if (alone()) return {values.begin(), values.end()};
+  const std::vector<std::int64_t> received = deal_counts(counts);
+  std::vector<T> in(
+      static_cast<std::size_t>(std::accumulate(received.begin(), received.end(), std::int64_t{0})));
+  deal_bytes(values.data(), counts, in.data(), received, sizeof(T));
+  return in;
+}
+
+template <class T>
+std::vector<T> Ranks::deal_out(const std::vector<std::vector<T>>& to) const {
   if (alone()) return to[0];
-  std::vector<int> sent;
+  std::vector<std::int64_t> counts;
   std::vector<T> out;
   for (const std::vector<T>& part : to) {
-    sent.push_back(static_cast<int>(part.size()));
+    counts.push_back(std::ssize(part));
     out.insert(out.end(), part.begin(), part.end());
   }
-  const std::vector<int> received = deal_counts(sent);
-  std::size_t total = 0;
-  for (const int count : received) total += static_cast<std::size_t>(count);
-  std::vector<T> in(total);
-  deal_bytes(out.data(), sent, in.data(), received, sizeof(T));
-  return in;
+  return deal_out(std::span<const T>(out), counts);
 }
 
 }  // namespace scree

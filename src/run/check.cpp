@@ -26,10 +26,9 @@ int constraint_count(const Model& model) {
   return count;
 }
 
-std::string range(const std::vector<Real>& values, const char* unit) {
-  const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
-  if (*smallest == *largest) return fmt::format("{:.6g} {}", *smallest, unit);
-  return fmt::format("{:.6g} to {:.6g} {}", *smallest, *largest, unit);
+std::string range(Real smallest, Real largest, const char* unit) {
+  if (smallest == largest) return fmt::format("{:.6g} {}", smallest, unit);
+  return fmt::format("{:.6g} to {:.6g} {}", smallest, largest, unit);
 }
 
 std::string space_lines(const Model& model) {
@@ -40,9 +39,11 @@ std::string space_lines(const Model& model) {
   };
   std::string lines = fmt::format("space          {}D, {} to {} m, {} wall(s)\n", space.dimension,
                                   corner(space.min), corner(space.max), model.walls.size());
-  if (model.particles.size() == 0) return lines + "particles      none\n";
-  return lines + fmt::format("particles      {}, radius {}, mass {}\n", model.particles.size(),
-                             range(model.particles.radius, "m"), range(model.particles.mass, "kg"));
+  const ParticleTotals& particles = model.particles.totals;
+  if (particles.count == 0) return lines + "particles      none\n";
+  return lines + fmt::format("particles      {}, radius {}, mass {}\n", particles.count,
+                             range(particles.smallest_radius, particles.largest_radius, "m"),
+                             range(particles.smallest_mass, particles.largest_mass, "kg"));
 }
 
 std::string multibody_lines(const Model& model) {
@@ -99,7 +100,7 @@ std::string megabytes(Real bytes) { return fmt::format("{:.{}f} MB", bytes / 1e6
 std::string memory_line(const Model& model) {
   const Real unknowns = 3 * static_cast<Real>(model.bodies.size()) + constraint_count(model);
   const Real bytes =
-      kBytesPerParticle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns;
+      kBytesPerParticle * static_cast<Real>(model.particles.totals.count) + kBytesPerUnknown * unknowns;
   return fmt::format(
       "memory         about {} of state and scratch (estimate: {} B per particle, {} B per unknown)\n",
       megabytes(bytes), kBytesPerParticle, kBytesPerUnknown);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+#include "partition/id_order.hpp"
 
 namespace scree {
 namespace {
@@ -86,23 +87,6 @@ std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, con
 
 void append(std::vector<Real>& row, Vec3 v) { row.insert(row.end(), {v.x, v.y, v.z}); }
 
-// values[i] becomes values[order[i]].
-template <class T>
-std::vector<T> ordered(const std::vector<T>& values, const std::vector<std::size_t>& order) {
-  std::vector<T> out(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) out[i] = values[order[i]];
-  return out;
-}
-
-ParticlePack by_global_id(ParticlePack p) {
-  if (std::is_sorted(p.global_id.begin(), p.global_id.end())) return p;
-  std::vector<std::size_t> order(p.global_id.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return p.global_id[a] < p.global_id[b]; });
-  return {ordered(p.global_id, order), ordered(p.radius, order), ordered(p.position, order),
-          ordered(p.velocity, order),  ordered(p.force, order),  ordered(p.contacts, order)};
-}
-
 // A particle whose motion is recorded.
 struct Traced {
   GlobalId global_id;
@@ -120,11 +104,13 @@ std::vector<Traced> traced_of(const ParticlePack& pack, const std::vector<Global
   return traced;
 }
 
-// On rank 0, of all ranks.
-ParticlePack gathered(const Ranks& ranks, ParticlePack p) {
-  return {ranks.gather(std::move(p.global_id)), ranks.gather(std::move(p.radius)),
-          ranks.gather(std::move(p.position)),  ranks.gather(std::move(p.velocity)),
-          ranks.gather(std::move(p.force)),     ranks.gather(std::move(p.contacts))};
+// The part of all ranks' particles that this rank writes.
+ParticlePack in_id_order(const Ranks& ranks, std::int64_t particles, ParticlePack p) {
+  const IdOrder order(ranks, particles, p.global_id);
+  p.global_id = order.apply(std::move(p.global_id)), p.radius = order.apply(std::move(p.radius));
+  p.position = order.apply(std::move(p.position)), p.velocity = order.apply(std::move(p.velocity));
+  p.force = order.apply(std::move(p.force)), p.contacts = order.apply(std::move(p.contacts));
+  return p;
 }
 
 }  // namespace
@@ -135,10 +121,14 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
   link.ranks().on_root([&] {
     history_.emplace(directory, history_columns(model, reactions_of(model, link, state)),
                      model.output.history_csv, state.history_rows);
-    snapshots_.emplace(directory, model.title, static_cast<int>(state.snapshots));
   });
-  if (backend.computes_asynchronously()) backend.set_idle_work([this] { write_pending(); });
+  snapshots_.emplace(directory, SeriesOptions{model.title, static_cast<int>(state.snapshots),
+                                              model.output.compression, link.ranks()});
+  if (writes_late()) backend.set_idle_work([this] { write_pending(); });
 }
+
+// Several ranks write together, and they do not wait for their devices at the same time.
+bool Recorder::writes_late() const { return backend_.computes_asynchronously() && link_.ranks().alone(); }
 
 Recorder::~Recorder() { backend_.set_idle_work({}); }
 
@@ -220,20 +210,18 @@ void Recorder::snapshot(State& state) {
   }
   pending_ = std::move(next);
   ++state.snapshots;
-  if (!backend_.computes_asynchronously()) write_pending();
+  if (!writes_late()) write_pending();
 }
 
 void Recorder::write_pending() {
   if (!pending_) return;
   const PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticlePack p = by_global_id(gathered(link_.ranks(), backend_.pack_particles()));
+  const ParticlePack p = in_id_order(link_.ranks(), model_.particles.totals.count, backend_.pack_particles());
   const ShapePack& s = snapshot.shapes;
-  link_.ranks().on_root([&] {
-    snapshots_->append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
-                       {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
-                        s.force, s.contacts});
-    history_->flush();
-  });
+  snapshots_->append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
+                     {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
+                      s.force, s.contacts});
+  link_.ranks().on_root([&] { history_->flush(); });
 }
 
 void Recorder::flush_history() {

@@ -25,14 +25,14 @@ class Recorder {
 
   // One row; h: length of the step just taken [s]. Updates the balance in the state.
   void history(State& state, Real h);
-  // Takes one. A backend that computes asynchronously goes on with its steps, and the snapshot is written
-  // while the host would only wait for them, at the latest by flush() or before the next one.
+  // Takes one. On one rank a backend that computes asynchronously goes on with its steps, and the snapshot is
+  // written while the host would only wait for them, at the latest by flush() or before the next one.
   void snapshot(State& state);
   void write_pending();  // where the backend fails to hand out the particles, the snapshot is given up
   // Brings all that was recorded to disk.
   void flush();
   void flush_history();  // rank 0's part of it alone, at any time
-  std::int64_t snapshots_written() const { return snapshots_ ? snapshots_->snapshots() : 0; }
+  std::int64_t snapshots_written() const { return snapshots_->snapshots(); }
 
  private:
   // Taken; its particles are with the backend until they are written.
@@ -42,6 +42,7 @@ class Recorder {
     std::vector<Real> angle, angular_velocity;  // of the shapes' bodies
   };
 
+  bool writes_late() const;
   void energy_row(State& state, std::vector<Real>& row);
   void body_row(const State& state, std::vector<Real>& row) const;
   void particle_row(std::vector<Real>& row);
@@ -49,8 +50,7 @@ class Recorder {
   const Model& model_;
   Backend& backend_;
   const BodyLink& link_;
-  // On rank 0, which writes what all ranks recorded.
-  std::optional<HistoryWriter> history_;
+  std::optional<HistoryWriter> history_;  // on rank 0
   std::optional<SnapshotWriter> snapshots_;
   std::optional<PendingSnapshot> pending_;
 };

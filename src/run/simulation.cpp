@@ -12,6 +12,7 @@
 
 #include "dem/device.hpp"
 #include "output/run_record.hpp"
+#include "partition/id_order.hpp"
 #include "run/signals.hpp"
 #include "run/step_loop.hpp"
 
@@ -20,8 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
-constexpr double kProgressSeconds = 0.25;    // between progress lines on a terminal
+constexpr std::int64_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
+constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
 constexpr double kFlushSeconds =
     5;  // between writes of the history, besides those with snapshots and checkpoints
 
@@ -60,7 +61,7 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
 std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name,
                                       Log& log) {
   if (name == "cpu") return make_cpu(model, ranks, "chosen by --backend", log);
-  const std::size_t particles = model.particles.size() / static_cast<std::size_t>(ranks.size());
+  const std::int64_t particles = model.particles.totals.count / ranks.size();
   if (name == "auto" && particles < kGpuParticles)
     return make_cpu(model, ranks,
                     fmt::format("{} particles{} are fewer than {}, from which a GPU is faster", particles,
@@ -74,13 +75,18 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
   }
 }
 
+// A file may be unreadable where one rank's rows are.
 State read_state(const RunOptions& options) {
-  const Checkpoint checkpoint = read_checkpoint(options.restart);
-  if (checkpoint.text("fingerprint") != options.fingerprint)
-    throw InputError("--restart " + options.restart +
-                     ": the checkpoint belongs to another deck; only time.end and the tables output and "
-                     "parallel may differ");
-  return unpack(checkpoint);
+  State state;
+  options.ranks.together([&] {
+    const Checkpoint checkpoint = read_checkpoint(options.restart, options.ranks);
+    if (checkpoint.text("fingerprint") != options.fingerprint)
+      throw InputError("--restart " + options.restart +
+                       ": the checkpoint belongs to another deck; only time.end and the tables output and "
+                       "parallel may differ");
+    state = unpack(checkpoint);
+  });
+  return state;
 }
 
 class Simulation {
@@ -108,13 +114,15 @@ class Simulation {
  private:
   void start_or_resume();
   bool continues_files() const;
-  State whole(const State& own) const;
-  void checkpoint(const State& state, const std::string& name);
+  std::vector<ParticleRecord> in_id_order(std::vector<ParticleRecord> records) const;
+  // Takes the state's particles away.
+  void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
   void keep_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
   void write_record(const std::string& status, ExitCode code);
+  void record_io_failure(const IoError& error);
   void summarize() const;
 
   const Model& model_;
@@ -143,7 +151,8 @@ void Simulation::start_or_resume() {
     backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
   } else {
-    backend_->load(state_.particles, state_.shapes);
+    backend_->load(in_id_order(std::move(state_.particles)), state_.shapes);
+    state_.particles = {};
     step_.counts() = state_.counts;
     if (state_.clock.time > model_.time.end)
       throw InputError(fmt::format("--restart {}: the checkpoint is at t = {:.9g} s, past time.end = {:g} s",
@@ -166,28 +175,23 @@ bool Simulation::continues_files() const {
   return same;
 }
 
-// On rank 0 the state with the particles of all ranks.
-State Simulation::whole(const State& own) const {
-  State all = own;
-  all.particles = ranks_.gather(own.particles);
-  std::sort(all.particles.begin(), all.particles.end(),
-            [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
-  return all;
+// Each rank gets the records of its share of the ids: what it writes, and what its part of the model has.
+std::vector<ParticleRecord> Simulation::in_id_order(std::vector<ParticleRecord> records) const {
+  std::vector<GlobalId> ids;
+  for (const ParticleRecord& p : records) ids.push_back(p.global_id);
+  return IdOrder(ranks_, model_.particles.totals.count, ids).apply(std::move(records));
 }
 
-void Simulation::checkpoint(const State& state, const std::string& name) {
+void Simulation::checkpoint(State& state, const std::string& name) {
   recorder_->flush();
   const auto own_hash = static_cast<std::int64_t>(state_hash(state, ranks_.is_root()));
   state_hash_ = fmt::format("{:016x}", static_cast<std::uint64_t>(ranks_.sum(own_hash)));
-  const auto write = [&](const State& complete) {
-    Checkpoint out = pack(complete);
-    out.texts["fingerprint"] = options_.fingerprint;
-    out.texts["deck"] = options_.resolved_deck;
-    write_checkpoint(options_.output_directory + "/" + name, out);
-  };
-  if (ranks_.alone()) return write(state);
-  const State all = whole(state);
-  ranks_.on_root([&] { write(all); });
+  state.particles = in_id_order(std::move(state.particles));
+  Checkpoint out = pack(state);
+  out.texts["fingerprint"] = options_.fingerprint;
+  out.texts["deck"] = options_.resolved_deck;
+  write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
+  state.particles = {};
 }
 
 void Simulation::progress(const State& state, Real h) {
@@ -208,12 +212,12 @@ void Simulation::progress(const State& state, Real h) {
 
 ExitCode Simulation::run() {
   ranks_.on_root([&] { write_record("running", ExitCode::done); });
-  log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}", model_.particles.size(),
-                        model_.bodies.size(), backend_->description(),
+  log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}",
+                        model_.particles.totals.count, model_.bodies.size(), backend_->description(),
                         link_.multibody() ? link_.multibody()->solver_description() : "none"));
   const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
   StepLoop loop(
-      parts, state_, [this](const State& s) { checkpoint(s, "checkpoint.h5"); },
+      parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) { progress(s, h); });
   try {
     const Clock::time_point start = Clock::now();
@@ -226,7 +230,7 @@ ExitCode Simulation::run() {
   } catch (const SimulationError& error) {
     return fail(loop, error);
   } catch (const IoError& error) {
-    if (ranks_.is_root()) write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
+    record_io_failure(error);
     throw;
   }
   checkpoint(loop.complete_state(), "checkpoint.h5");
@@ -234,6 +238,15 @@ ExitCode Simulation::run() {
   log_.info("stopped by signal (" + signal + "); continue with --restart " + options_.output_directory +
             "/checkpoint.h5");
   return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
+}
+
+// The record may meet the same trouble: what counts is the first.
+void Simulation::record_io_failure(const IoError& error) {
+  if (!ranks_.is_root()) return;
+  try {
+    write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
+  } catch (const IoError&) {
+  }
 }
 
 ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
@@ -293,7 +306,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"list_entries", ranks_.alone() ? backend_->list_entries() : list_entries_},
                    {"rebalances", balance.rebalances},
                    {"migrated", migrated_},
-                   {"particles", static_cast<std::int64_t>(model_.particles.size())},
+                   {"particles", model_.particles.totals.count},
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
                    {"left", state_.carried_out.left},
                    {"history_rows", state_.history_rows},

@@ -1,5 +1,6 @@
 #include "run/state.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -87,9 +88,6 @@ void visit_clock(Visitor& visit, StateType& clock) {
   visit("clock/parts_left", clock.parts_left);
   visit("clock/next_step", clock.next_step);
   visit("clock/just_rejected", clock.just_rejected);
-  visit("clock/histories", clock.histories);
-  visit("clock/snapshots", clock.snapshots);
-  visit("clock/checkpoints", clock.checkpoints);
 }
 
 template <class Visitor, class LedgerType>
@@ -134,43 +132,68 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("balance/start", state.balance.start);
   visit("balance/exchanged", state.balance.exchanged);
   visit_ledger(visit, state.balance.last);
+}
+
+// Not part of the hash: how much a run has written says nothing about what it computed.
+template <class Visitor, class StateType>
+void visit_output(Visitor& visit, StateType& state) {
+  visit("clock/histories", state.clock.histories);
+  visit("clock/snapshots", state.clock.snapshots);
+  visit("clock/checkpoints", state.clock.checkpoints);
   visit("output/history_rows", state.history_rows);
   visit("output/snapshots", state.snapshots);
 }
 
 constexpr int kRealsPerParticle = 15, kIntegersPerParticle = 5;
 
-void pack_particles(const std::vector<ParticleRecord>& particles, Checkpoint& out) {
-  std::vector<Real>& reals = out.reals["particles/reals"];
-  std::vector<std::int64_t>& integers = out.integers["particles/integers"];
-  reals.reserve(particles.size() * kRealsPerParticle),
-      integers.reserve(particles.size() * kIntegersPerParticle);
-  for (const ParticleRecord& p : particles) {
-    for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force})
-      for (const Real value : {v.x, v.y, v.z}) reals.push_back(value);
-    for (const Real value : {p.contact_loss, p.loss_power, p.integrator_loss}) reals.push_back(value);
-    for (const std::int64_t value : {p.global_id, std::int64_t{p.image.x}, std::int64_t{p.image.y},
-                                     std::int64_t{p.image.z}, std::int64_t{p.drifting}})
-      integers.push_back(value);
-  }
+void pack_reals(const ParticleRecord& p, Real* to) {
+  for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force})
+    for (const Real value : {v.x, v.y, v.z}) *to++ = value;
+  for (const Real value : {p.contact_loss, p.loss_power, p.integrator_loss}) *to++ = value;
 }
 
+void pack_integers(const ParticleRecord& p, std::int64_t* to) {
+  for (const std::int64_t value : {p.global_id, std::int64_t{p.image.x}, std::int64_t{p.image.y},
+                                   std::int64_t{p.image.z}, std::int64_t{p.drifting}})
+    *to++ = value;
+}
+
+ParticleRecord unpack_particle(const Real* r, const std::int64_t* k) {
+  const auto vector = [r](int at) { return Vec3{r[at], r[at + 1], r[at + 2]}; };
+  const auto whole = [k](int at) { return static_cast<std::int32_t>(k[at]); };
+  return {k[0],      vector(0), vector(3),
+          vector(6), vector(9), r[12],
+          r[13],     r[14],     {whole(1), whole(2), whole(3)},
+          k[4] != 0};
+}
+
+template <class T>
+CheckpointRows<T> rows_of(const std::vector<ParticleRecord>& particles, int width,
+                          void (*pack_one)(const ParticleRecord&, T*)) {
+  return {width, std::ssize(particles), [=, &particles](std::int64_t first, std::int64_t count, T* to) {
+            for (std::int64_t i = first; i < first + count; ++i, to += width)
+              pack_one(particles[static_cast<std::size_t>(i)], to);
+          }};
+}
+
+// Piece by piece: besides the records there is room for one piece.
 std::vector<ParticleRecord> unpack_particles(const Checkpoint& in) {
-  const std::vector<Real>& reals = in.real_array("particles/reals");
-  const std::vector<std::int64_t>& integers = in.integer_array("particles/integers");
-  const std::size_t n = reals.size() / kRealsPerParticle;
-  if (reals.size() != n * kRealsPerParticle || integers.size() != n * kIntegersPerParticle)
+  constexpr std::int64_t kPiece = 65536;
+  const CheckpointRows<Real>& reals = in.real_row_array("particles/reals");
+  const CheckpointRows<std::int64_t>& integers = in.integer_row_array("particles/integers");
+  if (reals.width != kRealsPerParticle || integers.width != kIntegersPerParticle ||
+      reals.count != integers.count)
     throw IoError(in.path + ": the particles' arrays do not fit together");
-  std::vector<ParticleRecord> particles(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Real* r = &reals[i * kRealsPerParticle];
-    const std::int64_t* k = &integers[i * kIntegersPerParticle];
-    const auto vector = [r](int at) { return Vec3{r[at], r[at + 1], r[at + 2]}; };
-    const auto whole = [k](int at) { return static_cast<std::int32_t>(k[at]); };
-    particles[i] = {k[0],      vector(0), vector(3),
-                    vector(6), vector(9), r[12],
-                    r[13],     r[14],     {whole(1), whole(2), whole(3)},
-                    k[4] != 0};
+  std::vector<ParticleRecord> particles;
+  particles.reserve(static_cast<std::size_t>(reals.count));
+  std::vector<Real> r(kPiece * kRealsPerParticle);
+  std::vector<std::int64_t> k(kPiece * kIntegersPerParticle);
+  for (std::int64_t first = 0; first < reals.count; first += kPiece) {
+    const std::int64_t count = std::min(kPiece, reals.count - first);
+    reals.copy(first, count, r.data()), integers.copy(first, count, k.data());
+    for (std::int64_t i = 0; i < count; ++i)
+      particles.push_back(unpack_particle(&r[static_cast<std::size_t>(i * kRealsPerParticle)],
+                                          &k[static_cast<std::size_t>(i * kIntegersPerParticle)]));
   }
   return particles;
 }
@@ -180,8 +203,9 @@ std::vector<ParticleRecord> unpack_particles(const Checkpoint& in) {
 Checkpoint pack(const State& state) {
   Checkpoint out;
   Writer writer(out);
-  visit_state(writer, state);
-  pack_particles(state.particles, out);
+  visit_state(writer, state), visit_output(writer, state);
+  out.real_rows["particles/reals"] = rows_of(state.particles, kRealsPerParticle, pack_reals);
+  out.integer_rows["particles/integers"] = rows_of(state.particles, kIntegersPerParticle, pack_integers);
   return out;
 }
 
@@ -205,7 +229,7 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
 State unpack(const Checkpoint& checkpoint) {
   State state;
   Reader reader(checkpoint);
-  visit_state(reader, state);
+  visit_state(reader, state), visit_output(reader, state);
   state.particles = unpack_particles(checkpoint);
   return state;
 }

@@ -25,7 +25,8 @@ struct State {
   ClockState clock;
   StepCounts counts;
   MultibodyState bodies;
-  std::vector<ParticleRecord> particles;  // ordered by global id; lives in the backend between checkpoints
+  // Of one rank, ordered by global id; they live in the backend between checkpoints.
+  std::vector<ParticleRecord> particles;
   ShapeLosses shapes;
   CarriedOut carried_out;
   BalanceState balance;
@@ -33,11 +34,14 @@ struct State {
   std::int64_t history_rows = 0, snapshots = 0;
 };
 
+// With this rank's particles; to be used as long as the state is there, and the same.
 Checkpoint pack(const State& state);
-// Of all bits of the state; several ranks' hashes, each of the particles of its own, add up (modulo 2^64) to
-// that of the whole. with_rest: all but the particles, which one rank counts.
+Checkpoint pack(const State&& state) = delete;
+// Of all bits of the state but the counts of what was written; several ranks' hashes, each of the particles
+// of its own, add up (modulo 2^64) to that of the whole. with_rest: all but the particles, which one rank
+// counts.
 std::uint64_t state_hash(const State& state, bool with_rest);
-// Throws IoError naming what is missing.
+// With the particles of the checkpoint's rows on this rank. Throws IoError naming what is missing.
 State unpack(const Checkpoint& checkpoint);
 
 }  // namespace scree

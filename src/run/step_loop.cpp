@@ -20,7 +20,7 @@ double seconds_now() {
 
 }  // namespace
 
-StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(const State&)> write_checkpoint,
+StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(State&)> write_checkpoint,
                    std::function<void(const State&, Real)> progress)
     : parts_(parts),
       state_(state),
@@ -100,12 +100,16 @@ void StepLoop::keep_good_state() {
   if (implicit_) return;
   const double start = seconds_now();
   parts_.recorder.write_pending();  // the copy counts it, also where the backend fails before it is written
-  good_ = complete_state();
+  good_.particles = {};             // two copies are not needed
+  std::vector<ParticleRecord> particles = std::move(complete_state().particles);
+  state_.particles = {};
+  good_ = state_;
+  good_.particles = std::move(particles);
   good_age_ = seconds_now();
   good_cost_ = good_age_ - start;
 }
 
-const State& StepLoop::complete_state() {
+State& StepLoop::complete_state() {
   state_.clock = clock_.state();
   state_.counts = parts_.step.counts();
   state_.particles = parts_.backend.records();
@@ -113,6 +117,6 @@ const State& StepLoop::complete_state() {
   return state_;
 }
 
-const State& StepLoop::last_good_state() { return implicit_ ? complete_state() : good_; }
+State& StepLoop::last_good_state() { return implicit_ ? complete_state() : good_; }
 
 }  // namespace scree

@@ -25,18 +25,18 @@ struct LoopParts {
 
 class StepLoop {
  public:
-  // write_checkpoint: called with the complete state whenever one is due.
-  StepLoop(const LoopParts& parts, State& state, std::function<void(const State&)> write_checkpoint,
+  // write_checkpoint: called with the complete state whenever one is due; may take its particles away.
+  StepLoop(const LoopParts& parts, State& state, std::function<void(State&)> write_checkpoint,
            std::function<void(const State&, Real h)> progress);
 
   // Steps until the end or a signal. Throws SimulationError when the run cannot go on.
   LoopEnd run();
   int signal() const { return signal_; }  // that stopped it on some rank
   // The state as it is, complete with the particles.
-  const State& complete_state();
+  State& complete_state();
   // After a failure. Implicit: the start of the failed step. Explicit: a copy kept some steps ago, because an
   // explicit step cannot be undone.
-  const State& last_good_state();
+  State& last_good_state();
 
  private:
   void take_step();
@@ -50,7 +50,7 @@ class StepLoop {
   LoopParts parts_;
   State& state_;
   StepClock clock_;
-  std::function<void(const State&)> write_checkpoint_;
+  std::function<void(State&)> write_checkpoint_;
   std::function<void(const State&, Real)> progress_;
   bool implicit_;
   std::size_t batch_ = 1;  // explicit steps to take at once

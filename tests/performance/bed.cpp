@@ -111,7 +111,9 @@ struct Run {
         link(model, options.ranks),
         ranks(options.ranks),
         step(model, *backend, link, timers) {
-    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+    const IdRange own =
+        id_range(static_cast<std::int64_t>(model.particles.size()), ranks.rank(), ranks.size());
+    backend->load(initial_records(model.particles, Subdomain(model.space), own), {});
   }
   double listed() const {
     return static_cast<double>(ranks.sum(backend->list_entries())) /

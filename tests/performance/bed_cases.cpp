@@ -88,6 +88,7 @@ Model sphere_bed(const std::string& tile, std::int64_t particles) {
                      {x[i] + kSphereTile * static_cast<Real>(column),
                       y[i] + kSphereTile * static_cast<Real>(row), z[i]},
                      kSphereRadius);
+  count_particles(model.particles, model.contact.materials());
   return model;
 }
 
@@ -121,6 +122,7 @@ void add_net(Model& bed) {
                      set.position.end());
   const std::size_t left = set.position.size();
   set.velocity.resize(left), set.radius.resize(left), set.mass.resize(left), set.material.resize(left);
+  count_particles(set, bed.contact.materials());
 
   for (int b = 0; b < kNetBodies; ++b) {
     Body body;
@@ -160,6 +162,7 @@ Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles) {
   for (std::int64_t t = 0; t < tiles; ++t)
     for (const Vec3& p : tile)
       add_particle(model, p + Vec3{static_cast<Real>(t) * kDiscTile, 0, 0}, kDiscRadius);
+  count_particles(model.particles, model.contact.materials());
   return model;
 }
 
@@ -175,6 +178,7 @@ std::vector<Vec3> settled_discs() {
       add_particle(model, {x, kDiscRadius + 0.09 * row + jitter(), 0}, kDiscRadius);
     }
   }
+  count_particles(model.particles, model.contact.materials());
   StageTimers timers;
   const std::unique_ptr<Backend> backend = make_cpu_backend(model);
   backend->load(initial_records(model.particles, Subdomain(model.space)), {});

@@ -22,8 +22,10 @@ struct RankedBox {
       : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make_test_backend(model, on)) {
     start(initial_records(model.particles, Subdomain(model.space)));
   }
+  // records: of all particles, the same on every rank.
   void start(const std::vector<ParticleRecord>& records) {
-    backend->load(records, {});
+    const IdRange own = id_range(std::ssize(records), ranks.rank(), ranks.size());
+    backend->load({records.begin() + own.first, records.begin() + own.last}, {});
     backend->place_bodies(motion);
     backend->build_list(kSkin, timers);
     backend->initial_forces();

@@ -107,16 +107,20 @@ class RanksTest(unittest.TestCase):
     def bytes_of(self, output, name):
         return (self.folder / output / name).read_bytes()
 
-
     def datasets(self, output, name):
-        """Contents of an HDF5 file, without the times of day that are in it; None without h5py or file."""
+        """Contents and layout of an HDF5 file, without the times of day that are in it; None without h5py or file."""
         path = self.folder / output / name
         if h5py is None or not path.exists():
             return None
         contents = {}
+
+        def add(at, item):
+            if isinstance(item, h5py.Dataset):
+                value = item[()] if item.shape is not None else b""
+                contents[at] = (item.dtype, item.shape, item.chunks, item.compression, item.compression_opts,
+                                dict(item.attrs), value if isinstance(value, bytes) else value.tobytes())
         with h5py.File(path) as file:
-            file.visititems(lambda at, item: contents.update({at: item[()].tobytes()})
-                            if isinstance(item, h5py.Dataset) else None)
+            file.visititems(add)
         return contents
 
 
@@ -159,6 +163,23 @@ class SameBitsTest(RanksTest):
                 self.assertEqual(self.hash(f"parts {name}"), self.hash(f"whole {name}"))
                 self.assertEqual(self.record(f"parts {name}")["counts"]["history_rows"],
                                  self.record(f"whole {name}")["counts"]["history_rows"])
+
+
+    @unittest.skipIf(h5py is None, "needs h5py")
+    def test_every_number_of_ranks_writes_the_same_files(self):
+        for compression in (0, 3):
+            settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.02", "output.snapshot_interval=0.01",
+                        f"output.compression={compression}"]
+            for ranks in (1, 2, 4):
+                with self.subTest(compression=compression, ranks=ranks):
+                    self.run_deck(DONE, ranks, DAM[0], f"{compression} {ranks}", settings)
+                    for name in ("particles.vtkhdf", "bodies.vtkhdf", "history.h5", "checkpoint_end.h5"):
+                        files = [self.datasets(f"{compression} {n}", name) for n in (1, ranks)]
+                        self.assertEqual(files[0], files[1], name)
+                    position = files[1]["real_rows/particles/reals"]
+                    self.assertEqual(position[3], "gzip" if compression else None)
+        sizes = [(self.folder / f"{c} 4" / "checkpoint_end.h5").stat().st_size for c in (0, 3)]
+        self.assertLess(sizes[1], sizes[0])
 
 
 class FailureTest(RanksTest):
@@ -218,6 +239,19 @@ class FailureTest(RanksTest):
         result = subprocess.run([MPIEXEC, "-n", "1", *run, ":", "-n", "1", "bash", "-c", short], cwd=self.folder,
                                 env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
         self.assertNotEqual(result.returncode, DONE, result.stdout + result.stderr)
+
+    def test_a_full_disk_ends_all_with_one_message(self):
+        settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.05", "output.snapshot_interval=0.005"]
+        words = " ".join(f"'{word}'" for word in self.command(1, DAM[0], "out", settings)[3:])
+        limited = f"ulimit -f 300; trap '' XFSZ; exec {words}"  # [KiB], more than one snapshot
+        both = [MPIEXEC, "-n", "1", "bash", "-c", limited, ":", "-n", "1", "bash", "-c", limited]
+        result = subprocess.run(both, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(result.returncode, IO_FAILED, result.stdout + result.stderr)
+        self.assert_one_message(result, "particles.vtkhdf.spare: cannot")
+        self.assertIn("particles.vtkhdf.spare", self.record("out")["run"]["status"])
+        if h5py is not None:
+            with h5py.File(self.folder / "out" / "particles.vtkhdf") as file:
+                self.assertGreater(file["VTKHDF/Steps"].attrs["NSteps"], 0)
 
     def test_a_rank_without_a_gpu_is_reported_once(self):
         deck = self.write("deck.toml", LONELY)

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "run/state.hpp"
+#include "support/checkpoint_arrays.hpp"
 #include "support/simulation_run.hpp"
 
 namespace scree {
@@ -14,7 +15,8 @@ inline bool same_bits(const std::vector<Real>& a, const std::vector<Real>& b) {
 }
 
 // Names of the arrays that differ in a bit, or that only one of the two has; "" if there is none.
-inline std::string differing_arrays(const Checkpoint& a, const Checkpoint& b) {
+inline std::string differing_arrays(const Checkpoint& one, const Checkpoint& other) {
+  const Checkpoint a = with_rows_as_arrays(one), b = with_rows_as_arrays(other);
   std::string names;
   for (const auto& [name, values] : a.reals)
     if (!b.reals.count(name) || !same_bits(values, b.reals.at(name))) names += name + " ";

@@ -25,6 +25,7 @@ void add_sphere(Model& model, Vec3 position, Vec3 velocity) {
   ParticleSet& set = model.particles;
   set.position.push_back(position), set.velocity.push_back(velocity);
   set.radius.push_back(0.5), set.mass.push_back(1), set.material.push_back(0);
+  count_particles(set, model.contact.materials());
 }
 
 struct Run {

@@ -103,6 +103,7 @@ inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
     model.particles.mass.push_back(1e3 * radius * radius * radius);
     model.particles.material.push_back(i % box.materials);
   }
+  count_particles(model.particles, box.materials);
   if (box.walls) {
     model.walls.push_back({"slope", {0, -0.6, 0}, {0.6, 0.8, 0}, 0});
     model.walls.push_back({"side", {0.85, 0, 0}, {-1, 0, 0}, box.materials - 1});

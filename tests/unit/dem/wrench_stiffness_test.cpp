@@ -39,6 +39,7 @@ Model touched_body(int dimension) {
       model.particles.mass.push_back(1e9);
       model.particles.material.push_back(0);
     }
+  count_particles(model.particles, model.contact.materials());
   return model;
 }
 

@@ -81,7 +81,7 @@ TEST_CASE("a run killed at any moment leaves every snapshot readable, and goes o
     CAPTURE(trial);
     acknowledged.set(-1);
     const pid_t child = start_child([&] {
-      SnapshotWriter writer(scratch.path(), "title", kept);
+      SnapshotWriter writer(scratch.path(), {.title = "title", .keep = kept});
       for (acknowledged.set(kept);; acknowledged.set(writer.snapshots())) {
         PredictableSnapshot(writer.snapshots(), points_of_step(writer.snapshots()), 2).append_to(writer);
       }
@@ -131,7 +131,7 @@ TEST_CASE("a full disk is an error, and what was written stays") {
   SECTION("snapshots") {
     SharedCounter written;
     const int status = wait_for(start_child([&] {
-      SnapshotWriter writer(scratch.path(), "title", 0);
+      SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
       limit_file_size(200000);
       try {
         for (;; written.set(writer.snapshots()))

@@ -35,7 +35,7 @@ int occurrences(const std::string& text, const std::string& word) {
 TEST_CASE("snapshots of changing size return as written") {
   ScratchDirectory scratch;
   const std::vector<int> counts = {5, 5, 3, 0, 0, 7, 300};
-  SnapshotWriter writer(scratch.path(), "title", 0);
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
   write_snapshots(writer, counts, 0);
   CHECK(writer.snapshots() == 7);
   CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == counts);
@@ -44,7 +44,7 @@ TEST_CASE("snapshots of changing size return as written") {
 
 TEST_CASE("snapshots of equal size share their vertices") {
   ScratchDirectory scratch;
-  SnapshotWriter writer(scratch.path(), "title", 0);
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
   write_snapshots(writer, {5, 5, 3, 3, 3, 5}, 0);
   const Hdf5File file(scratch / "particles.vtkhdf", Hdf5Access::read);
   CHECK(file.read_array<std::int64_t>("/VTKHDF/Steps/PartOffsets") ==
@@ -56,7 +56,7 @@ TEST_CASE("snapshots of equal size share their vertices") {
 
 TEST_CASE("bodies have a series of their own") {
   ScratchDirectory scratch;
-  SnapshotWriter writer(scratch.path(), "title", 0);
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
   write_snapshots(writer, {2, 2, 2}, 4);
   const Hdf5File file(scratch / "bodies.vtkhdf", Hdf5Access::read);
   CHECK(file.rows("/VTKHDF/Points") == 12);
@@ -67,7 +67,7 @@ TEST_CASE("bodies have a series of their own") {
 
 TEST_CASE("every dataset says its unit and what it is") {
   ScratchDirectory scratch;
-  SnapshotWriter writer(scratch.path(), "a title with an ü", 0);
+  SnapshotWriter writer(scratch.path(), {.title = "a title with an ü", .keep = 0});
   write_snapshots(writer, {2}, 1);
   for (const char* name : {"particles.vtkhdf", "bodies.vtkhdf"}) {
     const Hdf5File file(scratch / name, Hdf5Access::read);
@@ -86,10 +86,10 @@ TEST_CASE("every dataset says its unit and what it is") {
 TEST_CASE("a restarted run cuts off later snapshots and goes on") {
   ScratchDirectory scratch;
   {
-    SnapshotWriter writer(scratch.path(), "title", 0);
+    SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
     write_snapshots(writer, {5, 4, 4, 6, 6}, 3);
   }
-  SnapshotWriter writer(scratch.path(), "title", 3);
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 3});
   CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 4, 4});
   write_snapshots(writer, {4, 2}, 3);
   CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 4, 4, 4, 2});
@@ -99,27 +99,27 @@ TEST_CASE("a restarted run cuts off later snapshots and goes on") {
 
 TEST_CASE("files that do not fit the restarted run are refused") {
   ScratchDirectory scratch;
-  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), "title", 1), IoError);
+  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), {.title = "title", .keep = 1}), IoError);
   {
-    SnapshotWriter writer(scratch.path(), "title", 0);
+    SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
     write_snapshots(writer, {5, 5}, 2);
   }
-  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), "title", 3), IoError);
+  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), {.title = "title", .keep = 3}), IoError);
   std::filesystem::remove(scratch / "bodies.vtkhdf");
-  SnapshotWriter writer(scratch.path(), "title", 2);
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 2});
   CHECK_THROWS_AS(write_snapshots(writer, {5}, 2), IoError);
   std::filesystem::resize_file(scratch / "particles.vtkhdf", 2000);
-  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), "title", 2), IoError);
+  CHECK_THROWS_AS(SnapshotWriter(scratch.path(), {.title = "title", .keep = 2}), IoError);
 }
 
 TEST_CASE("a new run replaces old files and leaves nothing beside them") {
   ScratchDirectory scratch;
   {
-    SnapshotWriter writer(scratch.path(), "title", 0);
+    SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
     write_snapshots(writer, {5, 5, 5}, 2);
   }
   {
-    SnapshotWriter writer(scratch.path(), "title", 0);
+    SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
     CHECK(!std::filesystem::exists(scratch / "particles.vtkhdf"));
     write_snapshots(writer, {1, 1}, 0);
   }
@@ -130,7 +130,7 @@ TEST_CASE("a new run replaces old files and leaves nothing beside them") {
 
 TEST_CASE("a reader that holds the file does not stop the writer") {
   ScratchDirectory scratch;
-  SnapshotWriter writer(scratch.path(), "title", 0);
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
   write_snapshots(writer, {5, 5}, 0);
   const int reader = open((scratch / "particles.vtkhdf").c_str(), O_RDONLY);
   REQUIRE(flock(reader, LOCK_SH) == 0);  // as the HDF5 library of a reader does
@@ -141,7 +141,7 @@ TEST_CASE("a reader that holds the file does not stop the writer") {
 
 TEST_CASE("the XDMF refers to every snapshot that has points") {
   ScratchDirectory scratch;
-  SnapshotWriter writer(scratch.path(), "sand & <gravel>", 0);
+  SnapshotWriter writer(scratch.path(), {.title = "sand & <gravel>", .keep = 0});
   write_snapshots(writer, {5, 0, 3}, 0);
   const std::string text = file_text(scratch / "particles.xdmf");
   CHECK(occurrences(text, "<Time Value=\"0.5\"/>") == 1);

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "support/catch.hpp"
+#include "support/checkpoint_arrays.hpp"
 #include "support/decks.hpp"
 
 namespace scree {
@@ -78,7 +79,10 @@ std::string unpack_error(const Checkpoint& checkpoint) {
 }  // namespace
 
 TEST_CASE("the state returns from its packed form bit for bit") {
-  const Checkpoint first = pack(awkward_state()), second = pack(unpack(first));
+  const State state = awkward_state();
+  const State returned = unpack(pack(state));
+  const Checkpoint first = with_rows_as_arrays(pack(state)), second = with_rows_as_arrays(pack(returned));
+  CHECK(first.integers.at("particles/integers").size() == 5 * state.particles.size());
   CHECK(first.integers == second.integers);
   REQUIRE(first.reals.size() == second.reals.size());
   for (const auto& [name, values] : first.reals) {
@@ -88,7 +92,8 @@ TEST_CASE("the state returns from its packed form bit for bit") {
 }
 
 TEST_CASE("what a checkpoint holds is the state") {
-  const State before = awkward_state(), after = unpack(pack(before));
+  const State before = awkward_state();
+  const State after = unpack(pack(before));
   CHECK(after.clock.time == before.clock.time);
   CHECK(after.clock.level == before.clock.level);
   CHECK(after.clock.just_rejected);
@@ -110,8 +115,20 @@ TEST_CASE("what a checkpoint holds is the state") {
   CHECK(after.snapshots == before.snapshots);
 }
 
+TEST_CASE("the hash is of what was computed, not of what was written") {
+  const State state = awkward_state();
+  State other = state;
+  ++other.history_rows, ++other.snapshots, ++other.clock.snapshots;
+  CHECK(state_hash(other, true) == state_hash(state, true));
+  other.particles[3].image.y += 1;
+  CHECK(state_hash(other, true) != state_hash(state, true));
+  other = state, ++other.counts.steps;
+  CHECK(state_hash(other, true) != state_hash(state, true));
+}
+
 TEST_CASE("a checkpoint that lacks an entry or whose arrays do not fit names it") {
-  const Checkpoint whole = pack(awkward_state());
+  const State state = awkward_state();
+  const Checkpoint whole = pack(state);
   for (const auto& [name, values] : whole.reals) {
     Checkpoint partial = whole;
     partial.path = "some.h5";
@@ -120,8 +137,11 @@ TEST_CASE("a checkpoint that lacks an entry or whose arrays do not fit names it"
     CHECK(contains(unpack_error(partial), name));
   }
   Checkpoint torn = whole;
-  torn.reals["particles/reals"].pop_back();
+  --torn.real_rows["particles/reals"].count;
   CHECK(contains(unpack_error(torn), "do not fit together"));
+  Checkpoint without = whole;
+  without.integer_rows.clear();
+  CHECK(contains(unpack_error(without), "particles/integers"));
   Checkpoint doubled = whole;
   doubled.integers["counts/steps"].push_back(1);
   CHECK(contains(unpack_error(doubled), "counts/steps"));

@@ -21,7 +21,8 @@ struct Result {
 
 Result result_of(SimulationRun& run, std::vector<std::vector<Real>> rows) {
   const State& state = run.complete_state();
-  return {pack(state), std::move(rows), state.carried_out.left, run.particle_ledger().contact_loss};
+  return {with_rows_as_arrays(pack(state)), std::move(rows), state.carried_out.left,
+          run.particle_ledger().contact_loss};
 }
 
 Result whole_run(const Model& model) {

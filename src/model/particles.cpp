@@ -1,0 +1,46 @@
+#include "model/particles.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace scree {
+namespace {
+
+// Extremes of this rank's values; what they are of all ranks is found by maxima of numbers >= 0.
+struct Extremes {
+  Real smallest = std::numeric_limits<Real>::infinity(), largest = 0;
+  void add(Real value) { smallest = std::min(smallest, value), largest = std::max(largest, value); }
+};
+
+// Numbers > 0 order as their bits do.
+Real smallest_of_all(const Share& share, Real value) {
+  const Real smallest = std::bit_cast<Real>(share.min(std::bit_cast<std::int64_t>(value)));
+  return smallest < std::numeric_limits<Real>::infinity() ? smallest : 0;
+}
+
+}  // namespace
+
+void count_particles(ParticleSet& particles, int materials, const Share& share) {
+  ParticleTotals totals;
+  const auto slots = static_cast<std::size_t>(materials);
+  Extremes radius, mass;
+  std::vector<std::int64_t> count(slots);
+  std::vector<Extremes> radius_of(slots), mass_of(slots);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const auto material = static_cast<std::size_t>(particles.material[i]);
+    radius.add(particles.radius[i]), mass.add(particles.mass[i]), ++count[material];
+    radius_of[material].add(particles.radius[i]), mass_of[material].add(particles.mass[i]);
+  }
+  totals.count = share.sum(static_cast<std::int64_t>(particles.size()));
+  totals.smallest_radius = smallest_of_all(share, radius.smallest);
+  totals.largest_radius = share.max(radius.largest);
+  totals.smallest_mass = smallest_of_all(share, mass.smallest);
+  totals.largest_mass = share.max(mass.largest);
+  for (std::size_t m = 0; m < slots; ++m)
+    totals.materials.push_back({share.sum(count[m]), smallest_of_all(share, radius_of[m].smallest),
+                                smallest_of_all(share, mass_of[m].smallest)});
+  particles.totals = std::move(totals);
+}
+
+}  // namespace scree

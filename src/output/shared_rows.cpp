@@ -1,0 +1,116 @@
+#include "output/shared_rows.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+#if SCREE_PARALLEL_HDF5 && !defined(H5_HAVE_PARALLEL)
+#error "SCREE_PARALLEL_HDF5 needs a parallel HDF5 library"
+#endif
+
+namespace scree {
+namespace {
+
+// What a rank writes at once, and what rank 0 then holds of another rank.
+constexpr std::size_t kPieceBytes = std::size_t{1} << 25;
+
+Hdf5Id new_properties(hid_t kind) { return {H5Pcreate(kind), H5Pclose}; }
+
+std::int64_t rows_per_piece(std::size_t row_bytes) {
+  return static_cast<std::int64_t>(std::max<std::size_t>(1, kPieceBytes / row_bytes));
+}
+
+// Rows of piece k, counted within the part.
+RowPart piece_of(RowPart part, std::int64_t rows, std::int64_t k) {
+  const std::int64_t first = std::min(k * rows, part.count);
+  return {first, std::min(rows, part.count - first)};
+}
+
+}  // namespace
+
+void SharedRows::fail(const std::string& action) const {
+  throw IoError(fmt::format("{}: cannot {}: {}", path_, action, library_reason()));
+}
+
+SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collective)
+    : ranks_(ranks),
+      path_(path),
+      collective_(collective && !ranks.alone()),
+      transfer_(new_properties(H5P_DATASET_XFER)) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Hdf5Id access = new_properties(H5P_FILE_ACCESS);
+  H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+#if SCREE_PARALLEL_HDF5
+  if (collective_) {
+    H5Pset_fapl_mpio(access, MPI_Comm_f2c(ranks_.communicator()), MPI_INFO_NULL);
+    H5Pset_dxpl_mpio(transfer_, H5FD_MPIO_COLLECTIVE);
+  }
+#endif
+  ranks_.together([&] {
+    if (!has_file()) return;
+    file_ = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+    if (file_ < 0) fail("open");
+  });
+}
+
+SharedRows::~SharedRows() {
+  if (file_ >= 0) H5Fclose(file_);
+}
+
+void SharedRows::close() {
+  ranks_.together([&] {
+    if (has_file() && H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) fail("write");
+  });
+  ranks_.together([&] {
+    if (has_file() && H5Fclose(std::exchange(file_, H5I_INVALID_HID)) < 0) fail("close");
+  });
+}
+
+void SharedRows::write(const std::string& name, RowType type, RowPart part, const Piece& piece) {
+  if (collective_)
+    write_collectively(name, type, part, piece);
+  else
+    write_through_root(name, type, part, piece);
+}
+
+void SharedRows::put(const std::string& name, RowType type, RowPart rows, const void* values) const {
+  const Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  const RowSelection selected(dataset, rows.first, rows.count);
+  if (H5Dwrite(dataset, type.value, selected.memory, selected.file, transfer_, values) < 0)
+    fail("write dataset " + name);
+}
+
+// Every rank takes part in as many writes as the one with the most rows.
+void SharedRows::write_collectively(const std::string& name, RowType type, RowPart part, const Piece& piece) {
+  const std::int64_t rows = rows_per_piece(type.bytes()), own = (part.count + rows - 1) / rows;
+  const std::int64_t rounds = -ranks_.min(-own);
+  for (std::int64_t k = 0; k < rounds; ++k) {
+    ranks_.together([&] {
+      const RowPart now = piece_of(part, rows, k);
+      put(name, type, {part.first + now.first, now.count},
+          now.count > 0 ? piece(now.first, now.count) : this);
+    });
+  }
+}
+
+void SharedRows::write_through_root(const std::string& name, RowType type, RowPart part, const Piece& piece) {
+  const std::size_t bytes = type.bytes();
+  const std::int64_t rows = rows_per_piece(bytes);
+  const std::vector<RowPart> parts = ranks_.gather(std::vector<RowPart>{part});
+  const auto give = [&](std::int64_t k) {
+    const RowPart now = piece_of(part, rows, k);
+    return Ranks::Bytes(static_cast<const std::byte*>(piece(now.first, now.count)),
+                        static_cast<std::size_t>(now.count) * bytes);
+  };
+  ranks_.hand_to_root(
+      (part.count + rows - 1) / rows, give, [&](int rank, std::int64_t k, Ranks::Bytes values) {
+        const RowPart whole = parts[static_cast<std::size_t>(rank)], now = piece_of(whole, rows, k);
+        put(name, type, {whole.first + now.first, now.count}, values.data());
+      });
+}
+
+}  // namespace scree

@@ -1,0 +1,71 @@
+// Rows of one HDF5 file that are spread over the ranks: consecutive rows of each rank, written without any
+// rank holding those of others, by all ranks at once where the library is a parallel one, else through rank
+// 0. The files are the same.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "output/hdf5_file.hpp"
+#include "output/hdf5_parts.hpp"
+#include "partition/ranks.hpp"
+
+namespace scree {
+
+// Whether this build writes collectively; else rank 0 writes for all.
+inline constexpr bool kParallelHdf5 = SCREE_PARALLEL_HDF5;
+
+// A rank's part of rows that are written or read: rows [first, first + count) of the dataset.
+struct RowPart {
+  std::int64_t first = 0, count = 0;
+};
+
+// All functions are collective, and throw IoError on every rank where one rank fails.
+class SharedRows {
+ public:
+  // Opens an existing file. It has been closed by whoever made room for the rows (Hdf5File::resize_rows).
+  // collective: only for tests; false works with a parallel library, too.
+  SharedRows(const Ranks& ranks, const std::string& path, bool collective = kParallelHdf5);
+  ~SharedRows();
+  SharedRows(const SharedRows&) = delete;
+  SharedRows& operator=(const SharedRows&) = delete;
+  void close();  // hands everything to the operating system
+
+  // This rank's part, of values in memory: [part.count][width].
+  template <class T>
+  void write(const std::string& name, int width, RowPart part, const T* values) {
+    write(name, {hdf5_type<T>(), width}, part,
+          [=](std::int64_t first, std::int64_t) { return values + first * width; });
+  }
+  // The same, made piece by piece: piece(first, count) returns rows [first, first + count) of this part,
+  // which stay until it is called again.
+  template <class T>
+  void write_pieces(const std::string& name, int width, RowPart part,
+                    const std::function<const T*(std::int64_t first, std::int64_t count)>& piece) {
+    write(name, {hdf5_type<T>(), width}, part, piece);
+  }
+
+ private:
+  struct RowType {
+    hid_t value;
+    int width;
+    std::size_t bytes() const { return static_cast<std::size_t>(width) * H5Tget_size(value); }
+  };
+  using Piece = std::function<const void*(std::int64_t first, std::int64_t count)>;
+  void write(const std::string& name, RowType type, RowPart part, const Piece& piece);
+  void write_collectively(const std::string& name, RowType type, RowPart part, const Piece& piece);
+  void write_through_root(const std::string& name, RowType type, RowPart part, const Piece& piece);
+  void put(const std::string& name, RowType type, RowPart rows, const void* values) const;
+  bool has_file() const { return collective_ || ranks_.is_root(); }
+  [[noreturn]] void fail(const std::string& action) const;
+
+  Ranks ranks_;
+  std::string path_;
+  bool collective_;
+  hid_t file_ = H5I_INVALID_HID;
+  Hdf5Id transfer_;
+};
+
+}  // namespace scree

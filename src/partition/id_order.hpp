@@ -1,0 +1,47 @@
+// Brings what the ranks know of their particles into the order of the global ids.
+#pragma once
+
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/types.hpp"
+#include "model/id_range.hpp"
+#include "partition/ranks.hpp"
+
+namespace scree {
+
+// Each rank gets its share of the ids (id_range), in increasing order: the ranks' parts, one after the other,
+// are all particles in the order of their ids. No rank holds more than its share and what it had.
+class IdOrder {
+ public:
+  // count: ids are below it, the same on every rank; ids: of this rank's particles, any order, no id twice on
+  // all ranks. Collective.
+  IdOrder(const Ranks& ranks, std::int64_t count, std::span<const GlobalId> ids);
+
+  // One value per particle, in the order of the ids that the constructor got; returned in the order of the
+  // ids that this rank writes. Collective.
+  template <class T>
+  std::vector<T> apply(std::vector<T> values) const {
+    values = permuted(std::move(values), sent_);
+    if (!ranks_.alone()) values = ranks_.deal_out(std::span<const T>(values), counts_);
+    return permuted(std::move(values), arrived_);
+  }
+
+ private:
+  // values[i] becomes values[order[i]]; an empty order leaves all where it is.
+  template <class T>
+  static std::vector<T> permuted(std::vector<T> values, const std::vector<std::size_t>& order) {
+    if (order.empty()) return values;
+    std::vector<T> out(values.size());
+    for (std::size_t i = 0; i < order.size(); ++i) out[i] = values[order[i]];
+    return out;
+  }
+
+  Ranks ranks_;
+  std::vector<std::size_t> sent_, arrived_;  // orders that sort by id; empty where that is so already
+  std::vector<std::int64_t> counts_;         // per rank that gets them
+};
+
+}  // namespace scree

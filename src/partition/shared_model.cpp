@@ -1,0 +1,77 @@
+#include "partition/shared_model.hpp"
+
+#include <algorithm>
+
+#include "partition/decomposition.hpp"
+
+namespace scree {
+namespace {
+
+bool is_near(const DomainBox& box, Vec3 p, Real reach) {
+  return p.x >= box.min.x - reach && p.x <= box.max.x + reach && p.y >= box.min.y - reach &&
+         p.y <= box.max.y + reach && p.z >= box.min.z - reach && p.z <= box.max.z + reach;
+}
+
+// Which ranks get an item: the one whose box it is in, and those whose boxes an image of it is near.
+class Receivers {
+ public:
+  Receivers(const Decomposition& decomposition, const Space& space, Real reach)
+      : decomposition_(decomposition), reach_(reach), period_(Subdomain(space).period()) {
+    for (std::size_t r = 0; r < decomposition.boxes().size(); ++r)
+      boxes_.push_back(decomposition.box(static_cast<int>(r), Subdomain(space)));
+  }
+
+  // Calls visit(rank) once for each.
+  template <class Visit>
+  void for_each_of(Vec3 p, const Visit& visit) const {
+    const int owner = decomposition_.owner(p);
+    visit(owner);
+    // Far inside its box: periodic boxes end where the space does.
+    if (is_near(boxes_[static_cast<std::size_t>(owner)], p, -reach_)) return;
+    for (int r = 0; r < static_cast<int>(boxes_.size()); ++r)
+      if (r != owner && any_image_near(boxes_[static_cast<std::size_t>(r)], p)) visit(r);
+  }
+
+ private:
+  bool any_image_near(const DomainBox& box, Vec3 p) const {
+    for (int z = -steps(period_.z); z <= steps(period_.z); ++z)
+      for (int y = -steps(period_.y); y <= steps(period_.y); ++y)
+        for (int x = -steps(period_.x); x <= steps(period_.x); ++x)
+          if (is_near(box, p + Vec3{x * period_.x, y * period_.y, z * period_.z}, reach_)) return true;
+    return false;
+  }
+  static int steps(Real period) { return period > 0 ? 1 : 0; }
+
+  const Decomposition& decomposition_;
+  Real reach_;
+  Vec3 period_;
+  std::vector<DomainBox> boxes_;
+};
+
+}  // namespace
+
+std::vector<StartItem> RanksShare::near_each_other(std::vector<StartItem> own, const Space& space,
+                                                   Real reach) const {
+  if (ranks_.alone() || !(reach > 0)) return own;
+  Decomposition decomposition;
+  {
+    std::vector<Vec4> position;
+    for (const StartItem& item : own) position.push_back(vec4(item.position, item.radius));
+    const std::vector<std::int64_t> weight(own.size(), 1);
+    decomposition = Decomposition(ranks_, make_domain_grid(space, reach), position, weight);
+  }
+  const Receivers receivers(decomposition, space, reach);
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(ranks_.size()));
+  for (const StartItem& item : own)
+    receivers.for_each_of(item.position, [&](int r) { ++counts[static_cast<std::size_t>(r)]; });
+  std::vector<std::size_t> next(counts.size());
+  for (std::size_t r = 1; r < next.size(); ++r)
+    next[r] = next[r - 1] + static_cast<std::size_t>(counts[r - 1]);
+  std::vector<StartItem> sent(next.back() + static_cast<std::size_t>(counts.back()));
+  for (const StartItem& item : own)
+    receivers.for_each_of(item.position, [&](int r) { sent[next[static_cast<std::size_t>(r)]++] = item; });
+  own = {};
+  return ranks_.deal_out(std::span<const StartItem>(sent), counts);
+}
+
+}  // namespace scree

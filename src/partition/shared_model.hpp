@@ -1,0 +1,30 @@
+// The ranks of a run as builders of one model.
+#pragma once
+
+#include "model/share.hpp"
+#include "partition/ranks.hpp"
+
+namespace scree {
+
+class RanksShare : public Share {
+ public:
+  explicit RanksShare(const Ranks& ranks) : ranks_(ranks) {}
+  int rank() const override { return ranks_.rank(); }
+  int size() const override { return ranks_.size(); }
+  void together(const std::function<void()>& action) const override { ranks_.together(action); }
+  std::int64_t sum(std::int64_t value) const override { return ranks_.sum(value); }
+  std::int64_t min(std::int64_t value) const override { return ranks_.min(value); }
+  Real max(Real value) const override { return ranks_.max(value); }
+  std::vector<StartItem> everywhere(std::vector<StartItem> own) const override {
+    return ranks_.gather_everywhere(std::move(own));
+  }
+  // By boxes of about equally many items, as for a run. Throws InputError where the space is too small to be
+  // cut into as many.
+  std::vector<StartItem> near_each_other(std::vector<StartItem> own, const Space& space,
+                                         Real reach) const override;
+
+ private:
+  Ranks ranks_;
+};
+
+}  // namespace scree
