@@ -181,6 +181,7 @@ class CudaBackend : public Backend {
   Index counted_rows_ = 0;  // particles whose rows the last list has in their order; 0: they have changed since
   Index interior_ = 0;      // the first so many particles, whole blocks of them, meet no ghosts and are none
   mutable DeviceHalo halo_;
+  HaloClock halo_clock_;
   DeviceArray<Index> other_items_;
   mutable DeviceArray<unsigned char> space_;  // of library calls
   CellSort particle_sort_, other_sort_;

@@ -145,6 +145,7 @@ void CudaBackend::verlet_start(Real h) {
 
 const VerletControl& CudaBackend::wait_for_control() {
   const VerletControl& c = fetch(&Results::control);
+  halo_clock_.read(balance_.halo);
   parity_[0] = c.parity[0], parity_[1] = c.parity[1];
   bound_ = c.bound;
   return c;
@@ -224,8 +225,12 @@ void CudaBackend::queue_in_turn(const std::string& key, Index steps, const Queue
   VerletControl* control = result(&Results::control);
   rows_done_.record(stream_), rows_done_.hold(halo_stream_);
   for (Index k = 0; k < steps; ++k) {
+    const bool look = k == steps - 1;
+    if (look) halo_clock_.begin(halo_stream_);
     if (interior_ > 0) queue_rows({0, interior_, false, false});
+    if (look) halo_clock_.interior_done(stream_);
     queue_ghosts(halo, k);
+    if (look) halo_clock_.end(halo_stream_);
     ghosts_ready_.record(halo_stream_), ghosts_ready_.hold(stream_);
     queue_rows({interior_, owned_, false, true});
     rows_done_.record(stream_), rows_done_.hold(halo_stream_);

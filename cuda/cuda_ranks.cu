@@ -112,8 +112,9 @@ void CudaBackend::migrate() {
 }
 
 void CudaBackend::measure_balance() {
-  balance_.halo = {owned_, halo_.size(), halo_.plan().receivers(),
-                   std::int64_t{halo_.plan().sent()} * 2 * static_cast<std::int64_t>(sizeof(Vec4))};
+  HaloSize& halo = balance_.halo;
+  halo.owned = owned_, halo.ghosts = halo_.size(), halo.neighbors = halo_.plan().receivers();
+  halo.bytes = std::int64_t{halo_.plan().sent()} * 2 * static_cast<std::int64_t>(sizeof(Vec4));
   if (ranks_.alone()) return;
   counted_rows_ = owned_;
   balance_.imbalance = measure_imbalance(ranks_, owned_ + list_.entries());
@@ -121,7 +122,7 @@ void CudaBackend::measure_balance() {
 }
 
 std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks) {
-  if (!ranks.alone()) choose_device(ranks.local_rank());
+  choose_device(ranks);
   std::string trouble = device_trouble();
   if (trouble.empty()) {
     const std::size_t needed = device_memory(model), free = free_device_memory();

@@ -10,9 +10,10 @@ std::size_t& device_bytes_in_use() {
   return bytes;
 }
 
-void choose_device(int number) {
+void choose_device(const Ranks& ranks) {
+  const int number = ranks.local_rank();
   int devices = 0;
-  if (cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0)
+  if (!ranks.alone() && cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0)
     require_cuda(cudaSetDevice(number % devices), "cudaSetDevice");
 }
 

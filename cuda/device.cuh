@@ -18,9 +18,6 @@ struct Device {
   cudaStream_t stream = nullptr;
 };
 
-// Takes the GPU of this number for this process, or the one that comes to its turn where there are fewer.
-void choose_device(int number);
-
 // Of the GPU.
 std::size_t multiprocessors();
 
@@ -62,6 +59,25 @@ class Event {
   void record(cudaStream_t stream) { require_cuda(cudaEventRecord(event_, stream), "cudaEventRecord"); }
   void hold(cudaStream_t stream) const { require_cuda(cudaStreamWaitEvent(stream, event_), "cudaStreamWaitEvent"); }
   void wait() const { require_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+// An event that knows when it was.
+class TimedEvent {
+ public:
+  TimedEvent() { require_cuda(cudaEventCreate(&event_), "cudaEventCreate"); }
+  ~TimedEvent() { cudaEventDestroy(event_); }
+  TimedEvent(const TimedEvent&) = delete;
+  TimedEvent& operator=(const TimedEvent&) = delete;
+  void record(cudaStream_t stream) { require_cuda(cudaEventRecord(event_, stream), "cudaEventRecord"); }
+  // Both have been [s].
+  double seconds_since(const TimedEvent& before) const {
+    float milliseconds = 0;
+    require_cuda(cudaEventElapsedTime(&milliseconds, before.event_, event_), "cudaEventElapsedTime");
+    return 1e-3 * static_cast<double>(milliseconds);
+  }
 
  private:
   cudaEvent_t event_ = nullptr;

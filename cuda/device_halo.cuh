@@ -34,6 +34,28 @@ struct MotionGhostItem {
   }
 };
 
+// Looks at one halo of every batch of explicit steps: how long it took, and how long the rows that need none left the
+// step waiting for it.
+class HaloClock {
+ public:
+  void begin(cudaStream_t halo) { begin_.record(halo); }
+  void end(cudaStream_t halo) { end_.record(halo); }
+  void interior_done(cudaStream_t rows) { interior_done_.record(rows), running_ = true; }
+  // Once both streams are done.
+  void read(HaloSize& halo) {
+    if (!running_) return;
+    running_ = false, ++looks_;
+    const auto mean = [&](double& of, double value) { of += (value - of) / looks_; };
+    mean(halo.seconds, end_.seconds_since(begin_));
+    mean(halo.exposed_seconds, std::max(0.0, end_.seconds_since(interior_done_)));
+  }
+
+ private:
+  TimedEvent begin_, end_, interior_done_;
+  bool running_ = false;
+  int looks_ = 0;
+};
+
 class DeviceHalo {
  public:
   DeviceHalo(const Ranks& ranks, Transport transport);

@@ -11,6 +11,10 @@
 
 namespace scree {
 
+// Takes a GPU of its own for each rank of a host, in turn where there are fewer; one rank alone stays with
+// the first. The functions below are about that GPU. Collective.
+void choose_device(const Ranks& ranks);
+
 // Why this program cannot use a GPU on this machine, in words for the user; empty if it can.
 std::string device_trouble();
 

@@ -116,6 +116,9 @@ struct HaloSize {
   std::int64_t owned = 0, ghosts = 0;
   std::int64_t neighbors = 0;  // ranks that it sends to
   std::int64_t bytes = 0;      // sent per update of positions and velocities [B]
+  // On GPUs, means over explicit steps that were looked at: what an update takes, and what of it the step
+  // waits for [s].
+  double seconds = 0, exposed_seconds = 0;
 };
 
 // How evenly the work lies on the ranks, and what this one has of it at the last list.

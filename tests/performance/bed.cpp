@@ -23,6 +23,7 @@
 #include "coupling/coupled_step.hpp"
 #include "dem/device.hpp"
 #include "mbs/petsc_session.hpp"
+#include "partition/shared_model.hpp"
 
 namespace scree {
 namespace {
@@ -96,7 +97,7 @@ Samples sample(
 Measured measured(const Samples& samples, const Model& bed, std::int64_t list_builds) {
   const auto count = static_cast<double>(samples.seconds.size());
   Measured out;
-  out.particles = static_cast<std::int64_t>(bed.particles.size()), out.bodies = bed.bodies.size();
+  out.particles = bed.particles.totals.count, out.bodies = bed.bodies.size();
   out.seconds = samples.median(), out.fastest = samples.seconds.front(), out.slowest = samples.seconds.back();
   out.mean = std::accumulate(samples.seconds.begin(), samples.seconds.end(), 0.0) / count;
   out.steps = static_cast<double>(samples.steps) * count, out.list_builds = list_builds;
@@ -107,17 +108,17 @@ Measured measured(const Samples& samples, const Model& bed, std::int64_t list_bu
 struct Run {
   Run(Model bed, const Options& options)
       : model(std::move(bed)),
-        backend(options.on_gpu() ? make_cuda_backend(model, options.ranks) : make_cpu_backend(model, options.ranks)),
+        backend(options.on_gpu() ? make_cuda_backend(model, options.ranks)
+                                 : make_cpu_backend(model, options.ranks)),
         link(model, options.ranks),
         ranks(options.ranks),
         step(model, *backend, link, timers) {
-    const IdRange own =
-        id_range(static_cast<std::int64_t>(model.particles.size()), ranks.rank(), ranks.size());
+    const IdRange own = id_range(model.particles.totals.count, ranks.rank(), ranks.size());
     backend->load(initial_records(model.particles, Subdomain(model.space), own), {});
   }
   double listed() const {
     return static_cast<double>(ranks.sum(backend->list_entries())) /
-           static_cast<double>(model.particles.size());
+           static_cast<double>(model.particles.totals.count);
   }
 
   Model model;
@@ -130,7 +131,7 @@ struct Run {
 };
 
 // "2.51e+07 (2.44e+07 to 2.53e+07) particle-steps/s, 398 us per step"
-std::string speed_text(const Samples& samples, std::size_t particles) {
+std::string speed_text(const Samples& samples, std::int64_t particles) {
   const double n = static_cast<double>(particles);
   return fmt::format("{:.3g} ({:.3g} to {:.3g}) particle-steps/s, {:.4g} us per step", n / samples.median(),
                      n / samples.seconds.back(), n / samples.seconds.front(), 1e6 * samples.median());
@@ -166,8 +167,8 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
       [&] { builds = backend.list_builds(), timers = run.timers; });
   builds = backend.list_builds() - builds;
   fmt::print("{:10d} {}, {} x {} steps, {} list builds, {:.2f} listed per particle\n",
-             run.model.particles.size(), speed_text(samples, run.model.particles.size()), options.repeats,
-             samples.steps, builds, run.listed());
+             run.model.particles.totals.count, speed_text(samples, run.model.particles.totals.count),
+             options.repeats, samples.steps, builds, run.listed());
   report.add(measured(samples, run.model, builds), timers, run.timers, backend);
 }
 
@@ -211,7 +212,7 @@ void measure_implicit(Model bed, const Options& options, BedReport& report) {
       "{:10d} {:.4g} ({:.4g} to {:.4g}) ms per step, {:.1f} Newton and {:.1f} linear iterations per step, {} "
       "x {} "
       "steps, {} list builds, {:.2f} listed per particle\n",
-      run.model.particles.size(), 1e3 * samples.median(), 1e3 * samples.seconds.front(),
+      run.model.particles.totals.count, 1e3 * samples.median(), 1e3 * samples.seconds.front(),
       1e3 * samples.seconds.back(),
       static_cast<double>(run.step.counts().newton_iterations - counts.newton_iterations) / steps,
       static_cast<double>(run.step.counts().linear_iterations - counts.linear_iterations) / steps,
@@ -262,7 +263,8 @@ CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& repo
 
 void measure_net(Model bed, const Options& options, BedReport& report) {
   add_net(bed);
-  const std::size_t particles = bed.particles.size(), bodies = bed.bodies.size();
+  const std::int64_t particles = bed.particles.totals.count;
+  const std::size_t bodies = bed.bodies.size();
   Model bare = bed;
   bare.bodies.clear(), bare.joints.clear(), bare.spring_dampers.clear(), bare.applied_forces.clear();
   const Samples without = sample_coupled(std::move(bare), options, report).samples;
@@ -282,6 +284,7 @@ void measure_all(const Options& options) {
   if (options.net && options.integrator == "hht") throw InputError("--net: allowed for --integrator verlet");
   if (options.precision == "mixed" && (!options.on_gpu() || options.integrator == "hht"))
     throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
+  if (options.on_gpu()) choose_device(options.ranks);
   if (options.on_gpu() && !device_trouble().empty()) throw InputError("--backend cuda: " + device_trouble());
   fmt::print("commit {}, {}, {}, {}{}{}\n", commit(),
              options.on_gpu()        ? device_name()
@@ -300,11 +303,14 @@ void measure_all(const Options& options) {
       fmt::format("{},\"{}\",{},{},{},{},{}", commit(), options.on_gpu() ? device_name() : processor_name(),
                   options.backend, options.precision, options.dimension, options.integrator, rebuild),
       options.ranks);
+  // The net finds its place on all of the bed.
+  const RanksShare share(options.net ? Ranks() : options.ranks);
   std::vector<Vec3> discs;
   if (options.dimension == 2) discs = settled_discs();
   for (const std::int64_t size : options.particles) {
     const std::int64_t particles = options.per_rank ? size * options.ranks.size() : size;
-    Model bed = options.dimension == 3 ? sphere_bed(options.tile, particles) : disc_bed(discs, particles);
+    Model bed =
+        options.dimension == 3 ? sphere_bed(options.tile, particles, share) : disc_bed(discs, particles);
     if (options.precision == "mixed") bed.integrator.precision = Precision::mixed;
     if (options.net)
       measure_net(std::move(bed), options, report);

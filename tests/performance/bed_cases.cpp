@@ -55,7 +55,7 @@ Model disc_model(std::int64_t tiles, Real step, Real damping) {
 
 }  // namespace
 
-Model sphere_bed(const std::string& tile, std::int64_t particles) {
+Model sphere_bed(const std::string& tile, std::int64_t particles, const Share& share) {
   const std::int64_t tiles = tiles_of(particles);
   std::int64_t rows = static_cast<std::int64_t>(std::sqrt(static_cast<double>(tiles)));
   while (tiles % rows != 0) --rows;
@@ -81,14 +81,18 @@ Model sphere_bed(const std::string& tile, std::int64_t particles) {
   model.contact.skin = 0.1;
   model.time.end = 1, model.time.step = kSphereStep;
   model.integrator.hht_alpha = -0.05;  // as decks have it if they do not say
-  for (std::int64_t row = 0; row < rows; ++row)
-    for (std::int64_t column = 0; column < tiles / rows; ++column)
-      for (std::size_t i = 0; i < x.size(); ++i)
-        add_particle(model,
-                     {x[i] + kSphereTile * static_cast<Real>(column),
-                      y[i] + kSphereTile * static_cast<Real>(row), z[i]},
-                     kSphereRadius);
-  count_particles(model.particles, model.contact.materials());
+  const IdRange part = share.part(particles);
+  model.particles.first_id = part.first;
+  // Column by column: with several ranks their parts are near to their boxes.
+  for (GlobalId id = part.first; id < part.last; ++id) {
+    const std::int64_t at = id / kTileParticles;
+    const auto i = static_cast<std::size_t>(id % kTileParticles);
+    add_particle(model,
+                 {x[i] + kSphereTile * static_cast<Real>(at / rows),
+                  y[i] + kSphereTile * static_cast<Real>(at % rows), z[i]},
+                 kSphereRadius);
+  }
+  count_particles(model.particles, model.contact.materials(), share);
   return model;
 }
 

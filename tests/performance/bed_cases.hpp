@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "model/share.hpp"
 
 namespace scree {
 
@@ -13,8 +14,8 @@ inline constexpr std::int64_t kTileParticles = 10000;
 
 // Spheres of diameter 1 and mass 1 on the floor z = 0 under gravity 1, walls at the sides. tile: file with
 // the centres in a square that repeats in x and y. particles: a multiple of kTileParticles, laid out as a
-// rectangle of tiles that is as near to a square as the number allows.
-Model sphere_bed(const std::string& tile, std::int64_t particles);
+// rectangle of tiles that is as near to a square as the number allows. share: whose part of them it makes.
+Model sphere_bed(const std::string& tile, std::int64_t particles, const Share& share = {});
 inline constexpr Real kSphereStep = 1e-4;  // of velocity-Verlet [s]
 // h sqrt(K/m) = 1.2: the length of an implicit step [s].
 Real implicit_sphere_step(const Model& bed);

@@ -9,7 +9,8 @@ KIND = ["commit", "device", "backend", "precision", "dimension", "integrator", "
 WHOLE = {"bodies": int, "ranks": int, "particles": int, "list_builds": int, "steps": float, "seconds_per_step": float,
          "fastest": float, "slowest": float, "mean": float}
 OF_RANK = {"rank": int, "owned": int, "ghosts": int, "receivers": int, "halo_bytes": int, "imbalance": float,
-           "host_bytes": float, "device_bytes": float, **{stage: float for stage in STAGES}}
+           "host_bytes": float, "device_bytes": float, "halo_seconds": float, "halo_exposed": float,
+           **{stage: float for stage in STAGES}}
 
 
 @dataclasses.dataclass

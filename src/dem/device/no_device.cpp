@@ -4,6 +4,8 @@
 
 namespace scree {
 
+void choose_device(const Ranks&) {}
+
 std::string device_trouble() {
   return "this program was built without CUDA (cmake --preset cuda builds it with)";
 }
