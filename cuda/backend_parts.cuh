@@ -9,6 +9,9 @@ namespace scree {
 // What atomicMin starts from: bytes of 0x7f, above every id.
 inline constexpr long long kNoId = 0x7f7f7f7f7f7f7f7f;
 
+// In ParticleArrays::drifting: a particle that another rank owns from now on.
+inline constexpr std::uint8_t kGone = 2;
+
 // Arrays of a snapshot on their way out.
 struct CudaBackend::PackArrays {
   DeviceArray<PackedParticle> packed;
@@ -21,19 +24,27 @@ struct CudaBackend::PackArrays {
   std::size_t n = 0;
 };
 
-// Both updates of a ghost in one launch.
-struct GhostItem {
-  HaloPositionItem position;
-  HaloItem<Vec4> velocity;
-  SCREE_HD void operator()(Index g) const { position(g), velocity(g); }
-};
-
 template <class T>
 const T& CudaBackend::fetch(T Results::* member) const {
   T& host = h_results_.data()->*member;
   require_cuda(cudaMemcpyAsync(&host, result(member), sizeof(T), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
   wait_for(stream_);
   return host;
+}
+
+template <int N, class Item>
+void CudaBackend::queue_sums(const Item& item, ExactSums<N> Results::* sums) const {
+  exact_sums(device(), owned_, item, result(sums), [&](Real* largest) { halo_.max(device(), largest, N); });
+}
+
+template <int N>
+std::array<Real, N> CudaBackend::totals(const ExactSums<N>& sums) const {
+  std::array<__int128, N> quanta;
+  for (int k = 0; k < N; ++k) quanta[k] = sums.quanta(k);
+  ranks_.sum(std::span<__int128>(quanta));
+  std::array<Real, N> totals;
+  for (int k = 0; k < N; ++k) totals[k] = ReproducibleScale(sums.largest[k]).value(quanta[k]);
+  return totals;
 }
 
 }  // namespace scree

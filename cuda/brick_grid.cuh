@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "partition/cell_grid.hpp"
+#include "dem/neighbor_list.hpp"
 
 namespace scree {
 
@@ -11,7 +11,7 @@ namespace scree {
 // cache lines: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D. Bricks are numbered along the axis with the fewest of them first, so
 // that those beside each other are as close in memory as can be.
 struct BrickGrid {
-  CellGrid cells;
+  SearchCells cells;
   Index shift[3] = {2, 2, 2};  // sides of a brick as powers of two
   Index stride[3] = {1, 1, 1};  // from a brick to the next along an axis
   Index bricks = 1;
@@ -26,12 +26,12 @@ struct BrickGrid {
   SCREE_HD Index next_brick(Index x) const { return ((x >> shift[0]) + 1) << shift[0]; }
 };
 
-inline BrickGrid make_brick_grid(const CellGrid& cells) {
+inline BrickGrid make_brick_grid(const SearchCells& cells) {
   BrickGrid grid;
   grid.cells = cells;
-  if (cells.layer) grid.shift[0] = grid.shift[1] = 3, grid.shift[2] = 0;
+  if (cells.own.layer) grid.shift[0] = grid.shift[1] = 3, grid.shift[2] = 0;
   Index bricks[3];
-  for (int axis = 0; axis < 3; ++axis) bricks[axis] = ((cells.cells[axis] - 1) >> grid.shift[axis]) + 1;
+  for (int axis = 0; axis < 3; ++axis) bricks[axis] = ((cells.own.cells[axis] - 1) >> grid.shift[axis]) + 1;
   int order[3] = {0, 1, 2};
   std::stable_sort(order, order + 3, [&](int a, int b) { return bricks[a] < bricks[b]; });
   for (const int axis : order) grid.stride[axis] = grid.bricks, grid.bricks *= bricks[axis];

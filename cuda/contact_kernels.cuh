@@ -59,6 +59,8 @@ struct VerletControl {
   int parity[2];            // which of the two position and velocity arrays holds the open step
   int outside;              // whether a particle of a step of this run was outside the space
   int stop;
+  int alone;       // one rank: the last block closes the step. Several do so after the ranks have shared:
+  Real shared[2];  // the largest squared displacement of the step [m^2], and outside
   // What was found when step `closed` was closed and the next opened, for the last steps: a host that looks while the
   // next step runs sees it unchanged.
   struct Closed {
@@ -86,6 +88,13 @@ struct VerletControl {
     margin = 2 * (wanted > least ? wanted : least);
     rows = margin < kMostShare * 2 * half_skin ? RowUse::prune : RowUse::all;
     moved = rows == RowUse::prune ? 0 : kNoRows;
+  }
+  // The step is closed and the next one open.
+  SCREE_HD void close(Real largest_squared) {
+    move(std::sqrt(largest_squared));
+    ++closed;
+    parity[0] ^= 1, parity[1] ^= 1;
+    judge(outside != 0);
   }
   // Decides whether the run goes on.
   SCREE_HD void judge(bool is_outside) {

@@ -54,13 +54,14 @@ __global__ void __launch_bounds__(kSystemThreads)
   block_max(norms.stiffening, &r.largest->stiffening);
 }
 
-// Called by the last block of a step: the step is closed and the next one open.
+// Called by the last block of a step.
 __device__ inline void close_step(VerletControl& c) {
-  c.move(std::sqrt(static_cast<Real>(__uint_as_float(c.largest))));
+  const Real largest = __uint_as_float(c.largest);
   c.largest = 0;
-  ++c.closed;
-  c.parity[0] ^= 1, c.parity[1] ^= 1;
-  c.judge(c.outside != 0);
+  if (c.alone)
+    c.close(largest);
+  else
+    c.shared[0] = largest, c.shared[1] = c.outside;
 }
 
 // Whether the particle's new place is outside. Far from the sides the old place alone says no.

@@ -1,19 +1,19 @@
 // Particles, items and list of the GPU's backend. The steps are in cuda_implicit.cu and cuda_explicit.cu.
 #include "cuda_backend.cuh"
 
-#include <cub/device/device_scan.cuh>
-
 #include "backend_parts.cuh"
 #include "dem/device.hpp"
 
 namespace scree {
 
-CudaBackend::CudaBackend(const Model& model)
+CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
     : model_(model),
+      ranks_(ranks),
       subdomain_(model.space),
       side_(model, subdomain_),
       builder_(model, side_.shapes()),
       hht_(hht_coefficients(model.integrator.hht_alpha)),
+      halo_(ranks, model.parallel.transport),
       results_(1),
       h_results_(1),
       solver_(1),
@@ -37,7 +37,9 @@ CudaBackend::~CudaBackend() = default;
 std::string CudaBackend::description() const {
   const bool asked = model_.integrator.precision == Precision::mixed;
   const std::string precision = mixed_ ? "mixed" : asked ? "double, because bodies have shapes" : "double";
-  return "cuda (" + device_name() + ", precision " + precision + ")";
+  const std::string ranks =
+      ranks_.alone() ? "" : ", " + std::to_string(ranks_.size()) + " ranks, halo by " + halo_.transport();
+  return "cuda (" + device_name() + ", precision " + precision + ranks + ")";
 }
 
 DeviceViews CudaBackend::views(const Vec4* position, const Vec4* velocity) const {
@@ -46,11 +48,11 @@ DeviceViews CudaBackend::views(const Vec4* position, const Vec4* velocity) const
 }
 
 void CudaBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
-  side_.losses() = shapes;
-  owned_ = static_cast<Index>(records.size());
+  side_.losses() = ranks_.is_root() ? shapes : ShapeLosses{};
   const std::size_t n = records.size();
   ParticleStore store;
   store.load(model_.particles, records);
+  owned_ = store.owned;
   std::vector<std::int64_t> keys(n);
   for (std::size_t i = 0; i < n; ++i) keys[i] = row_key(store.global_id[i], kNoShift);
   now_.grow(n, n, 0, stream_);
@@ -115,23 +117,15 @@ void CudaBackend::fetch_shape_contacts(cudaStream_t stream) {
 }
 
 void CudaBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
-  side_.reduce(layout_, Ranks(), step, end);
-}
-
-void CudaBackend::refresh_ghosts(Vec4* position, Vec4* velocity) {
-  for_each(device(), ghosts_, GhostItem{{ghost_.data(), position, owned_}, {ghost_.data(), velocity, owned_}});
+  side_.reduce(layout_, ranks_, step, end);
 }
 
 namespace {
 
-// Wraps a particle into the periodic box and finds its cell. Particles outside the search get the key past the last
-// cell. *bad: smallest id of a particle whose position is not finite.
-struct CellKeyItem {
+// Wraps a particle into the periodic box. *bad: smallest id of a particle whose position is not finite.
+struct WrapItem {
   ParticleViews in;
   Vec3 box_min, period;
-  BrickGrid grid;
-  unsigned outside;
-  unsigned* keys;
   long long* bad;
 
   __device__ void operator()(Index i) const {
@@ -139,47 +133,48 @@ struct CellKeyItem {
     const Vec3 x = wrap(box_min, period, xyz(p), in.image[i]);
     in.position[i] = vec4(x, p.w);
     if (!is_finite(x)) atomicMin(bad, static_cast<long long>(id_of(in.row_key[i])));
-    const CellPlace c = grid.cells.place(x);
-    keys[i] = in.drifting[i] || c.x < 0 ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
 };
 
-struct CountGhostsItem {
-  HaloBox box;
+// Particles outside the search get the key past the last cell, those that have gone to other ranks the next.
+struct CellKeyItem {
   const Vec4* position;
-  Index* counts;
+  const std::uint8_t* drifting;
+  BrickGrid grid;
+  unsigned outside;
+  unsigned* keys;
+
   SCREE_HD void operator()(Index i) const {
-    Index count = 0;
-    for_each_ghost(box, xyz(position[i]), [&](Vec3, std::int8_t) { ++count; });
-    counts[i] = count;
+    const CellPlace c = grid.cells.place(xyz(position[i]));
+    keys[i] = drifting[i] == kGone            ? outside + 1
+              : drifting[i] != 0 || c.x < 0 ? outside
+                                            : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
 };
 
-struct FillGhostsItem {
-  HaloBox box;
-  const Index* offsets;
-  ParticleViews items;
-  Index owned;
-  Ghost* ghosts;
-  SCREE_HD void operator()(Index i) const {
-    Index slot = offsets[i];
-    for_each_ghost(box, xyz(items.position[i]), [&](Vec3 shift, std::int8_t image) {
-      ghosts[slot] = {i, shift, image};
-      items.material[owned + slot] = items.material[i];
-      items.row_key[owned + slot] = row_key(id_of(items.row_key[i]), image);
-      ++slot;
-    });
+// What the ghosts need once: material and key.
+struct GhostNameItem {
+  const Ghost* ghosts;
+  GhostField<int> material;
+  GhostField<std::int64_t> key;
+  SCREE_HD void operator()(Index entry) const {
+    const Ghost ghost = ghosts[entry];
+    material.put(entry, material.field[ghost.source]);
+    key.put(entry, row_key(id_of(key.field[ghost.source]), ghost.image));
   }
 };
 
+// Shapes that reach no particle of this rank would crowd the edges of its cells: they are left out.
 struct OtherKeyItem {
-  const Vec4* position;  // of the first item that is no particle
+  const Vec4* position;  // of the first item that is no owned particle
+  Index ghosts;
   BrickGrid grid;
   unsigned outside;
   unsigned* keys;
   SCREE_HD void operator()(Index k) const {
-    const CellPlace c = grid.cells.place(xyz(position[k]));
-    keys[k] = c.x < 0 ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
+    const Vec3 p = xyz(position[k]);
+    const CellPlace c = grid.cells.place(p);
+    keys[k] = c.x < 0 || (k >= ghosts && !grid.cells.reaches(p)) ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
 };
 
@@ -192,21 +187,30 @@ struct OtherItem {
 
 }  // namespace
 
-void CudaBackend::sort_cells(Real skin) {
-  grid_ = make_brick_grid(builder_.grid(skin, owned_ + side_.shapes().size()));
-  const auto outside = static_cast<unsigned>(grid_.count());
-  const auto n = static_cast<std::size_t>(owned_);
+void CudaBackend::wrap_positions() {
   require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
   for_each(device(), owned_,
-           CellKeyItem{views_of(now_), model_.space.min, subdomain_.period(), grid_, outside, particle_sort_.keys(n),
-                       result(&Results::worst_id)});
-  particle_sort_.sort(device(), owned_, outside);
-  // Particles with the last key are outside the search; the others stand before them.
-  copy_async(&h_results_.data()->index, particle_sort_.starts() + outside, 1, stream_);
-  if (fetch(&Results::worst_id) < kNoId)
-    throw SimulationError("stage sort_cells: the position of particle " + std::to_string(h_results_[0].worst_id) +
-                          " is not finite");
-  layout_.owned = owned_, layout_.active = h_results_[0].index;
+           WrapItem{views_of(now_), model_.space.min, subdomain_.period(), result(&Results::worst_id)});
+  if (const long long bad = smallest_id(); bad < kNoId)
+    throw SimulationError("stage sort_cells: the position of particle " + std::to_string(bad) + " is not finite");
+}
+
+void CudaBackend::sort_cells(Real skin) {
+  const std::int64_t particles = ranks_.sum(static_cast<std::int64_t>(owned_));
+  grid_ = make_brick_grid(ranks_.alone()
+                              ? builder_.cells(skin, particles)
+                              : builder_.cells(skin, particles, decomposition_.box(ranks_.rank(), subdomain_),
+                                               owned_ + side_.shapes().size()));
+  const auto outside = static_cast<unsigned>(grid_.count());
+  for_each(device(), owned_,
+           CellKeyItem{now_.position.data(), now_.drifting.data(), grid_, outside,
+                       particle_sort_.keys(static_cast<std::size_t>(owned_))});
+  particle_sort_.sort(device(), owned_, outside + 1);
+  copy_async(&h_results_.data()->active, particle_sort_.starts() + outside, 1, stream_);
+  copy_async(&h_results_.data()->staying, particle_sort_.starts() + outside + 1, 1, stream_);
+  wait_for(stream_);
+  owned_ = h_results_[0].staying;
+  layout_.owned = owned_, layout_.active = h_results_[0].active;
   reorder(particle_sort_.order(), owned_);
 }
 
@@ -218,28 +222,16 @@ void CudaBackend::reorder(const Index* order, Index n) {
   std::swap(now_, other_);
 }
 
-void CudaBackend::find_ghosts(const HaloBox& box) {
-  ghosts_ = 0;
-  if (box.period == Vec3{}) return;
-  const auto n = static_cast<std::size_t>(layout_.active);
-  ghost_counts_.resize(n + 1), ghost_offsets_.resize(n + 1);
-  ghost_counts_.zero(stream_);
-  for_each(device(), layout_.active, CountGhostsItem{box, now_.position.data(), ghost_counts_.data()});
-  std::size_t space = 0;
-  const auto scan = [&](void* at) {
-    require_cuda(cub::DeviceScan::ExclusiveSum(at, space, ghost_counts_.data(), ghost_offsets_.data(),
-                                               layout_.active + 1, stream_),
-                 "scan");
-  };
-  scan(nullptr);
-  space_.resize(space);
-  scan(space_.data());
-  copy_async(&h_results_.data()->index, ghost_offsets_.data() + n, 1, stream_);
-  wait_for(stream_);
-  ghosts_ = h_results_[0].index;
-  ghost_.resize(static_cast<std::size_t>(ghosts_));
-  grow_items(owned_ + ghosts_);
-  for_each(device(), layout_.active, FillGhostsItem{box, ghost_offsets_.data(), views_of(now_), owned_, ghost_.data()});
+void CudaBackend::find_ghosts(Real width) {
+  if (!decomposition_.exists()) decomposition_ = Decomposition(ranks_, make_domain_grid(model_.space, width), {}, {});
+  halo_.find(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(), layout_.active);
+  layout_.first_shape = owned_ + halo_.size();
+  layout_.shapes_meet = ranks_.is_root();
+  grow_items(layout_.first_shape);
+  const GhostNameItem item{halo_.ghosts(), halo_.field(0, now_.material.data(), owned_),
+                           halo_.field(1, now_.row_key.data(), owned_)};
+  for_each(device(), halo_.entries(), item);
+  halo_.exchange(device(), item.material, item.key);
 }
 
 // Room for so many items; the particles and ghosts stay.
@@ -250,8 +242,7 @@ void CudaBackend::grow_items(Index items) {
 
 void CudaBackend::lay_out_items(Real skin) {
   const Real width = builder_.cutoff(skin);
-  find_ghosts({model_.space.min, model_.space.max, subdomain_.period(), width});
-  layout_.first_shape = owned_ + ghosts_;
+  find_ghosts(width);
   side_.lay_out(model_.space, width, layout_);
   grow_items(layout_.items);
 
@@ -287,7 +278,7 @@ void CudaBackend::index_others() {
   if (others == 0) return;
   const auto outside = static_cast<unsigned>(grid_.count());
   for_each(device(), others,
-           OtherKeyItem{now_.position.data() + owned_, grid_, outside,
+           OtherKeyItem{now_.position.data() + owned_, halo_.size(), grid_, outside,
                         other_sort_.keys(static_cast<std::size_t>(others))});
   other_sort_.sort(device(), others, outside);
   other_items_.resize(static_cast<std::size_t>(others));
@@ -306,12 +297,18 @@ void CudaBackend::search(Real skin) {
   in.planes = planes_.data(), in.walls = static_cast<Index>(planes_.size());
   in.active = layout_.active, in.owned = owned_, in.first_shape = layout_.first_shape;
   in.first_image = layout_.first_shape + layout_.shapes, in.items = layout_.items;
+  in.shapes_meet = layout_.shapes_meet;
   in.skin = skin;
   list_.build(device(), in);
 }
 
 void CudaBackend::build_list(Real skin, StageTimers& timers) {
   settle();
+  {
+    const auto scope = timers.time(Stage::migrate);
+    wrap_positions();
+    if (!ranks_.alone()) migrate();
+  }
   {
     const auto scope = timers.time(Stage::sort_cells);
     sort_cells(skin);
@@ -332,6 +329,7 @@ void CudaBackend::build_list(Real skin, StageTimers& timers) {
   level_ = Level::state;
   layout_changed_ = false;
   ++list_builds_;
+  measure_balance();
   if (model_.integrator.particles == ParticleIntegrator::hht) size_step_arrays();
 }
 
@@ -342,20 +340,11 @@ Real CudaBackend::list_displacement() {
   const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
   max_over(device(), layout_.active, moved, result(&Results::largest));
   max_over(device(), shape_items(), shapes, result(&Results::displacement));
-  const Real particles = fetch(&Results::largest), others = fetch(&Results::displacement);
-  if (!std::isfinite(particles) || !std::isfinite(others)) return 2;
-  bound_ = std::sqrt(std::max(particles, others));
+  Real squared[2] = {fetch(&Results::largest), fetch(&Results::displacement)};
+  ranks_.max(squared);
+  if (!std::isfinite(squared[0]) || !std::isfinite(squared[1])) return 2;
+  bound_ = std::sqrt(std::max(squared[0], squared[1]));
   return bound_ / (list_skin_ / 2);
-}
-
-std::unique_ptr<Backend> make_cuda_backend(const Model& model) {
-  const std::string trouble = device_trouble();
-  if (!trouble.empty()) throw InputError(trouble);
-  const std::size_t needed = device_memory(model), free = free_device_memory();
-  if (needed > free)
-    throw InputError("the model needs about " + std::to_string(needed / 1000000) + " MB of device memory, " +
-                     std::to_string(free / 1000000) + " MB are free on " + device_name());
-  return std::make_unique<CudaBackend>(model);
 }
 
 }  // namespace scree

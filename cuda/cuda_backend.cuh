@@ -11,9 +11,9 @@
 #include "dem/backend.hpp"
 #include "dem/ledger_items.hpp"
 #include "dem/line_search.hpp"
+#include "device_halo.cuh"
 #include "device_list.cuh"
 #include "particle_arrays.cuh"
-#include "partition/halo.hpp"
 #include "pack_items.cuh"
 #include "step_graph.cuh"
 #include "sums.cuh"
@@ -27,11 +27,12 @@ struct SolverControl {
   unsigned finished_blocks;
   int products;
   int stop;
+  int alone;  // the last block decides; else the ranks do, together, after the product
 };
 
 class CudaBackend : public Backend {
  public:
-  explicit CudaBackend(const Model& model);
+  CudaBackend(const Model& model, const Ranks& ranks);
   ~CudaBackend() override;
   std::string description() const override;
 
@@ -44,6 +45,7 @@ class CudaBackend : public Backend {
   void build_list(Real skin, StageTimers& timers) override;
   std::int64_t list_entries() const override { return list_.entries(); }
   std::int64_t list_builds() const override { return list_builds_; }
+  LoadBalance balance() const override { return balance_; }
   void initial_forces() override;
 
   void begin_step(Real h) override;
@@ -80,6 +82,7 @@ class CudaBackend : public Backend {
     long long worst_id;
     Index index;
     Index leavers;
+    Index active, staying;  // particles in the search, and those that stay on this rank
   };
   Device device() const { return {stream_}; }
   // Copies one member of the results to the host, once what is queued is done.
@@ -97,17 +100,31 @@ class CudaBackend : public Backend {
   ContactMatrix matrix();
   Index shape_items() const { return layout_.items - layout_.first_shape; }
 
+  // Sums of terms over the particles of all ranks: queued, and complete once the device's part is on the host.
+  template <int N, class Item>
+  void queue_sums(const Item& item, ExactSums<N> Results::* sums) const;
+  template <int N>
+  std::array<Real, N> totals(const ExactSums<N>& sums) const;
+  // The smallest of the ids that kernels have put into worst_id on any rank.
+  long long smallest_id() const;
+
   // Parts of build_list, in their order.
+  void wrap_positions();
+  void migrate();
+  void decompose();
   void sort_cells(Real skin);
   void reorder(const Index* order, Index n);
-  void find_ghosts(const HaloBox& box);
+  void find_ghosts(Real width);
   void grow_items(Index items);
   void lay_out_items(Real skin);
   void index_others();
   void search(Real skin);
+  void measure_balance();
   void size_step_arrays();
 
-  void refresh_ghosts(Vec4* position, Vec4* velocity);
+  void refresh_ghosts(Vec4* position, Vec4* velocity) {
+    halo_.update_motion(device(), position, velocity, owned_);
+  }
   void put_shapes(ParticleArrays& arrays);
   const Vec4* stage_shapes();
   void find_shape_contacts();
@@ -126,6 +143,8 @@ class CudaBackend : public Backend {
   void resume_control(Index last);
   const VerletControl& wait_for_control();
   void queue_steps(Real h, Index steps);
+  template <class QueueOne>
+  void queue_in_turn(const std::string& key, Index steps, const QueueOne& queue_one);
   MixedViews mixed_views();
   void convert_to_mixed(Real h);
   void convert_from_mixed();
@@ -138,6 +157,7 @@ class CudaBackend : public Backend {
   void queue_shape_contacts();
 
   const Model& model_;
+  Ranks ranks_;
   Subdomain subdomain_;
   ShapeSide side_;
   NeighborBuilder builder_;  // its grid and reach; the search is the device's
@@ -155,9 +175,12 @@ class CudaBackend : public Backend {
   ParticleArrays other_;
   Index owned_ = 0;
   ItemLayout layout_;  // without its list of ghosts
-  Index ghosts_ = 0;
-  DeviceArray<Ghost> ghost_;
-  DeviceArray<Index> ghost_counts_, ghost_offsets_, other_items_;
+  Decomposition decomposition_;
+  DeviceArray<DomainCut> cuts_;
+  LoadBalance balance_;
+  Index counted_rows_ = 0;  // particles whose rows the last list has in their order; 0: they have changed since
+  mutable DeviceHalo halo_;
+  DeviceArray<Index> other_items_;
   mutable DeviceArray<unsigned char> space_;  // of library calls
   CellSort particle_sort_, other_sort_;
   BrickGrid grid_;

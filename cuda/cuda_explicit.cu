@@ -30,9 +30,22 @@ struct RunStartItem {
   }
 };
 
+// What the ranks share of the first step.
 __global__ void started_kernel(VerletControl* c, const Real* largest) {
-  c->move(std::sqrt(*largest));
+  c->shared[0] = *largest, c->shared[1] = c->outside;
+}
+
+__global__ void open_kernel(VerletControl* c) {
+  c->outside = c->shared[1] != 0;
+  c->move(std::sqrt(c->shared[0]));
   c->judge(c->outside != 0);
+}
+
+// Closes a step once the ranks have shared what it found.
+__global__ void close_kernel(VerletControl* c) {
+  if (c->stop) return;
+  c->outside = c->shared[1] != 0;
+  c->close(c->shared[0]);
 }
 
 // Goes on after a stop: with another end, or another list.
@@ -57,30 +70,29 @@ struct PlaceItem {
 // Refreshes a ghost in the arrays of the open step.
 struct RunGhostItem {
   const Ghost* ghosts;
-  Vec4 *position[2], *velocity[2];
-  Index first_ghost;
+  GhostField<Vec4> position[2], velocity[2];
   const VerletControl* control;
 
-  __device__ void operator()(Index g) const {
-    GhostItem{{ghosts, control->parity[0] == 0 ? position[0] : position[1], first_ghost},
-              {ghosts, control->parity[1] == 0 ? velocity[0] : velocity[1], first_ghost}}(g);
+  __device__ void operator()(Index entry) const {
+    MotionGhostItem{ghosts, control->parity[0] == 0 ? position[0] : position[1],
+                    control->parity[1] == 0 ? velocity[0] : velocity[1]}(entry);
   }
 };
 
 struct MixedGhostItem {
   const Ghost* ghosts;
-  MixedViews state;
+  GhostField<MixedPlace> place[2];
+  GhostField<MixedMotion> motion[2];
   QuantumGrid grid;
-  Index first_ghost;
   const VerletControl* control;
 
-  __device__ void operator()(Index g) const {
-    const int parity = control->parity[0];
-    const Ghost ghost = ghosts[g];
-    MixedPlace* places = parity == 0 ? state.place[0] : state.place[1];
-    MixedMotion* motions = parity == 0 ? state.motion[0] : state.motion[1];
-    places[first_ghost + g] = shifted(grid, places[ghost.source], ghost.shift);
-    HaloItem<MixedMotion>{ghosts, motions, first_ghost}(g);
+  __device__ void operator()(Index entry) const {
+    const bool first = control->parity[0] == 0;
+    const Ghost ghost = ghosts[entry];
+    const GhostField<MixedPlace>& places = first ? place[0] : place[1];
+    const GhostField<MixedMotion>& motions = first ? motion[0] : motion[1];
+    places.put(entry, shifted(grid, places.field[ghost.source], ghost.shift));
+    motions.put(entry, motions.field[ghost.source]);
   }
 };
 
@@ -116,13 +128,15 @@ void CudaBackend::verlet_start(Real h) {
   VerletControl& c = h_results_.data()->control;
   c = {};
   c.bound = bound_, c.half_skin = list_skin_ / 2, c.moved = VerletControl::kNoRows;
-  c.last = kEndless, c.substeps = model_.integrator.substeps;
+  c.last = kEndless, c.substeps = model_.integrator.substeps, c.alone = ranks_.alone();
   copy_async(result(&Results::control), &c, 1, stream_);
   const VerletRequest r = verlet_request(h);
   VerletViews state = r.state;
   state.position = now_.position.data(), state.velocity = now_.velocity.data();
   max_over(device(), owned_, RunStartItem{{state}, r.active, r.box, r.drifting, r.control}, result(&Results::largest));
   started_kernel<<<1, 1, 0, stream_>>>(r.control, result(&Results::largest));
+  halo_.max(device(), r.control->shared, 2);
+  open_kernel<<<1, 1, 0, stream_>>>(r.control);
   require_cuda(cudaGetLastError(), "explicit step");
   wait_for(stream_);  // the host's copy of the control is free again
   in_run_ = true;
@@ -191,14 +205,35 @@ bool CudaBackend::renew_list(StageTimers& timers) {
   return true;
 }
 
+// queue_one(k) queues the ghosts and the kernel of the k-th step from now on; key: all that its launches depend on.
+template <class QueueOne>
+void CudaBackend::queue_in_turn(const std::string& key, Index steps, const QueueOne& queue_one) {
+  if (ranks_.alone()) {
+    graph_.queue(stream_, key, steps, [&] { queue_one(0); });
+    return;
+  }
+  VerletControl* control = result(&Results::control);
+  for (Index k = 0; k < steps; ++k) {
+    queue_one(k);
+    halo_.max(device(), control->shared, 2);
+    close_kernel<<<1, 1, 0, stream_>>>(control);
+  }
+  require_cuda(cudaGetLastError(), "explicit step");
+}
+
+// The host knows where the steps that are queued find their ghosts: behind a stop nothing is read any more.
 void CudaBackend::queue_steps(Real h, Index steps) {
   const auto bytes = [](const auto& value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); };
   if (!mixed_) {
     const VerletRequest r = verlet_request(h);
-    const RunGhostItem ghosts{ghost_.data(), {r.position[0], r.position[1]}, {r.velocity[0], r.velocity[1]}, owned_,
+    const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) { return halo_.field(buffer, of[parity], owned_); };
+    const RunGhostItem ghosts{halo_.ghosts(),
+                              {field(0, r.position, 0), field(0, r.position, 1)},
+                              {field(1, r.velocity, 0), field(1, r.velocity, 1)},
                               r.control};
-    graph_.queue(stream_, bytes(r) + bytes(ghosts) + bytes(ghosts_), steps, [&] {
-      for_each(device(), ghosts_, ghosts);
+    queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, [&](Index k) {
+      for_each(device(), halo_.entries(), ghosts);
+      halo_.exchange(device(), ghosts.position[(parity_[0] + k) % 2], ghosts.velocity[(parity_[1] + k) % 2]);
       kernels_->verlet_advance(device(), r);
     });
     return;
@@ -209,9 +244,16 @@ void CudaBackend::queue_steps(Real h, Index steps) {
   r.gravity = model_.gravity;
   r.state = mixed_views(), r.grid = quanta_, r.h = h;
   r.box = subdomain_.box(), r.drifting = now_.drifting.data(), r.control = result(&Results::control);
-  const MixedGhostItem ghosts{ghost_.data(), r.state, quanta_, owned_, r.control};
-  graph_.queue(stream_, bytes(r) + bytes(ghosts) + bytes(ghosts_), steps, [&] {
-    for_each(device(), ghosts_, ghosts);
+  const MixedGhostItem ghosts{
+      halo_.ghosts(),
+      {halo_.field(0, r.state.place[0], owned_), halo_.field(0, r.state.place[1], owned_)},
+      {halo_.field(1, r.state.motion[0], owned_), halo_.field(1, r.state.motion[1], owned_)},
+      quanta_,
+      r.control};
+  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, [&](Index k) {
+    for_each(device(), halo_.entries(), ghosts);
+    const Index parity = (parity_[0] + k) % 2;
+    halo_.exchange(device(), ghosts.place[parity], ghosts.motion[parity]);
     kernels_->mixed_advance(device(), r);
   });
 }
@@ -222,7 +264,7 @@ void CudaBackend::finish(Real h) {
   const VerletRequest r = verlet_request(h);
   refresh_ghosts(r.position[parity_[0]], r.velocity[parity_[1]]);
   kernels_->verlet_finish(device(), r, result(&Results::largest));
-  if (!std::isfinite(fetch(&Results::largest))) report_not_finite(now_.force.data());
+  if (!std::isfinite(ranks_.max(fetch(&Results::largest)))) report_not_finite(now_.force.data());
   if (parity_[0] == 1) std::swap(now_.position, other_.position);
   if (parity_[1] == 0) std::swap(now_.velocity, other_.velocity);  // velocities changed arrays
   parity_[0] = parity_[1] = 0;
@@ -244,7 +286,7 @@ VerletRun CudaBackend::run_alone(Real h, Index most, bool keep_open, StageTimers
     if (c->closed == last || leaves()) break;
     const auto scope = timers.time(Stage::contact_force);
     resume_control(last);
-    queue_steps(h, std::min(last - c->closed, kQueuedSteps));
+    queue_steps(h, std::min(last - c->closed, halo_.waits() ? 1 : kQueuedSteps));
     level_ = Level::opened;
     if (idle_work_) idle_work_();
     c = &wait_for_control();

@@ -61,6 +61,12 @@ struct IsLargest {
   __device__ bool operator()(Index i) const { return norm(residual[i]) == *largest; }
 };
 
+struct DirectionGhostItem {
+  const Ghost* ghosts;
+  GhostField<Vec4> direction;
+  SCREE_HD void operator()(Index entry) const { direction.put(entry, direction.field[ghosts[entry].source]); }
+};
+
 struct FirstDirectionItem {
   DirectionItem direction;
   Vec4* d;
@@ -87,15 +93,22 @@ struct SolverItem {
   }
 };
 
+__device__ void decide(SolverControl* c) {
+  c->stop = std::sqrt(c->largest) <= c->tolerance;
+  c->largest = 0;
+  ++c->products;
+}
+
+__global__ void decide_kernel(SolverControl* c) {
+  if (!c->stop) decide(c);
+}
+
 __global__ void solver_kernel(Index n, const __grid_constant__ SolverItem item, SolverControl* c) {
   if (c->stop) return;
   const Index i = thread_index();
   block_max(i < n ? item(i) : 0, &c->largest);
   if (threadIdx.x > 0) return;
-  if (!is_last_block(&c->finished_blocks)) return;
-  c->stop = std::sqrt(c->largest) <= c->tolerance;
-  c->largest = 0;
-  ++c->products;
+  if (is_last_block(&c->finished_blocks) && c->alone) decide(c);
 }
 
 }  // namespace
@@ -104,18 +117,19 @@ void CudaBackend::report_not_finite(const Vec3* force) const {
   require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
   for_each(device(), owned_,
            SmallestIdItem<IsNotFinite>{now_.row_key.data(), {force}, result(&Results::worst_id)});
-  throw SimulationError("stage contact_force: the force on particle " +
-                        std::to_string(fetch(&Results::worst_id)) + " is not finite");
+  throw SimulationError("stage contact_force: the force on particle " + std::to_string(smallest_id()) +
+                        " is not finite");
 }
 
 GlobalId CudaBackend::worst_particle() const {
-  if (owned_ == 0) return -1;
   max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
+  halo_.max(device(), result(&Results::largest), 1);
   require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
   for_each(device(), owned_,
            SmallestIdItem<IsLargest>{now_.row_key.data(), {residual_.data(), result(&Results::largest)},
                                      result(&Results::worst_id)});
-  return fetch(&Results::worst_id);
+  const long long worst = smallest_id();
+  return worst < kNoId ? worst : -1;
 }
 
 void CudaBackend::initial_forces() {
@@ -154,7 +168,7 @@ Real CudaBackend::step_displacement() {
   max_over(device(), layout_.active, moved, result(&Results::largest));
   max_over(device(), shape_items(), shapes, result(&Results::displacement));
   const Real particles = fetch(&Results::largest);
-  return std::sqrt(std::max(particles, fetch(&Results::displacement)));
+  return std::sqrt(ranks_.max(std::max(particles, fetch(&Results::displacement))));
 }
 
 ParticleNorms CudaBackend::contact_force() {
@@ -171,14 +185,18 @@ ParticleNorms CudaBackend::contact_force() {
     fetch_shape_contacts(stream_);
   }
   if (line_search_.is_open())
-    exact_sums(device(), owned_, SlopeItem{residual_.data(), correction_.data()}, result(&Results::slope));
+    queue_sums(SlopeItem{residual_.data(), correction_.data()}, &Results::slope);
   copy_async(&h_results_.data()->slope, result(&Results::slope), 1, stream_);
-  const StepNorms largest = fetch(&Results::norms);
+  StepNorms largest = fetch(&Results::norms);
+  Real maxima[4] = {largest.residual, largest.correction_bound, largest.force, largest.stiffening};
+  ranks_.max(maxima);
+  largest.residual = maxima[0], largest.correction_bound = maxima[1];
+  largest.force = maxima[2], largest.stiffening = maxima[3];
   if (!std::isfinite(largest.residual)) report_not_finite(residual_.data());
 
   force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
   right_hand_side_norm_ = largest.residual;
-  if (line_search_.is_open()) line_search_.look(h_results_[0].slope.sum(0));
+  if (line_search_.is_open()) line_search_.look(totals(h_results_[0].slope)[0]);
   return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
@@ -204,7 +222,7 @@ void CudaBackend::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
   matrix.d = direction_[0].data();
   for_each(device(), owned_, matrix);
   max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
-  right_hand_side_norm_ = fetch(&Results::largest);
+  right_hand_side_norm_ = ranks_.max(fetch(&Results::largest));
   // Without a correction the bodies alone would notice.
   if (!std::isfinite(right_hand_side_norm_)) report_not_finite(residual_.data());
 }
@@ -212,7 +230,7 @@ void CudaBackend::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
 // Solves for correction_ in batches of products, so that the host seldom waits; returns the number of products.
 int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
   constexpr int kBatch = 8;
-  h_solver_[0] = {tolerance, 0, 0, 0, 0};
+  h_solver_[0] = {tolerance, 0, 0, 0, 0, ranks_.alone()};
   copy_async(solver_.data(), h_solver_.data(), 1, stream_);
   // Ghosts are refreshed, shapes do not move.
   const std::size_t shapes = static_cast<std::size_t>(shape_items()) * sizeof(Vec4);
@@ -226,11 +244,17 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
   for_each(device(), owned_, FirstDirectionItem{direction(), direction_[0].data(), correction_.data()});
   for (int product = 0; product < kMostProducts; ++product) {
     DeviceArray<Vec4>&d = direction_[product % 2], &next = direction_[1 - product % 2];
-    for_each(device(), ghosts_, HaloItem<Vec4>{ghost_.data(), d.data(), owned_});
+    const DirectionGhostItem ghosts{halo_.ghosts(), halo_.field(0, d.data(), owned_)};
+    for_each(device(), halo_.entries(), ghosts);
+    halo_.exchange(device(), ghosts.direction);
     weights.advance();
     SolverItem item{matrix, direction(), next.data(), correction_.data()};
     item.subtract.d = d.data(), item.subtract.residual = residual_.data();
-    solver_kernel<<<blocks_for(owned_), kThreadsPerBlock, 0, stream_>>>(owned_, item, solver_.data());
+    solver_kernel<<<std::max(1u, blocks_for(owned_)), kThreadsPerBlock, 0, stream_>>>(owned_, item, solver_.data());
+    if (!ranks_.alone()) {
+      halo_.max(device(), &solver_.data()->largest, 1);
+      decide_kernel<<<1, 1, 0, stream_>>>(solver_.data());
+    }
     require_cuda(cudaGetLastError(), "linear solve");
     if (product % kBatch != kBatch - 1) continue;
     copy_async(h_solver_.data(), solver_.data(), 1, stream_);
@@ -253,21 +277,21 @@ ParticleCorrection CudaBackend::particle_correct() {
     out.iterations =
         solve(system, solver_tolerance(model_.integrator.residual_tolerance, force_scale_, right_hand_side));
     max_over(device(), owned_, correct_item(1), result(&Results::largest));
-    exact_sums(device(), owned_, SlopeItem{right_hand_side_.data(), correction_.data()}, result(&Results::slope));
+    queue_sums(SlopeItem{right_hand_side_.data(), correction_.data()}, &Results::slope);
   }
   for_each(device(), owned_, NewmarkItem{step_views()});
   refresh_ghosts(now_.position.data(), now_.velocity.data());
   if (right_hand_side > 0) {
     copy_async(&h_results_.data()->largest, result(&Results::largest), 1, stream_);
-    line_search_.open(fetch(&Results::slope).sum(0));
-    out.correction = h_results_[0].largest;
+    line_search_.open(totals(fetch(&Results::slope))[0]);
+    out.correction = ranks_.max(h_results_[0].largest);
   }
   return out;
 }
 
 Real CudaBackend::error() {
   max_over(device(), owned_, StepErrorItem{step_views()}, result(&Results::largest));
-  return fetch(&Results::largest);
+  return ranks_.max(fetch(&Results::largest));
 }
 
 void CudaBackend::accept() {

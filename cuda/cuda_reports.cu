@@ -70,16 +70,16 @@ std::vector<Leaver> CudaBackend::outside() const {
     return static_cast<std::size_t>(fetch(&Results::leavers));
   };
   std::vector<Leaver> leavers(find());
-  if (leavers.empty()) return leavers;
+  if (!ranks_.any(!leavers.empty())) return leavers;
   if (leavers.size() > leavers_.size()) {  // not all were kept; now there is room for them
     leavers_.resize_clean(leavers.size(), stream_);
     find();
   }
-  require_cuda(cudaMemcpyAsync(leavers.data(), leavers_.data(), leavers.size() * sizeof(Leaver),
-                               cudaMemcpyDeviceToHost, stream_),
-               "cudaMemcpyAsync");
+  copy_async(leavers.data(), leavers_.data(), leavers.size(), stream_);
   wait_for(stream_);
-  for (Leaver& leaver : leavers) leaver.lost = subdomain_.beyond_wall(leaver.position);
+  for (Leaver& leaver : leavers)
+    leaver.lost = subdomain_.beyond_wall(leaver.position), leaver.rank = ranks_.rank();
+  leavers = ranks_.gather_everywhere(std::move(leavers));
   std::sort(leavers.begin(), leavers.end(),
             [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
   return leavers;
@@ -88,7 +88,8 @@ std::vector<Leaver> CudaBackend::outside() const {
 void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
   if (leavers.empty()) return;
   std::vector<Index> particles;
-  for (const Leaver& leaver : leavers) particles.push_back(leaver.local_index);
+  for (const Leaver& leaver : leavers)
+    if (leaver.rank == ranks_.rank()) particles.push_back(leaver.local_index);
   DeviceArray<Index> d_particles;
   d_particles.upload(particles, stream_);
   for_each(device(), static_cast<Index>(particles.size()), MarkItem{d_particles.data(), now_.drifting.data()});
@@ -110,6 +111,7 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
   select(space_.data());
   owned_ = fetch(&Results::index);
   reorder(staying.data(), owned_);
+  counted_rows_ = 0;
   wait_for(stream_);  // before the arrays above go
 }
 
@@ -124,15 +126,13 @@ ParticleLedger CudaBackend::ledger(Real verlet_step) {
                         now_.image.data(),        now_.contact_loss.data(),
                         now_.integrator_loss.data(), elastic.data(),    pairs.data(),
                         model_.gravity,           subdomain_.period(),  verlet_step};
-  exact_sums(device(), owned_, item, result(&Results::ledger));
+  queue_sums(item, &Results::ledger);
   require_cuda(cudaMemsetAsync(result(&Results::index), 0, sizeof(Index), stream_), "cudaMemsetAsync");
   for_each(device(), owned_, CountDriftingItem{now_.drifting.data(), result(&Results::index)});
   copy_async(&h_results_.data()->index, result(&Results::index), 1, stream_);
-  const ExactSums<kLedgerTerms>& sums = fetch(&Results::ledger);
-  Real totals[kLedgerTerms];
-  for (int k = 0; k < kLedgerTerms; ++k) totals[k] = sums.sum(k);
-  ParticleLedger out = make_particle_ledger(totals, side_);
-  out.drifting = h_results_[0].index;
+  const std::array<Real, kLedgerTerms> sums = totals(fetch(&Results::ledger));
+  ParticleLedger out = make_particle_ledger(sums.data(), side_);
+  out.drifting = ranks_.sum(std::int64_t{h_results_[0].index});
   return out;
 }
 
@@ -180,7 +180,7 @@ ParticlePack CudaBackend::pack_particles() {
 
 ShapePack CudaBackend::pack_shapes() {
   find_shape_contacts();
-  return side_.pack(layout_, Ranks());
+  return side_.pack(layout_, ranks_);
 }
 
 }  // namespace scree

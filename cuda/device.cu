@@ -10,9 +10,25 @@ std::size_t& device_bytes_in_use() {
   return bytes;
 }
 
+void choose_device(int number) {
+  int devices = 0;
+  if (cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0)
+    require_cuda(cudaSetDevice(number % devices), "cudaSetDevice");
+}
+
+namespace {
+
+int this_device() {
+  int device = 0;
+  require_cuda(cudaGetDevice(&device), "cudaGetDevice");
+  return device;
+}
+
+}  // namespace
+
 std::size_t multiprocessors() {
   int count = 0;
-  require_cuda(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, 0), "cudaDeviceGetAttribute");
+  require_cuda(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, this_device()), "cudaDeviceGetAttribute");
   return static_cast<std::size_t>(count);
 }
 
@@ -32,8 +48,8 @@ std::string trouble_of(cudaError_t status) {
     case cudaErrorNoKernelImageForDevice:
     case cudaErrorUnsupportedPtxVersion: {
       int major = 0, minor = 0;
-      cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, 0);
-      cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, 0);
+      cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, this_device());
+      cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, this_device());
       return "the GPU is of generation " + std::to_string(major) + "." + std::to_string(minor) +
              ", this program was built for " SCREE_CUDA_ARCHITECTURES " (CMAKE_CUDA_ARCHITECTURES)";
     }
@@ -57,7 +73,7 @@ std::string device_trouble() {
 
 std::string device_name() {
   cudaDeviceProp properties{};
-  require_cuda(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
+  require_cuda(cudaGetDeviceProperties(&properties, this_device()), "cudaGetDeviceProperties");
   return properties.name;
 }
 

@@ -18,6 +18,9 @@ struct Device {
   cudaStream_t stream = nullptr;
 };
 
+// Takes the GPU of this number for this process, or the one that comes to its turn where there are fewer.
+void choose_device(int number);
+
 // Of the GPU.
 std::size_t multiprocessors();
 

@@ -30,7 +30,7 @@ __device__ bool excluded(const ListInput& in, Index i, Index j) {
   if (i == j) return true;
   if (i < in.first_shape) return false;
   if (j < in.owned) return false;
-  if (j < in.first_shape || i >= in.first_image) return true;
+  if (j < in.first_shape || i >= in.first_image || !in.shapes_meet) return true;
   return !in.bodies.may_touch(i - in.first_shape, j - in.first_shape);
 }
 
@@ -38,8 +38,8 @@ __device__ bool excluded(const ListInput& in, Index i, Index j) {
 template <class Visit>
 __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
   const Vec4 p = in.position[i];
-  const CellGrid& cells = in.grid.cells;
-  const CellPlace c = cells.place(xyz(p));
+  const CellGrid& cells = in.grid.cells.own;
+  const CellPlace c = in.grid.cells.place(xyz(p));
   if (c.x < 0) return;
   const auto reaches = [&](Index j) {
     const Vec4 q = in.position[j];
@@ -47,6 +47,13 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
     const Real reach = p.w + q.w + in.skin;
     return dot(d, d) < reach * reach;
   };
+  // The cells of one rank of several hold only the shapes that reach its particles: where shapes meet, they look at
+  // each other one by one.
+  const bool shapes_apart = i >= in.first_shape && in.shapes_meet && !in.grid.cells.same;
+  const Index end = shapes_apart ? in.first_shape : in.items;
+  if (shapes_apart)
+    for (Index j = in.first_shape; j < in.items; ++j)
+      if (reaches(j) && in.grid.cells.place(xyz(in.position[j])).x >= 0 && !excluded(in, i, j)) visit(j);
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
   // Cells of one brick beside each other in x are contiguous: one run of items, or two where a brick ends.
   const Index split = min(x1 + 1, in.grid.next_brick(x0));
@@ -60,8 +67,8 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
         for (Index k = 0; k < all; k += 2) {  // two at once: loads that do not wait for each other
           const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
           const bool reached = reaches(j[1]), hit[2] = {reaches(j[0]), reached && k + 1 < all};
-          if (hit[0] && !excluded(in, i, j[0])) visit(j[0]);
-          if (hit[1] && !excluded(in, i, j[1])) visit(j[1]);
+          if (hit[0] && j[0] < end && !excluded(in, i, j[0])) visit(j[0]);
+          if (hit[1] && j[1] < end && !excluded(in, i, j[1])) visit(j[1]);
         }
       };
       visit_runs(in.particle_starts, [](Index k) { return k; });
@@ -95,7 +102,7 @@ __device__ bool near(const ListInput& in, Vec4 p, const WallPlane& wall) {
 }
 
 __device__ bool collides_with_walls(const ListInput& in, Index i) {
-  return i < in.active || (i >= in.first_shape && i < in.first_image);
+  return i < in.active || (i >= in.first_shape && i < in.first_image && in.shapes_meet);
 }
 
 __device__ Index near_walls(const ListInput& in, Index i) {

@@ -132,6 +132,7 @@ struct ListInput {
   const WallPlane* planes;
   Index walls;
   Index active, owned, first_shape, first_image, items;  // first_image: of the shapes' images
+  bool shapes_meet;  // whether this rank has the contacts of shapes with each other and with walls
   Real skin;                                              // [m]
 };
 

@@ -14,10 +14,8 @@ struct ExactSums {
   Real largest[N];
   unsigned long long high[N], low[N];
 
-  Real sum(int k) const {
-    const __int128 quanta = static_cast<__int128>(static_cast<long long>(high[k])) * (1ll << 32) +
-                            static_cast<__int128>(low[k]);
-    return ReproducibleScale(largest[k]).value(quanta);
+  __int128 quanta(int k) const {
+    return static_cast<__int128>(static_cast<long long>(high[k])) * (1ll << 32) + static_cast<__int128>(low[k]);
   }
 };
 
@@ -52,13 +50,14 @@ __global__ void add_terms_kernel(Index n, const Item item, ExactSums<N>* sums) {
   if (threadIdx.x < N) atomicAdd(&sums->high[threadIdx.x], high[threadIdx.x]), atomicAdd(&sums->low[threadIdx.x], low[threadIdx.x]);
 }
 
-// Queues the sums of item(i).value[0 ... N-1] over i = 0 ... n-1 into *d_sums.
-template <int N, class Item>
-void exact_sums(Device device, Index n, const Item& item, ExactSums<N>* d_sums) {
+// Queues the sums of item(i).value[0 ... N-1] over i = 0 ... n-1 into *d_sums. share(largest) is called between the two
+// passes, where the largest terms become those of all ranks.
+template <int N, class Item, class Share>
+void exact_sums(Device device, Index n, const Item& item, ExactSums<N>* d_sums, const Share& share) {
   require_cuda(cudaMemsetAsync(d_sums, 0, sizeof(ExactSums<N>), device.stream), "exact_sums");
-  if (n <= 0) return;
-  largest_terms_kernel<N><<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item, d_sums);
-  add_terms_kernel<N><<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item, d_sums);
+  if (n > 0) largest_terms_kernel<N><<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item, d_sums);
+  share(d_sums->largest);
+  if (n > 0) add_terms_kernel<N><<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item, d_sums);
   require_cuda(cudaGetLastError(), "exact_sums");
 }
 

@@ -152,7 +152,12 @@ const TableKeys& parallel_keys() {
            .otherwise("0.2")
            .about(
                "The ranks' boxes are cut anew where the largest work of a rank is more than this share above "
-               "the mean.")},
+               "the mean."),
+       text("transport")
+           .one_of({"auto", "cuda-aware", "nccl", "staged"})
+           .otherwise("\"auto\"")
+           .about("How ghosts travel between GPUs: by an MPI library that takes device memory, by NCCL, or "
+                  "through host memory. auto: the first of these that works here.")},
       ""};
   return keys;
 }

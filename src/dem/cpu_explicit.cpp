@@ -35,11 +35,19 @@ VerletRun CpuBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers
   VerletRun run{0, true};
   while (run.closed < most && run.open) {
     if (list_displacement() > 1) build_list(model_.contact.skin, timers);
-    const auto scope = timers.time(Stage::contact_force);
-    run.open = (keep_open || run.closed + 1 < most) && !outside_;
-    run.open ? verlet_advance(h) : verlet_finish(h);
-    ++run.closed, ++closed_;
-    if (run.open) share_step();
+    const auto refresh = [&] {
+      const auto scope = timers.time(Stage::update_halo);
+      refresh_ghosts();
+    };
+    refresh();
+    {
+      const auto scope = timers.time(Stage::contact_force);
+      run.open = (keep_open || run.closed + 1 < most) && !outside_;
+      run.open ? verlet_advance(h) : verlet_finish(h);
+      ++run.closed, ++closed_;
+      if (run.open) share_step();
+    }
+    if (!run.open) refresh();  // with the velocities at the end of the step
   }
   return run;
 }
@@ -50,7 +58,6 @@ void CpuBackend::shape_contacts() {
 }
 
 void CpuBackend::verlet_advance(Real h) {
-  refresh_ghosts();
   find_shape_contacts(views());
   side_.book_losses(h);
   step_bound_ = std::sqrt(kernels_->verlet_advance(views(), model_.gravity, layout_.owned,
@@ -61,7 +68,6 @@ void CpuBackend::verlet_advance(Real h) {
 }
 
 void CpuBackend::verlet_finish(Real h) {
-  refresh_ghosts();
   find_shape_contacts(views());
   side_.book_losses(h);
   const Real squared =
@@ -70,7 +76,6 @@ void CpuBackend::verlet_finish(Real h) {
   if (!std::isfinite(ranks_.max(squared))) report_not_finite(store_.force);
   std::swap(store_.velocity, spare_velocity_);
   opened_ = false;
-  refresh_ghosts();
 }
 
 }  // namespace scree

@@ -112,6 +112,8 @@ void CpuBackend::build_list(Real skin, StageTimers& timers) {
   displacement_bound_ = step_bound_ = shape_bound_ = 0;
   layout_changed_ = false;
   ++list_builds_;
+  balance_.halo = {store_.owned, halo_.size(), halo_.receivers(),
+                   static_cast<std::int64_t>(halo_.sent()) * 2 * static_cast<std::int64_t>(sizeof(Vec4))};
   if (!ranks_.alone()) measure_balance();
   if (model_.integrator.particles == ParticleIntegrator::hht) size_step_arrays();
 }

@@ -28,11 +28,12 @@ std::size_t device_memory_in_use();
 inline constexpr std::size_t kSlotsPerItem = 16;
 inline constexpr double kListSlack = 1.15;
 
-// Device memory that the backend takes for this model [B]: what `scree check` prints. An estimate from the
-// model alone, the same on machines without a GPU.
+// Device memory that the backend takes for this rank's part of the model [B]: what `scree check` prints. An
+// estimate from the model alone, the same on machines without a GPU.
 std::size_t device_memory(const Model& model);
 
-// Throws InputError where there is no usable GPU, or where the model does not fit into its free memory.
-std::unique_ptr<Backend> make_cuda_backend(const Model& model);
+// Each rank of a host takes a GPU of its own, as far as there are so many. Throws InputError, on all ranks,
+// where there is no usable GPU on one, or where the model does not fit into its free memory. Collective.
+std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks = {});
 
 }  // namespace scree

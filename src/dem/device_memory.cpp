@@ -83,8 +83,7 @@ std::size_t device_memory(const Model& model) {
   const bool periodic = n.ghosts > 0;
   const double spare = periodic ? 1.125 : 1;  // arrays that grow when ghosts are found
   double bytes = n.items * kItemArrays * spare + n.particles * kParticleArrays;
-  bytes +=
-      n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays + n.particles * 2 * sizeof(Index) : 0);
+  bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays : 0);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
   bytes += n.items * kListArrays + n.slots * sizeof(Index);
   if (explicit_steps) bytes += (n.items + n.slots) * sizeof(Index);  // pruned rows

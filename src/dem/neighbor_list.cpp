@@ -45,26 +45,40 @@ SearchCells NeighborBuilder::cells(Real skin, std::int64_t particles, const Doma
   out.own = make_cell_grid(finite(box.min, model_.space.min), finite(box.max, model_.space.max),
                            model_.space.dimension, cutoff(skin), most_cells(items));
   out.same = false;
+  out.box = box, out.reach = cutoff(skin) * (1 + kBoxRoundOff);
   return out;
 }
 
-void NeighborBuilder::sort_into_cells(const ParticleStore& store, const ItemLayout& layout,
-                                      const SearchCells& cells) {
-  cell_start_.assign(static_cast<std::size_t>(cells.own.count()) + 1, 0);
-  cell_of_.resize(static_cast<std::size_t>(layout.items));
-  for (Index i = 0; i < layout.items; ++i) {
-    const bool searched = i < layout.active || i >= layout.owned;
-    const Index cell = searched ? cells.cell(xyz(store.position[i])) : -1;
-    cell_of_[i] = cell;
-    if (cell >= 0) ++cell_start_[cell + 1];
+template <class Cell>
+void NeighborBuilder::SortedItems::sort(const CellGrid& cells, Index count, const Cell& cell) {
+  grid = cells;
+  start.assign(static_cast<std::size_t>(grid.count()) + 1, 0);
+  cell_of.resize(static_cast<std::size_t>(count));
+  for (Index i = 0; i < count; ++i) {
+    cell_of[i] = cell(i);
+    if (cell_of[i] >= 0) ++start[cell_of[i] + 1];
   }
-  for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
-  cell_items_.resize(static_cast<std::size_t>(cell_start_.back()));
-  std::vector<Index>& next = cell_start_;  // shifted by one slot while filling, restored below
-  for (Index i = 0; i < layout.items; ++i)
-    if (cell_of_[i] >= 0) cell_items_[next[cell_of_[i]]++] = i;
+  for (std::size_t c = 1; c < start.size(); ++c) start[c] += start[c - 1];
+  items.resize(static_cast<std::size_t>(start.back()));
+  std::vector<Index>& next = start;  // shifted by one slot while filling, restored below
+  for (Index i = 0; i < count; ++i)
+    if (cell_of[i] >= 0) items[next[cell_of[i]]++] = i;
   for (std::size_t c = next.size() - 1; c > 0; --c) next[c] = next[c - 1];
   next[0] = 0;
+}
+
+// Over the searched shapes, wherever they are.
+CellGrid NeighborBuilder::shape_grid(const ParticleStore& store, const ItemLayout& layout,
+                                     const SearchCells& cells, Real skin) const {
+  Vec3 min = model_.space.max, max = model_.space.min;
+  for (Index i = layout.first_shape; i < layout.items; ++i) {
+    const Vec3 p = xyz(store.position[i]);
+    if (cells.space.cell(p) < 0) continue;
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  }
+  return make_cell_grid(min, max, model_.space.dimension, cutoff(skin),
+                        most_cells(layout.items - layout.first_shape));
 }
 
 // Which pairs a row leaves out: an image of a shape sees owned particles only (its contacts with other shapes
@@ -79,21 +93,23 @@ bool NeighborBuilder::excluded(const ItemLayout& layout, Index i, Index j) const
                             shapes_.items()[layout.shape_of(j)].body);
 }
 
-void NeighborBuilder::collect_row(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid,
-                                  Index i, NeighborList& list) {
+void NeighborBuilder::collect_row(const ParticleStore& store, const ItemLayout& layout,
+                                  const SortedItems& sorted, Index i, Index end, NeighborList& list) const {
+  const CellGrid& grid = sorted.grid;
   const Vec4 p = store.position[i];
-  const Index cell = cell_of_[i];
+  const Index cell = sorted.cell_of[i];
+  if (cell < 0) return;
   const Index cx = cell % grid.cells[0], cy = cell / grid.cells[0] % grid.cells[1],
               cz = cell / (grid.cells[0] * grid.cells[1]);
   const Index x0 = std::max(cx - 1, 0), x1 = std::min(cx + 1, grid.cells[0] - 1);
   for (Index z = std::max(cz - 1, 0); z <= std::min(cz + 1, grid.cells[2] - 1); ++z)
     for (Index y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.cells[1] - 1); ++y)
-      for (Index k = cell_start_[grid.index(x0, y, z)]; k < cell_start_[grid.index(x1, y, z) + 1]; ++k) {
-        const Index j = cell_items_[k];
+      for (Index k = sorted.start[grid.index(x0, y, z)]; k < sorted.start[grid.index(x1, y, z) + 1]; ++k) {
+        const Index j = sorted.items[k];
         const Vec4 q = store.position[j];
         const Vec3 d = xyz(p) - xyz(q);
         const Real reach = p.w + q.w + list.skin;
-        if (dot(d, d) < reach * reach && !excluded(layout, i, j)) list.neighbors.push_back(j);
+        if (dot(d, d) < reach * reach && j < end && !excluded(layout, i, j)) list.neighbors.push_back(j);
       }
 }
 
@@ -133,11 +149,28 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
   list.skin = skin;
   list.neighbors.clear();
   list.offsets.assign(static_cast<std::size_t>(layout.items) + 1, 0);
-  sort_into_cells(store, layout, cells);
+  // Shapes that reach no particle of this rank are left out of its cells, whose edges they would crowd.
+  near_.sort(cells.own, layout.items, [&](Index i) {
+    const Vec3 p = xyz(store.position[i]);
+    const bool searched = i < layout.active || (i >= layout.owned && i < layout.first_shape) ||
+                          (i >= layout.first_shape && cells.reaches(p));
+    return searched ? cells.cell(p) : -1;
+  });
+  const bool shapes_apart = layout.shapes_meet && !cells.same && layout.items > layout.first_shape;
+  if (shapes_apart) {
+    const CellGrid grid = shape_grid(store, layout, cells, skin);
+    all_shapes_.sort(grid, layout.items, [&](Index i) {
+      const Vec3 p = xyz(store.position[i]);
+      return i >= layout.first_shape && cells.space.cell(p) >= 0 ? grid.nearest(p) : -1;
+    });
+  }
   for (Index i = 0; i < layout.items; ++i) {
     const Index begin = static_cast<Index>(list.neighbors.size());
-    const bool has_row = i < layout.active || i >= layout.first_shape;
-    if (has_row && cell_of_[i] >= 0) collect_row(store, layout, cells.own, i, list);
+    const bool is_shape = i >= layout.first_shape;
+    if (i < layout.active || is_shape)
+      collect_row(store, layout, near_, i, is_shape && shapes_apart ? layout.first_shape : layout.items,
+                  list);
+    if (is_shape && shapes_apart) collect_row(store, layout, all_shapes_, i, layout.items, list);
     order_row(store, layout, list.neighbors.data() + begin, list.neighbors.data() + list.neighbors.size());
     if (list.neighbors.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
       throw SimulationError("stage neighbors: more neighbours than one rank can count");

@@ -45,12 +45,20 @@ struct SearchCells {
   CellGrid space;  // the items in one of its cells are searched, on any number of ranks the same
   CellGrid own;    // over the box of this rank; with one rank the same
   bool same = true;
+  DomainBox box{};  // of this rank, unless same
+  Real reach = 0;   // of the list past the box [m]
 
-  // -1 for items that are not searched.
-  Index cell(Vec3 p) const {
-    const Index cell = space.cell(p);
-    return cell < 0 || same ? cell : own.nearest(p);
+  // In `own`; x is -1 for items that are not searched.
+  SCREE_HD CellPlace place(Vec3 p) const {
+    const CellPlace c = space.place(p);
+    return c.x < 0 || same ? c : own.nearest_place(p);
   }
+  Index cell(Vec3 p) const {
+    const CellPlace c = place(p);
+    return c.x < 0 ? -1 : own.index(c.x, c.y, c.z);
+  }
+  // Whether a shape there can touch a particle of this rank.
+  SCREE_HD bool reaches(Vec3 p) const { return same || box.reaches(p, reach); }
 };
 
 class NeighborBuilder {
@@ -69,9 +77,21 @@ class NeighborBuilder {
              NeighborList& list);
 
  private:
-  void sort_into_cells(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells);
-  void collect_row(const ParticleStore& store, const ItemLayout& layout, const CellGrid& grid, Index i,
-                   NeighborList& list);
+  // Items in the order of their cells.
+  struct SortedItems {
+    CellGrid grid;
+    std::vector<Index> start, items;  // [cells + 1], [searched]
+    std::vector<Index> cell_of;       // [all items]; -1 for those that are not searched
+
+    // cell(item): where it belongs, or -1.
+    template <class Cell>
+    void sort(const CellGrid& cells, Index count, const Cell& cell);
+  };
+  CellGrid shape_grid(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
+                      Real skin) const;
+  // Adds the neighbours of item i among the sorted items before `end`.
+  void collect_row(const ParticleStore& store, const ItemLayout& layout, const SortedItems& sorted, Index i,
+                   Index end, NeighborList& list) const;
   bool excluded(const ItemLayout& layout, Index i, Index j) const;
   void order_row(const ParticleStore& store, const ItemLayout& layout, Index* first, Index* last) const;
   void collect_walls(const ParticleStore& store, const ItemLayout& layout, NeighborList& list) const;
@@ -79,7 +99,8 @@ class NeighborBuilder {
   const Model& model_;
   const BodyShapes& shapes_;
   Real largest_radius_ = 0;
-  std::vector<Index> cell_start_, cell_items_, cell_of_;
+  SortedItems near_;        // what can touch this rank's particles, and those
+  SortedItems all_shapes_;  // where shapes meet on a rank whose cells are not those of the space
 };
 
 }  // namespace scree

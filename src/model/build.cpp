@@ -65,7 +65,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   build_particles(root, model, names, share);
   build_contact(root, model, names);
   build_output(root, names, model);
-  model.parallel.imbalance = root.table("parallel").real("imbalance");
+  build_parallel(root, model);
   check_start_positions(root, model, share, log);
   check_steps(root, model, log);
   return model;
@@ -148,6 +148,16 @@ void build_time(const DeckTable& deck, Model& model) {
 template <class T>
 void add_once(std::vector<T>& list, T value) {
   if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
+void build_parallel(const DeckTable& deck, Model& model) {
+  const DeckTable& table = deck.table("parallel");
+  model.parallel.imbalance = table.real("imbalance");
+  const std::string transport = table.text("transport");
+  model.parallel.transport = transport == "cuda-aware" ? Transport::cuda_aware
+                             : transport == "nccl"     ? Transport::nccl
+                             : transport == "staged"   ? Transport::staged
+                                                       : Transport::automatic;
 }
 
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model) {

@@ -18,6 +18,7 @@ void build_force_elements(const DeckTable& deck, Model& model, const ModelNames&
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
+void build_parallel(const DeckTable& deck, Model& model);
 
 // A time function from a quantity of the deck.
 TimeFunction build_time_function(const DeckTable& table);

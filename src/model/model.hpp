@@ -93,9 +93,13 @@ struct Output {
   std::vector<GlobalId> history_particles;  // global ids
 };
 
+// How ghosts travel between the GPUs of several ranks.
+enum class Transport { automatic, cuda_aware, nccl, staged };
+
 // How the particles are spread over the ranks; no result depends on it.
 struct Parallel {
   Real imbalance = 0.2;  // boxes are cut anew past it: largest work of a rank over the mean, less 1
+  Transport transport = Transport::automatic;
 };
 
 struct Model {

@@ -37,15 +37,19 @@ struct CellGrid {
     const CellPlace c = place(p);
     return c.x < 0 ? -1 : index(c.x, c.y, c.z);
   }
-  // Cell of a point, or the nearest one: points within a cell of each other are in neighbouring cells.
-  SCREE_HD Index nearest(Vec3 p) const {
+  // Of the cell of a point, or the nearest one: points within a cell of each other are in neighbouring cells.
+  SCREE_HD CellPlace nearest_place(Vec3 p) const {
     const auto along = [](Real at, Index count) {
       at = std::floor(at);
       return !(at > 0) ? Index(0) : at < count ? static_cast<Index>(at) : count - 1;
     };
-    return index(along((p.x - origin.x) * inverse_size.x, cells[0]),
-                 along((p.y - origin.y) * inverse_size.y, cells[1]),
-                 layer ? 0 : along((p.z - origin.z) * inverse_size.z, cells[2]));
+    return {along((p.x - origin.x) * inverse_size.x, cells[0]),
+            along((p.y - origin.y) * inverse_size.y, cells[1]),
+            layer ? 0 : along((p.z - origin.z) * inverse_size.z, cells[2])};
+  }
+  Index nearest(Vec3 p) const {
+    const CellPlace c = nearest_place(p);
+    return index(c.x, c.y, c.z);
   }
 };
 

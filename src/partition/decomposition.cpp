@@ -19,16 +19,6 @@ constexpr Real Vec3::*kAxes[3] = {&Vec3::x, &Vec3::y, &Vec3::z};
 
 }  // namespace
 
-Index DomainGrid::cell(int axis, Real x) const {
-  const Real at = std::floor((x - min.*kAxes[axis]) / edge.*kAxes[axis]);
-  if (!(at > 0)) return 0;
-  return at < cells[axis] ? static_cast<Index>(at) : cells[axis] - 1;
-}
-
-Real DomainGrid::lower_side(int axis, Index cell) const {
-  return min.*kAxes[axis] + cell * edge.*kAxes[axis];
-}
-
 DomainGrid make_domain_grid(const Space& space, Real width) {
   DomainGrid grid;
   grid.min = space.min, grid.edge = {1, 1, 1};
@@ -54,10 +44,6 @@ struct Decomposition::Histograms {
   std::vector<std::int64_t> weight;
 };
 
-Index Decomposition::layer(const Node& node, Vec4 p) const {
-  return grid_.cell(node.axis, xyz(p).*kAxes[node.axis]);
-}
-
 Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::span<const Vec4> position,
                              std::span<const std::int64_t> weight)
     : grid_(grid), boxes_(static_cast<std::size_t>(ranks.size())) {
@@ -67,23 +53,25 @@ Decomposition::Decomposition(const Ranks& ranks, const DomainGrid& grid, std::sp
         std::to_string(static_cast<std::int64_t>(grid.count())) +
         " cells as wide as the halo (a largest diameter and the skin), and a subdomain must not be "
         "narrower; start at most so many ranks");
-  nodes_.push_back({{{0, 0, 0}, {grid.cells[0], grid.cells[1], grid.cells[2]}}, 0, ranks.size()});
-  std::vector<int> node_of(position.size(), 0);
-  const auto node = [&](std::size_t i) -> const Node& {
-    return nodes_[static_cast<std::size_t>(node_of[i])];
-  };
+  add({{{0, 0, 0}, {grid.cells[0], grid.cells[1], grid.cells[2]}}, 0, ranks.size()});
+  std::vector<std::size_t> node_of(position.size(), 0);
   for (std::size_t first = 0; first < nodes_.size();) {  // the boxes of one level of the tree after the other
     Histograms h = lay_out_histograms(first);
     first = nodes_.size();
     for (std::size_t i = 0; i < position.size(); ++i) {
-      if (node(i).axis < 0) continue;
-      const auto at = static_cast<std::size_t>(layer(node(i), position[i]) - node(i).box.lower[node(i).axis]);
-      h.weight[h.first[static_cast<std::size_t>(node_of[i])] + at] += weight[i];
+      const int axis = cuts_[node_of[i]].axis;
+      if (axis < 0) continue;
+      const Index layer = grid_.cell(axis, xyz(position[i])) - nodes_[node_of[i]].box.lower[axis];
+      h.weight[h.first[node_of[i]] + static_cast<std::size_t>(layer)] += weight[i];
     }
     ranks.sum(std::span<std::int64_t>(h.weight));
     split(h);
-    for (std::size_t i = 0; i < position.size(); ++i)
-      if (node(i).axis >= 0) node_of[i] = node(i).below + (layer(node(i), position[i]) >= node(i).cut);
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      const DomainCut& cut = cuts_[node_of[i]];
+      if (cut.axis >= 0)
+        node_of[i] =
+            static_cast<std::size_t>(cut.below + (grid_.cell(cut.axis, xyz(position[i])) >= cut.cut));
+    }
   }
 }
 
@@ -92,19 +80,20 @@ Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_no
   Histograms h;
   h.first.resize(nodes_.size());
   for (std::size_t n = first_node; n < nodes_.size(); ++n) {
-    Node& node = nodes_[n];
+    const Node& node = nodes_[n];
     if (node.ranks == 1) {
       boxes_[static_cast<std::size_t>(node.first_rank)] = node.box;
       continue;
     }
+    int& axis_of_cut = cuts_[n].axis;
     Real longest = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const Index layers = node.box.upper[axis] - node.box.lower[axis];
       const Real extent = layers * grid_.edge.*kAxes[axis];
-      if (layers > 1 && extent > longest) longest = extent, node.axis = axis;
+      if (layers > 1 && extent > longest) longest = extent, axis_of_cut = axis;
     }
     h.nodes.push_back(static_cast<int>(n)), h.first[n] = h.weight.size();
-    const Index layers = node.box.upper[node.axis] - node.box.lower[node.axis];
+    const Index layers = node.box.upper[axis_of_cut] - node.box.lower[axis_of_cut];
     h.weight.resize(h.weight.size() + static_cast<std::size_t>(layers));
   }
   return h;
@@ -112,8 +101,8 @@ Decomposition::Histograms Decomposition::lay_out_histograms(std::size_t first_no
 
 // Ranks below the cut and the first layer above it: where the weight below comes nearest to its ranks' share,
 // with a cell left for every rank. Without any weight all cells weigh the same.
-std::pair<int, Index> Decomposition::cut_of(const Node& node, const std::int64_t* weight) const {
-  const Index layers = node.box.upper[node.axis] - node.box.lower[node.axis];
+std::pair<int, Index> Decomposition::cut_of(const Node& node, int axis, const std::int64_t* weight) const {
+  const Index layers = node.box.upper[axis] - node.box.lower[axis];
   const double layer_cells = node.box.count() / layers;
   const std::int64_t total = std::accumulate(weight, weight + layers, std::int64_t{0});
   // Uneven numbers of ranks only where cells are too few for even ones.
@@ -136,22 +125,20 @@ void Decomposition::split(const Histograms& h) {
   for (const int index : h.nodes) {
     const auto n = static_cast<std::size_t>(index);
     const Node node = nodes_[n];
-    const auto [ranks_below, layers_below] = cut_of(node, &h.weight[h.first[n]]);
+    const int axis = cuts_[n].axis;
+    const auto [ranks_below, layers_below] = cut_of(node, axis, &h.weight[h.first[n]]);
     Node lower{node.box, node.first_rank, ranks_below},
         upper{node.box, node.first_rank + ranks_below, node.ranks - ranks_below};
-    const Index cut = node.box.lower[node.axis] + layers_below;
-    lower.box.upper[node.axis] = upper.box.lower[node.axis] = cut;
-    nodes_[n].cut = cut, nodes_[n].below = static_cast<int>(nodes_.size());
-    nodes_.push_back(lower), nodes_.push_back(upper);
+    const Index cut = node.box.lower[axis] + layers_below;
+    lower.box.upper[axis] = upper.box.lower[axis] = cut;
+    cuts_[n].cut = cut, cuts_[n].below = static_cast<int>(nodes_.size());
+    add(lower), add(upper);
   }
 }
 
-int Decomposition::owner(Vec3 p) const {
-  const Node* node = nodes_.data();
-  while (node->axis >= 0)
-    node = &nodes_[static_cast<std::size_t>(node->below +
-                                            (grid_.cell(node->axis, p.*kAxes[node->axis]) >= node->cut))];
-  return node->first_rank;
+void Decomposition::add(const Node& node) {
+  nodes_.push_back(node);
+  cuts_.push_back({.rank = node.first_rank});
 }
 
 DomainBox Decomposition::box(int rank, const Subdomain& subdomain) const {

@@ -1,10 +1,12 @@
 // Which rank owns which cells: boxes of cells of one global grid, found by recursive bisection.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/model.hpp"
@@ -19,10 +21,19 @@ struct DomainGrid {
   Vec3 min, edge;  // lower corner, edges of a cell [m]
   Index cells[3] = {1, 1, 1};
 
-  // Coordinate of the cell of x along an axis; a NaN is in cell 0.
-  Index cell(int axis, Real x) const;
-  Real lower_side(int axis, Index cell) const;  // [m]
+  // Coordinate of the cell of p along an axis; a NaN is in cell 0.
+  SCREE_HD Index cell(int axis, Vec3 p) const {
+    const Real at = std::floor((along(axis, p) - along(axis, min)) / along(axis, edge));
+    if (!(at > 0)) return 0;
+    return at < cells[axis] ? static_cast<Index>(at) : cells[axis] - 1;
+  }
+  Real lower_side(int axis, Index cell) const {  // [m]
+    return along(axis, min) + cell * along(axis, edge);
+  }
   double count() const { return double(cells[0]) * cells[1] * cells[2]; }
+
+ private:
+  SCREE_HD static Real along(int axis, Vec3 v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 };
 
 // width: least edge of a cell [m].
@@ -38,7 +49,30 @@ struct CellBox {
 // A box of cells in space; infinite where the space ends and is not periodic.
 struct DomainBox {
   Vec3 min, max;  // [m]
+  // Whether p lies inside, or outside by at most `width` [m].
+  SCREE_HD bool reaches(Vec3 p, Real width) const {
+    return p.x >= min.x - width && p.x <= max.x + width && p.y >= min.y - width && p.y <= max.y + width &&
+           p.z >= min.z - width && p.z <= max.z + width;
+  }
 };
+
+// The sides of boxes come from a product and a sum: this share more of a width covers their round-off.
+inline constexpr Real kBoxRoundOff = 1e-9;
+
+// A box of the bisection, as owner_of() walks them: cells below `cut` along `axis` belong to the box `below`,
+// the others to below + 1; axis -1: all of it belongs to a rank.
+struct DomainCut {
+  int axis = -1;
+  Index cut = 0;
+  int below = -1;
+  int rank = 0;
+};
+
+SCREE_HD int owner_of(const DomainGrid& grid, const DomainCut* cuts, Vec3 p) {
+  const DomainCut* at = cuts;
+  while (at->axis >= 0) at = cuts + at->below + (grid.cell(at->axis, p) >= at->cut);
+  return at->rank;
+}
 
 class Decomposition {
  public:
@@ -50,7 +84,9 @@ class Decomposition {
                 std::span<const std::int64_t> weight);
 
   bool exists() const { return !nodes_.empty(); }
-  int owner(Vec3 p) const;
+  int owner(Vec3 p) const { return owner_of(grid_, cuts_.data(), p); }
+  // For owner_of(): the first is the whole space.
+  const std::vector<DomainCut>& cuts() const { return cuts_; }
   // Per rank.
   const std::vector<CellBox>& boxes() const { return boxes_; }
   const DomainGrid& grid() const { return grid_; }
@@ -58,31 +94,37 @@ class Decomposition {
   DomainBox box(int rank, const Subdomain& subdomain) const;
 
  private:
-  // Cells below `cut` along `axis` belong to `below`, the others to below + 1; a leaf has a rank.
+  // Of each box in cuts_: its cells, and the ranks that share it.
   struct Node {
     CellBox box;
     int first_rank, ranks;
-    int axis = -1;
-    Index cut = 0;
-    int below = -1;
   };
   struct Histograms;
   Histograms lay_out_histograms(std::size_t first_node);
-  Index layer(const Node& node, Vec4 p) const;
   void split(const Histograms& histograms);
-  std::pair<int, Index> cut_of(const Node& node, const std::int64_t* weight) const;
+  std::pair<int, Index> cut_of(const Node& node, int axis, const std::int64_t* weight) const;
+  void add(const Node& node);
 
   DomainGrid grid_;
   std::vector<Node> nodes_;
+  std::vector<DomainCut> cuts_;
   std::vector<CellBox> boxes_;  // per rank
 };
 
-// How evenly the work lies on the ranks.
+// A rank's particles, and what it sends to other ranks.
+struct HaloSize {
+  std::int64_t owned = 0, ghosts = 0;
+  std::int64_t neighbors = 0;  // ranks that it sends to
+  std::int64_t bytes = 0;      // sent per update of positions and velocities [B]
+};
+
+// How evenly the work lies on the ranks, and what this one has of it at the last list.
 struct LoadBalance {
   Real imbalance = 0;           // largest weight of a rank over the mean, less 1, at the last list
   Real largest = 0;             // the largest that was met
   std::int64_t rebalances = 0;  // times that the boxes were changed
   std::int64_t migrated = 0;    // particles that changed their rank
+  HaloSize halo;                // of this rank
 };
 
 // Largest over mean, less 1; 0 where there is no weight. Collective.

@@ -1,46 +1,11 @@
 #include "partition/halo.hpp"
 
-#include <mpi.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "base/for_each.hpp"
 
 namespace scree {
-namespace {
-
-constexpr int kCountTag = 21, kFieldTag = 22, kPositionTag = 23, kVelocityTag = 24;
-
-// Boxes come from a product and a sum: this share more covers their round-off.
-constexpr Real kRoundOff = 1e-9;
-
-// Whether `box`, moved by s periods, comes within the width of `other`.
-bool comes_near(const DomainBox& box, Vec3 shift, const DomainBox& other, Real width) {
-  const auto along = [&](Real Vec3::*axis) {
-    return box.min.*axis + shift.*axis <= other.max.*axis + width &&
-           box.max.*axis + shift.*axis >= other.min.*axis - width;
-  };
-  return along(&Vec3::x) && along(&Vec3::y) && along(&Vec3::z);
-}
-
-bool within(Vec3 p, const DomainBox& box, Real width) {
-  return p.x >= box.min.x - width && p.x <= box.max.x + width && p.y >= box.min.y - width &&
-         p.y <= box.max.y + width && p.z >= box.min.z - width && p.z <= box.max.z + width;
-}
-
-// Calls visit(shift [m], image) for the shifts by whole periods, none included.
-template <class Visit>
-void for_each_shift(Vec3 period, const Visit& visit) {
-  const auto most = [](Real length) { return length == 0 ? 0 : 1; };
-  for (int z = -most(period.z); z <= most(period.z); ++z)
-    for (int y = -most(period.y); y <= most(period.y); ++y)
-      for (int x = -most(period.x); x <= most(period.x); ++x)
-        visit(Vec3{x * period.x, y * period.y, z * period.z},
-              static_cast<std::int8_t>((z + 1) * 9 + (y + 1) * 3 + x + 1));
-}
-
-}  // namespace
 
 std::vector<Ghost> periodic_images(const Subdomain& subdomain, const Space& space,
                                    std::span<const Vec4> position, Real width) {
@@ -55,143 +20,60 @@ std::vector<Ghost> periodic_images(const Subdomain& subdomain, const Space& spac
   return ghosts;
 }
 
-// Messages under way; all of them are done when it goes.
-class Halo::Messages {
- public:
-  explicit Messages(const Ranks& ranks) : communicator_(MPI_Comm_f2c(ranks.communicator())) {}
-  ~Messages() { MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
-  Messages(const Messages&) = delete;
-  Messages& operator=(const Messages&) = delete;
-
-  void receive(void* data, std::size_t bytes, int rank, int tag) {
-    MPI_Irecv(data, static_cast<int>(bytes), MPI_BYTE, rank, tag, communicator_, &requests_.emplace_back());
-  }
-  void send(const void* data, std::size_t bytes, int rank, int tag) {
-    MPI_Isend(data, static_cast<int>(bytes), MPI_BYTE, rank, tag, communicator_, &requests_.emplace_back());
-  }
-
- private:
-  MPI_Comm communicator_;
-  std::vector<MPI_Request> requests_;
-};
-
 Halo::Halo(std::vector<Ghost> own) : own_(std::move(own)) {
   for (const Ghost& ghost : own_) images_.push_back(ghost.image);
 }
 
 void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
                     const Space& space, std::span<const Vec4> position, Real width) {
-  ranks_ = ranks;
-  neighbors_.clear(), sent_.clear();
+  plan_ = {}, sent_.clear();
   if (ranks.alone()) {
     own_ = periodic_images(subdomain, space, position, width);
   } else {
-    find_neighbors(decomposition, subdomain, width);
-    find_sent(decomposition, subdomain, position, width);
+    plan_ = HaloPlan(ranks, decomposition, subdomain, width);
+    find_ghosts(position);
   }
   images_.clear();
   for (const Ghost& ghost : own_) images_.push_back(ghost.image);
-  if (!ranks.alone()) tell_neighbors();
-}
-
-// Both of two ranks come to the same answer: the lower one's box is moved.
-void Halo::find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width) {
-  const int self = ranks_.rank();
-  for (int other = 0; other < ranks_.size(); ++other) {
-    if (other == self) continue;
-    const DomainBox low = decomposition.box(std::min(self, other), subdomain),
-                    high = decomposition.box(std::max(self, other), subdomain);
-    bool near = false;
-    for_each_shift(subdomain.period(), [&](Vec3 shift, std::int8_t) {
-      near = near || comes_near(low, shift, high, width * (1 + 4 * kRoundOff));
-    });
-    if (near) neighbors_.push_back({other});
-  }
-}
-
-void Halo::find_sent(const Decomposition& decomposition, const Subdomain& subdomain,
-                     std::span<const Vec4> position, Real width) {
-  struct Target {
-    DomainBox box;
-    Vec3 shift;
-    std::int8_t image;
-    std::vector<Ghost>* ghosts;
-  };
-  const Real reach = width * (1 + kRoundOff);
-  const DomainBox own = decomposition.box(ranks_.rank(), subdomain);
-  std::vector<std::vector<Ghost>> ghosts(neighbors_.size());
-  std::vector<Target> targets;
-  const auto add_targets = [&](int rank, std::vector<Ghost>& list) {
-    const DomainBox box = decomposition.box(rank, subdomain);
-    for_each_shift(subdomain.period(), [&](Vec3 shift, std::int8_t image) {
-      const bool itself = rank == ranks_.rank() && image == kNoShift;
-      if (!itself && comes_near(own, shift, box, 2 * reach)) targets.push_back({box, shift, image, &list});
-    });
-  };
-  own_.clear();
-  add_targets(ranks_.rank(), own_);
-  for (std::size_t k = 0; k < neighbors_.size(); ++k) add_targets(neighbors_[k].rank, ghosts[k]);
-  for (Index i = 0; i < static_cast<Index>(position.size()); ++i) {
-    const Vec3 p = xyz(position[static_cast<std::size_t>(i)]);
-    if (within(p, own, -reach)) continue;  // too far from every side to be a ghost
-    for (const Target& t : targets)
-      if (within(p + t.shift, t.box, reach)) t.ghosts->push_back({i, t.shift, t.image});
-  }
-  for (std::size_t k = 0; k < neighbors_.size(); ++k) {
-    neighbors_[k].first_sent = static_cast<Index>(sent_.size());
-    neighbors_[k].sent = static_cast<Index>(ghosts[k].size());
-    sent_.insert(sent_.end(), ghosts[k].begin(), ghosts[k].end());
-  }
-}
-
-void Halo::tell_neighbors() {
-  {
-    Messages messages(ranks_);
-    for (Neighbor& n : neighbors_) messages.receive(&n.received, sizeof n.received, n.rank, kCountTag);
-    for (const Neighbor& n : neighbors_) messages.send(&n.sent, sizeof n.sent, n.rank, kCountTag);
-  }
-  auto next = static_cast<Index>(own_.size());
-  for (Neighbor& n : neighbors_) n.first_received = next, next += n.received;
-  images_.resize(static_cast<std::size_t>(next));
+  if (ranks.alone()) return;
+  images_.resize(static_cast<std::size_t>(plan_.ghosts()));
+  for (std::vector<Vec4>& buffer : buffer_) buffer.resize(sent_.size());
   std::vector<std::int8_t> sent(sent_.size());
   std::transform(sent_.begin(), sent_.end(), sent.begin(), [](const Ghost& g) { return g.image; });
-  transfer(sent.data(), images_.data(), sizeof(std::int8_t));
+  const HaloMessage message{sent.data(), images_.data(), sizeof(std::int8_t)};
+  plan_.transfer({&message, 1});
 }
 
-void Halo::transfer(const void* packed, void* ghosts, std::size_t element) const {
-  const auto bytes = [&](Index entries) { return static_cast<std::size_t>(entries) * element; };
-  Messages messages(ranks_);
-  for (const Neighbor& n : neighbors_)
-    messages.receive(static_cast<char*>(ghosts) + bytes(n.first_received), bytes(n.received), n.rank,
-                     kFieldTag);
-  for (const Neighbor& n : neighbors_)
-    messages.send(static_cast<const char*>(packed) + bytes(n.first_sent), bytes(n.sent), n.rank, kFieldTag);
+void Halo::find_ghosts(std::span<const Vec4> position) {
+  own_.clear();
+  std::vector<std::vector<Ghost>> ghosts(plan_.neighbors().size());
+  for (Index i = 0; i < static_cast<Index>(position.size()); ++i) {
+    const Vec3 p = xyz(position[static_cast<std::size_t>(i)]);
+    if (plan_.box().reaches(p, -plan_.reach())) continue;  // too far from every side to be a ghost
+    for (const HaloTarget& t : plan_.targets())
+      if (t.box.reaches(p + t.shift, plan_.reach()))
+        (t.neighbor == HaloTarget::kItself ? own_ : ghosts[static_cast<std::size_t>(t.neighbor)])
+            .push_back({i, t.shift, t.image});
+  }
+  std::vector<std::size_t> counts;
+  for (const std::vector<Ghost>& list : ghosts) {
+    counts.push_back(list.size());
+    sent_.insert(sent_.end(), list.begin(), list.end());
+  }
+  plan_.set_counts(own_.size(), counts);
 }
 
 void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity, Index first_ghost) const {
-  const auto copy_own = [&] {
-    const auto n = static_cast<Index>(own_.size());
-    for_each(Serial{}, n, HaloPositionItem{own_.data(), position.data(), first_ghost});
-    for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), velocity.data(), first_ghost});
-  };
-  if (ranks_.alone()) return copy_own();
-  Messages messages(ranks_);
-  for (const Neighbor& n : neighbors_) {
-    const std::size_t bytes = static_cast<std::size_t>(n.received) * sizeof(Vec4);
-    messages.receive(position.data() + first_ghost + n.first_received, bytes, n.rank, kPositionTag);
-    messages.receive(velocity.data() + first_ghost + n.first_received, bytes, n.rank, kVelocityTag);
-  }
-  for (std::vector<Vec4>& buffer : buffer_) buffer.resize(sent_.size());
+  const auto n = static_cast<Index>(own_.size());
+  for_each(Serial{}, n, HaloPositionItem{own_.data(), position.data(), first_ghost});
+  for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), velocity.data(), first_ghost});
   for (std::size_t k = 0; k < sent_.size(); ++k) {
     const auto source = static_cast<std::size_t>(sent_[k].source);
     buffer_[0][k] = moved(sent_[k], position[source]), buffer_[1][k] = velocity[source];
   }
-  for (const Neighbor& n : neighbors_) {
-    const std::size_t bytes = static_cast<std::size_t>(n.sent) * sizeof(Vec4);
-    messages.send(buffer_[0].data() + n.first_sent, bytes, n.rank, kPositionTag);
-    messages.send(buffer_[1].data() + n.first_sent, bytes, n.rank, kVelocityTag);
-  }
-  copy_own();
+  const HaloMessage messages[2] = {{buffer_[0].data(), position.data() + first_ghost, sizeof(Vec4)},
+                                   {buffer_[1].data(), velocity.data() + first_ghost, sizeof(Vec4)}};
+  plan_.transfer(messages);
 }
 
 }  // namespace scree

@@ -9,6 +9,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "partition/decomposition.hpp"
+#include "partition/halo_plan.hpp"
 #include "partition/ranks.hpp"
 #include "partition/subdomain.hpp"
 
@@ -20,8 +21,6 @@ struct Ghost {
   Vec3 shift;         // ghost position minus original position [m]
   std::int8_t image;  // number of the shift among the 27, 13 for none
 };
-
-inline constexpr std::int8_t kNoShift = 13;
 
 // What decides which images of a point lie near the box.
 struct HaloBox {
@@ -99,6 +98,9 @@ class Halo {
                 const Space& space, std::span<const Vec4> position, Real width);
 
   Index size() const { return static_cast<Index>(images_.size()); }
+  // Entries that one update sends, and the ranks that get some.
+  Index sent() const { return static_cast<Index>(sent_.size()); }
+  Index receivers() const { return plan_.receivers(); }
   // Number of the shift, per ghost.
   const std::vector<std::int8_t>& images() const { return images_; }
   // This rank's own particles across periodic sides.
@@ -112,38 +114,24 @@ class Halo {
   void update_motion(std::span<Vec4> position, std::span<Vec4> velocity, Index first_ghost) const;
 
  private:
-  // A rank that this one exchanges ghosts with. Entries [first_sent, first_sent + sent) of sent_ go there;
-  // what comes from there are the ghosts [first_received, first_received + received).
-  struct Neighbor {
-    int rank;
-    Index first_sent = 0, sent = 0;
-    Index first_received = 0, received = 0;
-  };
-  class Messages;
+  void find_ghosts(std::span<const Vec4> position);
 
-  void find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width);
-  void find_sent(const Decomposition& decomposition, const Subdomain& subdomain,
-                 std::span<const Vec4> position, Real width);
-  void tell_neighbors();
-  // Sends `packed`, one entry per entry of sent_, and receives the ghosts past those of this rank's own.
-  void transfer(const void* packed, void* ghosts, std::size_t element) const;
-
-  Ranks ranks_;
+  HaloPlan plan_;
   std::vector<Ghost> own_, sent_;
-  std::vector<Neighbor> neighbors_;
   std::vector<std::int8_t> images_;
-  mutable std::vector<Vec4> buffer_[2];  // packed positions and velocities, or another field
+  // Packed positions and velocities, or another field, in the order of sent_. As large as they must be from
+  // exchange() on: an allocation that fails later leaves the other ranks waiting.
+  mutable std::vector<Vec4> buffer_[2];
 };
 
 template <class T>
 void Halo::update(std::span<T> field, Index first_ghost) const {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(Vec4) % sizeof(T) == 0);
   for_each(Serial{}, static_cast<Index>(own_.size()), HaloItem<T>{own_.data(), field.data(), first_ghost});
-  if (ranks_.alone()) return;
-  buffer_[0].resize(sent_.size());
   T* packed = reinterpret_cast<T*>(buffer_[0].data());
   for (std::size_t k = 0; k < sent_.size(); ++k) packed[k] = field[static_cast<std::size_t>(sent_[k].source)];
-  transfer(packed, field.data() + first_ghost, sizeof(T));
+  const HaloMessage message{packed, field.data() + first_ghost, sizeof(T)};
+  plan_.transfer({&message, 1});
 }
 
 }  // namespace scree

@@ -1,6 +1,9 @@
 #include "partition/ranks.hpp"
 
 #include <mpi.h>
+#if __has_include(<mpi-ext.h>)
+#include <mpi-ext.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -14,6 +17,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "partition/entry_type.hpp"
 
 namespace scree {
 namespace {
@@ -24,28 +28,6 @@ MPI_Comm communicator_of(int handle) { return MPI_Comm_f2c(handle); }
 std::int64_t ordered_bits(Real value) {
   return std::bit_cast<std::int64_t>(std::isnan(value) ? std::numeric_limits<Real>::quiet_NaN()
                                                        : std::abs(value));
-}
-
-// One type per entry, so that counts count entries: bytes would pass 2^31 sooner.
-class EntryType {
- public:
-  explicit EntryType(std::size_t bytes) {
-    MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type_);
-    MPI_Type_commit(&type_);
-  }
-  ~EntryType() { MPI_Type_free(&type_); }
-  EntryType(const EntryType&) = delete;
-  EntryType& operator=(const EntryType&) = delete;
-  operator MPI_Datatype() const { return type_; }
-
- private:
-  MPI_Datatype type_;
-};
-
-int mpi_count(std::size_t count) {
-  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw std::length_error("more entries on one rank than MPI counts");
-  return static_cast<int>(count);
 }
 
 std::vector<int> offsets_of(const std::vector<int>& counts) {
@@ -112,6 +94,24 @@ Ranks Ranks::world() {
   MPI_Comm_size(MPI_COMM_WORLD, &ranks.size_);
   ranks.communicator_ = MPI_Comm_c2f(MPI_COMM_WORLD);
   return ranks;
+}
+
+int Ranks::local_rank() const {
+  if (alone()) return 0;
+  MPI_Comm host;
+  MPI_Comm_split_type(communicator_of(communicator_), MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host);
+  int local = 0;
+  MPI_Comm_rank(host, &local);
+  MPI_Comm_free(&host);
+  return local;
+}
+
+bool Ranks::mpi_takes_device_memory() {
+#if defined(MPIX_CUDA_AWARE_SUPPORT) && MPIX_CUDA_AWARE_SUPPORT
+  return MPIX_Query_cuda_support() == 1;
+#else
+  return false;
+#endif
 }
 
 Real Ranks::max(Real value) const {

@@ -27,6 +27,10 @@ class Ranks {
   int size() const { return size_; }
   bool is_root() const { return rank_ == 0; }
   bool alone() const { return size_ == 1; }
+  // Number of this rank among those of its host. Collective.
+  int local_rank() const;
+  // Whether the MPI library says that it reads and writes device memory.
+  static bool mpi_takes_device_memory();
   int communicator() const { return communicator_; }  // Fortran handle; for the other parts of this room
 
   // Largest of values >= 0; a NaN on one rank makes the result a NaN.

@@ -44,8 +44,8 @@ void make_directory(const std::string& path) {
   if (!std::filesystem::is_directory(path)) throw IoError(fmt::format("output folder {}: is a file", path));
 }
 
-std::unique_ptr<Backend> make_gpu(const Model& model, Log& log) {
-  std::unique_ptr<Backend> backend = make_cuda_backend(model);
+std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, Log& log) {
+  std::unique_ptr<Backend> backend = make_cuda_backend(model, ranks);
   log.info("backend cuda: " + device_name());
   return backend;
 }
@@ -61,19 +61,14 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
 std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name,
                                       Log& log) {
   if (name == "cpu") return make_cpu(model, ranks, "chosen by --backend", log);
-  if (!ranks.alone()) {
-    if (name == "auto") return make_cpu(model, ranks, "a GPU computes on one rank only in this version", log);
-    throw InputError("--backend cuda runs on one rank in this version; allowed with mpirun -n " +
-                     std::to_string(ranks.size()) + ": auto, cpu");
-  }
-  const std::int64_t particles = model.particles.totals.count;
+  const std::int64_t particles = model.particles.totals.count / ranks.size();
   if (name == "auto" && particles < kGpuParticles)
-    return make_cpu(
-        model, ranks,
-        fmt::format("{} particles are fewer than {}, from which a GPU is faster", particles, kGpuParticles),
-        log);
+    return make_cpu(model, ranks,
+                    fmt::format("{} particles{} are fewer than {}, from which a GPU is faster", particles,
+                                ranks.alone() ? "" : " per rank", kGpuParticles),
+                    log);
   try {
-    return make_gpu(model, log);
+    return make_gpu(model, ranks, log);
   } catch (const InputError& error) {
     if (name == "auto") return make_cpu(model, ranks, error.what(), log);
     throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));

@@ -11,12 +11,15 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <functional>
 #include <iostream>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "bed_cases.hpp"
+#include "bed_report.hpp"
 #include "coupling/coupled_step.hpp"
 #include "dem/device.hpp"
 #include "mbs/petsc_session.hpp"
@@ -31,12 +34,19 @@ struct Options {
   Index rebuild = 25;
   int repeats = 5;
   double seconds = 0.5;
-  bool net = false, wall = false;
-  std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5";
+  bool net = false, wall = false, per_rank = false;
+  std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", csv;
   Ranks ranks = Ranks::world();
 
   bool on_gpu() const { return backend == "cuda"; }
 };
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown processor";
+}
 
 // Bodies and particles exchange in batches of this many steps: as long as those between two outputs of a run.
 constexpr Index kCoupledBatch = 1000;
@@ -83,21 +93,42 @@ Samples sample(
   return samples;
 }
 
+Measured measured(const Samples& samples, const Model& bed, std::int64_t list_builds) {
+  const auto count = static_cast<double>(samples.seconds.size());
+  Measured out;
+  out.particles = bed.particles.totals.count, out.bodies = bed.bodies.size();
+  out.seconds = samples.median(), out.fastest = samples.seconds.front(), out.slowest = samples.seconds.back();
+  out.mean = std::accumulate(samples.seconds.begin(), samples.seconds.end(), 0.0) / count;
+  out.steps = static_cast<double>(samples.steps) * count, out.list_builds = list_builds;
+  return out;
+}
+
+// Every rank makes the whole bed, and keeps its part of it.
+Model part_of(Model bed, const Ranks& ranks) {
+  ParticleSet& set = bed.particles;
+  const IdRange own = id_range(set.totals.count, ranks.rank(), ranks.size());
+  const auto cut = [&](auto& values) {
+    values = std::decay_t<decltype(values)>(values.begin() + own.first, values.begin() + own.last);
+  };
+  cut(set.position), cut(set.velocity), cut(set.radius), cut(set.mass), cut(set.material);
+  set.first_id = own.first;
+  return bed;
+}
+
 // A bed on its backend.
 struct Run {
   Run(Model bed, const Options& options)
-      : model(std::move(bed)),
-        backend(options.on_gpu() ? make_cuda_backend(model) : make_cpu_backend(model, options.ranks)),
+      : model(part_of(std::move(bed), options.ranks)),
+        backend(options.on_gpu() ? make_cuda_backend(model, options.ranks)
+                                 : make_cpu_backend(model, options.ranks)),
         link(model, options.ranks),
         ranks(options.ranks),
         step(model, *backend, link, timers) {
-    const IdRange own =
-        id_range(static_cast<std::int64_t>(model.particles.size()), ranks.rank(), ranks.size());
-    backend->load(initial_records(model.particles, Subdomain(model.space), own), {});
+    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
   }
   double listed() const {
     return static_cast<double>(ranks.sum(backend->list_entries())) /
-           static_cast<double>(model.particles.size());
+           static_cast<double>(model.particles.totals.count);
   }
 
   Model model;
@@ -110,13 +141,13 @@ struct Run {
 };
 
 // "2.51e+07 (2.44e+07 to 2.53e+07) particle-steps/s, 398 us per step"
-std::string speed_text(const Samples& samples, std::size_t particles) {
+std::string speed_text(const Samples& samples, std::int64_t particles) {
   const double n = static_cast<double>(particles);
   return fmt::format("{:.3g} ({:.3g} to {:.3g}) particle-steps/s, {:.4g} us per step", n / samples.median(),
                      n / samples.seconds.back(), n / samples.seconds.front(), 1e6 * samples.median());
 }
 
-void measure_explicit(Model bed, Real h, const Options& options) {
+void measure_explicit(Model bed, Real h, const Options& options, BedReport& report) {
   bed.integrator.particles = ParticleIntegrator::velocity_verlet;
   // How often particles outside the space are looked for.
   bed.integrator.substeps = bed.space.dimension == 3 ? 25 : 10;
@@ -132,6 +163,7 @@ void measure_explicit(Model bed, Real h, const Options& options) {
       throw SimulationError("a particle has left the bed");
   };
   std::int64_t builds = 0;
+  StageTimers timers;
   const Samples samples = sample(
       options, options.rebuild > 0 ? options.rebuild : run.model.integrator.substeps,
       [&](Index steps) {
@@ -142,10 +174,12 @@ void measure_explicit(Model bed, Real h, const Options& options) {
         }
         backend.list_displacement();  // returns when all that was asked for is done
       },
-      [&] { builds = backend.list_builds(); });
+      [&] { builds = backend.list_builds(), timers = run.timers; });
+  builds = backend.list_builds() - builds;
   fmt::print("{:10d} {}, {} x {} steps, {} list builds, {:.2f} listed per particle\n",
-             run.model.particles.size(), speed_text(samples, run.model.particles.size()), options.repeats,
-             samples.steps, backend.list_builds() - builds, run.listed());
+             run.model.particles.totals.count, speed_text(samples, run.model.particles.totals.count),
+             options.repeats, samples.steps, builds, run.listed());
+  report.add(measured(samples, run.model, builds), timers, run.timers, backend);
 }
 
 // steps: between the two.
@@ -164,7 +198,7 @@ void print_stages(const StageTimers& before, const StageTimers& after, double st
   fmt::print("{:10} {}\n", "", text);
 }
 
-void measure_implicit(Model bed, const Options& options) {
+void measure_implicit(Model bed, const Options& options, BedReport& report) {
   const Real h = implicit_sphere_step(bed);
   Run run(std::move(bed), options);
   run.step.start(run.bodies);
@@ -182,17 +216,19 @@ void measure_implicit(Model bed, const Options& options) {
   const Samples samples = sample(options, 1, advance, [&] {
     timers = run.timers, counts = run.step.counts(), builds = run.backend->list_builds();
   });
+  builds = run.backend->list_builds() - builds;
   const double steps = static_cast<double>(run.step.counts().steps - counts.steps);
   fmt::print(
       "{:10d} {:.4g} ({:.4g} to {:.4g}) ms per step, {:.1f} Newton and {:.1f} linear iterations per step, {} "
       "x {} "
       "steps, {} list builds, {:.2f} listed per particle\n",
-      run.model.particles.size(), 1e3 * samples.median(), 1e3 * samples.seconds.front(),
+      run.model.particles.totals.count, 1e3 * samples.median(), 1e3 * samples.seconds.front(),
       1e3 * samples.seconds.back(),
       static_cast<double>(run.step.counts().newton_iterations - counts.newton_iterations) / steps,
       static_cast<double>(run.step.counts().linear_iterations - counts.linear_iterations) / steps,
-      options.repeats, samples.steps, run.backend->list_builds() - builds, run.listed());
+      options.repeats, samples.steps, builds, run.listed());
   print_stages(timers, run.timers, steps);
+  report.add(measured(samples, run.model, builds), timers, run.timers, *run.backend);
 }
 
 struct CoupledSamples {
@@ -204,14 +240,16 @@ struct CoupledSamples {
 };
 
 // The coupled explicit step, with bodies solved every step where the bed has some.
-CoupledSamples sample_coupled(Model bed, const Options& options) {
+CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& report) {
   bed.integrator.particles = ParticleIntegrator::velocity_verlet;
   Run run(std::move(bed), options);
   run.step.start(run.bodies);
   Index taken = 0;
   CoupledSamples out;
   double looks = 0;
-  out.samples = sample(options, kCoupledBatch, [&](Index steps) {
+  std::int64_t builds = 0;
+  StageTimers timers;
+  const auto advance = [&](Index steps) {
     for (Index done = 0; done < steps; done += kCoupledBatch) {
       std::vector<Real> times;
       for (Index k = 0; k < kCoupledBatch; ++k) times.push_back(static_cast<Real>(taken++) * kSphereStep);
@@ -221,7 +259,11 @@ CoupledSamples sample_coupled(Model bed, const Options& options) {
       ++looks;
     }
     run.backend->list_displacement();
-  });
+  };
+  out.samples = sample(options, kCoupledBatch, advance,
+                       [&] { builds = run.backend->list_builds(), timers = run.timers; });
+  builds = run.backend->list_builds() - builds;
+  report.add(measured(out.samples, run.model, builds), timers, run.timers, *run.backend);
   const StepCounts& counts = run.step.counts();
   out.iterations = static_cast<double>(counts.newton_iterations) / static_cast<double>(counts.steps);
   out.contacts /= looks;
@@ -229,13 +271,14 @@ CoupledSamples sample_coupled(Model bed, const Options& options) {
   return out;
 }
 
-void measure_net(Model bed, const Options& options) {
+void measure_net(Model bed, const Options& options, BedReport& report) {
   add_net(bed);
-  const std::size_t particles = bed.particles.size(), bodies = bed.bodies.size();
+  const std::int64_t particles = bed.particles.totals.count;
+  const std::size_t bodies = bed.bodies.size();
   Model bare = bed;
   bare.bodies.clear(), bare.joints.clear(), bare.spring_dampers.clear(), bare.applied_forces.clear();
-  const Samples without = sample_coupled(std::move(bare), options).samples;
-  const CoupledSamples with = sample_coupled(std::move(bed), options);
+  const Samples without = sample_coupled(std::move(bare), options, report).samples;
+  const CoupledSamples with = sample_coupled(std::move(bed), options, report);
   fmt::print("{:10d} without bodies: {}\n", particles, speed_text(without, particles));
   fmt::print(
       "{:10} with {} bodies: {}; {:.1f} iterations of the bodies per step, {:.1f} contacts of theirs\n", "",
@@ -261,17 +304,26 @@ void measure_all(const Options& options) {
              options.integrator == "hht" || options.net ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
                                    : ", list rebuilds where needed");
+  const std::string rebuild = options.net                   ? "coupled"
+                              : options.integrator == "hht" ? "0"
+                                                            : fmt::format("{}", options.rebuild);
+  BedReport report(
+      options.csv,
+      fmt::format("{},\"{}\",{},{},{},{},{}", commit(), options.on_gpu() ? device_name() : processor_name(),
+                  options.backend, options.precision, options.dimension, options.integrator, rebuild),
+      options.ranks);
   std::vector<Vec3> discs;
   if (options.dimension == 2) discs = settled_discs();
-  for (const std::int64_t particles : options.particles) {
+  for (const std::int64_t size : options.particles) {
+    const std::int64_t particles = options.per_rank ? size * options.ranks.size() : size;
     Model bed = options.dimension == 3 ? sphere_bed(options.tile, particles) : disc_bed(discs, particles);
     if (options.precision == "mixed") bed.integrator.precision = Precision::mixed;
     if (options.net)
-      measure_net(std::move(bed), options);
+      measure_net(std::move(bed), options, report);
     else if (options.integrator == "hht")
-      measure_implicit(std::move(bed), options);
+      measure_implicit(std::move(bed), options, report);
     else
-      measure_explicit(std::move(bed), options.dimension == 3 ? kSphereStep : kDiscStep, options);
+      measure_explicit(std::move(bed), options.dimension == 3 ? kSphereStep : kDiscStep, options, report);
     std::fflush(stdout);
   }
 }
@@ -294,17 +346,15 @@ ExitCode run(int count, char** values) {
   app.add_option("--seconds", options.seconds, "length of a sample, about")->check(CLI::NonNegativeNumber);
   app.add_flag("--net", options.net, "the bed with a net of 20 bodies, solved every step, and without");
   app.add_flag("--wall", options.wall, "wall seconds also on one core");
+  app.add_flag("--per-rank", options.per_rank, "sizes are those of a rank's share, not of the bed");
   app.add_option("--tile", options.tile, "file with the tile of spheres");
+  app.add_option("--csv", options.csv, "file that a row per size and rank is added to");
   try {
     app.parse(count, values);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::done : ExitCode::bad_input;
   }
   if (options.particles.empty()) options.particles = {10000, 100000, 1000000};
-  if (options.on_gpu() && !options.ranks.alone()) {
-    std::cerr << "error: --backend cuda runs on one rank\n";
-    return ExitCode::bad_input;
-  }
   if (!options.ranks.is_root() && std::freopen("/dev/null", "w", stdout) == nullptr)
     return ExitCode::io_failed;
   try {

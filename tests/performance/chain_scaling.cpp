@@ -1,13 +1,16 @@
 // Cost of one step for hanging chains of planar bodies: it must grow linearly with the chain's length.
+// Usage: chain_scaling [FILE.csv], which gets a row per length, for scaling_model.py.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include "base/version.hpp"
 #include "mbs/multibody.hpp"
 #include "support/multibody_run.hpp"
 
@@ -39,7 +42,7 @@ Model hanging_chain(int bodies) {
   return model;
 }
 
-void measure(int bodies) {
+void measure(int bodies, std::ofstream& csv) {
   const Model model = hanging_chain(bodies);
   const auto built = std::chrono::steady_clock::now();
   MultibodyRun run(model, 1e-8);
@@ -55,14 +58,24 @@ void measure(int bodies) {
              1e3 * construction, 1e3 * per_step, 1e6 * per_step / bodies, iterations,
              1e3 * per_step / iterations);
   std::fflush(stdout);
+  csv << fmt::format("{},{},{:.6g},{:.4g},{:.6g}\n", commit(), bodies, per_step, iterations,
+                     per_step / iterations)
+      << std::flush;
 }
 
 }  // namespace
 
-int main() {
+int main(int count, char** values) {
+  std::ofstream csv;
+  if (count > 1) csv.open(values[1]);
+  if (count > 2 || (count > 1 && !csv)) {
+    fmt::print(stderr, "error: usage: chain_scaling [FILE.csv], a file that can be written\n");
+    return 2;
+  }
+  csv << "commit,bodies,seconds_per_step,iterations,seconds_per_iteration\n";
   fmt::print("hanging chains on revolute joints, h = 1 ms, {}\n",
              MultibodyRun(hanging_chain(1)).multibody.solver_description());
   fmt::print("{:>7} {:>10} {:>12} {:>12} {:>14} {:>11} {:>14}\n", "bodies", "unknowns", "start [ms]",
              "step [ms]", "per body [us]", "iterations", "iteration [ms]");
-  for (const int bodies : {20, 100, 1000, 10000}) measure(bodies);
+  for (const int bodies : {20, 100, 1000, 10000}) measure(bodies, csv);
 }

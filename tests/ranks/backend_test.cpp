@@ -19,7 +19,7 @@ constexpr Real kSkin = 0.15;
 
 struct RankedBox {
   RankedBox(const Model& of, const Ranks& on)
-      : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make_cpu_backend(model, on)) {
+      : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make_test_backend(model, on)) {
     start(initial_records(model.particles, Subdomain(model.space)));
   }
   // records: of all particles, the same on every rank.
@@ -91,7 +91,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
       Model model = random_box(c, kParticles, 21);
       model.integrator.particles = integrator;
       model.parallel.imbalance = 0;  // boxes are cut anew with every list
-      RankedBox one(model, Ranks()), many(model, world);
+      RankedBox many(model, world), one(model, Ranks());  // in this order: the first takes the rank's GPU
       CHECK(same(one.records(), many.records()));
       for (int k = 0; k < 25; ++k) {
         for (RankedBox* box : {&one, &many}) step(*box, 2e-4), box->renew_list();
@@ -104,6 +104,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
         one.backend->reduce_wrench(a[0], a[1]), many.backend->reduce_wrench(b[0], b[1]);
         if (world.is_root()) CHECK((same(a[0], b[0]) && same(a[1], b[1])));
       }
+      CHECK(world.sum(many.backend->balance().halo.owned) == kParticles);
       const ParticleLedger p = one.backend->ledger(0), q = many.backend->ledger(0);
       if (!world.is_root()) continue;
       CHECK((p.kinetic == q.kinetic && p.gravitational == q.gravitational));
@@ -143,7 +144,7 @@ TEST_CASE("a particle that is not finite ends all ranks with the same message") 
 TEST_CASE("the particle with the largest residual is the same on any number of ranks") {
   petsc();
   const Model model = random_box(kBoxes[1], kParticles, 2);
-  RankedBox one(model, Ranks()), many(model, Ranks::world());
+  RankedBox many(model, Ranks::world()), one(model, Ranks());
   for (RankedBox* box : {&one, &many}) box->backend->begin_step(1e-3), box->backend->contact_force();
   CHECK(one.backend->worst_particle() == many.backend->worst_particle());
 }

@@ -140,7 +140,7 @@ TEST_CASE("boxes fill the grid, own their points, and weigh as much as layers of
       const Vec3 p = xyz(all.position[i]);
       const int owner = boxes.owner(p);
       const CellBox& box = boxes.boxes()[static_cast<std::size_t>(owner)];
-      const Index at[3] = {grid.cell(0, p.x), grid.cell(1, p.y), grid.cell(2, p.z)};
+      const Index at[3] = {grid.cell(0, p), grid.cell(1, p), grid.cell(2, p)};
       for (int axis = 0; axis < 3; ++axis) CHECK((at[axis] >= box.lower[axis] && at[axis] < box.upper[axis]));
       weight[static_cast<std::size_t>(owner)] += all.weight[i], total += all.weight[i];
     }
@@ -207,7 +207,36 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
       }
       CHECK(found.size() == static_cast<std::size_t>(halo.size()));
       CHECK((found == expected));
+      const auto received =
+          static_cast<std::int64_t>(halo.size()) - static_cast<std::int64_t>(halo.own().size());
+      CHECK(ranks.sum(std::int64_t{halo.sent()}) == ranks.sum(received));
+      CHECK((halo.receivers() > 0) == (halo.sent() > 0));
+      CHECK(halo.receivers() < ranks.size());
     }
+}
+
+// Takes 14 GB of memory, so that it runs only when it is asked for: mpirun -n 2 test_ranks "[large]".
+TEST_CASE("a message between two ranks may be longer than 2 GiB", "[.][large]") {
+  const Ranks ranks = world();
+  REQUIRE(ranks.size() == 2);
+  constexpr Index kGhosts = 68'000'000;
+  static_assert(kGhosts * sizeof(Vec4) > (std::size_t(1) << 31));
+  Space space = box_space(2, 0);
+  space.min = {0, 0, 0}, space.max = {2, 1, 0};
+  const std::vector<Vec4> one{{ranks.rank() + 0.5, 0.5, 0, 0}};
+  const std::int64_t weight = 1;
+  const Decomposition boxes(ranks, make_domain_grid(space, 1), one, {&weight, 1});
+  // All of rank 0's particles are near rank 1's box.
+  std::vector<Vec4> field(ranks.is_root() ? kGhosts : 0, Vec4{0.99, 0.5, 0, 0});
+  Halo halo;
+  halo.exchange(ranks, boxes, Subdomain(space), space, field, 0.1);
+  CHECK(halo.size() == (ranks.is_root() ? 0 : kGhosts));
+  for (std::size_t i = 0; i < field.size(); ++i) field[i].w = static_cast<Real>(i);
+  if (!ranks.is_root()) field.resize(kGhosts);
+  halo.update(std::span<Vec4>(field), ranks.is_root() ? kGhosts : 0);
+  Index wrong = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) wrong += field[i].w != static_cast<Real>(i);
+  CHECK(wrong == 0);
 }
 
 }  // namespace scree

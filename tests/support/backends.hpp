@@ -15,8 +15,8 @@ inline bool tests_on_gpu() {
   return name != nullptr && std::string(name) == "cuda";
 }
 
-inline std::unique_ptr<Backend> make_test_backend(const Model& model) {
-  return tests_on_gpu() ? make_cuda_backend(model) : make_cpu_backend(model);
+inline std::unique_ptr<Backend> make_test_backend(const Model& model, const Ranks& ranks = {}) {
+  return tests_on_gpu() ? make_cuda_backend(model, ranks) : make_cpu_backend(model, ranks);
 }
 
 }  // namespace scree

@@ -1,0 +1,139 @@
+// Who owns which particles where there are several ranks: src/dem/cpu_list.cpp for the GPU's backend. Particles that
+// change their rank, few after the first list, go through the host.
+#include <cub/device/device_select.cuh>
+#include <thrust/iterator/counting_iterator.h>
+
+#include "backend_parts.cuh"
+#include "dem/device.hpp"
+
+namespace scree {
+namespace {
+
+struct LeavesItem {
+  DomainGrid grid;
+  const DomainCut* cuts;
+  const Vec4* position;
+  int rank;
+  __device__ bool operator()(Index i) const { return owner_of(grid, cuts, xyz(position[i])) != rank; }
+};
+
+// Particle leaving[k] on its way.
+struct MigrantItem {
+  ParticleViews in;
+  const Index* leaving;
+  Migrant* out;
+
+  SCREE_HD void operator()(Index k) const {
+    const Index i = leaving[k];
+    const Vec4 x = in.position[i], v = in.velocity[i];
+    Migrant m;
+    m.state = {id_of(in.row_key[i]), xyz(x), xyz(v), in.acceleration[i], in.force[i], in.contact_loss[i],
+               in.loss_power[i], in.integrator_loss[i], in.image[i], in.drifting[i] != 0};
+    m.radius = x.w, m.mass = v.w, m.material = in.material[i];
+    out[k] = m;
+    in.drifting[i] = kGone;
+  }
+};
+
+struct ArrivalItem {
+  const Migrant* arriving;
+  ParticleViews out;
+  Index first;
+
+  SCREE_HD void operator()(Index k) const {
+    const Index i = first + k;
+    const Migrant& m = arriving[k];
+    const ParticleRecord& r = m.state;
+    out.position[i] = vec4(r.position, m.radius), out.velocity[i] = vec4(r.velocity, m.mass);
+    out.material[i] = static_cast<int>(m.material), out.row_key[i] = row_key(r.global_id, kNoShift);
+    out.acceleration[i] = r.acceleration, out.force[i] = r.force;
+    out.contact_loss[i] = r.contact_loss, out.loss_power[i] = r.loss_power;
+    out.integrator_loss[i] = r.integrator_loss;
+    out.image[i] = r.image, out.drifting[i] = r.drifting;
+  }
+};
+
+}  // namespace
+
+long long CudaBackend::smallest_id() const { return ranks_.min(fetch(&Results::worst_id)); }
+
+// Weights are what a step costs about: one for the particle, one for each entry of its row in the last list.
+void CudaBackend::decompose() {
+  const auto n = static_cast<std::size_t>(owned_);
+  std::vector<Vec4> position(n);
+  std::vector<Index> entries(counted_rows_ == owned_ ? n : 0);
+  copy_async(position.data(), now_.position.data(), n, stream_);
+  copy_async(entries.data(), list_.rows().counts, entries.size(), stream_);
+  wait_for(stream_);
+  std::vector<std::int64_t> weight(n, 1);
+  for (std::size_t i = 0; i < entries.size(); ++i) weight[i] += entries[i];
+  const DomainGrid grid = make_domain_grid(model_.space, builder_.cutoff(model_.contact.skin));
+  Decomposition next(ranks_, grid, position, weight);
+  balance_.rebalances += decomposition_.exists() && next.boxes() != decomposition_.boxes();
+  decomposition_ = std::move(next);
+  cuts_.upload(decomposition_.cuts(), stream_);
+}
+
+// Those that go stay in the arrays, marked, until the sort leaves them behind.
+void CudaBackend::migrate() {
+  if (!decomposition_.exists() || balance_.imbalance > model_.parallel.imbalance) decompose();
+  DeviceArray<Index> leaving(static_cast<std::size_t>(owned_));
+  const LeavesItem leaves{decomposition_.grid(), cuts_.data(), now_.position.data(), ranks_.rank()};
+  std::size_t space = 0;
+  const auto select = [&](void* at) {
+    require_cuda(cub::DeviceSelect::If(at, space, thrust::counting_iterator<Index>(0), leaving.data(),
+                                       result(&Results::index), owned_, leaves, stream_),
+                 "select");
+  };
+  select(nullptr);
+  space_.resize(space);
+  select(space_.data());
+  const Index count = fetch(&Results::index);
+  balance_.migrated += count;
+
+  std::vector<Migrant> migrants(static_cast<std::size_t>(count));
+  if (count > 0) {
+    DeviceArray<Migrant> packed;
+    packed.resize_clean(migrants.size(), stream_);
+    for_each(device(), count, MigrantItem{views_of(now_), leaving.data(), packed.data()});
+    migrants = packed.download(stream_);
+  }
+  std::vector<std::vector<Migrant>> to(static_cast<std::size_t>(ranks_.size()));
+  for (const Migrant& m : migrants) to[static_cast<std::size_t>(decomposition_.owner(m.state.position))].push_back(m);
+  const std::vector<Migrant> arriving = ranks_.deal_out(to);
+  if (arriving.empty()) return;
+  DeviceArray<Migrant> unpacked;
+  unpacked.upload(arriving, stream_);
+  const auto before = static_cast<std::size_t>(owned_), n = before + arriving.size();
+  now_.grow(std::max(n, now_.position.size()), n, before, stream_);
+  for_each(device(), static_cast<Index>(arriving.size()), ArrivalItem{unpacked.data(), views_of(now_), owned_});
+  owned_ = static_cast<Index>(n);
+  wait_for(stream_);  // before the array above goes
+}
+
+void CudaBackend::measure_balance() {
+  balance_.halo = {owned_, halo_.size(), halo_.plan().receivers(),
+                   std::int64_t{halo_.plan().sent()} * 2 * static_cast<std::int64_t>(sizeof(Vec4))};
+  if (ranks_.alone()) return;
+  counted_rows_ = owned_;
+  balance_.imbalance = measure_imbalance(ranks_, owned_ + list_.entries());
+  balance_.largest = std::max(balance_.largest, balance_.imbalance);
+}
+
+std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks) {
+  if (!ranks.alone()) choose_device(ranks.local_rank());
+  std::string trouble = device_trouble();
+  if (trouble.empty()) {
+    const std::size_t needed = device_memory(model), free = free_device_memory();
+    if (needed > free)
+      trouble = "the model needs about " + std::to_string(needed / 1000000) + " MB of device memory, " +
+                std::to_string(free / 1000000) + " MB are free on " + device_name();
+  }
+  // The first rank that has trouble speaks for all.
+  const std::vector<char> all = ranks.gather_everywhere(std::vector<char>(trouble.begin(), trouble.end()));
+  if (!trouble.empty()) throw InputError(trouble);
+  if (!all.empty()) throw InputError("another rank: " + std::string(all.begin(), all.end()));
+  return std::make_unique<CudaBackend>(model, ranks);
+}
+
+}  // namespace scree

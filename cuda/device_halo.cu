@@ -1,0 +1,66 @@
+#include "device_halo.cuh"
+
+namespace scree {
+namespace {
+
+// Visits the targets of a particle: counts the entries per target, or writes them to their places. Entries of a target
+// come in any order; nothing depends on it, because rows are ordered by global id and image.
+struct TargetItem {
+  const Vec4* position;
+  DomainBox box;
+  Real reach;
+  const HaloTarget* targets;
+  int count;
+  unsigned long long* next;  // per target: the entry after the last
+  Ghost* ghosts;             // null: only count
+
+  __device__ void operator()(Index i) const {
+    const Vec3 p = xyz(position[i]);
+    if (box.reaches(p, -reach)) return;  // too far from every side to be a ghost
+    for (int t = 0; t < count; ++t) {
+      const HaloTarget& target = targets[t];
+      if (!target.box.reaches(p + target.shift, reach)) continue;
+      const unsigned long long entry = atomicAdd(&next[t], 1ull);
+      if (ghosts != nullptr) ghosts[entry] = {i, target.shift, target.image};
+    }
+  }
+};
+
+}  // namespace
+
+DeviceHalo::DeviceHalo(const Ranks& ranks, Transport transport)
+    : transport_(ranks.alone() ? nullptr : make_halo_transport(ranks, transport)) {}
+
+void DeviceHalo::find(Device device, const HaloPlan& plan, const Vec4* position, Index n) {
+  plan_ = plan;
+  const std::vector<HaloTarget>& targets = plan_.targets();
+  std::vector<std::size_t> sent(plan_.neighbors().size());
+  if (targets.empty()) return plan_.set_counts(0, sent);
+  targets_.upload(targets, device.stream);
+  counts_.resize(targets.size());
+  counts_.zero(device.stream);
+  TargetItem item{position, plan_.box(), plan_.reach(), targets_.data(), static_cast<int>(targets.size()),
+                  counts_.data(), nullptr};
+  for_each(device, n, item);
+  std::vector<unsigned long long> first = counts_.download(device.stream);
+  std::size_t own = 0, all = 0;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const std::size_t count = first[t];
+    (targets[t].neighbor == HaloTarget::kItself ? own : sent[static_cast<std::size_t>(targets[t].neighbor)]) += count;
+    first[t] = all, all += count;
+  }
+  plan_.set_counts(own, sent);
+  counts_.upload(first, device.stream);
+  ghost_.resize(all);
+  for (DeviceArray<Vec4>& buffer : packed_) buffer.resize(static_cast<std::size_t>(plan_.sent()));
+  item.ghosts = ghost_.data();
+  for_each(device, n, item);
+}
+
+void DeviceHalo::update_motion(Device device, Vec4* position, Vec4* velocity, Index first_ghost) {
+  const MotionGhostItem item{ghosts(), field(0, position, first_ghost), field(1, velocity, first_ghost)};
+  for_each(device, entries(), item);
+  exchange(device, item.position, item.velocity);
+}
+
+}  // namespace scree

@@ -1,0 +1,85 @@
+// Halo on the device: src/partition/halo.hpp for ghosts of any number of ranks, whose packing are kernels.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "for_each.cuh"
+#include "halo_transport.cuh"
+#include "partition/halo.hpp"
+
+namespace scree {
+
+// Where the ghosts' copies of a field go: to their places behind the owned items, or into what is sent.
+template <class T>
+struct GhostField {
+  T *field, *packed;
+  Index own, first_ghost;  // own: entries that are images of the rank's own particles, and come first
+
+  SCREE_HD void put(Index entry, const T& value) const {
+    if (entry < own)
+      field[first_ghost + entry] = value;
+    else
+      packed[entry - own] = value;
+  }
+};
+
+struct MotionGhostItem {
+  const Ghost* ghosts;
+  GhostField<Vec4> position, velocity;
+  SCREE_HD void operator()(Index entry) const {
+    const Ghost ghost = ghosts[entry];
+    position.put(entry, moved(ghost, position.field[ghost.source]));
+    velocity.put(entry, velocity.field[ghost.source]);
+  }
+};
+
+class DeviceHalo {
+ public:
+  DeviceHalo(const Ranks& ranks, Transport transport);
+
+  // Empty for one rank.
+  std::string transport() const { return transport_ ? transport_->name() : ""; }
+  // Whether the host waits for the device in every exchange.
+  bool waits() const { return transport_ && transport_->waits(); }
+
+  // exchange_halo: finds who is a ghost where among items at position[0 ... n-1], and tells the neighbours. Waits for
+  // the stream. Collective.
+  void find(Device device, const HaloPlan& plan, const Vec4* position, Index n);
+  Index size() const { return plan_.ghosts(); }
+  const HaloPlan& plan() const { return plan_; }
+  // What the ghosts' fields are filled from: for_each over entries() with an item that puts into fields, then exchange.
+  Index entries() const { return plan_.own() + plan_.sent(); }
+  const Ghost* ghosts() const { return ghost_.data(); }
+  // buffer: 0 or 1, for fields in the same exchange. T: at most as large as Vec4.
+  template <class T>
+  GhostField<T> field(int buffer, T* field, Index first_ghost) {
+    static_assert(sizeof(T) <= sizeof(Vec4));
+    return {field, reinterpret_cast<T*>(packed_[buffer].data()), plan_.own(), first_ghost};
+  }
+  // Sends what was put into the fields, and receives the ghosts.
+  template <class... T>
+  void exchange(Device device, const GhostField<T>&... fields) {
+    if (!transport_) return;
+    const std::array<HaloMessage, sizeof...(T)> messages{
+        HaloMessage{fields.packed, fields.field + fields.first_ghost, sizeof(T)}...};
+    transport_->exchange(plan_, messages, device.stream);
+  }
+  // update_halo of positions and velocities.
+  void update_motion(Device device, Vec4* position, Vec4* velocity, Index first_ghost);
+
+  // Maxima over all ranks of n values >= 0 in device memory, queued. Collective.
+  void max(Device device, Real* values, Index n) {
+    if (transport_) transport_->max(values, n, device.stream);
+  }
+
+ private:
+  std::unique_ptr<HaloTransport> transport_;  // none for one rank
+  HaloPlan plan_;
+  DeviceArray<Ghost> ghost_;
+  DeviceArray<HaloTarget> targets_;
+  DeviceArray<unsigned long long> counts_;
+  DeviceArray<Vec4> packed_[2];
+};
+
+}  // namespace scree

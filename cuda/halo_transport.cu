@@ -1,0 +1,178 @@
+#include "halo_transport.cuh"
+
+#ifdef SCREE_NCCL
+#include <nccl.h>
+#endif
+
+#include <array>
+#include <vector>
+
+namespace scree {
+namespace {
+
+// MPI reads and writes device memory itself.
+class CudaAwareTransport : public HaloTransport {
+ public:
+  explicit CudaAwareTransport(const Ranks& ranks) : ranks_(ranks), h_values_(kMostValues) {}
+  std::string name() const override { return "CUDA-aware MPI"; }
+  bool waits() const override { return true; }
+
+  void exchange(const HaloPlan& plan, std::span<const HaloMessage> messages, cudaStream_t stream) override {
+    wait_for(stream);
+    plan.transfer(messages);
+  }
+  // So few values that they are as fast through the host.
+  void max(Real* values, Index n, cudaStream_t stream) override {
+    const auto count = static_cast<std::size_t>(n);
+    copy_async(h_values_.data(), values, count, stream);
+    wait_for(stream);
+    ranks_.max({h_values_.data(), count});
+    copy_async(values, h_values_.data(), count, stream);
+  }
+
+ protected:
+  static constexpr std::size_t kMostValues = 16;
+  Ranks ranks_;
+  PinnedArray<Real> h_values_;
+};
+
+// Copies in pinned host memory, for every MPI.
+class StagedTransport : public CudaAwareTransport {
+ public:
+  using CudaAwareTransport::CudaAwareTransport;
+  std::string name() const override { return "copies in host memory"; }
+
+  void exchange(const HaloPlan& plan, std::span<const HaloMessage> messages, cudaStream_t stream) override {
+    wait_for(stream);  // before the buffers below grow: copies from them may be under way
+    std::vector<HaloMessage> staged;
+    std::size_t bytes = 0;
+    const auto room = [&](Index entries, std::size_t element) {
+      constexpr std::size_t kAlignment = 64;
+      const std::size_t at = bytes;
+      bytes += (static_cast<std::size_t>(entries) * element + kAlignment - 1) / kAlignment * kAlignment;
+      return at;
+    };
+    std::vector<std::size_t> packed, ghosts;
+    for (const HaloMessage& m : messages)
+      packed.push_back(room(plan.sent(), m.element)), ghosts.push_back(room(plan.ghosts(), m.element));
+    buffer_.resize(bytes);
+    for (std::size_t k = 0; k < messages.size(); ++k) {
+      const HaloMessage& m = messages[k];
+      copy_async(buffer_.data() + packed[k], static_cast<const unsigned char*>(m.packed),
+                 static_cast<std::size_t>(plan.sent()) * m.element, stream);
+      staged.push_back({buffer_.data() + packed[k], buffer_.data() + ghosts[k], m.element});
+    }
+    wait_for(stream);
+    plan.transfer(staged);
+    for (std::size_t k = 0; k < messages.size(); ++k) {
+      const std::size_t own = static_cast<std::size_t>(plan.own()) * messages[k].element;
+      copy_async(static_cast<unsigned char*>(messages[k].ghosts) + own, buffer_.data() + ghosts[k] + own,
+                 static_cast<std::size_t>(plan.ghosts() - plan.own()) * messages[k].element, stream);
+    }
+  }
+
+ private:
+  PinnedArray<unsigned char> buffer_;
+};
+
+#ifdef SCREE_NCCL
+void require_nccl(ncclResult_t status, const char* what) {
+  if (status != ncclSuccess) throw DeviceError(std::string("nccl: ") + what + ": " + ncclGetErrorString(status));
+}
+
+// Everything is queued on the stream, and the host goes on.
+class NcclTransport : public HaloTransport {
+ public:
+  explicit NcclTransport(const Ranks& ranks) {
+    ncclUniqueId id{};
+    ranks.on_root([&] { require_nccl(ncclGetUniqueId(&id), "ncclGetUniqueId"); });
+    ranks.broadcast(id);
+    require_nccl(ncclCommInitRank(&communicator_, ranks.size(), id, ranks.rank()), "ncclCommInitRank");
+  }
+  // Not destroyed where the stack unwinds from a failure: that would wait for ranks that come no more.
+  ~NcclTransport() override {
+    if (std::uncaught_exceptions() == 0) ncclCommDestroy(communicator_);
+  }
+  std::string name() const override { return "NCCL"; }
+  bool waits() const override { return false; }
+
+  void exchange(const HaloPlan& plan, std::span<const HaloMessage> messages, cudaStream_t stream) override {
+    if (plan.neighbors().empty()) return;
+    require_nccl(ncclGroupStart(), "ncclGroupStart");
+    for (const HaloMessage& m : messages)
+      for (const HaloNeighbor& n : plan.neighbors()) {
+        const auto bytes = [&](Index entries) { return static_cast<std::size_t>(entries) * m.element; };
+        if (n.sent > 0)
+          require_nccl(ncclSend(static_cast<const char*>(m.packed) + bytes(n.first_sent), bytes(n.sent), ncclInt8,
+                                n.rank, communicator_, stream),
+                       "ncclSend");
+        if (n.received > 0)
+          require_nccl(ncclRecv(static_cast<char*>(m.ghosts) + bytes(n.first_received), bytes(n.received), ncclInt8,
+                                n.rank, communicator_, stream),
+                       "ncclRecv");
+      }
+    require_nccl(ncclGroupEnd(), "ncclGroupEnd");
+  }
+  // The bits of numbers >= 0 order as the numbers do, and a NaN's come after all of them.
+  void max(Real* values, Index n, cudaStream_t stream) override {
+    require_nccl(ncclAllReduce(values, values, static_cast<std::size_t>(n), ncclUint64, ncclMax, communicator_, stream),
+                 "ncclAllReduce");
+  }
+
+ private:
+  ncclComm_t communicator_ = nullptr;
+};
+#endif
+
+// Whether two ranks use the same GPU: NCCL takes one rank per GPU.
+bool gpus_are_shared(const Ranks& ranks) {
+  int device = 0;
+  cudaDeviceProp properties{};
+  require_cuda(cudaGetDevice(&device), "cudaGetDevice");
+  require_cuda(cudaGetDeviceProperties(&properties, device), "cudaGetDeviceProperties");
+  std::array<char, sizeof properties.uuid.bytes> own{};
+  std::copy(std::begin(properties.uuid.bytes), std::end(properties.uuid.bytes), own.begin());
+  auto all = ranks.gather_everywhere(std::vector{own});
+  std::sort(all.begin(), all.end());
+  return std::adjacent_find(all.begin(), all.end()) != all.end();
+}
+
+// Why NCCL does not work here; empty if it does.
+std::string nccl_trouble([[maybe_unused]] bool shared) {
+#ifdef SCREE_NCCL
+  return shared ? "two ranks share a GPU, and NCCL takes one rank per GPU" : "";
+#else
+  return "this program was built without NCCL";
+#endif
+}
+
+std::string cuda_aware_trouble() {
+  return Ranks::mpi_takes_device_memory() ? "" : "this MPI library does not take device memory";
+}
+
+}  // namespace
+
+std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted) {
+  const std::string no_nccl = nccl_trouble(gpus_are_shared(ranks)), no_mpi = cuda_aware_trouble();
+  const auto refuse = [&](const std::string& key, const std::string& why) {
+    std::string allowed = "\"auto\"";
+    if (no_mpi.empty()) allowed += ", \"cuda-aware\"";
+    if (no_nccl.empty()) allowed += ", \"nccl\"";
+    throw InputError("parallel.transport = \"" + key + "\": " + why + "; allowed here: " + allowed + ", \"staged\"");
+  };
+  if (wanted == Transport::automatic)
+    wanted = no_mpi.empty() ? Transport::cuda_aware : no_nccl.empty() ? Transport::nccl : Transport::staged;
+  if (wanted == Transport::cuda_aware) {
+    if (!no_mpi.empty()) refuse("cuda-aware", no_mpi);
+    return std::make_unique<CudaAwareTransport>(ranks);
+  }
+  if (wanted == Transport::nccl) {
+    if (!no_nccl.empty()) refuse("nccl", no_nccl);
+#ifdef SCREE_NCCL
+    return std::make_unique<NcclTransport>(ranks);
+#endif
+  }
+  return std::make_unique<StagedTransport>(ranks);
+}
+
+}  // namespace scree

@@ -1,0 +1,149 @@
+#include "partition/halo_plan.hpp"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/error.hpp"
+#include "partition/entry_type.hpp"
+
+namespace scree {
+namespace {
+
+constexpr int kCountTag = 21, kFieldTag = 22;
+
+// Whether `box`, moved by s periods, comes within the width of `other`.
+bool comes_near(const DomainBox& box, Vec3 shift, const DomainBox& other, Real width) {
+  const auto along = [&](Real Vec3::*axis) {
+    return box.min.*axis + shift.*axis <= other.max.*axis + width &&
+           box.max.*axis + shift.*axis >= other.min.*axis - width;
+  };
+  return along(&Vec3::x) && along(&Vec3::y) && along(&Vec3::z);
+}
+
+// Calls visit(shift [m], image) for the shifts by whole periods, none included.
+template <class Visit>
+void for_each_shift(Vec3 period, const Visit& visit) {
+  const auto most = [](Real length) { return length == 0 ? 0 : 1; };
+  for (int z = -most(period.z); z <= most(period.z); ++z)
+    for (int y = -most(period.y); y <= most(period.y); ++y)
+      for (int x = -most(period.x); x <= most(period.x); ++x)
+        visit(Vec3{x * period.x, y * period.y, z * period.z},
+              static_cast<std::int8_t>((z + 1) * 9 + (y + 1) * 3 + x + 1));
+}
+
+Index countable(std::size_t ghosts) {
+  if (ghosts > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    throw SimulationError(
+        "stage exchange_halo: more ghosts than one rank can count; more ranks have fewer each");
+  return static_cast<Index>(ghosts);
+}
+
+}  // namespace
+
+// Messages under way; all of them are done when it goes. Nothing may throw while it is there: the others
+// would wait for messages that are never sent.
+class HaloPlan::Transfers {
+ public:
+  // most: number of messages.
+  Transfers(const Ranks& ranks, std::size_t most) : communicator_(MPI_Comm_f2c(ranks.communicator())) {
+    requests_.reserve(most);
+  }
+  ~Transfers() { MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE); }
+  Transfers(const Transfers&) = delete;
+  Transfers& operator=(const Transfers&) = delete;
+
+  void receive(void* data, Index entries, const EntryType& type, int rank, int tag) {
+    MPI_Irecv(data, entries, type, rank, tag, communicator_, &requests_.emplace_back());
+  }
+  void send(const void* data, Index entries, const EntryType& type, int rank, int tag) {
+    MPI_Isend(data, entries, type, rank, tag, communicator_, &requests_.emplace_back());
+  }
+
+ private:
+  MPI_Comm communicator_;
+  std::vector<MPI_Request> requests_;
+};
+
+HaloPlan::HaloPlan(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
+                   Real width)
+    : ranks_(ranks), box_(decomposition.box(ranks.rank(), subdomain)), reach_(width * (1 + kBoxRoundOff)) {
+  find_neighbors(decomposition, subdomain, width);
+  find_targets(decomposition, subdomain);
+}
+
+// Both of two ranks come to the same answer: the lower one's box is moved.
+void HaloPlan::find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width) {
+  const int self = ranks_.rank();
+  for (int other = 0; other < ranks_.size(); ++other) {
+    if (other == self) continue;
+    const DomainBox low = decomposition.box(std::min(self, other), subdomain),
+                    high = decomposition.box(std::max(self, other), subdomain);
+    bool near = false;
+    for_each_shift(subdomain.period(), [&](Vec3 shift, std::int8_t) {
+      near = near || comes_near(low, shift, high, width * (1 + 4 * kBoxRoundOff));
+    });
+    if (near) neighbors_.push_back({other});
+  }
+}
+
+void HaloPlan::find_targets(const Decomposition& decomposition, const Subdomain& subdomain) {
+  const auto add = [&](int rank, int neighbor) {
+    const DomainBox box = decomposition.box(rank, subdomain);
+    for_each_shift(subdomain.period(), [&](Vec3 shift, std::int8_t image) {
+      const bool itself = neighbor == HaloTarget::kItself && image == kNoShift;
+      if (!itself && comes_near(box_, shift, box, 2 * reach_))
+        targets_.push_back({box, shift, image, neighbor});
+    });
+  };
+  add(ranks_.rank(), HaloTarget::kItself);
+  for (std::size_t k = 0; k < neighbors_.size(); ++k) add(neighbors_[k].rank, static_cast<int>(k));
+}
+
+void HaloPlan::set_counts(std::size_t own, std::span<const std::size_t> sent) {
+  std::size_t all = 0;
+  for (std::size_t k = 0; k < neighbors_.size(); ++k) {
+    neighbors_[k].first_sent = countable(all);
+    neighbors_[k].sent = countable(sent[k]);
+    all += sent[k];
+  }
+  sent_ = countable(all);
+  if (!neighbors_.empty()) {
+    const EntryType type(sizeof(Index));
+    Transfers transfers(ranks_, 2 * neighbors_.size());
+    for (HaloNeighbor& n : neighbors_) transfers.receive(&n.received, 1, type, n.rank, kCountTag);
+    for (const HaloNeighbor& n : neighbors_) transfers.send(&n.sent, 1, type, n.rank, kCountTag);
+  }
+  std::size_t ghosts = own;
+  for (HaloNeighbor& n : neighbors_) {
+    n.first_received = countable(ghosts);
+    ghosts += static_cast<std::size_t>(n.received);
+  }
+  own_ = countable(own), ghosts_ = countable(ghosts);
+}
+
+Index HaloPlan::receivers() const {
+  return static_cast<Index>(
+      std::count_if(neighbors_.begin(), neighbors_.end(), [](const HaloNeighbor& n) { return n.sent > 0; }));
+}
+
+void HaloPlan::transfer(std::span<const HaloMessage> messages) const {
+  if (neighbors_.empty()) return;
+  std::vector<EntryType> types;
+  types.reserve(messages.size());
+  for (const HaloMessage& m : messages) types.emplace_back(m.element);
+  Transfers transfers(ranks_, 2 * messages.size() * neighbors_.size());
+  for (std::size_t k = 0; k < messages.size(); ++k)
+    for (const HaloNeighbor& n : neighbors_)
+      transfers.receive(static_cast<char*>(messages[k].ghosts) +
+                            static_cast<std::size_t>(n.first_received) * messages[k].element,
+                        n.received, types[k], n.rank, kFieldTag + static_cast<int>(k));
+  for (std::size_t k = 0; k < messages.size(); ++k)
+    for (const HaloNeighbor& n : neighbors_)
+      transfers.send(static_cast<const char*>(messages[k].packed) +
+                         static_cast<std::size_t>(n.first_sent) * messages[k].element,
+                     n.sent, types[k], n.rank, kFieldTag + static_cast<int>(k));
+}
+
+}  // namespace scree

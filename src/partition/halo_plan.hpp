@@ -1,0 +1,84 @@
+// Which ranks exchange ghosts, and what of a rank's box they need: the part of the halo that is the same
+// wherever the particles live.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "partition/decomposition.hpp"
+#include "partition/ranks.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+// Number of no shift among the 27 by whole periods.
+inline constexpr std::int8_t kNoShift = 13;
+
+// A rank that this one exchanges ghosts with. Entries [first_sent, first_sent + sent) of what is sent go
+// there; what comes from there are the ghosts [first_received, first_received + received).
+struct HaloNeighbor {
+  int rank;
+  Index first_sent = 0, sent = 0;
+  Index first_received = 0, received = 0;
+};
+
+// Particles whose image by `shift` comes within reach of the box are ghosts there.
+struct HaloTarget {
+  DomainBox box;
+  Vec3 shift;         // [m]
+  std::int8_t image;  // number of the shift
+  int neighbor;       // index of the neighbour, or kItself: images of the rank's own particles
+
+  static constexpr int kItself = -1;
+};
+
+// A field of the ghosts on its way: one entry of `element` bytes per entry that is sent, and per ghost. The
+// first ghosts, images of own particles, are not received.
+struct HaloMessage {
+  const void* packed;
+  void* ghosts;
+  std::size_t element;
+};
+
+class HaloPlan {
+ public:
+  HaloPlan() = default;
+  // width: how far the halo reaches past the boxes [m]. All ranks come to plans that fit each other.
+  HaloPlan(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain, Real width);
+
+  // Those of the rank itself first, then those of one neighbour after the other.
+  const std::vector<HaloTarget>& targets() const { return targets_; }
+  const DomainBox& box() const { return box_; }  // of this rank
+  Real reach() const { return reach_; }          // the width, and what covers its round-off [m]
+  const std::vector<HaloNeighbor>& neighbors() const { return neighbors_; }
+
+  // Once the ghosts are known, tells the neighbours how many come, and learns how many come from them. own:
+  // ghosts that are images of this rank's own particles; sent: entries per neighbour. Called by all ranks.
+  // Throws SimulationError where they are more than an Index can count.
+  void set_counts(std::size_t own, std::span<const std::size_t> sent);
+  Index own() const { return own_; }
+  Index sent() const { return sent_; }
+  Index ghosts() const { return ghosts_; }  // own images and received ones
+  Index receivers() const;                  // neighbours that something is sent to
+
+  // Sends and receives all of the messages; done on return. In memory that MPI can read and write.
+  void transfer(std::span<const HaloMessage> messages) const;
+
+ private:
+  class Transfers;
+  void find_neighbors(const Decomposition& decomposition, const Subdomain& subdomain, Real width);
+  void find_targets(const Decomposition& decomposition, const Subdomain& subdomain);
+
+  Ranks ranks_;
+  std::vector<HaloNeighbor> neighbors_;
+  std::vector<HaloTarget> targets_;
+  DomainBox box_{};
+  Real reach_ = 0;
+  Index own_ = 0, sent_ = 0, ghosts_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,76 @@
+#include "bed_report.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "base/error.hpp"
+#include "dem/device.hpp"
+
+namespace scree {
+namespace {
+
+// What one rank says of itself.
+struct OfRank {
+  HaloSize halo;
+  double imbalance = 0;
+  double host_bytes = 0, device_bytes = 0;
+  std::array<double, static_cast<int>(Stage::count)> stage_seconds{};  // per step
+};
+
+// Largest memory that the process had so far [B].
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+}  // namespace
+
+BedReport::BedReport(const std::string& path, const std::string& kind, const Ranks& ranks)
+    : path_(path), kind_(kind), ranks_(ranks) {
+  if (path_.empty()) return;
+  ranks_.on_root([&] {
+    const bool is_new = !std::filesystem::exists(path_);
+    file_.open(path_, std::ios::app);
+    if (is_new) {
+      file_ << kKindColumns
+            << ",bodies,ranks,rank,particles,owned,ghosts,receivers,halo_bytes,imbalance,list_builds,steps,"
+               "seconds_per_step,fastest,slowest,mean,host_bytes,device_bytes";
+      for (const char* name : kStageNames) file_ << ',' << name;
+      file_ << '\n' << std::flush;
+    }
+    if (!file_) throw IoError(path_ + ": cannot be written");
+  });
+}
+
+void BedReport::add(const Measured& measured, const StageTimers& before, const StageTimers& after,
+                    const Backend& backend) {
+  if (path_.empty()) return;
+  OfRank own;
+  own.halo = backend.balance().halo, own.imbalance = backend.balance().imbalance;
+  own.host_bytes = peak_memory();
+  if (device_trouble().empty()) own.device_bytes = static_cast<double>(device_memory_in_use());
+  for (int s = 0; s < static_cast<int>(Stage::count); ++s)
+    own.stage_seconds[static_cast<std::size_t>(s)] =
+        (after[static_cast<Stage>(s)].seconds - before[static_cast<Stage>(s)].seconds) / measured.steps;
+  const std::vector<OfRank> all = ranks_.gather(std::vector<OfRank>{own});
+  ranks_.on_root([&] {
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+      const OfRank& r = all[rank];
+      file_ << fmt::format(
+          "{},{},{},{},{},{},{},{},{},{:.4g},{},{:.0f},{:.6g},{:.6g},{:.6g},{:.6g},{:.0f},{:.0f}", kind_,
+          measured.bodies, ranks_.size(), rank, measured.particles, r.halo.owned, r.halo.ghosts,
+          r.halo.neighbors, r.halo.bytes, r.imbalance, measured.list_builds, measured.steps, measured.seconds,
+          measured.fastest, measured.slowest, measured.mean, r.host_bytes, r.device_bytes);
+      for (const double seconds : r.stage_seconds) file_ << fmt::format(",{:.6g}", seconds);
+      file_ << '\n';
+    }
+    file_.flush();
+    if (!file_) throw IoError(path_ + ": cannot be written");
+  });
+}
+
+}  // namespace scree

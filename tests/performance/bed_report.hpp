@@ -1,0 +1,42 @@
+// The measurements of bed.cpp as rows of a CSV file, one per rank, for rank_tables.py and scaling_model.py.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+#include "base/timer.hpp"
+#include "dem/backend.hpp"
+#include "partition/ranks.hpp"
+
+namespace scree {
+
+// What was measured on one bed, the same on every rank.
+struct Measured {
+  std::int64_t particles = 0;  // of all ranks
+  std::size_t bodies = 0;
+  // Per step: median, extremes and mean of the samples. The stages' times are means.
+  double seconds = 0, fastest = 0, slowest = 0, mean = 0;
+  double steps = 0;              // of all samples
+  std::int64_t list_builds = 0;  // within them
+};
+
+class BedReport {
+ public:
+  // path: the file that rows are added to, with a heading if it is new; empty: none are written. kind: what
+  // all rows of this program have in common, as in kKindColumns. Collective. Throws IoError.
+  BedReport(const std::string& path, const std::string& kind, const Ranks& ranks);
+  // before, after: this rank's stage times around the samples. Collective.
+  void add(const Measured& measured, const StageTimers& before, const StageTimers& after,
+           const Backend& backend);
+
+  // Columns of `kind`; rebuild: option of bed, or "coupled" where bodies and particles exchange in batches.
+  static constexpr const char* kKindColumns = "commit,device,backend,precision,dimension,integrator,rebuild";
+
+ private:
+  std::string path_, kind_;
+  Ranks ranks_;
+  std::ofstream file_;  // of rank 0
+};
+
+}  // namespace scree

@@ -1,0 +1,115 @@
+"""Markdown tables of how runs of bed --csv scale with the number of ranks.
+
+    rank_tables.py FILE.csv ...
+
+Weak scaling compares runs with as many particles per rank, strong scaling runs with as many in all, both with one rank.
+A run has both tables' efficiency where both kinds of run are there. Then, per run, the stages of each rank; and
+what bodies cost.
+"""
+import argparse
+import pathlib
+import sys
+
+import rank_runs
+
+
+# The bed with bodies lacks the few particles that are in their way.
+SAME = 1e-2
+
+
+def table(columns, rows):
+    return "\n".join(["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)] +
+                     ["| " + " | ".join(row) + " |" for row in rows] + [""])
+
+
+def per_particle(run):
+    """Memory of all ranks over the particles [B], on the device if there is one."""
+    column = "device_bytes" if run.backend == "cuda" else "host_bytes"
+    return sum(run.of_all(column)) / run.particles
+
+
+def row(run, efficiency):
+    seconds = run.seconds_per_step
+    return [str(run.ranks), f"{run.particles:,}",
+            f"{1e3 * seconds:.4g} ({1e3 * run.fastest:.4g} to {1e3 * run.slowest:.4g})",
+            f"{run.particles / seconds:.3g}", f"{100 * efficiency:.1f} %", f"{100 * run.largest('imbalance'):.2f} %",
+            f"{100 * sum(run.of_all('ghosts')) / run.particles:.2f} %",
+            f"{1e-3 * run.largest('halo_bytes'):,.4g} to {run.largest('receivers')}",
+            f"{100 * run.largest('update_halo') / run.mean:.1f} %", f"{per_particle(run):.0f}"]
+
+
+COLUMNS = ["ranks", "particles", "ms per step (fastest to slowest sample)", "particle-steps/s", "efficiency",
+           "imbalance", "ghosts", "kB sent per halo update, to ranks (largest)",
+           "halo update of the step (slowest rank)", "memory per particle [B]"]
+
+
+def scalings(runs):
+    """{(kind, particles of the run on one rank): [(run, efficiency)]}, of runs alike but for size and ranks."""
+    out = {}
+    for one in (run for run in runs if run.ranks == 1):
+        weak = [run for run in runs if abs(run.particles / run.ranks / one.particles - 1) < SAME]
+        strong = [run for run in runs if abs(run.particles / one.particles - 1) < SAME]
+        for kind, group in (("Weak", weak), ("Strong", strong)):
+            if len(group) < 2:
+                continue
+            ideal = (lambda run: 1) if kind == "Weak" else (lambda run: run.ranks)
+            out[kind, one.particles] = [(run, one.seconds_per_step / run.seconds_per_step / ideal(run))
+                                        for run in sorted(group, key=lambda run: run.ranks)]
+    return out
+
+
+def stages(run):
+    names = [stage for stage in rank_runs.STAGES if run.largest(stage) > 1e-3 * run.mean]
+    columns = ["rank", "particles", "ghosts", *(f"{name} [us]" for name in names), "other [us]"]
+    rows = []
+    for rank in run.of_rank:
+        times = [rank[name] for name in names]
+        rows.append([str(rank["rank"]), f"{rank['owned']:,}", f"{rank['ghosts']:,}", *(f"{1e6 * t:.4g}" for t in times),
+                     f"{1e6 * (run.mean - sum(times)):.4g}"])
+    return table(columns, rows)
+
+
+def bodies(runs):
+    """Runs with bodies against those without, of as many ranks and particles."""
+    rows = []
+    for run in runs:
+        bare = [r for r in runs if r.bodies == 0 and (r.ranks, r.particles) == (run.ranks, run.particles)]
+        if run.bodies > 0 and bare:
+            more = run.seconds_per_step - bare[0].seconds_per_step
+            rows.append([str(run.ranks), f"{run.particles:,}", str(run.bodies), f"{1e3 * bare[0].seconds_per_step:.4g}",
+                         f"{1e3 * run.seconds_per_step:.4g}", f"{100 * more / bare[0].seconds_per_step:.1f} %",
+                         f"{1e6 * run.of_rank[0]['mbs_correct']:.4g}"])
+    return rows
+
+
+def report(runs):
+    out = []
+    for series in dict.fromkeys(run.series() for run in runs):
+        alike = [run for run in runs if run.series() == series]
+        commits = ", ".join(dict.fromkeys(run.commit for run in alike))
+        what = ", ".join(f"{name} {value}" for name, value in zip(rank_runs.KIND[1:], series))
+        out.append(f"## {what}; commit {commits}\n")
+        for count in sorted({run.bodies for run in alike}):
+            for (kind, size), group in scalings([run for run in alike if run.bodies == count]).items():
+                per_rank = " per rank" if kind == "Weak" else ""
+                out.append(f"{kind} scaling, {size:,} particles{per_rank}, {count} bodies:\n")
+                out.append(table(COLUMNS, [row(*entry) for entry in group]))
+        if rows := bodies(alike):
+            out.append("What bodies cost:\n")
+            out.append(table(["ranks", "particles", "bodies", "ms per step without", "with", "longer",
+                              "of that rank 0 solves [us]"], rows))
+        for run in alike:
+            out.append(f"Stages per step, {run.ranks} rank(s), {run.particles:,} particles, {run.bodies} bodies, "
+                       f"{run.mean * 1e6:.4g} us per step (mean):\n")
+            out.append(stages(run))
+    return "\n".join(out)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE.csv")
+    print(report(rank_runs.read_runs(parser.parse_args().files)))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
