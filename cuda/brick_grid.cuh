@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "dem/neighbor_list.hpp"
 
@@ -9,22 +11,62 @@ namespace scree {
 
 // Cells are numbered brick by brick, so that the particles of a thread block and most of their neighbours share
 // cache lines: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D. Bricks are numbered along the axis with the fewest of them first, so
-// that those beside each other are as close in memory as can be.
+// that those beside each other are as close in memory as can be. With several ranks the interior comes first: the bricks
+// whose particles meet no ghost and are ghosts nowhere.
 struct BrickGrid {
   SearchCells cells;
   Index shift[3] = {2, 2, 2};  // sides of a brick as powers of two
   Index stride[3] = {1, 1, 1};  // from a brick to the next along an axis
   Index bricks = 1;
+  // Along the axes from the smallest stride to the largest: the axis, and where the interior begins and how long it is.
+  struct Along {
+    int axis;
+    Index first, length;
+  } along[3] = {};
+  Index interior = 0;  // bricks in it
 
-  Index count() const { return bricks << (shift[0] + shift[1] + shift[2]); }
+  Index cells_of(Index number_of_bricks) const { return number_of_bricks << (shift[0] + shift[1] + shift[2]); }
+  Index count() const { return cells_of(bricks); }
+  SCREE_HD Index number(Index x, Index y, Index z) const {
+    const Index plain = z * stride[2] + y * stride[1] + x * stride[0];
+    if (cells.same) return plain;
+    const auto offset = [&](const Along& a) { return (a.axis == 0 ? x : a.axis == 1 ? y : z) - a.first; };
+    const auto clipped = [](Index at, Index length) { return at < 0 ? 0 : at < length ? at : length; };
+    const Index u = offset(along[0]), v = offset(along[1]), w = offset(along[2]);
+    const bool in_w = w >= 0 && w < along[2].length, in_v = v >= 0 && v < along[1].length;
+    // Bricks of the interior that come before this one in the plain order.
+    Index before = clipped(w, along[2].length) * along[1].length * along[0].length;
+    if (in_w) before += clipped(v, along[1].length) * along[0].length;
+    if (in_w && in_v) before += clipped(u, along[0].length);
+    const bool inside = in_w && in_v && u >= 0 && u < along[0].length;
+    return inside ? before : interior + plain - before;
+  }
   SCREE_HD Index key(Index x, Index y, Index z) const {
-    const Index brick = (z >> shift[2]) * stride[2] + (y >> shift[1]) * stride[1] + (x >> shift[0]) * stride[0];
+    const Index brick = number(x >> shift[0], y >> shift[1], z >> shift[2]);
     const auto inside = [this](Index along, int axis) { return along & ((1 << shift[axis]) - 1); };
     return (((brick << shift[2] | inside(z, 2)) << shift[1] | inside(y, 1)) << shift[0]) | inside(x, 0);
   }
   // The first cell of the brick after that of x.
   SCREE_HD Index next_brick(Index x) const { return ((x >> shift[0]) + 1) << shift[0]; }
 };
+
+// First brick along an axis of those that keep more than the list's reach from the sides of the rank's box, and how many.
+inline std::pair<Index, Index> interior_along(const SearchCells& cells, int axis, Index shift, Index bricks) {
+  const auto of = [&](Vec3 v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+  const Real edge = 1 / of(cells.own.inverse_size), margin = cells.reach + 1e-6 * edge;
+  const Real low = of(cells.box.min) + margin, high = of(cells.box.max) - margin;
+  // What lies beyond the grid belongs to its first and last cells.
+  const auto begins = [&](Index brick) {
+    return brick == 0 ? -std::numeric_limits<Real>::infinity() : of(cells.own.origin) + edge * (brick << shift);
+  };
+  const auto ends = [&](Index brick) {
+    return brick + 1 == bricks ? std::numeric_limits<Real>::infinity() : begins(brick + 1);
+  };
+  Index first = 0, last = bricks;
+  while (first < last && begins(first) < low) ++first;
+  while (last > first && ends(last - 1) > high) --last;
+  return {first, last - first};
+}
 
 inline BrickGrid make_brick_grid(const SearchCells& cells) {
   BrickGrid grid;
@@ -35,6 +77,13 @@ inline BrickGrid make_brick_grid(const SearchCells& cells) {
   int order[3] = {0, 1, 2};
   std::stable_sort(order, order + 3, [&](int a, int b) { return bricks[a] < bricks[b]; });
   for (const int axis : order) grid.stride[axis] = grid.bricks, grid.bricks *= bricks[axis];
+  if (cells.same) return grid;
+  grid.interior = 1;
+  for (int k = 0; k < 3; ++k) {
+    const auto [first, length] = interior_along(cells, order[k], grid.shift[order[k]], bricks[order[k]]);
+    grid.along[k] = {order[k], first, length};
+    grid.interior *= length;
+  }
   return grid;
 }
 

@@ -104,10 +104,20 @@ struct VerletControl {
   }
 };
 
+inline constexpr int kStepBlock = 128;  // threads of a block of an explicit step
+
+// The particles [first, end) of a launch; first: a multiple of kStepBlock.
+struct StepRows {
+  Index first, end;
+  bool whole;   // all of the step, which follows the step before on the stream
+  bool closes;  // the last launch of the step
+};
+
 // Two arrays each for position and velocity: a step reads one and writes the other.
 struct VerletRequest {
   PrunedViews in;  // but for position and velocity
-  Index n, active;  // the others drift outside: the list need not cover their motion
+  StepRows rows;
+  Index active;  // the others drift outside: the list need not cover their motion
   Vec3 gravity;
   Vec4 *position[2], *velocity[2];
   VerletViews state;  // likewise
@@ -120,7 +130,8 @@ struct VerletRequest {
 // The same in mixed precision. in.position: the double state, as it was converted.
 struct MixedRequest {
   PrunedViews in;
-  Index n, active;
+  StepRows rows;
+  Index active;
   Vec3 gravity;
   MixedViews state;
   QuantumGrid grid;

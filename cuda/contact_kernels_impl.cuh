@@ -71,7 +71,6 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_plac
   return !r.box.inside(xyz(new_place)) && !r.drifting[i];
 }
 
-inline constexpr int kVerletThreads = 128;
 // Entries of a row that a launch of few threads evaluates at once.
 inline constexpr int kFewThreadsAtOnce = 4;
 // Registers are rationed for so many blocks on a multiprocessor: the kernels live from many threads that wait, or from
@@ -96,9 +95,9 @@ struct BlockLargest {
   }
 };
 
-// Every thread calls this at its end: the last block closes the step. d_squared: of the thread's particle, 0 for one
-// outside the search.
-__device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, VerletControl& control) {
+// Every thread calls this at its end: the last block of a launch that does so closes the step. d_squared: of the
+// thread's particle, 0 for one outside the search.
+__device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, bool closes, VerletControl& control) {
   __syncwarp();  // lane 0 speaks for all: it sees what they wrote
   // Singles that round up keep the order of the doubles, and a NaN stays the largest.
   const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
@@ -107,17 +106,17 @@ __device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, 
   // The warp that comes last speaks for the block; the others do not wait for it.
   atomicMax(&block.largest, warp_largest);
   __threadfence_block();
-  if (atomicAdd(&block.arrived, 1u) != kVerletThreads / warpSize - 1) return;
+  if (atomicAdd(&block.arrived, 1u) != kStepBlock / warpSize - 1) return;
   __threadfence_block();
   const unsigned largest = atomicMax(&block.largest, 0u);
   atomicMax(&control.largest, largest);
-  if (is_last_block(&control.finished_blocks)) close_step(control);
+  if (closes && is_last_block(&control.finished_blocks)) close_step(control);
 }
 
-using VerletStage = WarpStage<sizeof(Vec4), kVerletThreads>;
+using VerletStage = WarpStage<sizeof(Vec4), kStepBlock>;
 
 template <int kAtOnce, class Elastic, class Laws>
-__global__ void __launch_bounds__(kVerletThreads, verlet_blocks(kAtOnce))
+__global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
     verlet_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
   await_step_before();
   if (r.control->stop) return;
@@ -125,8 +124,8 @@ __global__ void __launch_bounds__(kVerletThreads, verlet_blocks(kAtOnce))
   __shared__ VerletStage::Shared shared;
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
-  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
-  const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.n - first));
+  const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   Vec3* const acceleration = stage.load(r.state.acceleration);
   VerletAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
       {views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, nullptr, nullptr}, r.state};
@@ -136,10 +135,10 @@ __global__ void __launch_bounds__(kVerletThreads, verlet_blocks(kAtOnce))
   item.state.position = only(position, i), item.state.velocity = only(velocity, i);
   item.state.acceleration = acceleration;
   TotalForce force;
-  if (i < r.n) force = item.contacts.total(i);
+  if (i < r.rows.end) force = item.contacts.total(i);
   stage.await();
   Real d_squared = 0;
-  if (i < r.n) {
+  if (i < r.rows.end) {
     d_squared = item.advance(i, force);
     if (is_outside(r, i, item.contacts.in.position[i], position, d_squared)) r.control->outside = 1;
   }
@@ -147,20 +146,20 @@ __global__ void __launch_bounds__(kVerletThreads, verlet_blocks(kAtOnce))
   stage.put(position, p == 0 ? r.position[1] : r.position[0]);
   stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
 
-  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, *r.control);
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.closes, *r.control);
 }
 
 template <int kAtOnce, class Elastic, class Laws>
-__global__ void __launch_bounds__(kVerletThreads, mixed_blocks(kAtOnce))
+__global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
     mixed_advance_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
   await_step_before();
   if (r.control->stop) return;
   const int parity = r.control->parity[0];
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
-  const Index i = thread_index();
+  const Index i = r.rows.first + thread_index();
   Real d_squared = 0;
-  if (i < r.n) {
+  if (i < r.rows.end) {
     const MixedAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
         views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, r.state, parity, r.grid, r.h};
     d_squared = item(i);
@@ -170,7 +169,7 @@ __global__ void __launch_bounds__(kVerletThreads, mixed_blocks(kAtOnce))
         !r.box.inside(mixed_position(r.grid, r.in.position[i], (parity == 0 ? r.state.place[1] : r.state.place[0])[i], part)))
       r.control->outside = 1;
   }
-  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, *r.control);
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.closes, *r.control);
 }
 
 template <class Elastic, class Laws>
@@ -178,7 +177,7 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
   const int p = r.control->parity[0], v = r.control->parity[1];
   const Index i = thread_index();
   Real a_squared = 0;
-  if (i < r.n) {
+  if (i < r.rows.end) {
     VerletFinishItem<Elastic, Laws, PrunedRows<0>> item{
         {views_for<0>(r.in, RowUse::all, 0), laws, r.gravity, r.force, r.state.loss_power}, r.state};
     item.contacts.in.position = r.position[p], item.contacts.in.velocity = r.velocity[v];
@@ -218,26 +217,26 @@ class ContactKernelsOf : public DeviceContactKernels {
              ContactEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, out.energy, out.contacts, out.pairs});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
-    const bool eagerly = fits(r.n, verlet_blocks(kFewThreadsAtOnce));
+    const bool eagerly = fits(r.rows, verlet_blocks(kFewThreadsAtOnce));
     launch(device, r, eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
                               : verlet_advance_kernel<0, Elastic, Laws>);
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    const bool eagerly = fits(r.n, mixed_blocks(kFewThreadsAtOnce));
+    const bool eagerly = fits(r.rows, mixed_blocks(kFewThreadsAtOnce));
     launch(device, r, eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
                               : mixed_advance_kernel<0, Elastic, Laws>);
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
-    if (r.n == 0) return;
-    verlet_finish_kernel<Elastic><<<blocks_for(r.n), kThreadsPerBlock, 0, device.stream>>>(r, laws_, largest);
+    if (r.rows.end == 0) return;
+    verlet_finish_kernel<Elastic><<<blocks_for(r.rows.end), kThreadsPerBlock, 0, device.stream>>>(r, laws_, largest);
     require_cuda(cudaGetLastError(), "explicit step");
   }
 
  private:
   // Whether so many particles have room side by side on the GPU, with so many blocks on a multiprocessor.
-  bool fits(Index n, int blocks) const {
-    return blocks_for(n, kVerletThreads) <= multiprocessors_ * static_cast<unsigned>(blocks);
+  bool fits(const StepRows& rows, int blocks) const {
+    return blocks_for(rows.end - rows.first, kStepBlock) <= multiprocessors_ * static_cast<unsigned>(blocks);
   }
   template <class Request>
   void launch(Device device, const Request& r, void (*kernel)(Request, Laws)) const {
@@ -246,8 +245,8 @@ class ContactKernelsOf : public DeviceContactKernels {
     overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     overlap.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
-    config.gridDim = std::max(1u, blocks_for(r.n, kVerletThreads)), config.blockDim = kVerletThreads;
-    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = overlaps_ ? 1 : 0;
+    config.gridDim = std::max(1u, blocks_for(r.rows.end - r.rows.first, kStepBlock)), config.blockDim = kStepBlock;
+    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = overlaps_ && r.rows.whole ? 1 : 0;
     require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");
   }
 

@@ -206,10 +206,12 @@ void CudaBackend::sort_cells(Real skin) {
            CellKeyItem{now_.position.data(), now_.drifting.data(), grid_, outside,
                        particle_sort_.keys(static_cast<std::size_t>(owned_))});
   particle_sort_.sort(device(), owned_, outside + 1);
+  copy_async(&h_results_.data()->interior, particle_sort_.starts() + grid_.cells_of(grid_.interior), 1, stream_);
   copy_async(&h_results_.data()->active, particle_sort_.starts() + outside, 1, stream_);
   copy_async(&h_results_.data()->staying, particle_sort_.starts() + outside + 1, 1, stream_);
   wait_for(stream_);
   owned_ = h_results_[0].staying;
+  interior_ = h_results_[0].interior / kStepBlock * kStepBlock;
   layout_.owned = owned_, layout_.active = h_results_[0].active;
   reorder(particle_sort_.order(), owned_);
 }

@@ -82,7 +82,7 @@ class CudaBackend : public Backend {
     long long worst_id;
     Index index;
     Index leavers;
-    Index active, staying;  // particles in the search, and those that stay on this rank
+    Index interior, active, staying;  // particles in the interior, in the search, and on this rank from now on
   };
   Device device() const { return {stream_}; }
   // Copies one member of the results to the host, once what is queued is done.
@@ -143,8 +143,8 @@ class CudaBackend : public Backend {
   void resume_control(Index last);
   const VerletControl& wait_for_control();
   void queue_steps(Real h, Index steps);
-  template <class QueueOne>
-  void queue_in_turn(const std::string& key, Index steps, const QueueOne& queue_one);
+  template <class QueueGhosts, class QueueRows>
+  void queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
   MixedViews mixed_views();
   void convert_to_mixed(Real h);
   void convert_from_mixed();
@@ -162,8 +162,8 @@ class CudaBackend : public Backend {
   ShapeSide side_;
   NeighborBuilder builder_;  // its grid and reach; the search is the device's
   HhtCoefficients hht_;
-  // Everything that follows the particles; contacts of shapes beside an explicit step; output.
-  mutable Stream stream_, shape_stream_{Priority::urgent}, copy_stream_;
+  // Everything that follows the particles; contacts of shapes, and the halo, beside an explicit step; output.
+  mutable Stream stream_, shape_stream_{Priority::urgent}, halo_stream_{Priority::urgent}, copy_stream_;
 
   DeviceArray<KelvinVoigt> laws_;
   std::unique_ptr<DeviceContactKernels> kernels_;
@@ -179,6 +179,7 @@ class CudaBackend : public Backend {
   DeviceArray<DomainCut> cuts_;
   LoadBalance balance_;
   Index counted_rows_ = 0;  // particles whose rows the last list has in their order; 0: they have changed since
+  Index interior_ = 0;      // the first so many particles, whole blocks of them, meet no ghosts and are none
   mutable DeviceHalo halo_;
   DeviceArray<Index> other_items_;
   mutable DeviceArray<unsigned char> space_;  // of library calls
@@ -193,6 +194,7 @@ class CudaBackend : public Backend {
   PinnedArray<Vec4> h_shape_places_;
   std::vector<Vec4> h_list_shapes_;  // positions of the shapes when the list was built
   Event places_copied_, step_queued_;
+  Event ghosts_ready_, rows_done_, step_closed_;  // of explicit steps on several ranks
   PinnedArray<ShapeContact> h_shape_contacts_;  // written by the device: few, and awaited
   bool layout_changed_ = true;  // particles left since the list was built
   std::int64_t list_builds_ = 0;

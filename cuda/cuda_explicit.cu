@@ -107,7 +107,7 @@ PrunedViews CudaBackend::pruned_views(const Vec4* position) {
 VerletRequest CudaBackend::verlet_request(Real h) {
   VerletRequest r{};
   r.in = pruned_views(nullptr);
-  r.n = owned_, r.active = layout_.active, r.gravity = model_.gravity;
+  r.rows = {0, owned_, true, true}, r.active = layout_.active, r.gravity = model_.gravity;
   r.position[0] = now_.position.data(), r.position[1] = other_.position.data();
   r.velocity[0] = now_.velocity.data(), r.velocity[1] = other_.velocity.data();
   r.state = {nullptr, nullptr,
@@ -205,18 +205,33 @@ bool CudaBackend::renew_list(StageTimers& timers) {
   return true;
 }
 
-// queue_one(k) queues the ghosts and the kernel of the k-th step from now on; key: all that its launches depend on.
-template <class QueueOne>
-void CudaBackend::queue_in_turn(const std::string& key, Index steps, const QueueOne& queue_one) {
+// Queues steps one after the other. queue_ghosts(device, k): the halo of the k-th from now on; queue_rows(rows): the
+// kernel of a step on these particles; key: all that the launches depend on.
+//
+// With several ranks the interior, which meets no ghosts, is computed while the halo is under way; then the rest, and
+// then the ranks share what decides whether the next step may be taken.
+template <class QueueGhosts, class QueueRows>
+void CudaBackend::queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
+                                const QueueRows& queue_rows) {
   if (ranks_.alone()) {
-    graph_.queue(stream_, key, steps, [&] { queue_one(0); });
+    graph_.queue(stream_, key, steps, [&] {
+      queue_ghosts(device(), 0);
+      queue_rows({0, owned_, true, true});
+    });
     return;
   }
+  const Device halo{halo_stream_};
   VerletControl* control = result(&Results::control);
+  rows_done_.record(stream_), rows_done_.hold(halo_stream_);
   for (Index k = 0; k < steps; ++k) {
-    queue_one(k);
-    halo_.max(device(), control->shared, 2);
-    close_kernel<<<1, 1, 0, stream_>>>(control);
+    if (interior_ > 0) queue_rows({0, interior_, false, false});
+    queue_ghosts(halo, k);
+    ghosts_ready_.record(halo_stream_), ghosts_ready_.hold(stream_);
+    queue_rows({interior_, owned_, false, true});
+    rows_done_.record(stream_), rows_done_.hold(halo_stream_);
+    halo_.max(halo, control->shared, 2);
+    close_kernel<<<1, 1, 0, halo_stream_>>>(control);
+    step_closed_.record(halo_stream_), step_closed_.hold(stream_);
   }
   require_cuda(cudaGetLastError(), "explicit step");
 }
@@ -231,16 +246,20 @@ void CudaBackend::queue_steps(Real h, Index steps) {
                               {field(0, r.position, 0), field(0, r.position, 1)},
                               {field(1, r.velocity, 0), field(1, r.velocity, 1)},
                               r.control};
-    queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, [&](Index k) {
-      for_each(device(), halo_.entries(), ghosts);
-      halo_.exchange(device(), ghosts.position[(parity_[0] + k) % 2], ghosts.velocity[(parity_[1] + k) % 2]);
-      kernels_->verlet_advance(device(), r);
+    const auto queue_ghosts = [&](Device on, Index k) {
+      for_each(on, halo_.entries(), ghosts);
+      halo_.exchange(on, ghosts.position[(parity_[0] + k) % 2], ghosts.velocity[(parity_[1] + k) % 2]);
+    };
+    queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, queue_ghosts, [&](const StepRows& rows) {
+      VerletRequest of_rows = r;
+      of_rows.rows = rows;
+      kernels_->verlet_advance(device(), of_rows);
     });
     return;
   }
   if (!in_mixed_) convert_to_mixed(h);
   MixedRequest r{};
-  r.in = pruned_views(now_.position.data()), r.n = owned_, r.active = layout_.active;
+  r.in = pruned_views(now_.position.data()), r.rows = {0, owned_, true, true}, r.active = layout_.active;
   r.gravity = model_.gravity;
   r.state = mixed_views(), r.grid = quanta_, r.h = h;
   r.box = subdomain_.box(), r.drifting = now_.drifting.data(), r.control = result(&Results::control);
@@ -250,11 +269,15 @@ void CudaBackend::queue_steps(Real h, Index steps) {
       {halo_.field(1, r.state.motion[0], owned_), halo_.field(1, r.state.motion[1], owned_)},
       quanta_,
       r.control};
-  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, [&](Index k) {
-    for_each(device(), halo_.entries(), ghosts);
+  const auto queue_ghosts = [&](Device on, Index k) {
+    for_each(on, halo_.entries(), ghosts);
     const Index parity = (parity_[0] + k) % 2;
-    halo_.exchange(device(), ghosts.place[parity], ghosts.motion[parity]);
-    kernels_->mixed_advance(device(), r);
+    halo_.exchange(on, ghosts.place[parity], ghosts.motion[parity]);
+  };
+  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, queue_ghosts, [&](const StepRows& rows) {
+    MixedRequest of_rows = r;
+    of_rows.rows = rows;
+    kernels_->mixed_advance(device(), of_rows);
   });
 }
 

@@ -89,10 +89,8 @@ class NcclTransport : public HaloTransport {
     ranks.broadcast(id);
     require_nccl(ncclCommInitRank(&communicator_, ranks.size(), id, ranks.rank()), "ncclCommInitRank");
   }
-  // Not destroyed where the stack unwinds from a failure: that would wait for ranks that come no more.
-  ~NcclTransport() override {
-    if (std::uncaught_exceptions() == 0) ncclCommDestroy(communicator_);
-  }
+  // Not ncclCommDestroy: after a failure that would wait for ranks that come no more.
+  ~NcclTransport() override { ncclCommAbort(communicator_); }
   std::string name() const override { return "NCCL"; }
   bool waits() const override { return false; }
 

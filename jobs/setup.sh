@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
 #
-#     jobs/setup.sh [--paraview] [--cuda]
+#     jobs/setup.sh [--paraview] [--slurm] [--cuda]
 #
 # --paraview adds Debian's ParaView, for the reader test that opens the .xdmf files in it.
+# --slurm adds SLURM, for the test that starts one on this machine and submits the sbatch files to it. Its services are
+# not configured and do not run by themselves.
 # --cuda adds nvcc of CUDA 13.0 from PyPI, in .venv, for machines without a CUDA toolkit. The driver is not among it.
 # With nothing to install it changes nothing; what it must not install it names.
 set -euo pipefail
@@ -17,6 +19,7 @@ packages=(
   libegl1 libgl1 libxrender1      # what PyPI's vtk draws with, off screen
 )
 paraview_packages=(paraview xvfb xauth python3-h5py)
+slurm_packages=(slurmctld slurmd slurm-client munge)
 requirements=postprocess/requirements.txt
 cuda_packages=("cuda-toolkit[nvcc,cudart,cccl]==13.0.2" "nvidia-nvvm==13.0.*" "nvidia-cuda-crt==13.0.*")
 
@@ -65,8 +68,9 @@ with_cuda=false
 for argument in "$@"; do
   case "$argument" in
     --paraview) packages+=("${paraview_packages[@]}") ;;
+    --slurm) packages+=("${slurm_packages[@]}") ;;
     --cuda) with_cuda=true ;;
-    *) fail "unknown argument: $argument; allowed: --paraview, --cuda" ;;
+    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda" ;;
   esac
 done
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then

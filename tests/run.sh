@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
 # Sets up, builds, and runs all tests that need no GPU.
 #
-#     tests/run.sh [--paraview] [CTEST OPTIONS]
+#     tests/run.sh [--paraview] [--slurm] [CTEST OPTIONS]
 #
-# --paraview adds the test that opens the results in Debian's ParaView, and installs that. CTEST OPTIONS select
-# tests, for instance -L unit or -R verification.
+# --paraview adds the test that opens the results in Debian's ParaView, and installs that. --slurm installs SLURM; the
+# test of the sbatch files is skipped without it. CTEST OPTIONS select tests, for instance -L unit or -R verification.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 selection=(--label-exclude paraview)
-if [[ "${1:-}" == --paraview ]]; then
-  jobs/setup.sh --paraview
-  selection=()
+while [[ "${1:-}" == --paraview || "${1:-}" == --slurm ]]; do
+  jobs/setup.sh "$1"
+  if [[ "$1" == --paraview ]]; then selection=(); fi
   shift
-fi
+done
 jobs/build.sh release
 
 status=0

@@ -52,7 +52,7 @@ void BedReport::add(const Measured& measured, const StageTimers& before, const S
   OfRank own;
   own.halo = backend.balance().halo, own.imbalance = backend.balance().imbalance;
   own.host_bytes = peak_memory();
-  if (device_trouble().empty()) own.device_bytes = static_cast<double>(device_memory_in_use());
+  own.device_bytes = static_cast<double>(device_memory_in_use());
   for (int s = 0; s < static_cast<int>(Stage::count); ++s)
     own.stage_seconds[static_cast<std::size_t>(s)] =
         (after[static_cast<Stage>(s)].seconds - before[static_cast<Stage>(s)].seconds) / measured.steps;

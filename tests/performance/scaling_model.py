@@ -16,7 +16,8 @@ from a square, B is per_face sqrt(n) for each of up to 4 faces, m up to 8. Past 
 With b bodies rank 0 solves for them in every step: --iterations times what chain_scaling measures per iteration,
 between its lengths along straight lines in log b and log t. On a GPU that is done while the particles' kernels run, on
 CPU ranks the others wait. What a step with bodies takes beyond that is coupling + coupling_per_rank P, fitted to the
-runs with bodies, and the bytes of motion (down a tree) and contact sums (to rank 0; as if all bodies were touched).
+runs with bodies, and the bytes of motion (down a tree) and contact sums (to rank 0; as if all bodies were touched) at
+--network-bandwidth.
 
 Prints the terms, the steps per second and efficiencies from 1 to 1,000 ranks, and from where on rank 0's solve is the
 limit: where it takes as long as the step of the particles. Writes DIR/scaling_model.md, .csv and, where there is
@@ -122,11 +123,10 @@ class Model:
         return math.exp(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 
     def crossing(self, bodies, ranks):
-        """Seconds for the bytes of motion and wrenches."""
+        """Seconds for the bytes of motion and wrenches. Those of the halo cost more: packing, and waits."""
         if ranks == 1:
             return 0.0
-        byte = max(self.terms["per_byte"], 1 / self.network.bandwidth)
-        return byte * bodies * (MOTION_BYTES * math.log2(ranks) + WRENCH_BYTES)
+        return bodies * (MOTION_BYTES * math.log2(ranks) + WRENCH_BYTES) / self.network.bandwidth
 
     def exchange(self, bodies, ranks):
         """Seconds of a step with bodies beyond the particles and the solve."""

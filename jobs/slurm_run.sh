@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# What the sbatch files of this folder share: one run as the work of a SLURM job, begun, continued, or found done.
+#
+#     jobs/slurm_run.sh DECK RESULTS [SCREE OPTIONS]
+#
+# The newest checkpoint in RESULTS is continued; without one the run begins. A run that is done is left as it is, unless
+# the deck has been edited since. On SIGUSR1, which the sbatch files ask SLURM for before the time limit, the run writes
+# RESULTS/checkpoint.h5 and ends with exit code 5; the job then goes back into the queue, at most SCREE_REQUEUES times.
+# On SIGTERM (scancel, preemption) the run does the same, but the job stays out of the queue unless SLURM puts it back.
+# Otherwise the job ends with the exit code of the run, which README.md lists.
+#
+# From the environment of sbatch:
+#     SCREE            the program; default: build/release/scree
+#     SCREE_LAUNCHER   what starts the ranks; default: srun --mpi=pmix --wait=60. With mpirun: SCREE_LAUNCHER=mpirun
+#     SCREE_REQUEUES   how often a job that met its time limit may have been started again; default: 0
+set -euo pipefail
+
+readonly stopped_by_signal=5 bad_usage=2
+
+say() { echo "job ${SLURM_JOB_ID:-}: $*"; }
+
+refuse() {
+  echo "job ${SLURM_JOB_ID:-}: $*" >&2
+  exit "$bad_usage"
+}
+
+(($# >= 2)) || refuse "usage: jobs/slurm_run.sh DECK RESULTS [SCREE OPTIONS]"
+deck=$1 results=$2
+options=("${@:3}")
+scree=${SCREE:-build/release/scree}
+requeues=${SCREE_REQUEUES:-0}
+restarts=${SLURM_RESTART_COUNT:-0}
+# --wait: ranks that outlive another one by so many seconds are ended, where the MPI library has not ended them.
+read -r -a launcher <<<"${SCREE_LAUNCHER:-srun --mpi=pmix --wait=60}"
+
+[[ -x "$scree" ]] || refuse "no program $scree in $PWD; submit from the root of the built repository, or set SCREE"
+[[ -e "$deck" ]] || refuse "no deck $deck in $PWD"
+[[ "$requeues" =~ ^[0-9]+$ ]] || refuse "SCREE_REQUEUES = \"$requeues\"; allowed: whole numbers from 0"
+command -v "${launcher[0]}" >/dev/null || refuse "SCREE_LAUNCHER: no program ${launcher[0]} on this node"
+
+record=$results/run_record.json
+if [[ "$record" -nt "$deck" ]] && grep -Eq '"status" *: *"done"' "$record"; then
+  say "the run in $results is done already; it goes on when time.end in $deck is raised"
+  exit 0
+fi
+
+checkpoint=
+for file in "$results"/checkpoint.h5 "$results"/checkpoint_end.h5; do
+  if [[ "$file" -nt "$checkpoint" ]]; then checkpoint=$file; fi
+done
+if [[ -n "$checkpoint" ]]; then
+  options=(--restart "$checkpoint" "${options[@]}")
+  say "start $((restarts + 1)) on ${SLURM_JOB_NODELIST:-this node}: continues from $checkpoint"
+else
+  say "start $((restarts + 1)) on ${SLURM_JOB_NODELIST:-this node}: begins"
+fi
+
+# SLURM 22.05 and newer do not pass this on from sbatch to srun by themselves.
+export SRUN_CPUS_PER_TASK=${SLURM_CPUS_PER_TASK:-1}
+# A rank computes on one core: libraries must not start threads on those of other ranks.
+export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
+
+run='' warned=false ended=false
+# shellcheck disable=SC2317 # the traps call it
+ask_for_checkpoint() {
+  say "$1: asking the run for a checkpoint"
+  if [[ -n "$run" ]]; then kill -USR1 "$run" 2>/dev/null || true; fi # srun and mpirun pass it on to the ranks
+}
+trap 'warned=true; ask_for_checkpoint "the time limit is near"' USR1
+trap 'ended=true; ask_for_checkpoint "the job is being ended"' TERM
+
+"${launcher[@]}" "$scree" run "$deck" --output "$results" "${options[@]}" &
+run=$!
+wait "$run" || true
+while kill -0 "$run" 2>/dev/null; do wait "$run" || true; done # a signal ends a wait, not the run
+status=0
+wait "$run" || status=$? # of the run: bash remembers it
+if "$warned" && ((status == 128 + $(kill -l USR1))); then
+  say "the signal came before the run could hear it; there is no new checkpoint"
+  status=$stopped_by_signal
+fi
+
+if ((status != stopped_by_signal)) || "$ended"; then
+  say "ends with exit code $status"
+elif ! "$warned"; then
+  say "stopped by a signal to the ranks; submitted again, the run continues"
+elif ((restarts >= requeues)); then
+  say "stopped by the time limit after $restarts of at most $requeues requeues; submitted again, the run continues"
+elif scontrol requeue "$SLURM_JOB_ID"; then
+  say "stopped by the time limit and back in the queue: requeue $((restarts + 1)) of at most $requeues"
+else
+  say "stopped by the time limit, and SLURM did not take the job back; submitted again, the run continues"
+fi
+exit "$status"
