@@ -32,8 +32,8 @@ std::size_t device_memory_in_use();
 inline constexpr std::size_t kSlotsPerItem = 16;
 inline constexpr double kListSlack = 1.15;
 
-// Device memory that the backend takes for this model [B]: what `scree check` prints. An estimate from the
-// model alone, the same on machines without a GPU.
+// Device memory that the backend takes for this rank's part of the model [B]: what `scree check` prints. An
+// estimate from the model alone, the same on machines without a GPU.
 std::size_t device_memory(const Model& model);
 
 // Each rank of a host takes a GPU of its own, as far as there are so many. Throws InputError, on all ranks,

@@ -81,21 +81,16 @@ void ParticleStore::reorder(const std::vector<Index>& from) {
   owned = static_cast<Index>(from.size());
 }
 
-std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain, IdRange ids) {
-  std::vector<ParticleRecord> records(static_cast<std::size_t>(ids.size()));
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    ParticleRecord& r = records[k];
-    r.global_id = ids.first + static_cast<GlobalId>(k);
-    const auto i = static_cast<std::size_t>(r.global_id - set.first_id);
+std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain) {
+  std::vector<ParticleRecord> records(set.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    ParticleRecord& r = records[i];
+    r.global_id = set.first_id + static_cast<GlobalId>(i);
     r.position = subdomain.wrap(snap(set.position[i], subdomain.snap_constant()), r.image);
     r.image = {};
     r.velocity = set.velocity[i];
   }
   return records;
-}
-
-std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain) {
-  return initial_records(set, subdomain, set.ids());
 }
 
 }  // namespace scree

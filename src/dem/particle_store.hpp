@@ -6,7 +6,6 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
-#include "model/id_range.hpp"
 #include "model/model.hpp"
 #include "partition/subdomain.hpp"
 
@@ -60,9 +59,7 @@ struct ParticleStore {
   void reorder(const std::vector<Index>& from);
 };
 
-// Start of the simulation: positions and velocities of the model, the rest zero. Of those of the set's
-// particles with these ids, or of all.
-std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain, IdRange ids);
+// Start of the simulation: positions and velocities of the model, the rest zero.
 std::vector<ParticleRecord> initial_records(const ParticleSet& set, const Subdomain& subdomain);
 
 }  // namespace scree

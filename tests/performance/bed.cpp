@@ -104,17 +104,29 @@ Measured measured(const Samples& samples, const Model& bed, std::int64_t list_bu
   return out;
 }
 
+// Of a bed that every rank has made whole, its part.
+Model part_of(Model bed, const Ranks& ranks) {
+  ParticleSet& set = bed.particles;
+  if (std::ssize(set.position) < set.totals.count) return bed;
+  const IdRange own = id_range(set.totals.count, ranks.rank(), ranks.size());
+  const auto cut = [&](auto& values) {
+    values = std::decay_t<decltype(values)>(values.begin() + own.first, values.begin() + own.last);
+  };
+  cut(set.position), cut(set.velocity), cut(set.radius), cut(set.mass), cut(set.material);
+  set.first_id = own.first;
+  return bed;
+}
+
 // A bed on its backend.
 struct Run {
   Run(Model bed, const Options& options)
-      : model(std::move(bed)),
+      : model(part_of(std::move(bed), options.ranks)),
         backend(options.on_gpu() ? make_cuda_backend(model, options.ranks)
                                  : make_cpu_backend(model, options.ranks)),
         link(model, options.ranks),
         ranks(options.ranks),
         step(model, *backend, link, timers) {
-    const IdRange own = id_range(model.particles.totals.count, ranks.rank(), ranks.size());
-    backend->load(initial_records(model.particles, Subdomain(model.space), own), {});
+    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
   }
   double listed() const {
     return static_cast<double>(ranks.sum(backend->list_entries())) /

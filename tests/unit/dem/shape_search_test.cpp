@@ -34,6 +34,7 @@ struct Lattice {
       if (k % 5 == 0) add_particle(corner);
     }
     for (int k = 0; k < 200; ++k) add_particle({width * (k + 0.5) / 200, kSpacing * (1 + k % 3), 0});
+    count_particles(model.particles, 1);
   }
   void add_particle(Vec3 p) {
     ParticleSet& set = model.particles;
