@@ -66,10 +66,17 @@ void CudaBackend::load(const std::vector<ParticleRecord>& records, const ShapeLo
 }
 
 std::vector<ParticleRecord> CudaBackend::records() const {
+  std::vector<ParticleRecord> out(static_cast<std::size_t>(owned_));
   DeviceArray<ParticleRecord> d_records;
-  d_records.resize_clean(static_cast<std::size_t>(owned_), stream_);
-  for_each(device(), owned_, RecordItem{views_of(now_), model_.space.min, subdomain_.period(), d_records.data()});
-  std::vector<ParticleRecord> out = d_records.download(stream_);
+  d_records.resize_clean(std::min(out.size(), kRecordsAtOnce), stream_);
+  const auto at_once = static_cast<Index>(d_records.size());
+  for (Index first = 0; first < owned_; first += at_once) {
+    const Index n = std::min(at_once, owned_ - first);
+    for_each(device(), n,
+             RecordItem{views_of(now_), first, model_.space.min, subdomain_.period(), d_records.data()});
+    copy_async(out.data() + first, d_records.data(), static_cast<std::size_t>(n), stream_);
+  }
+  wait_for(stream_);
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
   return out;
 }

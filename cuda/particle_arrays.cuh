@@ -65,13 +65,15 @@ struct ReorderItem {
   }
 };
 
-// Records of the particles: position inside the periodic box.
+// Records of the particles from `first` on: position inside the periodic box.
 struct RecordItem {
   ParticleViews in;
+  Index first;
   Vec3 box_min, period;
   ParticleRecord* out;
 
-  SCREE_HD void operator()(Index i) const {
+  SCREE_HD void operator()(Index k) const {
+    const Index i = first + k;
     ParticleRecord r;
     r.global_id = id_of(in.row_key[i]);
     r.image = in.image[i];
@@ -81,7 +83,7 @@ struct RecordItem {
     r.contact_loss = in.contact_loss[i], r.loss_power = in.loss_power[i];
     r.integrator_loss = in.integrator_loss[i];
     r.drifting = in.drifting[i] != 0;
-    out[i] = r;
+    out[k] = r;
   }
 };
 

@@ -32,6 +32,9 @@ std::size_t device_memory_in_use();
 inline constexpr std::size_t kSlotsPerItem = 16;
 inline constexpr double kListSlack = 1.15;
 
+// Particles whose records leave the device at a time.
+inline constexpr std::size_t kRecordsAtOnce = std::size_t{1} << 22;
+
 // Device memory that the backend takes for this rank's part of the model [B]: what `scree check` prints. An
 // estimate from the model alone, the same on machines without a GPU.
 std::size_t device_memory(const Model& model);

@@ -58,18 +58,20 @@ Sizes sizes_of(const Model& model) {
   const BodyShapes shapes(model);
   NeighborBuilder builder(model, shapes);
   const Real skin = model.contact.skin;
-  ParticleStore store;
-  store.load(model.particles, initial_records(model.particles, subdomain));
-  const std::vector<Ghost> ghosts =
-      periodic_images(subdomain, model.space, store.position, builder.cutoff(skin));
+  const bool periodic = subdomain.period() != Vec3{}, equal = equal_radii(model);
   Sizes sizes{};
   sizes.shapes = shapes.size() > 0;
-  sizes.particles = static_cast<double>(model.particles.size()),
-  sizes.ghosts = static_cast<double>(ghosts.size());
+  sizes.particles = static_cast<double>(model.particles.size());
+  ParticleStore store;  // only where it is needed: it is as large as the model
+  if (periodic || !equal) store.load(model.particles, initial_records(model.particles, subdomain));
+  if (periodic)
+    sizes.ghosts = static_cast<double>(
+        periodic_images(subdomain, model.space, store.position, builder.cutoff(skin)).size());
   sizes.items = sizes.particles + sizes.ghosts + static_cast<double>(shapes.size());
-  sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, store.owned + shapes.size()).count());
+  const auto counted = static_cast<Index>(model.particles.size()) + shapes.size();
+  sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, counted).count());
   sizes.slots = kSlotsPerItem * sizes.items;
-  if (equal_radii(model)) return sizes;
+  if (equal) return sizes;
   ItemLayout layout;
   layout.owned = layout.active = layout.first_shape = layout.items = store.owned;
   sizes.slots = std::max(sizes.slots, kListSlack * slots_at_start(store, layout, builder, skin));
@@ -91,7 +93,8 @@ std::size_t device_memory(const Model& model) {
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.shapes)
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
-  bytes += n.particles * (kOutputArrays + sizeof(ParticleRecord));
+  bytes += n.particles * kOutputArrays +
+           std::min(n.particles, static_cast<double>(kRecordsAtOnce)) * sizeof(ParticleRecord);
   return static_cast<std::size_t>(bytes);
 }
 
