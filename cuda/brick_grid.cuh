@@ -52,6 +52,7 @@ struct BrickGrid {
 
 // First brick along an axis of those that keep more than the list's reach from the sides of the rank's box, and how many.
 inline std::pair<Index, Index> interior_along(const SearchCells& cells, int axis, Index shift, Index bricks) {
+  if (cells.own.layer && axis == 2) return {0, bricks};
   const auto of = [&](Vec3 v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
   const Real edge = 1 / of(cells.own.inverse_size), margin = cells.reach + 1e-6 * edge;
   const Real low = of(cells.box.min) + margin, high = of(cells.box.max) - margin;

@@ -202,8 +202,8 @@ void CudaBackend::wrap_positions() {
     throw SimulationError("stage sort_cells: the position of particle " + std::to_string(bad) + " is not finite");
 }
 
-void CudaBackend::sort_cells(Real skin) {
-  const std::int64_t particles = ranks_.sum(static_cast<std::int64_t>(owned_));
+// particles: of all ranks.
+void CudaBackend::sort_cells(Real skin, std::int64_t particles) {
   grid_ = make_brick_grid(ranks_.alone()
                               ? builder_.cells(skin, particles)
                               : builder_.cells(skin, particles, decomposition_.box(ranks_.rank(), subdomain_),
@@ -313,14 +313,16 @@ void CudaBackend::search(Real skin) {
 
 void CudaBackend::build_list(Real skin, StageTimers& timers) {
   settle();
+  std::int64_t particles = 0;
   {
     const auto scope = timers.time(Stage::migrate);
+    particles = ranks_.sum(static_cast<std::int64_t>(owned_));
     wrap_positions();
     if (!ranks_.alone()) migrate();
   }
   {
     const auto scope = timers.time(Stage::sort_cells);
-    sort_cells(skin);
+    sort_cells(skin, particles);
   }
   {
     const auto scope = timers.time(Stage::exchange_halo);

@@ -112,7 +112,9 @@ class CudaBackend : public Backend {
   void wrap_positions();
   void migrate();
   void decompose();
-  void sort_cells(Real skin);
+  std::vector<Migrant> pack_migrants(Index* leaving, Index count);
+  void add_migrants(const std::vector<Migrant>& arriving);
+  void sort_cells(Real skin, std::int64_t particles);
   void reorder(const Index* order, Index n);
   void find_ghosts(Real width);
   void grow_items(Index items);
@@ -142,6 +144,7 @@ class CudaBackend : public Backend {
   void settle();
   void resume_control(Index last);
   const VerletControl& wait_for_control();
+  Index steps_ahead(const VerletControl& control) const;
   void queue_steps(Real h, Index steps);
   template <class QueueGhosts, class QueueRows>
   void queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
@@ -178,7 +181,7 @@ class CudaBackend : public Backend {
   Decomposition decomposition_;
   DeviceArray<DomainCut> cuts_;
   LoadBalance balance_;
-  Index counted_rows_ = 0;  // particles whose rows the last list has in their order; 0: they have changed since
+  DeviceArray<Index> row_length_;  // of the particles in the last list, with several ranks
   Index interior_ = 0;      // the first so many particles, whole blocks of them, meet no ghosts and are none
   mutable DeviceHalo halo_;
   HaloClock halo_clock_;

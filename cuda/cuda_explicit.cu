@@ -151,6 +151,15 @@ const VerletControl& CudaBackend::wait_for_control() {
   return c;
 }
 
+// Steps to queue before the host looks again. On one rank those behind a stop cost nothing; on several each of them has
+// its halo, so that there are not many more than the list is likely to cover.
+Index CudaBackend::steps_ahead(const VerletControl& control) const {
+  if (ranks_.alone()) return kQueuedSteps;
+  if (halo_.waits()) return 1;
+  const Real covered = (control.half_skin - control.bound) / control.displacement;
+  return covered < kQueuedSteps - 1 ? static_cast<Index>(covered) + 1 : kQueuedSteps;
+}
+
 // Brings the open step into now_.
 void CudaBackend::settle() {
   if (!in_run_) return;
@@ -225,7 +234,7 @@ void CudaBackend::queue_in_turn(const std::string& key, Index steps, const Queue
   VerletControl* control = result(&Results::control);
   rows_done_.record(stream_), rows_done_.hold(halo_stream_);
   for (Index k = 0; k < steps; ++k) {
-    const bool look = k == steps - 1;
+    const bool look = k == 0;  // those behind a stop do nothing that a halo could hide behind
     if (look) halo_clock_.begin(halo_stream_);
     if (interior_ > 0) queue_rows({0, interior_, false, false});
     if (look) halo_clock_.interior_done(stream_);
@@ -314,7 +323,7 @@ VerletRun CudaBackend::run_alone(Real h, Index most, bool keep_open, StageTimers
     if (c->closed == last || leaves()) break;
     const auto scope = timers.time(Stage::contact_force);
     resume_control(last);
-    queue_steps(h, std::min(last - c->closed, halo_.waits() ? 1 : kQueuedSteps));
+    queue_steps(h, std::min(last - c->closed, steps_ahead(*c)));
     level_ = Level::opened;
     if (idle_work_) idle_work_();
     c = &wait_for_control();

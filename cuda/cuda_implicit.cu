@@ -117,8 +117,8 @@ void CudaBackend::report_not_finite(const Vec3* force) const {
   require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
   for_each(device(), owned_,
            SmallestIdItem<IsNotFinite>{now_.row_key.data(), {force}, result(&Results::worst_id)});
-  throw SimulationError("stage contact_force: the force on particle " + std::to_string(smallest_id()) +
-                        " is not finite");
+  if (const long long id = smallest_id(); id < kNoId)
+    throw SimulationError("stage contact_force: the force on particle " + std::to_string(id) + " is not finite");
 }
 
 GlobalId CudaBackend::worst_particle() const {

@@ -61,9 +61,9 @@ long long CudaBackend::smallest_id() const { return ranks_.min(fetch(&Results::w
 void CudaBackend::decompose() {
   const auto n = static_cast<std::size_t>(owned_);
   std::vector<Vec4> position(n);
-  std::vector<Index> entries(counted_rows_ == owned_ ? n : 0);
+  std::vector<Index> entries(row_length_.size() == n ? n : 0);
   copy_async(position.data(), now_.position.data(), n, stream_);
-  copy_async(entries.data(), list_.rows().counts, entries.size(), stream_);
+  copy_async(entries.data(), row_length_.data(), entries.size(), stream_);
   wait_for(stream_);
   std::vector<std::int64_t> weight(n, 1);
   for (std::size_t i = 0; i < entries.size(); ++i) weight[i] += entries[i];
@@ -74,14 +74,16 @@ void CudaBackend::decompose() {
   cuts_.upload(decomposition_.cuts(), stream_);
 }
 
-// Those that go stay in the arrays, marked, until the sort leaves them behind.
+// In parts of bounded size; all ranks take as many. Those that go stay in the arrays, marked, until the sort leaves them
+// behind.
 void CudaBackend::migrate() {
   if (!decomposition_.exists() || balance_.imbalance > model_.parallel.imbalance) decompose();
-  DeviceArray<Index> leaving(static_cast<std::size_t>(owned_));
+  other_.grow(now_.position.size(), static_cast<std::size_t>(owned_), 0, stream_);
+  Index* leaving = other_.material.data();  // free until the sort
   const LeavesItem leaves{decomposition_.grid(), cuts_.data(), now_.position.data(), ranks_.rank()};
   std::size_t space = 0;
   const auto select = [&](void* at) {
-    require_cuda(cub::DeviceSelect::If(at, space, thrust::counting_iterator<Index>(0), leaving.data(),
+    require_cuda(cub::DeviceSelect::If(at, space, thrust::counting_iterator<Index>(0), leaving,
                                        result(&Results::index), owned_, leaves, stream_),
                  "select");
   };
@@ -91,16 +93,26 @@ void CudaBackend::migrate() {
   const Index count = fetch(&Results::index);
   balance_.migrated += count;
 
-  std::vector<Migrant> migrants(static_cast<std::size_t>(count));
-  if (count > 0) {
-    DeviceArray<Migrant> packed;
-    packed.resize_clean(migrants.size(), stream_);
-    for_each(device(), count, MigrantItem{views_of(now_), leaving.data(), packed.data()});
-    migrants = packed.download(stream_);
+  constexpr auto kAtOnce = static_cast<Index>(kRecordsAtOnce);
+  const auto parts = static_cast<Index>(ranks_.max(static_cast<Real>((count + kAtOnce - 1) / kAtOnce)));
+  for (Index part = 0; part < parts; ++part) {
+    const Index first = std::min(part * kAtOnce, count), n = std::min(kAtOnce, count - first);
+    std::vector<std::vector<Migrant>> to(static_cast<std::size_t>(ranks_.size()));
+    for (const Migrant& m : pack_migrants(leaving + first, n))
+      to[static_cast<std::size_t>(decomposition_.owner(m.state.position))].push_back(m);
+    add_migrants(ranks_.deal_out(to));
   }
-  std::vector<std::vector<Migrant>> to(static_cast<std::size_t>(ranks_.size()));
-  for (const Migrant& m : migrants) to[static_cast<std::size_t>(decomposition_.owner(m.state.position))].push_back(m);
-  const std::vector<Migrant> arriving = ranks_.deal_out(to);
+}
+
+std::vector<Migrant> CudaBackend::pack_migrants(Index* leaving, Index count) {
+  if (count == 0) return {};
+  DeviceArray<Migrant> packed;
+  packed.resize_clean(static_cast<std::size_t>(count), stream_);
+  for_each(device(), count, MigrantItem{views_of(now_), leaving, packed.data()});
+  return packed.download(stream_);
+}
+
+void CudaBackend::add_migrants(const std::vector<Migrant>& arriving) {
   if (arriving.empty()) return;
   DeviceArray<Migrant> unpacked;
   unpacked.upload(arriving, stream_);
@@ -116,7 +128,8 @@ void CudaBackend::measure_balance() {
   halo.owned = owned_, halo.ghosts = halo_.size(), halo.neighbors = halo_.plan().receivers();
   halo.bytes = std::int64_t{halo_.plan().sent()} * 2 * static_cast<std::int64_t>(sizeof(Vec4));
   if (ranks_.alone()) return;
-  counted_rows_ = owned_;
+  row_length_.resize(static_cast<std::size_t>(owned_));
+  copy_async(row_length_.data(), list_.rows().counts, row_length_.size(), stream_);
   balance_.imbalance = measure_imbalance(ranks_, owned_ + list_.entries());
   balance_.largest = std::max(balance_.largest, balance_.imbalance);
 }
@@ -130,10 +143,9 @@ std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& rank
       trouble = "the model needs about " + std::to_string(needed / 1000000) + " MB of device memory, " +
                 std::to_string(free / 1000000) + " MB are free on " + device_name();
   }
-  // The first rank that has trouble speaks for all.
-  const std::vector<char> all = ranks.gather_everywhere(std::vector<char>(trouble.begin(), trouble.end()));
-  if (!trouble.empty()) throw InputError(trouble);
-  if (!all.empty()) throw InputError("another rank: " + std::string(all.begin(), all.end()));
+  ranks.together([&] {
+    if (!trouble.empty()) throw InputError(trouble);
+  });
   return std::make_unique<CudaBackend>(model, ranks);
 }
 

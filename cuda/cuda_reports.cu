@@ -39,6 +39,12 @@ struct StaysItem {
   SCREE_HD void operator()(Index i) const { stays[i] = !drifting[i], iota[i] = i; }
 };
 
+struct GatherItem {
+  const Index *values, *from;
+  Index* out;
+  SCREE_HD void operator()(Index i) const { out[i] = values[from[i]]; }
+};
+
 struct IdItem {
   const std::int64_t* row_key;
   unsigned long long* ids;
@@ -111,8 +117,11 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
   select(space_.data());
   owned_ = fetch(&Results::index);
   reorder(staying.data(), owned_);
-  counted_rows_ = 0;
+  DeviceArray<Index> row_length(static_cast<std::size_t>(owned_));
+  if (!ranks_.alone())
+    for_each(device(), owned_, GatherItem{row_length_.data(), staying.data(), row_length.data()});
   wait_for(stream_);  // before the arrays above go
+  row_length_.swap(row_length);
 }
 
 ParticleLedger CudaBackend::ledger(Real verlet_step) {

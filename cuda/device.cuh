@@ -88,8 +88,10 @@ class TimedEvent {
 template <class Kernel>
 void prefer_cache(Kernel* kernel, std::size_t shared) {
   constexpr std::size_t kDriver = 16 * 1024;  // 1 KB per block
-  int most = 0;
-  require_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerMultiprocessor, 0), "cudaDeviceGetAttribute");
+  int device = 0, most = 0;
+  require_cuda(cudaGetDevice(&device), "cudaGetDevice");
+  require_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerMultiprocessor, device),
+               "cudaDeviceGetAttribute");
   const auto percent = static_cast<int>(std::min<std::size_t>(100, 100 * (shared + kDriver) / static_cast<std::size_t>(most)));
   require_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, percent),
                "cudaFuncSetAttribute");

@@ -144,14 +144,14 @@ std::string nccl_trouble([[maybe_unused]] bool shared) {
 #endif
 }
 
-std::string cuda_aware_trouble() {
-  return Ranks::mpi_takes_device_memory() ? "" : "this MPI library does not take device memory";
+std::string cuda_aware_trouble(const Ranks& ranks) {
+  return ranks.any(!Ranks::mpi_takes_device_memory()) ? "this MPI library does not take device memory" : "";
 }
 
 }  // namespace
 
 std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted) {
-  const std::string no_nccl = nccl_trouble(gpus_are_shared(ranks)), no_mpi = cuda_aware_trouble();
+  const std::string no_nccl = nccl_trouble(gpus_are_shared(ranks)), no_mpi = cuda_aware_trouble(ranks);
   const auto refuse = [&](const std::string& key, const std::string& why) {
     std::string allowed = "\"auto\"";
     if (no_mpi.empty()) allowed += ", \"cuda-aware\"";

@@ -105,7 +105,8 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     }
     for (const Leaver& l : backend_.outside())
       if (l.lost) check_inside();  // through a wall: a shorter step may not
-  } catch (const DeviceError&) {
+  } catch (const DeviceError& error) {
+    link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
     undo_step(bodies);
     throw;
   } catch (const SimulationError& error) {

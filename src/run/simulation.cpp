@@ -264,7 +264,9 @@ void Simulation::keep_last_good_state(StepLoop& loop) {
     state_.snapshots = recorder_->snapshots_written();
   }
   try {
-    checkpoint(loop.last_good_state(), "checkpoint_failed.h5");
+    State* state = nullptr;
+    ranks_.together([&] { state = &loop.last_good_state(); });
+    checkpoint(*state, "checkpoint_failed.h5");
     log_.info("last good state: " + options_.output_directory + "/checkpoint_failed.h5");
   } catch (const DeviceError& error) {
     log_.error(std::string("the last good state is lost: ") + error.what());

@@ -18,8 +18,12 @@ constexpr int kParticles = 150;
 constexpr Real kSkin = 0.15;
 
 struct RankedBox {
-  RankedBox(const Model& of, const Ranks& on)
-      : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make_test_backend(model, on)) {
+  RankedBox(const Model& of, const Ranks& on, Real list_skin = kSkin)
+      : ranks(on),
+        model(of),
+        skin(list_skin),
+        motion(motion_of(of.bodies)),
+        backend(make_test_backend(model, on)) {
     start(initial_records(model.particles, Subdomain(model.space)));
   }
   // records: of all particles, the same on every rank.
@@ -27,7 +31,7 @@ struct RankedBox {
     const IdRange own = id_range(std::ssize(records), ranks.rank(), ranks.size());
     backend->load({records.begin() + own.first, records.begin() + own.last}, {});
     backend->place_bodies(motion);
-    backend->build_list(kSkin, timers);
+    backend->build_list(skin, timers);
     backend->initial_forces();
   }
   std::vector<ParticleRecord> records() const {
@@ -41,6 +45,7 @@ struct RankedBox {
 
   Ranks ranks;
   Model model;
+  Real skin;
   std::vector<BodyMotion> motion;
   std::unique_ptr<Backend> backend;
   StageTimers timers;
@@ -90,7 +95,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
       CAPTURE(c.name, static_cast<int>(integrator));
       Model model = random_box(c, kParticles, 21);
       model.integrator.particles = integrator;
-      model.parallel.imbalance = 0;  // boxes are cut anew with every list
+      model.parallel.imbalance = 0;                       // boxes are cut anew with every list
       RankedBox many(model, world), one(model, Ranks());  // in this order: the first takes the rank's GPU
       CHECK(same(one.records(), many.records()));
       for (int k = 0; k < 25; ++k) {
@@ -113,6 +118,26 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
       CHECK((p.angular_momentum == q.angular_momentum && p.contacts == q.contacts));
       CHECK(p.drifting == q.drifting);
     }
+}
+
+// So many that each rank has particles far from its sides, whose forces a GPU computes while the ghosts come;
+// and lists that expire amid steps that have been asked for together.
+TEST_CASE("many explicit steps of many particles have the bits of one rank") {
+  petsc();
+  for (const BoxCase& c : {kBoxes[1], kBoxes[4], kBoxes[6]}) {
+    CAPTURE(c.name);
+    Model model = dense_box(c, ParticleIntegrator::velocity_verlet, 20000);
+    model.contact.skin = 0.02;
+    model.parallel.imbalance = 0;
+    RankedBox many(model, Ranks::world(), 0.02), one(model, Ranks(), 0.02);
+    for (RankedBox* box : {&one, &many}) {
+      const Real h = 1e-4;
+      box->backend->verlet_start(h);
+      box->backend->verlet_run(h, 100, false, box->timers);
+    }
+    CHECK(many.backend->list_builds() > 2);
+    CHECK(same(one.records(), many.records()));
+  }
 }
 
 TEST_CASE("a particle that is not finite ends all ranks with the same message") {

@@ -38,17 +38,6 @@ struct Pair {
   StageTimers timers;
 };
 
-Model dense_box(const BoxCase& box, ParticleIntegrator integrator, int particles = kParticles) {
-  Model model = random_box(box, particles, 33);
-  // More room than the small boxes of the other tests: some ten neighbours each.
-  const Real scale =
-      (box.dimension == 2 ? 3.5 : 2) * std::pow(Real(particles) / kParticles, Real(1) / box.dimension);
-  for (Vec3* corner : {&model.space.min, &model.space.max}) *corner = scale * *corner;
-  for (Vec3& position : model.particles.position) position = scale * position;
-  model.integrator.particles = integrator;
-  return model;
-}
-
 Real difference(Vec3 a, Vec3 b) { return norm(a - b) / (1 + norm(a)); }
 
 // Largest difference of two states, relative; 0 where all bits are the same.
@@ -88,7 +77,7 @@ void check_wrenches(Pair& pair, Real tolerance) {
 TEST_CASE("forces, lists and sums at the start are the same on both backends") {
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
-    Pair pair(dense_box(c, ParticleIntegrator::hht));
+    Pair pair(dense_box(c, ParticleIntegrator::hht, kParticles));
     CHECK(pair.cpu->list_entries() == pair.cuda->list_entries());
     CHECK(pair.cpu->list_entries() > kParticles);
     CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= allowed(c));
@@ -105,7 +94,7 @@ TEST_CASE("forces, lists and sums at the start are the same on both backends") {
 TEST_CASE("an implicit step is the same on both backends") {
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
-    Pair pair(dense_box(c, ParticleIntegrator::hht), 0.1);
+    Pair pair(dense_box(c, ParticleIntegrator::hht, kParticles), 0.1);
     std::vector<int> iterations[2];
     for (int k = 0; k < 2; ++k) {
       Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
@@ -152,7 +141,7 @@ TEST_CASE("explicit steps are the same on both backends") {
   for (const BoxCase& c : kBoxes)
     for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
       CAPTURE(c.name);
-      Model model = dense_box(c, ParticleIntegrator::velocity_verlet);
+      Model model = dense_box(c, ParticleIntegrator::velocity_verlet, kParticles);
       model.contact.skin = 0.004;  // expires within the run
       model.space.leaving = leaving;
       Pair pair(model, model.contact.skin);
@@ -185,7 +174,7 @@ TEST_CASE("many short explicit steps are the same on both backends") {
 
 TEST_CASE("the state moves between the backends without a trace") {
   const BoxCase& c = kBoxes[5];
-  Pair pair(dense_box(c, ParticleIntegrator::velocity_verlet));
+  Pair pair(dense_box(c, ParticleIntegrator::velocity_verlet, kParticles));
   const std::vector<ParticleRecord> records = pair.cpu->records();
   pair.cuda->load(records, {});
   CHECK(difference(pair.cuda->records(), records) == 0);

@@ -1,6 +1,7 @@
 // Boxes of particles and bodies at random places for tests, and their contacts found by brute force.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -109,6 +110,18 @@ inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
     model.walls.push_back({"side", {0.85, 0, 0}, {-1, 0, 0}, box.materials - 1});
   }
   if (box.bodies) add_bodies(random, box, model);
+  return model;
+}
+
+// Larger, with some ten neighbours for each of any number of particles.
+inline Model dense_box(const BoxCase& box, ParticleIntegrator integrator, int particles) {
+  constexpr Real kInSmallBox = 3000;
+  Model model = random_box(box, particles, 33);
+  const Real scale =
+      (box.dimension == 2 ? 3.5 : 2) * std::pow(particles / kInSmallBox, Real(1) / box.dimension);
+  for (Vec3* corner : {&model.space.min, &model.space.max}) *corner = scale * *corner;
+  for (Vec3& position : model.particles.position) position = scale * position;
+  model.integrator.particles = integrator;
   return model;
 }
 
