@@ -142,7 +142,8 @@ class CudaBackend : public Backend {
   PrunedViews pruned_views(const Vec4* position);
   VerletRequest verlet_request(Real h);
   void settle();
-  void resume_control(Index last);
+  static constexpr Index kEndless = std::numeric_limits<Index>::max();
+  void resume_control(Index last = kEndless);
   const VerletControl& wait_for_control();
   Index steps_ahead(const VerletControl& control) const;
   void queue_steps(Real h, Index steps);
