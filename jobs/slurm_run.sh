@@ -4,9 +4,12 @@
 #     jobs/slurm_run.sh DECK RESULTS [SCREE OPTIONS]
 #
 # The newest checkpoint in RESULTS is continued; without one the run begins. A run that is done is left as it is, unless
-# the deck has been edited since. On SIGUSR1, which the sbatch files ask SLURM for before the time limit, the run writes
-# RESULTS/checkpoint.h5 and ends with exit code 5; the job then goes back into the queue, at most SCREE_REQUEUES times.
-# On SIGTERM (scancel, preemption) the run does the same, but the job stays out of the queue unless SLURM puts it back.
+# the deck has been edited since, or the words DECK [SCREE OPTIONS] are not those that it was done with, which
+# RESULTS/slurm_run.txt holds: Scree then goes on to a later time.end, or refuses another deck. The options --output and
+# --restart are this script's own.
+# On SIGUSR1, which the sbatch files ask SLURM for before the time limit, the run writes RESULTS/checkpoint.h5 and ends
+# with exit code 5; the job then goes back into the queue, at most SCREE_REQUEUES times. On SIGTERM (scancel, preemption)
+# the run does the same, but the job stays out of the queue unless SLURM puts it back.
 # Otherwise the job ends with the exit code of the run, which README.md lists.
 #
 # From the environment of sbatch:
@@ -33,15 +36,30 @@ restarts=${SLURM_RESTART_COUNT:-0}
 # --wait: ranks that outlive another one by so many seconds are ended, where the MPI library has not ended them.
 read -r -a launcher <<<"${SCREE_LAUNCHER:-srun --mpi=pmix --wait=60}"
 
+for option in "${options[@]}"; do
+  case "$option" in
+    --) break ;; # the rest is PETSc's
+    --output | --output=*) refuse "$option: the results go to RESULTS, the second word, here $results" ;;
+    --restart | --restart=*)
+      refuse "$option: the newest checkpoint in RESULTS is continued; to begin from another one," \
+        "copy it to $results/checkpoint.h5"
+      ;;
+  esac
+done
 [[ -x "$scree" ]] || refuse "no program $scree in $PWD; submit from the root of the built repository, or set SCREE"
 [[ -e "$deck" ]] || refuse "no deck $deck in $PWD"
 [[ "$requeues" =~ ^[0-9]+$ ]] || refuse "SCREE_REQUEUES = \"$requeues\"; allowed: whole numbers from 0"
 command -v "${launcher[0]}" >/dev/null || refuse "SCREE_LAUNCHER: no program ${launcher[0]} on this node"
 
-record=$results/run_record.json
-if [[ "$record" -nt "$deck" ]] && grep -Eq '"status" *: *"done"' "$record"; then
-  say "the run in $results is done already; it goes on when time.end in $deck is raised"
-  exit 0
+record=$results/run_record.json done_with=$results/slurm_run.txt
+words=$(printf '%q ' "$deck" "${options[@]}")
+if [[ -e "$record" ]] && grep -Eq '"status" *: *"done"' "$record"; then
+  if [[ ! -e "$done_with" || "$(<"$done_with")" != "$words" ]]; then
+    say "the run in $results is done, but not known to be with these words: $words"
+  elif [[ "$record" -nt "$deck" ]]; then
+    say "the run in $results is done already; it goes on when time.end in $deck is raised"
+    exit 0
+  fi
 fi
 
 checkpoint=
@@ -79,6 +97,8 @@ if "$warned" && ((status == 128 + $(kill -l USR1))); then
   say "the signal came before the run could hear it; there is no new checkpoint"
   status=$stopped_by_signal
 fi
+
+if ((status == 0)); then printf '%s\n' "$words" >"$done_with" || true; fi # without it Scree looks again
 
 if ((status != stopped_by_signal)) || "$ended"; then
   say "ends with exit code $status"

@@ -14,6 +14,7 @@
 #include "mbs/multibody.hpp"
 #include "mbs/petsc_session.hpp"
 #include "model/build.hpp"
+#include "model/memory.hpp"
 #include "output/library_versions.hpp"
 #include "partition/ranks.hpp"
 #include "partition/shared_model.hpp"
@@ -24,8 +25,8 @@ namespace scree {
 namespace {
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 2 bad usage or deck, 3 the simulation failed, 4 a file could not be read or "
-    "written,\n"
+    "Exit codes: 0 done, 2 bad usage or deck, or too little memory for it, 3 the simulation failed,\n"
+    "4 a file could not be read or written,\n"
     "5 stopped by a signal (SIGTERM, SIGINT, SIGUSR1) after writing a checkpoint.\n"
     "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
 
@@ -100,7 +101,10 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
                      deck.fingerprint(),
                      line.text,
                      ranks};
-  const ExitCode code = naming_deck(arguments.deck, [&] { return run_simulation(model, options, log); });
+  const ExitCode code = naming_deck(arguments.deck, [&] {
+    return naming_memory(model.particles.totals.count, ranks.size(),
+                         [&] { return run_simulation(model, options, log); });
+  });
   if (petsc)
     for (const std::string& option : petsc->unused_options())
       log.warning("PETSc option " + option + " was not used");
@@ -121,7 +125,10 @@ ExitCode check(const Arguments& arguments) {
       });
     });
   }
-  log.info(check_report(model) + constraints);
+  naming_deck(arguments.deck, [&] {
+    naming_memory(model.particles.totals.count, ranks.size(),
+                  [&] { log.info(check_report(model, ranks.size()) + constraints); });
+  });
   return ExitCode::done;
 }
 

@@ -32,9 +32,11 @@ void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& w
 
 }  // namespace
 
+// The last one of a Newton loop.
 struct CoupledStep::Iteration {
-  Real correction = 1;  // of the particles
-  Real residual = 0;
+  Real residual = 0, correction = 1;  // of the particles
+  Real judged_correction = 1;  // the smaller of the last correction and what the residual can still cause
+  IterationNorms bodies;
 };
 
 CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
@@ -158,10 +160,27 @@ void CoupledStep::iterate() {
     ++counts_.newton_iterations;
     if (iterate_once(last)) return;
   }
-  throw SimulationError(
-      fmt::format("stage particle_correct: no convergence in {} iterations; the largest residual, {:.2e} "
-                  "of the largest force, is that of particle {}",
-                  model_.integrator.max_iterations, last.residual, backend_.worst_particle()));
+  throw SimulationError(trouble_of(last));
+}
+
+// Whose residual or correction is above the limit: the particles', if both are.
+std::string CoupledStep::trouble_of(const Iteration& last) const {
+  const Integrator& limits = model_.integrator;
+  const auto trouble = [&](const char* stage, const std::string& what) {
+    return fmt::format("stage {}: no convergence in {} iterations; {}", stage, limits.max_iterations, what);
+  };
+  if (!(last.residual <= limits.residual_tolerance))
+    return trouble("particle_correct",
+                   fmt::format("the largest residual, {:.2e} of the largest force, is that of particle {}",
+                               last.residual, backend_.worst_particle()));
+  if (!(last.bodies.residual <= limits.residual_tolerance))
+    return trouble("mbs_correct", fmt::format("the bodies' scaled residual is {:.2e}", last.bodies.residual));
+  if (!(last.bodies.correction <= limits.correction_tolerance))
+    return trouble("mbs_correct",
+                   fmt::format("the bodies' last scaled correction is {:.2e}", last.bodies.correction));
+  return trouble("particle_correct",
+                 fmt::format("the last correction of the particles' positions is {:.2e} of a radius",
+                             last.judged_correction));
 }
 
 // One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
@@ -173,6 +192,7 @@ bool CoupledStep::iterate_once(Iteration& last) {
     const auto scope = timers_.time(Stage::contact_force);
     particles = backend_.contact_force();
     last.residual = particles.residual;
+    last.judged_correction = std::min(last.correction, particles.correction_bound);
     if (particles.overshoot) {
       backend_.shorten_correction();
       return false;
@@ -186,16 +206,15 @@ bool CoupledStep::iterate_once(Iteration& last) {
     }
     {
       const auto scope = timers_.time(Stage::mbs_correct);
-      const IterationNorms bodies = link_.correct();
-      bodies_done =
-          bodies.residual <= limits.residual_tolerance && bodies.correction <= limits.correction_tolerance;
+      last.bodies = link_.correct();
+      bodies_done = last.bodies.residual <= limits.residual_tolerance &&
+                    last.bodies.correction <= limits.correction_tolerance;
     }
     const auto scope = timers_.time(Stage::broadcast_motion);
     link_.broadcast_motion(backend_);
   }
   const bool particles_done =
-      particles.residual <= limits.residual_tolerance &&
-      std::min(last.correction, particles.correction_bound) <= limits.correction_tolerance;
+      last.residual <= limits.residual_tolerance && last.judged_correction <= limits.correction_tolerance;
   if (bodies_done && particles_done) return true;
 
   const auto scope = timers_.time(Stage::particle_correct);

@@ -58,6 +58,7 @@ class CoupledStep {
   bool covered(const MultibodyState& bodies);
   void iterate();
   bool iterate_once(Iteration& last);
+  std::string trouble_of(const Iteration& last) const;
   bool explicit_step_with_bodies(MultibodyState& bodies, Real t, Real h, bool keep_open);
   void solve_bodies(MultibodyState& bodies, Real t, Real h);
 

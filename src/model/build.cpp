@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/build_parts.hpp"
+#include "model/memory.hpp"
 
 namespace scree {
 
@@ -62,12 +63,15 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   build_bodies(root, model, names);
   build_joints(root, model, names);
   build_force_elements(root, model, names);
-  build_particles(root, model, names, share);
-  build_contact(root, model, names);
-  build_output(root, names, model);
-  build_parallel(root, model);
-  check_start_positions(root, model, share, log);
-  check_steps(root, model, log);
+  // The count is known before any particle is built.
+  naming_memory(model.particles.totals.count, share.size(), [&] {
+    build_particles(root, model, names, share, log);
+    build_contact(root, model, names);
+    build_output(root, names, model);
+    build_parallel(root, model);
+    check_start_positions(root, model, share, log);
+    check_steps(root, model, log);
+  });
   return model;
 }
 

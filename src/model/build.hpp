@@ -7,10 +7,11 @@
 
 namespace scree {
 
-// Builds and checks the whole model. Warnings (overlaps at the start, steps far above a contact time) go to
-// the log. Throws InputError on anything that contradicts itself, naming place, key, value and what is
-// allowed; IoError on files of particles that cannot be read. Collective where there are several ranks: each
-// has its part of the particles, and all else of the model, warnings and errors are the same on all.
+// Builds and checks the whole model. Warnings (overlaps at the start, steps far above a contact time,
+// files without particles) go to the log. Throws InputError on anything that contradicts itself, naming
+// place, key, value and what is allowed; IoError on files of particles that cannot be read. Collective where
+// there are several ranks: each has its part of the particles, and all else of the model, warnings and errors
+// are the same on all.
 Model build_model(const Deck& deck, Log& log, const Share& share = Share());
 
 }  // namespace scree

@@ -30,6 +30,7 @@ class Group {
 
   std::int64_t count() const { return count_; }
   bool is_random() const { return kind_ == "random"; }
+  void warn_if_empty(Log& log) const;
   // Adds the particles of `part`, counted in the group. placed: what stands there already, for a random
   // group.
   void append_to(ParticleSet& particles, IdRange part, const std::vector<StartItem>& placed);
@@ -73,6 +74,12 @@ std::int64_t Group::count_of() {
   if (count > places)
     table_.fail("count", fmt::format("must be at most {}, the places of the lattice", places));
   return count;
+}
+
+void Group::warn_if_empty(Log& log) const {
+  if (file_ && count_ == 0)
+    log.warning(fmt::format("{}.file = \"{}\": the file has no rows; the group has no particles",
+                            table_.path(), table_.text("file")));
 }
 
 void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<StartItem>& placed) {
@@ -229,7 +236,8 @@ IdRange part_of_group(IdRange range, GlobalId first, std::int64_t count) {
 
 }  // namespace
 
-void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share) {
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share,
+                     Log& log) {
   // Counts of 10^9 a group are far from overflow, whatever number of groups a deck can have.
   std::vector<Group> groups;
   std::int64_t count = 0;
@@ -237,6 +245,8 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
     for (const DeckTable& table : deck.tables("particles"))
       count += groups.emplace_back(table, names, model).count();
   });
+  for (const Group& group : groups) group.warn_if_empty(log);
+  model.particles.totals.count = count;
   const IdRange own = share.part(count);
   model.particles.first_id = own.first;
   GlobalId first = 0;

@@ -15,7 +15,9 @@ void build_time(const DeckTable& deck, Model& model);                           
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
-void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share);
+// Warns of files without particles.
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share,
+                     Log& log);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_parallel(const DeckTable& deck, Model& model);

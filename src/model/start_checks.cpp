@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "model/build_parts.hpp"
@@ -94,6 +95,21 @@ void check_inside(const DeckTable& deck, const Model& model, const std::vector<S
                            ItemNames(model).name(item.number), p.x, p.y, p.z, space.min.x, space.min.y,
                            space.min.z, space.max.x, space.max.y, space.max.z));
   }
+}
+
+// As a run does it: a particle may start any number of periods outside the space.
+void bring_into_periodic_box(const Space& space, std::vector<StartItem>& items) {
+  const auto axis = [&](int side, Real min, Real max, Real Vec3::*along) {
+    if (space.boundary[side] != Boundary::periodic) return;
+    const Real period = max - min;
+    for (StartItem& item : items) {
+      Real& x = item.position.*along;
+      x -= std::floor((x - min) / period) * period;
+    }
+  };
+  axis(kXMin, space.min.x, space.max.x, &Vec3::x);
+  axis(kYMin, space.min.y, space.max.y, &Vec3::y);
+  axis(kZMin, space.min.z, space.max.z, &Vec3::z);
 }
 
 // Displacements of the images across periodic sides, the item itself included.
@@ -238,6 +254,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   constexpr Real kRoundOff = 1e-9;
   std::vector<StartItem> items = collect_items(model, share);
   share.together([&] { check_inside(deck, model, items); });
+  bring_into_periodic_box(model.space, items);
   WorstOverlap own;
   find_wall_overlaps(model, items, own);
   const Real reach = 2 * largest_radius(model);

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <thread>
 
@@ -49,7 +50,7 @@ constexpr int kDealTag = 11, kGatherTag = 12;
 constexpr std::size_t kMostEntries = std::size_t{1} << 28, kMostBytes = std::size_t{1} << 30;
 
 // Kinds of failure that rank 0 shares.
-enum Failure { kNone, kInput, kSimulation, kDevice, kFile };
+enum Failure { kNone, kInput, kSimulation, kDevice, kFile, kMemory };
 
 struct Caught {
   Failure kind = kNone;
@@ -66,13 +67,15 @@ Caught caught(const std::exception_ptr& failure) {
     return {kDevice, error.what()};
   } catch (const IoError& error) {
     return {kFile, error.what()};
+  } catch (const std::bad_alloc&) {
+    return {kMemory, "not enough memory"};
   } catch (const std::exception& error) {
     return {kSimulation, error.what()};
   }
 }
 
 int exit_code_of(Failure kind) {
-  if (kind == kInput) return static_cast<int>(ExitCode::bad_input);
+  if (kind == kInput || kind == kMemory) return static_cast<int>(ExitCode::bad_input);
   return static_cast<int>(kind == kFile ? ExitCode::io_failed : ExitCode::simulation_failed);
 }
 
@@ -80,6 +83,7 @@ int exit_code_of(Failure kind) {
   if (failure.kind == kInput) throw InputError(failure.message);
   if (failure.kind == kDevice) throw DeviceError(failure.message);
   if (failure.kind == kFile) throw IoError(failure.message);
+  if (failure.kind == kMemory) throw std::bad_alloc();
   throw SimulationError(failure.message);
 }
 

@@ -6,14 +6,14 @@
 
 #include "dem/device.hpp"
 #include "model/limits.hpp"
+#include "model/memory.hpp"
 
 namespace scree {
 
 namespace {
 
-// Estimates of what one particle, and one coordinate or constraint of the multibody side, keep in memory:
-// state, scratch and a neighbour list of some ten entries; a few vectors and the sparse factors.
-constexpr Real kBytesPerParticle = 600;
+// Estimate of what one coordinate or constraint of the multibody side keeps in memory: a few vectors and the
+// sparse factors.
 constexpr Real kBytesPerUnknown = 1000;
 
 int constraint_count(const Model& model) {
@@ -31,7 +31,7 @@ std::string range(Real smallest, Real largest, const char* unit) {
   return fmt::format("{:.6g} to {:.6g} {}", smallest, largest, unit);
 }
 
-std::string space_lines(const Model& model) {
+std::string space_lines(const Model& model, int ranks) {
   const Space& space = model.space;
   const auto corner = [&](Vec3 p) {
     return space.dimension == 2 ? fmt::format("({}, {})", p.x, p.y)
@@ -41,7 +41,8 @@ std::string space_lines(const Model& model) {
                                   corner(space.min), corner(space.max), model.walls.size());
   const ParticleTotals& particles = model.particles.totals;
   if (particles.count == 0) return lines + "particles      none\n";
-  return lines + fmt::format("particles      {}, radius {}, mass {}\n", particles.count,
+  return lines + fmt::format("particles      {}{}, radius {}, mass {}\n", particles.count,
+                             ranks == 1 ? "" : fmt::format(" on {} ranks together", ranks),
                              range(particles.smallest_radius, particles.largest_radius, "m"),
                              range(particles.smallest_mass, particles.largest_mass, "kg"));
 }
@@ -97,32 +98,37 @@ std::string time_lines(const Model& model) {
 
 std::string megabytes(Real bytes) { return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0); }
 
-std::string memory_line(const Model& model) {
-  const Real unknowns = 3 * static_cast<Real>(model.bodies.size()) + constraint_count(model);
-  const Real bytes =
-      kBytesPerParticle * static_cast<Real>(model.particles.totals.count) + kBytesPerUnknown * unknowns;
+// Rank 0 has all unknowns, and its share of the particles.
+std::string memory_line(const Model& model, int ranks) {
+  const Real particles = kBytesPerParticle * static_cast<Real>(model.particles.totals.count);
+  const Real unknowns =
+      kBytesPerUnknown * (3 * static_cast<Real>(model.bodies.size()) + constraint_count(model));
+  const std::string most = ranks == 1 ? ""
+                                      : fmt::format(" on all ranks together, {} on rank 0",
+                                                    megabytes(particles / ranks + unknowns));
   return fmt::format(
-      "memory         about {} of state and scratch (estimate: {} B per particle, {} B per unknown)\n",
-      megabytes(bytes), kBytesPerParticle, kBytesPerUnknown);
+      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown)\n",
+      megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown);
 }
 
-std::string device_memory_line(const Model& model) {
+std::string device_memory_line(const Model& model, int ranks) {
   const std::string trouble = device_trouble();
   const std::string free =
       trouble.empty() ? fmt::format("{} are free on {}", megabytes(static_cast<Real>(free_device_memory())),
                                     device_name())
                       : trouble;
-  return fmt::format("device memory  about {} on the GPU (estimate); {}\n",
-                     megabytes(static_cast<Real>(device_memory(model))), free);
+  return fmt::format("device memory  about {} {} (estimate); {}\n",
+                     megabytes(static_cast<Real>(device_memory(model))),
+                     ranks == 1 ? "on the GPU" : "on the GPU of each rank", free);
 }
 
 }  // namespace
 
-std::string check_report(const Model& model) {
+std::string check_report(const Model& model, int ranks) {
   const std::string title = model.title.empty() ? "" : "title          " + model.title + "\n";
-  return title + space_lines(model) + multibody_lines(model) + limit_lines(model) + time_lines(model) +
-         fmt::format("search         skin {:.4g} m\n", model.contact.skin) + memory_line(model) +
-         device_memory_line(model);
+  return title + space_lines(model, ranks) + multibody_lines(model) + limit_lines(model) + time_lines(model) +
+         fmt::format("search         skin {:.4g} m\n", model.contact.skin) + memory_line(model, ranks) +
+         device_memory_line(model, ranks);
 }
 
 }  // namespace scree

@@ -44,6 +44,12 @@ void make_directory(const std::string& path) {
   if (!std::filesystem::is_directory(path)) throw IoError(fmt::format("output folder {}: is a file", path));
 }
 
+const char* key_of(Transport transport) {
+  if (transport == Transport::cuda_aware) return "cuda-aware";
+  if (transport == Transport::nccl) return "nccl";
+  return transport == Transport::staged ? "staged" : "auto";
+}
+
 std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, Log& log) {
   std::unique_ptr<Backend> backend = make_cuda_backend(model, ranks);
   log.info("backend cuda: " + device_name());
@@ -54,6 +60,9 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
   log.info("backend cpu: " + why);
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
+  if (model.parallel.transport != Transport::automatic)
+    log.info(fmt::format("parallel.transport = \"{}\" is for GPUs: ranks on the CPU exchange halos by MPI",
+                         key_of(model.parallel.transport)));
   return make_cpu_backend(model, ranks);
 }
 
@@ -267,7 +276,8 @@ void Simulation::keep_last_good_state(StepLoop& loop) {
     State* state = nullptr;
     ranks_.together([&] { state = &loop.last_good_state(); });
     checkpoint(*state, "checkpoint_failed.h5");
-    log_.info("last good state: " + options_.output_directory + "/checkpoint_failed.h5");
+    log_.info(fmt::format("last good state, t = {:.9g} s: {}/checkpoint_failed.h5", state->clock.time,
+                          options_.output_directory));
   } catch (const DeviceError& error) {
     log_.error(std::string("the last good state is lost: ") + error.what());
   }

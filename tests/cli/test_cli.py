@@ -65,6 +65,7 @@ history_csv = true
 history_bodies = ["pad"]
 history_particles = [0, 5]
 """
+SANITIZED = "-fsanitize" in subprocess.run([SCREE, "--version"], env=ENVIRONMENT, capture_output=True, text=True).stdout
 EXPLICIT = ["--set", "integrator.particles=velocity-verlet", "--set", "integrator.substeps=10"]
 
 
@@ -265,6 +266,25 @@ class RunTest(CommandLineTest):
         message = self.run_deck(BAD_INPUT, "none", "--set", "integrator.precision=mixed").stderr
         self.assertIn('must be "double", unless integrator.particles = "velocity-verlet"', message)
 
+    def test_a_transport_between_gpus_is_not_used_on_the_cpu(self):
+        both = (*self.SHORT, "--backend", "cpu")
+        self.assertNotIn("transport", self.run_deck(DONE, "auto", *both).stdout)
+        for transport in ("cuda-aware", "nccl", "staged"):
+            text = self.run_deck(DONE, "other", *both, "--set", f"parallel.transport={transport}").stdout
+            self.assertIn(f'parallel.transport = "{transport}" is for GPUs', text)
+            self.assert_same_history("other", "auto")
+
+    @unittest.skipIf(SANITIZED, "the sanitizer needs more address space than the limit")
+    def test_more_particles_than_memory(self):
+        many = DECK.replace("size = [2, 3]", "size = [30000, 30000]").replace("[0.13, 0.13]", "[1e-5, 1e-5]")
+        deck = self.write("many.toml", many.replace("radius = 0.05\nmass", "radius = 4e-6\nmass"))
+        limited = ("bash", "-c", 'ulimit -v 4000000; exec "$@"', "bash")  # [KiB]
+        for words in ("check", deck), ("run", deck, "--output", self.folder / "out"):
+            message = self.expect(BAD_INPUT, *words, launcher=limited).stderr
+            self.assertIn("error: not enough memory: a run of 900000000 particles takes about 540 GB on one rank; "
+                          "start more ranks on more machines", message)
+        self.assertFalse((self.folder / "out").exists())
+
     def test_output_that_cannot_be_written(self):
         self.write("file", "not a folder")
         self.assertIn("file", self.run_deck(IO_FAILED, "file", *self.SHORT).stderr)
@@ -288,8 +308,13 @@ class FailureTest(CommandLineTest):
         message = self.run_deck(FAILED, "failed", *words).stderr
         checkpoint = self.folder / "failed" / "checkpoint_failed.h5"
         self.assertTrue(checkpoint.exists())
-        again = self.run_deck(FAILED, "failed", "--restart", checkpoint, *words).stderr
-        self.assertEqual(again, message)
+        again = self.run_deck(FAILED, "failed", "--restart", checkpoint, *words)
+        self.assertEqual(again.stderr, message)
+        # What it goes on from is the good state that the message tells.
+        time = re.search(r"at t = (\S+) s", message).group(1)
+        self.assertRegex(again.stdout, rf"(?m)^last good state, t = [0-9.e-]+ s: {checkpoint}$")
+        kept = float(re.search(r"last good state, t = (\S+) s", again.stdout).group(1))
+        self.assertLessEqual(kept, float(time))
         return message
 
     def test_a_particle_that_leaves(self):

@@ -146,6 +146,8 @@ TEST_CASE("overlaps at the start are found whichever ranks have the two, and nam
   const std::vector<Wrong> wrong = {
       {"particles.lattice.spacing=[0.08, 0.15, 0.15]", "and particle"},  // neighbours, of the first ranks
       {"particles.lattice.origin=[0.03, 2.5, 0.5]", "and particle"},     // with one across the periodic sides
+      {"particles.lattice.origin=[8.03, 2.5, 0.5]", "and particle"},     // two periods away
+      {"particles.lattice.origin=[-16.0, 2.5, 0.5]", "and particle"},
       {"particles.lattice.origin=[0.1, 0.1, 0.02]", "wall \"z_min\" overlap"},
       {"particles.lattice.origin=[0.1, 0.1, -0.02]", "particle 0 starts at"},
       {"particles.csv.velocity=[0, 0]", "must be 3 numbers"},

@@ -238,7 +238,16 @@ class FailureTest(RanksTest):
         short = f"ulimit -v 640000; exec {' '.join(run)}"  # [KiB]
         result = subprocess.run([MPIEXEC, "-n", "1", *run, ":", "-n", "1", "bash", "-c", short], cwd=self.folder,
                                 env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
-        self.assertNotEqual(result.returncode, DONE, result.stdout + result.stderr)
+        self.assertEqual(result.returncode, BAD_INPUT, result.stdout + result.stderr)
+        self.assertIn("not enough memory: a run of 1000000 particles takes about 0.6 GB on 2 ranks, 0.3 GB on each",
+                      result.stderr)
+
+    def test_check_says_what_is_per_rank(self):
+        words = [MPIEXEC, "-n", "3", SCREE, "check", str(DAM[0])]
+        text = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT, check=True).stdout
+        self.assertIn("particles      500 on 3 ranks together", text)
+        self.assertRegex(text, r"memory  +about [0-9.]+ MB of state and scratch on all ranks together, [0-9.]+ MB on rank 0")
+        self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU of each rank \(estimate\)")
 
     def test_a_full_disk_ends_all_with_one_message(self):
         settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.05", "output.snapshot_interval=0.005"]

@@ -142,14 +142,19 @@ class RunTest(SlurmTest):
     def test_an_array_of_decks(self):
         decks = cluster.folder / "decks.txt"
         good = " ".join([str(DECK), *SHORT])
-        decks.write_text(f"{good}\n{good} --set time.stp=1\n\n{good}")
-        array = self.submit("array", decks, self.results, options=["--array=1-4"])
-        for element, words in (1, ""), (2, "time.stp"), (3, "nothing in line 3"), (4, ""):
+        decks.write_text(f"{good}\n{good} --set time.stp=1\n\n  # {good}\n{good}")
+        array = self.submit("array", decks, self.results, options=["--array=1-6"])
+        bad = {2: "time.stp", 6: f"there is no line 6 in {decks}, which has 5"}
+        for element in range(1, 7):
             with self.subTest(element=element):
-                if words:
-                    self.assertIn(words, self.finish(f"{array}_{element}", "FAILED", BAD_INPUT))
+                name = f"{array}_{element}"
+                if element in bad:
+                    self.assertIn(bad[element], self.finish(name, "FAILED", BAD_INPUT))
+                elif element in (3, 4):
+                    self.assertIn(f"line {element} of {decks} is empty or a comment: nothing to run", self.finish(name))
+                    self.assertFalse((self.results / str(element)).exists())
                 else:
-                    self.finish(f"{array}_{element}")
+                    self.finish(name)
                     self.assert_bits("short", 1, self.results / str(element))
 
     def test_every_rank_sees_the_gpus_of_its_node_and_takes_its_own(self):

@@ -98,6 +98,24 @@ TEST_CASE("a step that does not converge leaves both sides as they were and says
   CHECK(tight.step->counts().rejected_newton == 1);
 }
 
+TEST_CASE("a step that does not converge names the side that is at fault") {
+  const auto trouble = [](std::vector<std::string> overrides) {
+    overrides.push_back("integrator.max_iterations=1");
+    Coupled tight(overrides);
+    return tight.step->implicit_step(tight.bodies, 0, kStep).trouble;
+  };
+  const std::string touching = trouble({"particles.falling.origin=[-0.03, -0.04]"});
+  CAPTURE(touching);
+  CHECK(contains(touching, "stage particle_correct: no convergence in 1 iterations; the largest residual, "));
+  CHECK(contains(touching, "is that of particle 0"));
+  // The particles move on along their prediction, far from everything.
+  const std::string bodies =
+      trouble({"gravity=[0, 0]", "particles.falling.origin=[0.5, 0.5]", "particles.falling.radius=0.01"});
+  CAPTURE(bodies);
+  CHECK(
+      contains(bodies, "stage mbs_correct: no convergence in 1 iterations; the bodies' scaled residual is "));
+}
+
 TEST_CASE("a step that is not accurate enough leaves both sides as they were") {
   const std::vector<std::string> adaptive{"time.control=adaptive", "time.tolerance=1e-12"};
   Coupled refused(adaptive), same_start(adaptive);

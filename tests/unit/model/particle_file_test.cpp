@@ -77,6 +77,22 @@ TEST_CASE("particles from HDF5") {
   CHECK_THROWS_AS(read_particle_file(folder.write("text.h5", "no HDF5"), 2), IoError);
 }
 
+TEST_CASE("a file without rows is a warning") {
+  const Folder folder;
+  const std::string csv = folder.write("p.csv", "x,y\n# none yet\n"), hdf5 = folder.file("p.h5");
+  write_hdf5(hdf5, {{"x", {}}, {"y", {}}});
+  for (const std::string& path : {csv, hdf5}) {
+    const std::string deck = kSmallDeck +
+                             "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"file\"\nmass = "
+                             "1.0\nradius = 0.1\nfile = \"" +
+                             path + "\"\n";
+    CHECK(model_of(deck).particles.totals.count == 0);
+    CHECK(model_warnings(deck) ==
+          std::vector<std::string>{"particles.0.file = \"" + path +
+                                   "\": the file has no rows; the group has no particles"});
+  }
+}
+
 TEST_CASE("wrong files name file, line, column and value") {
   const Folder folder;
   const auto error = [&](const std::string& text, int dimension = 2) {

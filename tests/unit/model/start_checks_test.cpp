@@ -51,6 +51,25 @@ TEST_CASE("overlaps with walls and across periodic sides") {
   CHECK(contains(periodic, "particle 0 and particle 2 overlap at t = 0 by 1.4"));
 }
 
+TEST_CASE("overlaps of particles that start more than one period outside the space") {
+  const std::vector<std::string> sides{"space.x_min=periodic", "space.x_max=periodic", "space.y_min=wall"};
+  const auto error = [&](const std::string& positions) {
+    std::vector<std::string> overrides = sides;
+    overrides.push_back(at(positions));
+    return model_error(kDeck, overrides);
+  };
+  // One period is 2 m.
+  for (const char* x : {"0.01", "2.01", "4.01", "-3.99", "2000.01"}) {
+    CAPTURE(x);
+    CHECK(contains(error(fmt::format("[[0, 0], [0.5, 0.5], [{}, 0]]", x)),
+                   "particle 0 and particle 2 overlap at t = 0 by 1.8"));
+  }
+  CHECK(contains(error("[[4.99, 0], [-4.98, 0]]"), "particle 0 and particle 1 overlap at t = 0 by 1.4"));
+  CHECK(contains(error("[[5, -0.96]]"), "particle 0 and wall \"y_min\" overlap at t = 0 by 0.2"));
+  CHECK(contains(error("[[5, 1.5]]"), "particle 0 starts at (5, 1.5, 0), outside the space"));
+  CHECK(error("[[0, 0], [5, 0], [4.5, 0]]").empty());
+}
+
 TEST_CASE("overlaps with bodies; connected bodies are left out") {
   const std::string bodies = R"([[bodies]]
 name = "row"
