@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstdio>
 #include <memory>
 
@@ -16,7 +17,8 @@ namespace scree {
 namespace {
 
 // The file's first word to a reader; a new layout gets a new number.
-const std::string kFormat = "scree checkpoint 2";
+const std::string kFormatName = "scree checkpoint ";
+constexpr int kFormatNumber = 2;
 
 // In the file, each kind of value has a group of its own.
 const std::string kReals = "/reals/", kIntegers = "/integers/", kTexts = "/texts/";
@@ -41,7 +43,7 @@ void write_small(Hdf5File& file, const Checkpoint& checkpoint) {
   for (const auto& [name, values] : checkpoint.reals) file.write_array(kReals + name, values);
   for (const auto& [name, values] : checkpoint.integers) file.write_array(kIntegers + name, values);
   for (const auto& [name, text] : checkpoint.texts) file.write_text(kTexts + name, text);
-  file.write_text_attribute("/", "format", kFormat);
+  file.write_text_attribute("/", "format", kFormatName + std::to_string(kFormatNumber));
 }
 
 // Rows of an array: of all ranks, and this rank's.
@@ -98,6 +100,23 @@ void write_file(const std::string& path, const Checkpoint& checkpoint, const Ran
   file.close();
 }
 
+void check_format(const Hdf5File& file, const std::string& path) {
+  const std::string format = file.has_attribute("/", "format") ? file.read_text_attribute("/", "format") : "";
+  int number = 0;
+  if (format.starts_with(kFormatName)) {
+    const char* const end = format.data() + format.size();
+    const auto [rest, error] = std::from_chars(format.data() + kFormatName.size(), end, number);
+    if (error != std::errc() || rest != end) number = 0;
+  }
+  if (number < 1)
+    throw IoError(fmt::format("{}: not a checkpoint of this program (its format is not \"{}{}\")", path,
+                              kFormatName, kFormatNumber));
+  if (number != kFormatNumber)
+    throw IoError(fmt::format(
+        "{}: a checkpoint of {} version of this program (its format is \"{}\", not \"{}{}\")", path,
+        number < kFormatNumber ? "an older" : "a newer", format, kFormatName, kFormatNumber));
+}
+
 template <class T>
 RowMap<T> find_rows(const std::shared_ptr<const Hdf5File>& file, const std::string& group,
                     const Ranks& ranks) {
@@ -148,10 +167,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, con
 
 Checkpoint read_checkpoint(const std::string& path, const Ranks& ranks) {
   const auto file = std::make_shared<const Hdf5File>(path, Hdf5Access::read);
-  if (!file->has_attribute("/", "format") || file->read_text_attribute("/", "format") != kFormat) {
-    throw IoError(
-        fmt::format("{}: not a checkpoint of this program (its format is not \"{}\")", path, kFormat));
-  }
+  check_format(*file, path);
   Checkpoint checkpoint;
   checkpoint.path = path;
   for (const std::string& name : file->dataset_names(kReals)) {

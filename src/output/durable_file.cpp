@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/sendfile.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -47,6 +49,36 @@ int write_and_sync(const std::string& path, int flags, const std::string& text) 
 }
 
 }  // namespace
+
+// std::filesystem::copy_file() keeps the system's reason to itself.
+void copy_file(const std::string& from, const std::string& to) {
+  const int in = open(from.c_str(), O_RDONLY | O_CLOEXEC);
+  if (in < 0) fail(from, "open", errno);
+  const int out = open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  int error = out < 0 ? errno : 0;
+  for (ssize_t copied = 1; error == 0 && copied != 0;) {
+    copied = sendfile(out, in, nullptr, std::size_t{1} << 30);
+    if (copied < 0 && errno != EINTR) error = errno;
+  }
+  close(in);
+  if (out >= 0 && close(out) != 0 && error == 0) error = errno;
+  if (error != 0) fail(to, ("copy " + from + " to it").c_str(), error);
+}
+
+// Not posix_fallocate(), which writes into every block where the file system cannot reserve.
+bool reserve_file(const std::string& path) {
+  const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) fail(path, "open", errno);
+  struct stat status {};
+  int error = fstat(file, &status) == 0 ? 0 : errno;
+  while (error == 0 && status.st_size > 0 && fallocate(file, 0, 0, status.st_size) != 0) {
+    if (errno != EINTR) error = errno;
+  }
+  close(file);
+  const bool can = error != EOPNOTSUPP && error != ENOSYS;
+  if (can && error != 0) fail(path, "reserve its disk space", error);
+  return can;
+}
 
 void sync_file(const std::string& path) { sync_path(path, O_RDONLY); }
 

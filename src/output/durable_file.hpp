@@ -5,8 +5,15 @@
 
 namespace scree {
 
+// Copies a file, over an old one where there is one. Throws IoError; a part may then have been copied.
+void copy_file(const std::string& from, const std::string& to);
+
 // Waits until the file's content is on disk. Throws IoError.
 void sync_file(const std::string& path);
+
+// Reserves the disk space of an existing file up to its size, so that no later write into it meets a full
+// disk. Throws IoError where there is not enough. Returns false where the file system cannot reserve.
+bool reserve_file(const std::string& path);
 
 // Gives a synced file its final name at one instant, replacing what was there, and syncs the directory.
 // Throws IoError; `to` is then what it was before.

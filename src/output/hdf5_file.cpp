@@ -128,7 +128,7 @@ void Hdf5File::create_rows(const std::string& name, hid_t type, const RowStorage
       H5Pset_shuffle(layout), H5Pset_deflate(layout, static_cast<unsigned>(storage.compression));
     Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, making_groups(), layout, H5P_DEFAULT),
                    H5Dclose);
-    if (!dataset.valid()) fail("create dataset " + name);
+    if (!dataset.valid() || !dataset.close()) fail("create dataset " + name);
   }
   write_text_attribute(name, "unit", label.unit);
   write_text_attribute(name, "description", label.description);
@@ -143,7 +143,7 @@ void Hdf5File::append_rows(const std::string& name, hid_t type, const void* valu
   shape[0] += static_cast<hsize_t>(rows);
   if (H5Dset_extent(dataset, shape.data()) < 0) fail("extend dataset " + name);
   const RowSelection selected(dataset, first, rows);
-  if (H5Dwrite(dataset, type, selected.memory, selected.file, H5P_DEFAULT, values) < 0)
+  if (H5Dwrite(dataset, type, selected.memory, selected.file, H5P_DEFAULT, values) < 0 || !dataset.close())
     fail("write dataset " + name);
 }
 
@@ -152,7 +152,7 @@ void Hdf5File::resize_rows(const std::string& name, std::int64_t rows) {
   if (!dataset.valid()) fail("open dataset " + name);
   std::array<hsize_t, 2> shape = shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose));
   shape[0] = static_cast<hsize_t>(rows);
-  if (H5Dset_extent(dataset, shape.data()) < 0) fail("resize dataset " + name);
+  if (H5Dset_extent(dataset, shape.data()) < 0 || !dataset.close()) fail("resize dataset " + name);
 }
 
 std::int64_t Hdf5File::rows(const std::string& name) const {
@@ -165,6 +165,12 @@ int Hdf5File::width(const std::string& name) const {
   Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail("open dataset " + name);
   return static_cast<int>(shape_of(Hdf5Id(H5Dget_space(dataset), H5Sclose))[1]);
+}
+
+bool Hdf5File::is_compressed(const std::string& name) const {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) fail("open dataset " + name);
+  return H5Pget_nfilters(Hdf5Id(H5Dget_create_plist(dataset), H5Pclose)) > 0;
 }
 
 void Hdf5File::read_rows(const std::string& name, hid_t type, std::int64_t first, std::int64_t count,
@@ -190,8 +196,8 @@ void Hdf5File::write_array(const std::string& name, hid_t type, const void* valu
   Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, making_groups(), H5P_DEFAULT, H5P_DEFAULT),
                  H5Dclose);
   if (!dataset.valid()) fail("create dataset " + name);
-  if (count > 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
-    fail("write dataset " + name);
+  const bool written = count == 0 || H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
+  if (!written || !dataset.close()) fail("write dataset " + name);
 }
 
 std::int64_t Hdf5File::value_count(const std::string& name) const {
@@ -214,8 +220,9 @@ void Hdf5File::write_text(const std::string& name, const std::string& text) {
       H5Dcreate2(file_, name.c_str(), type, text_space(text), making_groups(), H5P_DEFAULT, H5P_DEFAULT),
       H5Dclose);
   if (!dataset.valid()) fail("create dataset " + name);
-  if (text.empty()) return;
-  if (H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) fail("write dataset " + name);
+  const bool written =
+      text.empty() || H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
+  if (!written || !dataset.close()) fail("write dataset " + name);
 }
 
 template <class Read>
@@ -243,7 +250,8 @@ void Hdf5File::write_text_attribute(const std::string& object, const std::string
   Hdf5Id attribute(H5Acreate2(owner, name.c_str(), type, text_space(text), H5P_DEFAULT, H5P_DEFAULT),
                    H5Aclose);
   if (!attribute.valid()) fail(fmt::format("create attribute {} of {}", name, object));
-  if (!text.empty() && H5Awrite(attribute, type, text.data()) < 0) fail("write attribute " + name);
+  const bool written = text.empty() || H5Awrite(attribute, type, text.data()) >= 0;
+  if (!written || !attribute.close() || !owner.close()) fail("write attribute " + name);
 }
 
 void Hdf5File::write_integer_attribute(const std::string& object, const std::string& name,
@@ -256,7 +264,8 @@ void Hdf5File::write_integer_attribute(const std::string& object, const std::str
                          : H5Acreate2(owner, name.c_str(), H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT),
                    H5Aclose);
   if (!attribute.valid()) fail(fmt::format("create attribute {} of {}", name, object));
-  if (H5Awrite(attribute, H5T_NATIVE_INT64, values.data()) < 0) fail("write attribute " + name);
+  const bool written = H5Awrite(attribute, H5T_NATIVE_INT64, values.data()) >= 0;
+  if (!written || !attribute.close() || !owner.close()) fail("write attribute " + name);
 }
 
 bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {

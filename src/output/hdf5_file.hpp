@@ -66,6 +66,7 @@ class Hdf5File {
   void resize_rows(const std::string& name, std::int64_t rows);
   std::int64_t rows(const std::string& name) const;
   int width(const std::string& name) const;
+  bool is_compressed(const std::string& name) const;
   // Rows [first, first + count), row by row. Throws also where the file holds another type.
   template <class T>
   void read_rows(const std::string& name, std::int64_t first, std::int64_t count, T* to) const {

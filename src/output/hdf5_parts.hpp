@@ -10,13 +10,12 @@
 
 namespace scree {
 
-// Owner of one identifier; negative where the call that made it failed.
+// Owner of one identifier; negative where the call that made it failed. The library may write a dataset's
+// values only when it is closed, and then tells nobody but the caller: a writer calls close() itself.
 class Hdf5Id {
  public:
   Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Hdf5Id() {
-    if (id_ >= 0) close_(id_);
-  }
+  ~Hdf5Id() { close(); }
   Hdf5Id(Hdf5Id&& other) : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
   Hdf5Id& operator=(Hdf5Id&& other) {
     std::swap(id_, other.id_), std::swap(close_, other.close_);
@@ -24,6 +23,11 @@ class Hdf5Id {
   }
   operator hid_t() const { return id_; }
   bool valid() const { return id_ >= 0; }
+  // Whether all went well. Later calls, and those where there is nothing to close, do nothing.
+  bool close() {
+    const hid_t id = std::exchange(id_, H5I_INVALID_HID);
+    return id < 0 || close_(id) >= 0;
+  }
 
  private:
   hid_t id_;

@@ -4,8 +4,10 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "base/error.hpp"
+#include "output/durable_file.hpp"
 
 #if SCREE_PARALLEL_HDF5 && !defined(H5_HAVE_PARALLEL)
 #error "SCREE_PARALLEL_HDF5 needs a parallel HDF5 library"
@@ -23,6 +25,28 @@ std::int64_t rows_per_piece(std::size_t row_bytes) {
   return static_cast<std::int64_t>(std::max<std::size_t>(1, kPieceBytes / row_bytes));
 }
 
+// Of the bytes, in words of 8; what is left over is a word with zeros.
+std::uint64_t hash_of(const void* values, std::size_t bytes) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (std::size_t at = 0; at < bytes; at += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, static_cast<const std::byte*>(values) + at, std::min<std::size_t>(8, bytes - at));
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 32;
+  }
+  return hash;
+}
+
+// Compressed rows get other places when they are written than those that were made for them.
+bool reserve(const std::string& path) {
+  {
+    const Hdf5File file(path, Hdf5Access::read);
+    for (const std::string& name : file.dataset_names("/"))
+      if (file.is_compressed("/" + name)) return false;
+  }
+  return reserve_file(path);
+}
+
 // Rows of piece k, counted within the part.
 RowPart piece_of(RowPart part, std::int64_t rows, std::int64_t k) {
   const std::int64_t first = std::min(k * rows, part.count);
@@ -32,7 +56,9 @@ RowPart piece_of(RowPart part, std::int64_t rows, std::int64_t k) {
 }  // namespace
 
 void SharedRows::fail(const std::string& action) const {
-  throw IoError(fmt::format("{}: cannot {}: {}", path_, action, library_reason()));
+  const std::string reason = library_reason();
+  reserve_file(path_);  // the MPI library keeps a full disk to itself; this throws with the system's reason
+  throw IoError(fmt::format("{}: cannot {}: {}", path_, action, reason));
 }
 
 SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collective)
@@ -49,6 +75,8 @@ SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collect
     H5Pset_dxpl_mpio(transfer_, H5FD_MPIO_COLLECTIVE);
   }
 #endif
+  ranks_.on_root([&] { reserved_ = reserve(path); });
+  ranks_.broadcast(reserved_);
   ranks_.together([&] {
     if (!has_file()) return;
     file_ = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
@@ -62,11 +90,33 @@ SharedRows::~SharedRows() {
 
 void SharedRows::close() {
   ranks_.together([&] {
-    if (has_file() && H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) fail("write");
+    // Together, the closing writes what is left, too. A flush would also sync, and Open MPI's sync does not
+    // return on the other ranks where it fails on one.
+    if (has_file() && !collective_ && H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0) fail("write");
   });
   ranks_.together([&] {
     if (has_file() && H5Fclose(std::exchange(file_, H5I_INVALID_HID)) < 0) fail("close");
   });
+  if (!reserved_) ranks_.together([&] { read_back(); });
+}
+
+void SharedRows::read_back() {
+  if (written_.empty()) return;
+  const Hdf5Id file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.valid()) fail("read back");
+  std::vector<std::byte> values;
+  for (const Written& w : written_) {
+    values.resize(static_cast<std::size_t>(w.rows.count) * w.type.bytes());
+    const Hdf5Id dataset(H5Dopen2(file, w.name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!dataset.valid()) fail("read back dataset " + w.name);
+    const RowSelection selected(dataset, w.rows.first, w.rows.count);
+    if (H5Dread(dataset, w.type.value, selected.memory, selected.file, H5P_DEFAULT, values.data()) >= 0 &&
+        hash_of(values.data(), values.size()) == w.hash)
+      continue;
+    reserve_file(path_);  // throws with the system's reason where the disk is full
+    throw IoError(fmt::format("{}: cannot write dataset {}: the file does not hold what was written to it",
+                              path_, w.name));
+  }
 }
 
 void SharedRows::write(const std::string& name, RowType type, RowPart part, const Piece& piece) {
@@ -76,12 +126,16 @@ void SharedRows::write(const std::string& name, RowType type, RowPart part, cons
     write_through_root(name, type, part, piece);
 }
 
-void SharedRows::put(const std::string& name, RowType type, RowPart rows, const void* values) const {
-  const Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+void SharedRows::put(const std::string& name, RowType type, RowPart rows, const void* values) {
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail("open dataset " + name);
   const RowSelection selected(dataset, rows.first, rows.count);
-  if (H5Dwrite(dataset, type.value, selected.memory, selected.file, transfer_, values) < 0)
+  if (H5Dwrite(dataset, type.value, selected.memory, selected.file, transfer_, values) < 0 ||
+      !dataset.close())
     fail("write dataset " + name);
+  if (!reserved_ && rows.count > 0)
+    written_.push_back(
+        {name, type, rows, hash_of(values, static_cast<std::size_t>(rows.count) * type.bytes())});
 }
 
 // Every rank takes part in as many writes as the one with the most rows.

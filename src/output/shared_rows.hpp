@@ -1,12 +1,17 @@
 // Rows of one HDF5 file that are spread over the ranks: consecutive rows of each rank, written without any
 // rank holding those of others, by all ranks at once where the library is a parallel one, else through rank
 // 0. The files are the same.
+//
+// A full disk does not pass unseen, though an MPI library may take a write that was cut short for a whole
+// one: the rows' disk space is reserved before they are written. Where that cannot be, because they are
+// compressed or the file system does not reserve, they are read back.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "output/hdf5_file.hpp"
 #include "output/hdf5_parts.hpp"
@@ -31,7 +36,8 @@ class SharedRows {
   ~SharedRows();
   SharedRows(const SharedRows&) = delete;
   SharedRows& operator=(const SharedRows&) = delete;
-  void close();  // hands everything to the operating system
+  // Hands everything to the operating system, and reads it back where it had no reserved space.
+  void close();
 
   // This rank's part, of values in memory: [part.count][width].
   template <class T>
@@ -57,13 +63,24 @@ class SharedRows {
   void write(const std::string& name, RowType type, RowPart part, const Piece& piece);
   void write_collectively(const std::string& name, RowType type, RowPart part, const Piece& piece);
   void write_through_root(const std::string& name, RowType type, RowPart part, const Piece& piece);
-  void put(const std::string& name, RowType type, RowPart rows, const void* values) const;
+  void put(const std::string& name, RowType type, RowPart rows, const void* values);
+  void read_back();
   bool has_file() const { return collective_ || ranks_.is_root(); }
   [[noreturn]] void fail(const std::string& action) const;
+
+  // What this rank has written without reserved space.
+  struct Written {
+    std::string name;
+    RowType type;
+    RowPart rows;
+    std::uint64_t hash;
+  };
 
   Ranks ranks_;
   std::string path_;
   bool collective_;
+  bool reserved_ = false;
+  std::vector<Written> written_;
   hid_t file_ = H5I_INVALID_HID;
   Hdf5Id transfer_;
 };

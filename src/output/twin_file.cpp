@@ -55,11 +55,7 @@ void TwinFile::change_spare(const Change& change, Hdf5Access access) {
 }
 
 void TwinFile::copy_to_spare() {
-  ranks_.on_root([&] {
-    std::error_code error;
-    fs::copy_file(path_, spare_, fs::copy_options::overwrite_existing, error);
-    if (error) throw IoError(fmt::format("{}: cannot copy to {}: {}", path_, spare_, error.message()));
-  });
+  ranks_.on_root([&] { copy_file(path_, spare_); });
 }
 
 void TwinFile::update(const Change& change) {

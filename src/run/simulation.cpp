@@ -85,7 +85,7 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
 }
 
 // A file may be unreadable where one rank's rows are.
-State read_state(const RunOptions& options) {
+State read_state(const RunOptions& options, std::int64_t particles) {
   State state;
   options.ranks.together([&] {
     const Checkpoint checkpoint = read_checkpoint(options.restart, options.ranks);
@@ -95,6 +95,7 @@ State read_state(const RunOptions& options) {
                        "parallel may differ");
     state = unpack(checkpoint);
   });
+  check_state(state, options.restart, particles, options.ranks);
   return state;
 }
 
@@ -105,7 +106,7 @@ class Simulation {
         options_(options),
         ranks_(options.ranks),
         log_(log),
-        state_(options.restart.empty() ? State{} : read_state(options)),
+        state_(options.restart.empty() ? State{} : read_state(options, model.particles.totals.count)),
         backend_(make_backend(model, ranks_, options.backend, log)),
         link_(model, ranks_),
         step_(model, *backend_, link_, timers_) {
@@ -121,6 +122,7 @@ class Simulation {
   ExitCode run();
 
  private:
+  ExitCode run_to_the_end();
   void start_or_resume();
   bool continues_files() const;
   std::vector<ParticleRecord> in_id_order(std::vector<ParticleRecord> records) const;
@@ -220,6 +222,15 @@ void Simulation::progress(const State& state, Real h) {
 }
 
 ExitCode Simulation::run() {
+  try {
+    return run_to_the_end();
+  } catch (const IoError& error) {
+    record_io_failure(error);
+    throw;
+  }
+}
+
+ExitCode Simulation::run_to_the_end() {
   ranks_.on_root([&] { write_record("running", ExitCode::done); });
   log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}",
                         model_.particles.totals.count, model_.bodies.size(), backend_->description(),
@@ -238,9 +249,6 @@ ExitCode Simulation::run() {
     }
   } catch (const SimulationError& error) {
     return fail(loop, error);
-  } catch (const IoError& error) {
-    record_io_failure(error);
-    throw;
   }
   checkpoint(loop.complete_state(), "checkpoint.h5");
   const std::string signal = strsignal(loop.signal());
@@ -249,10 +257,13 @@ ExitCode Simulation::run() {
   return finish("stopped by signal: " + signal, ExitCode::stopped_by_signal);
 }
 
-// The record may meet the same trouble: what counts is the first.
+// The record may meet the same trouble: what counts is the first. On a full disk the copies of growing files,
+// which nobody needs any longer, make room for it.
 void Simulation::record_io_failure(const IoError& error) {
   if (!ranks_.is_root()) return;
   try {
+    state_.snapshots = recorder_->snapshots_written();
+    recorder_.reset();
     write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
   } catch (const IoError&) {
   }
@@ -322,7 +333,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
                    {"left", state_.carried_out.left},
                    {"history_rows", state_.history_rows},
-                   {"snapshots", recorder_->snapshots_written()}};
+                   {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
   const BalanceState& b = state_.balance;
   record.measures = {{"simulated_time", state_.clock.time},
                      {"balance_error", b.last.accounted() - b.start},

@@ -1,5 +1,7 @@
 #include "run/state.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -75,6 +77,28 @@ class Hasher {
 
  private:
   std::uint64_t hash_ = 14695981039346656037u;
+};
+
+// Finds the first value that is not finite.
+class FiniteCheck {
+ public:
+  void operator()(const char* name, const Real& value) { check(name, value); }
+  void operator()(const char*, const std::int64_t&) {}
+  void operator()(const char*, const bool&) {}
+  void operator()(const char* name, const std::vector<Real>& values) {
+    for (const Real value : values) check(name, value);
+  }
+  void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
+    for (const BodyWrench& w : wrenches)
+      if (!is_finite(w.force) || !is_finite(w.torque)) check(name, std::nan(""));
+  }
+  const std::string& name() const { return name_; }  // empty if there is none
+
+ private:
+  void check(const char* name, Real value) {
+    if (name_.empty() && !std::isfinite(value)) name_ = name;
+  }
+  std::string name_;
 };
 
 template <class Visitor, class StateType>
@@ -232,6 +256,51 @@ State unpack(const Checkpoint& checkpoint) {
   visit_state(reader, state), visit_output(reader, state);
   state.particles = unpack_particles(checkpoint);
   return state;
+}
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what) {
+  throw IoError(path + ": not a valid checkpoint: " + what);
+}
+
+void check_ids_increase(const std::string& path, GlobalId before, GlobalId id) {
+  if (id <= before)
+    refuse(path, fmt::format("particle {} comes after particle {}; ids must increase", id, before));
+}
+
+void check_particles(const State& state, const std::string& path, std::int64_t particles) {
+  const ParticleRecord* before = nullptr;
+  for (const ParticleRecord& p : state.particles) {
+    if (p.global_id < 0 || p.global_id >= particles)
+      refuse(path, fmt::format("particle id {}; the deck has the ids 0 to {}", p.global_id, particles - 1));
+    if (before != nullptr) check_ids_increase(path, before->global_id, p.global_id);
+    before = &p;
+    Real values[kRealsPerParticle];
+    pack_reals(p, values);
+    for (const Real value : values)
+      if (!std::isfinite(value))
+        refuse(path, fmt::format("a value of particle {} is not finite", p.global_id));
+  }
+}
+
+}  // namespace
+
+void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks) {
+  ranks.together([&] {
+    FiniteCheck finite;
+    visit_state(finite, state);
+    if (!finite.name().empty()) refuse(path, "'" + finite.name() + "' is not finite");
+    check_particles(state, path, particles);
+  });
+  std::vector<GlobalId> ends;  // of the ranks' parts: the first id and the last
+  if (!state.particles.empty()) ends = {state.particles.front().global_id, state.particles.back().global_id};
+  ends = ranks.gather_everywhere(ends);
+  for (std::size_t k = 2; k < ends.size(); k += 2) check_ids_increase(path, ends[k - 1], ends[k]);
+  const std::int64_t found = ranks.sum(std::ssize(state.particles)), removed = state.carried_out.removed;
+  if (found != particles - removed)
+    refuse(path,
+           fmt::format("{} particles; the deck has {}, of which {} were removed", found, particles, removed));
 }
 
 }  // namespace scree

@@ -43,5 +43,9 @@ Checkpoint pack(const State&& state) = delete;
 std::uint64_t state_hash(const State& state, bool with_rest);
 // With the particles of the checkpoint's rows on this rank. Throws IoError naming what is missing.
 State unpack(const Checkpoint& checkpoint);
+// Throws IoError naming the file, on every rank, where a read state cannot be one of a model with this number
+// of particles: where ids do not increase from particle to particle and from rank to rank, are outside
+// [0, particles), or are missing without having been removed, and where a value is not finite. Collective.
+void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks);
 
 }  // namespace scree

@@ -1,8 +1,13 @@
 // Files that several ranks write: the same whichever way they are written, from any number of ranks; failures
 // of one rank end all.
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -11,10 +16,20 @@
 #include "output/shared_rows.hpp"
 #include "output/snapshot.hpp"
 #include "partition/id_order.hpp"
+#include "run/state.hpp"
 #include "support/catch.hpp"
 #include "support/checkpoint_arrays.hpp"
 #include "support/petsc_run.hpp"
 #include "unit/output/scratch.hpp"
+
+// What the system call that reserves disk space returns; 0: what the system says.
+static int reservation_error = 0;
+
+extern "C" int fallocate(int file, int mode, off_t first, off_t count) {
+  if (reservation_error == 0) return static_cast<int>(syscall(SYS_fallocate, file, mode, first, count));
+  errno = reservation_error;
+  return -1;
+}
 
 namespace scree {
 
@@ -272,6 +287,103 @@ TEST_CASE("a write that fails on one rank fails on all, with its message, and le
     CHECK(!std::filesystem::exists(folder / "c.h5.tmp"));
     ranks.any(false);  // all have read it
   }
+}
+
+// The disk fills up while the rows are written, which the library, MPI and the system may all keep to
+// themselves: a file that cannot grow takes the beginning of a write.
+TEST_CASE("rows that only partly get to the disk do not replace a good checkpoint") {
+  const Ranks ranks = world();
+  const SharedFolder folder(ranks);
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  constexpr std::int64_t kEach = 50001;
+  const auto value = [&](std::int64_t row, std::uint64_t seed) {  // hardly to be compressed
+    const auto mixed = (static_cast<std::uint64_t>(ranks.rank() * kEach + row) + seed) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::int64_t>(mixed ^ (mixed >> 29));
+  };
+  const auto write = [&](std::uint64_t seed, int compression, rlim_t most) {
+    rlimit limit = before;
+    limit.rlim_cur = most;
+    Checkpoint checkpoint;
+    checkpoint.integer_rows["rows"] = {1, kEach,
+                                       [&](std::int64_t first, std::int64_t count, std::int64_t* to) {
+                                         for (std::int64_t k = 0; k < count; ++k)
+                                           to[k] = value(first + k, seed);
+                                         setrlimit(RLIMIT_FSIZE, &limit);
+                                       }};
+    const std::string message =
+        common_failure(ranks, [&] { write_checkpoint(folder / "c.h5", checkpoint, ranks, compression); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    return message;
+  };
+  const auto holds = [&](std::uint64_t seed) {
+    const Checkpoint read = with_rows_as_arrays(read_checkpoint(folder / "c.h5", ranks));
+    const std::vector<std::int64_t>& rows = read.integer_array("rows");
+    bool right = std::ssize(rows) == kEach;
+    for (std::size_t k = 0; right && k < rows.size(); ++k)
+      right = rows[k] == value(static_cast<std::int64_t>(k), seed);
+    return !ranks.any(!right);
+  };
+  for (const int compression : {0, 1}) {
+    CAPTURE(compression);
+    REQUIRE(write(1, compression, before.rlim_cur).empty());
+    REQUIRE(holds(1));
+    const auto bytes = static_cast<rlim_t>(kEach * ranks.size() * 8);
+    for (const rlim_t most : {bytes / 7, bytes / 3, bytes / 2, compression == 0 ? bytes - 9 : bytes / 100}) {
+      CAPTURE(most);
+      reservation_error = EOPNOTSUPP;
+      CHECK(write(2, compression, most).find("c.h5.tmp: cannot") != std::string::npos);
+      reservation_error = 0;
+      CHECK(holds(1));
+      CHECK(!std::filesystem::exists(folder / "c.h5.tmp"));
+      ranks.any(false);  // all have looked
+    }
+  }
+  REQUIRE(write(1, 0, before.rlim_cur).empty());
+  reservation_error = ENOSPC;
+  CHECK(write(2, 0, before.rlim_cur).find("c.h5.tmp: cannot reserve its disk space: No space left") !=
+        std::string::npos);
+  reservation_error = EOPNOTSUPP;
+  CHECK(write(3, 0, before.rlim_cur).empty());
+  reservation_error = 0;
+  CHECK(holds(3));
+}
+
+TEST_CASE("a state that no run can have written is refused on every rank") {
+  const Ranks ranks = world();
+  constexpr std::int64_t kParticles = 1000;  // of which every fifth is gone
+  State good;
+  good.carried_out.removed = kParticles / 5;
+  const IdRange own = id_range(kParticles, ranks.rank(), ranks.size());
+  for (GlobalId id = own.first; id < own.last; ++id)
+    if (id % 5 != 0) good.particles.emplace_back().global_id = id;
+  const auto refusal = [&](const std::function<void(State&)>& spoil) {
+    State state = good;
+    spoil(state);
+    const std::string message =
+        common_failure(ranks, [&] { check_state(state, "some.h5", kParticles, ranks); });
+    CHECK((message.empty() || message.starts_with("some.h5: not a valid checkpoint: ")));
+    return message;
+  };
+  const bool last = ranks.rank() == ranks.size() - 1;
+  const auto refused = [&](const std::string& words, const std::function<void(State&)>& spoil) {
+    CAPTURE(words);
+    CHECK(refusal([&](State& s) {
+            if (last) spoil(s);
+          }).find(words) != std::string::npos);
+  };
+  CHECK(refusal([](State&) {}).empty());
+  refused("particle id -1;", [](State& s) { s.particles[0].global_id = -1; });
+  refused("particle id 1000;", [](State& s) { s.particles.back().global_id = kParticles; });
+  refused("ids must increase", [](State& s) { s.particles[9].global_id = s.particles[8].global_id; });
+  refused("ids must increase", [](State& s) { std::swap(s.particles[9], s.particles[8]); });
+  refused("is not finite", [](State& s) { s.particles[7].integrator_loss = std::nan(""); });
+  refused("is not finite", [](State& s) { s.particles[7].position.z = -INFINITY; });
+  refused("799 particles", [](State& s) { s.particles.pop_back(); });
+  refused("'bodies/velocity' is not finite", [](State& s) { s.bodies.velocity = {1, std::nan("")}; });
+  if (ranks.size() > 1)  // from rank to rank
+    refused("ids must increase", [](State& s) { s.particles[0].global_id = 1; });
 }
 
 }  // namespace scree

@@ -212,20 +212,47 @@ class FailureTest(RanksTest):
         self.assertEqual(self.hash("out 8"), self.hash("out 1"))
 
     def test_a_value_that_is_not_finite_on_one_rank_ends_all(self):
+        light = LONELY.replace("count = 2", "count = 1")
+        table = LONELY[LONELY.index("[[particles]]"):]
+        for old, new in (("two", "heavy"), ("count = 2", "count = 1"), ("origin = [0.25", "origin = [0.75"),
+                         ("mass = 1.0", "mass = 1e10")):
+            table = table.replace(old, new)
+        deck = self.write("deck.toml", f"gravity = [0.0, 1e300]\n{light}\n{table}")  # 1e310 N
         for how in (IMPLICIT, EXPLICIT):
             with self.subTest(how=how):
-                deck = self.write("deck.toml", LONELY)
-                self.run_deck(DONE, 1, deck, "start", [*how, "time.end=0.1"])
-                checkpoint = self.folder / "start" / "checkpoint_end.h5"
-                content = checkpoint.read_bytes()
-                healthy = struct.pack("<d", VELOCITY)
-                self.assertEqual(content.count(healthy), 2)
-                checkpoint.write_bytes(content.replace(healthy, struct.pack("<d", math.nan), 1))
-                result = self.run_deck(FAILED, 2, deck, "out", how, "--restart", checkpoint)
+                result = self.run_deck(FAILED, 2, deck, "out", how)
                 # Without a list that covers its motion, an implicit step does not come to look at forces.
-                words = ("particle 0", "not finite") if how == EXPLICIT else ("stage neighbors",)
+                words = ("particle 1", "not finite") if how == EXPLICIT else ("stage neighbors",)
                 self.assert_one_message(result, *words)
                 self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
+
+    def test_a_damaged_checkpoint_is_refused(self):
+        def ids(*both):  # with no image counts, and not drifting
+            return b"".join(struct.pack("<5q", one, 0, 0, 0, 0) for one in both)
+        speed = struct.pack("<d", VELOCITY)
+        format_name = b"scree checkpoint 2"
+        damages = {
+            "ids must increase": (ids(0, 1), ids(0, 0)), "comes after particle 1": (ids(0, 1), ids(1, 0)),
+            "particle id -1": (ids(0, 1), ids(-1, 1)), "particle id 2": (ids(0, 1), ids(0, 2)),
+            "particle 0 is not finite": (speed, struct.pack("<d", math.nan)),
+        }
+        deck = self.write("deck.toml", LONELY)
+        self.run_deck(DONE, 1, deck, "start", [*EXPLICIT, "time.end=0.1"])
+        content = (self.folder / "start" / "checkpoint_end.h5").read_bytes()
+        damaged = self.folder / "damaged.h5"
+        for ranks in (1, 3):
+            for words, (healthy, ill) in damages.items():
+                with self.subTest(ranks=ranks, words=words):
+                    self.assertIn(healthy, content)
+                    damaged.write_bytes(content.replace(healthy, ill, 1))
+                    result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
+                    self.assert_one_message(result, "damaged.h5: not a valid checkpoint: ", words)
+        self.assertEqual(content.count(format_name), 1)
+        for number, words in ((b"1", "of an older version"), (b"3", "of a newer version")):
+            with self.subTest(words=words):
+                damaged.write_bytes(content.replace(format_name, format_name[:-1] + number))
+                result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)
+                self.assert_one_message(result, "damaged.h5", words)
 
     @unittest.skipIf(BACKEND == "cuda", "the driver needs more address space than the limit")
     def test_one_rank_without_memory_ends_all(self):

@@ -3,11 +3,14 @@
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 
 #include <atomic>
+#include <cerrno>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <new>
 #include <random>
 
@@ -22,6 +25,15 @@ using namespace scree;
 // The HDF5 library frees nothing of a file whose last write failed; the leak sanitizer, where it is on, must
 // not turn that into an exit code.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
+
+// A disk that is full behind this offset of a file. Unlike under a limit on its size, the file may be longer.
+static off_t disk_end = std::numeric_limits<off_t>::max();
+
+extern "C" ssize_t pwrite(int file, const void* data, std::size_t bytes, off_t at) {
+  if (at + static_cast<off_t>(bytes) <= disk_end) return syscall(SYS_pwrite64, file, data, bytes, at);
+  errno = ENOSPC;
+  return -1;
+}
 
 namespace {
 
@@ -145,6 +157,31 @@ TEST_CASE("a full disk is an error, and what was written stays") {
     CHECK(written() > 2);
     CHECK(read_predictable_particles(scratch / "particles.vtkhdf") ==
           std::vector<int>(static_cast<std::size_t>(written()), 200));
+  }
+}
+
+TEST_CASE("a history that the disk has no room for holds every flushed row") {
+  // Whichever write of an update is the one that fails.
+  for (off_t end = 20000; end < 40000; end += 1111) {
+    CAPTURE(end);
+    ScratchDirectory scratch;
+    SharedCounter flushed;
+    const int status = wait_for(start_child([&] {
+      HistoryWriter writer(scratch.path(), {{"", "time", "s", "time"}}, false, 0);
+      disk_end = end;
+      try {
+        for (;; writer.flush(), flushed.set(static_cast<int>(writer.rows())))
+          for (int i = 0; i < 100; ++i) writer.append({static_cast<Real>(1 + writer.rows())});
+      } catch (const IoError&) {
+        std::exit(4);
+      }
+    }));
+    REQUIRE(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 4);
+    CHECK(flushed() > 0);
+    const auto time = Hdf5File(scratch / "history.h5", Hdf5Access::read).read_array<Real>("/time");
+    CHECK(static_cast<int>(time.size()) == flushed());
+    for (std::size_t row = 0; row < time.size(); ++row) REQUIRE(time[row] == static_cast<Real>(row + 1));
   }
 }
 
