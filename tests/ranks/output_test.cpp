@@ -1,11 +1,10 @@
 // Files that several ranks write: the same whichever way they are written, from any number of ranks; failures
 // of one rank end all.
 #include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -19,6 +18,7 @@
 #include "run/state.hpp"
 #include "support/catch.hpp"
 #include "support/checkpoint_arrays.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/petsc_run.hpp"
 #include "unit/output/scratch.hpp"
 
@@ -257,9 +257,7 @@ TEST_CASE("snapshots of several ranks read back as those of one") {
 TEST_CASE("a write that fails on one rank fails on all, with its message, and leaves what was there") {
   const Ranks ranks = world();
   const SharedFolder folder(ranks);
-  signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
+  const FileSizeLimit limit;
   constexpr std::int64_t kEach = 200000;
   const auto write = [&](int value) {
     Checkpoint checkpoint;
@@ -277,11 +275,9 @@ TEST_CASE("a write that fails on one rank fails on all, with its message, and le
   enum { kRoot, kAll, kOthers };
   for (const int limited : {kRoot, kAll, kOthers}) {
     CAPTURE(limited);
-    rlimit limit = before;
-    limit.rlim_cur = 400000;
-    if (limited == kAll || (limited == kRoot) == ranks.is_root()) setrlimit(RLIMIT_FSIZE, &limit);
+    if (limited == kAll || (limited == kRoot) == ranks.is_root()) limit.set(400000);
     const std::string message = common_failure(ranks, [&] { write(2); });
-    setrlimit(RLIMIT_FSIZE, &before);
+    limit.lift();
     if (limited != kOthers) CHECK(message.find("c.h5.tmp: cannot") != std::string::npos);
     CHECK(holds(message.empty() ? 2 : 1));
     CHECK(!std::filesystem::exists(folder / "c.h5.tmp"));
@@ -294,27 +290,23 @@ TEST_CASE("a write that fails on one rank fails on all, with its message, and le
 TEST_CASE("rows that only partly get to the disk do not replace a good checkpoint") {
   const Ranks ranks = world();
   const SharedFolder folder(ranks);
-  signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
+  const FileSizeLimit limit;
   constexpr std::int64_t kEach = 50001;
   const auto value = [&](std::int64_t row, std::uint64_t seed) {  // hardly to be compressed
     const auto mixed = (static_cast<std::uint64_t>(ranks.rank() * kEach + row) + seed) * 0x9e3779b97f4a7c15u;
     return static_cast<std::int64_t>(mixed ^ (mixed >> 29));
   };
   const auto write = [&](std::uint64_t seed, int compression, rlim_t most) {
-    rlimit limit = before;
-    limit.rlim_cur = most;
     Checkpoint checkpoint;
     checkpoint.integer_rows["rows"] = {1, kEach,
                                        [&](std::int64_t first, std::int64_t count, std::int64_t* to) {
                                          for (std::int64_t k = 0; k < count; ++k)
                                            to[k] = value(first + k, seed);
-                                         setrlimit(RLIMIT_FSIZE, &limit);
+                                         limit.set(most);
                                        }};
     const std::string message =
         common_failure(ranks, [&] { write_checkpoint(folder / "c.h5", checkpoint, ranks, compression); });
-    setrlimit(RLIMIT_FSIZE, &before);
+    limit.lift();
     return message;
   };
   const auto holds = [&](std::uint64_t seed) {
@@ -327,7 +319,7 @@ TEST_CASE("rows that only partly get to the disk do not replace a good checkpoin
   };
   for (const int compression : {0, 1}) {
     CAPTURE(compression);
-    REQUIRE(write(1, compression, before.rlim_cur).empty());
+    REQUIRE(write(1, compression, FileSizeLimit::kNone).empty());
     REQUIRE(holds(1));
     const auto bytes = static_cast<rlim_t>(kEach * ranks.size() * 8);
     for (const rlim_t most : {bytes / 7, bytes / 3, bytes / 2, compression == 0 ? bytes - 9 : bytes / 100}) {
@@ -340,12 +332,12 @@ TEST_CASE("rows that only partly get to the disk do not replace a good checkpoin
       ranks.any(false);  // all have looked
     }
   }
-  REQUIRE(write(1, 0, before.rlim_cur).empty());
+  REQUIRE(write(1, 0, FileSizeLimit::kNone).empty());
   reservation_error = ENOSPC;
-  CHECK(write(2, 0, before.rlim_cur).find("c.h5.tmp: cannot reserve its disk space: No space left") !=
+  CHECK(write(2, 0, FileSizeLimit::kNone).find("c.h5.tmp: cannot reserve its disk space: No space left") !=
         std::string::npos);
   reservation_error = EOPNOTSUPP;
-  CHECK(write(3, 0, before.rlim_cur).empty());
+  CHECK(write(3, 0, FileSizeLimit::kNone).empty());
   reservation_error = 0;
   CHECK(holds(3));
 }
