@@ -32,6 +32,26 @@ const T& CudaBackend::fetch(T Results::* member) const {
   return host;
 }
 
+// Queues a pass over the particles that needs their ghosts: queue_ghosts(device), queue_rows(device, first, end). With
+// several ranks the interior, which meets no ghosts, is computed while the halo is under way, and the rest beside it as
+// soon as that is there. Both streams stand where the pass may begin; afterwards the halo's stands behind it, so that the
+// next halo begins before the next rows fill the GPU. clock: if given, it looks.
+template <class QueueGhosts, class QueueRows>
+void CudaBackend::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock) {
+  if (ranks_.alone()) {
+    queue_ghosts(device());
+    queue_rows(device(), 0, owned_);
+    return;
+  }
+  if (clock != nullptr) clock->begin(halo_stream_);
+  if (interior_ > 0) queue_rows(device(), 0, interior_);
+  if (clock != nullptr) clock->interior_done(stream_);
+  queue_ghosts({halo_stream_});
+  if (clock != nullptr) clock->end(halo_stream_);
+  queue_rows({halo_stream_}, interior_, owned_);
+  halo_after_rows();
+}
+
 template <int N, class Item>
 void CudaBackend::queue_sums(const Item& item, ExactSums<N> Results::* sums) const {
   exact_sums(device(), owned_, item, result(sums), [&](Real* largest) { halo_.max(device(), largest, N); });

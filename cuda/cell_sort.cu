@@ -42,22 +42,16 @@ void CellSort::sort(Device device, Index n, unsigned last_key) {
   const std::size_t starts = static_cast<std::size_t>(last_key) + 2;
   sorted_keys_.resize(size), order_.resize(size), counts_.resize(starts), starts_.resize(starts);
   counts_.zero(device.stream);
-  const int bits = std::max(1, static_cast<int>(std::bit_width(last_key)));
-  std::size_t space = 0;
-  const auto with_space = [&](const auto& call) {
-    call(nullptr);
-    space_.resize(std::max<std::size_t>(space, 1));
-    call(space_.data());
-  };
-  const auto sort = [&](void* at) {
-    require_cuda(cub::DeviceRadixSort::SortPairs(at, space, keys_.data(), sorted_keys_.data(), iota_.data(),
-                                                 order_.data(), n, 0, bits, device.stream),
+  const int key_bits = std::max(1, static_cast<int>(std::bit_width(last_key)));
+  const auto sort = [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceRadixSort::SortPairs(at, bytes, keys_.data(), sorted_keys_.data(), iota_.data(),
+                                                 order_.data(), n, 0, key_bits, device.stream),
                  "sort");
   };
-  if (n > 0) with_space(sort);
+  if (n > 0) with_space(space_, sort);
   for_each(device, n, CountItem{sorted_keys_.data(), counts_.data(), n});
-  with_space([&](void* at) {
-    require_cuda(cub::DeviceScan::ExclusiveSum(at, space, counts_.data(), starts_.data(), starts, device.stream),
+  with_space(space_, [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), starts_.data(), starts, device.stream),
                  "scan");
   });
 }

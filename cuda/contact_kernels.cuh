@@ -2,6 +2,7 @@
 // queued and nothing waits. The CPU's counterpart is src/dem/contact_kernels.hpp.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "dem/step_items.hpp"
 #include "device.cuh"
 #include "device_list.cuh"
+#include "for_each.cuh"
 
 namespace scree {
 
@@ -25,10 +27,10 @@ __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, Ro
           in.wall_offsets, in.walls, in.planes, in.first_shape};
 }
 
-// Maxima of StepNorms over the particles, on the device.
+// Force, Newton matrix and residual of the particles [first, end).
 struct SystemRequest {
   DeviceViews in;
-  Index n;
+  Index first, end;
   Vec3 gravity;
   NewtonWeights weights;
   StepStart start;
@@ -38,7 +40,7 @@ struct SystemRequest {
   Vec3* residual;
   Real* stiffening;
   Sym3* inverse_block;
-  StepNorms* largest;
+  StepNorms* largest;  // maxima over these particles and those before
 };
 
 // Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run see
@@ -106,11 +108,14 @@ struct VerletControl {
 
 inline constexpr int kStepBlock = 128;  // threads of a block of an explicit step
 
+// Blocks of a launch for the particles [first, end); one for none of them.
+inline unsigned step_blocks(Index first, Index end) { return std::max(1u, blocks_for(end - first, kStepBlock)); }
+
 // The particles [first, end) of a launch; first: a multiple of kStepBlock.
 struct StepRows {
   Index first, end;
-  bool whole;   // all of the step, which follows the step before on the stream
-  bool closes;  // the last launch of the step
+  bool follows;          // the step before, on the same stream: the launch is all of its step
+  unsigned step_blocks;  // of all launches of the step; the last one to end closes it
 };
 
 // Two arrays each for position and velocity: a step reads one and writes the other.

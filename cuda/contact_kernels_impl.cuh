@@ -29,12 +29,12 @@ template <class Elastic, class Laws>
 __global__ void __launch_bounds__(kSystemThreads)
     system_kernel(const __grid_constant__ SystemRequest r, const Laws laws) {
   __shared__ SystemStage::Shared shared;
-  const Index i = thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
-  const SystemStage stage(shared, first, min(static_cast<Index>(warpSize), r.n - first));
+  const Index i = r.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const SystemStage stage(shared, first, min(static_cast<Index>(warpSize), r.end - first));
   Vec3 step_force, end_force, residual;
   Sym3 diagonal, inverse_block;
   StepNorms norms{};
-  if (i < r.n) {
+  if (i < r.end) {
     SystemItem<Elastic, Laws> item{{{r.in, laws, r.start}, r.gravity, r.weights, r.forces, r.matrix},
                                    {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
                                    {r.step, r.residual, r.forces.magnitude, r.stiffening}};
@@ -95,9 +95,9 @@ struct BlockLargest {
   }
 };
 
-// Every thread calls this at its end: the last block of a launch that does so closes the step. d_squared: of the
-// thread's particle, 0 for one outside the search.
-__device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, bool closes, VerletControl& control) {
+// Every thread calls this at its end: the last block of the step closes it. d_squared: of the thread's particle, 0 for
+// one outside the search.
+__device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, unsigned step_blocks, VerletControl& control) {
   __syncwarp();  // lane 0 speaks for all: it sees what they wrote
   // Singles that round up keep the order of the doubles, and a NaN stays the largest.
   const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
@@ -110,7 +110,7 @@ __device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, 
   __threadfence_block();
   const unsigned largest = atomicMax(&block.largest, 0u);
   atomicMax(&control.largest, largest);
-  if (closes && is_last_block(&control.finished_blocks)) close_step(control);
+  if (is_last_block(&control.finished_blocks, step_blocks)) close_step(control);
 }
 
 using VerletStage = WarpStage<sizeof(Vec4), kStepBlock>;
@@ -146,7 +146,7 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   stage.put(position, p == 0 ? r.position[1] : r.position[0]);
   stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
 
-  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.closes, *r.control);
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
 template <int kAtOnce, class Elastic, class Laws>
@@ -169,7 +169,7 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
         !r.box.inside(mixed_position(r.grid, r.in.position[i], (parity == 0 ? r.state.place[1] : r.state.place[0])[i], part)))
       r.control->outside = 1;
   }
-  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.closes, *r.control);
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
 template <class Elastic, class Laws>
@@ -199,9 +199,9 @@ class ContactKernelsOf : public DeviceContactKernels {
     for_each(device, n, ContactForceItem<Elastic, Laws, SlicedRows>{in, laws_, gravity, force, loss_power});
   }
   void system(Device device, const SystemRequest& r) const override {
-    require_cuda(cudaMemsetAsync(r.largest, 0, sizeof(StepNorms), device.stream), "system");
-    if (r.n == 0) return;
-    system_kernel<Elastic><<<blocks_for(r.n, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
+    if (r.end == r.first) return;
+    system_kernel<Elastic>
+        <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
     require_cuda(cudaGetLastError(), "system");
   }
   void shapes(Device device, const DeviceViews& in, Index n, const StepStart& start,
@@ -236,7 +236,7 @@ class ContactKernelsOf : public DeviceContactKernels {
  private:
   // Whether so many particles have room side by side on the GPU, with so many blocks on a multiprocessor.
   bool fits(const StepRows& rows, int blocks) const {
-    return blocks_for(rows.end - rows.first, kStepBlock) <= multiprocessors_ * static_cast<unsigned>(blocks);
+    return step_blocks(rows.first, rows.end) <= multiprocessors_ * static_cast<unsigned>(blocks);
   }
   template <class Request>
   void launch(Device device, const Request& r, void (*kernel)(Request, Laws)) const {
@@ -245,8 +245,8 @@ class ContactKernelsOf : public DeviceContactKernels {
     overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     overlap.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
-    config.gridDim = std::max(1u, blocks_for(r.rows.end - r.rows.first, kStepBlock)), config.blockDim = kStepBlock;
-    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = overlaps_ && r.rows.whole ? 1 : 0;
+    config.gridDim = step_blocks(r.rows.first, r.rows.end), config.blockDim = kStepBlock;
+    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = overlaps_ && r.rows.follows ? 1 : 0;
     require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");
   }
 

@@ -127,6 +127,11 @@ class CudaBackend : public Backend {
   void refresh_ghosts(Vec4* position, Vec4* velocity) {
     halo_.update_motion(device(), position, velocity, owned_);
   }
+  // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.
+  void halo_after_rows() { rows_done_.record(stream_), rows_done_.hold(halo_stream_); }
+  void rows_after_halo() { halo_done_.record(halo_stream_), halo_done_.hold(stream_); }
+  template <class QueueGhosts, class QueueRows>
+  void queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock);
   void put_shapes(ParticleArrays& arrays);
   const Vec4* stage_shapes();
   void find_shape_contacts();
@@ -140,6 +145,7 @@ class CudaBackend : public Backend {
 
   // Parts of an explicit run.
   PrunedViews pruned_views(const Vec4* position);
+  StepRows step_rows(Index first, Index end) const;
   VerletRequest verlet_request(Real h);
   void settle();
   static constexpr Index kEndless = std::numeric_limits<Index>::max();
@@ -199,7 +205,7 @@ class CudaBackend : public Backend {
   PinnedArray<Vec4> h_shape_places_;
   std::vector<Vec4> h_list_shapes_;  // positions of the shapes when the list was built
   Event places_copied_, step_queued_;
-  Event ghosts_ready_, rows_done_, step_closed_;  // of explicit steps on several ranks
+  Event rows_done_, halo_done_;
   PinnedArray<ShapeContact> h_shape_contacts_;  // written by the device: few, and awaited
   bool layout_changed_ = true;  // particles left since the list was built
   std::int64_t list_builds_ = 0;
@@ -211,6 +217,7 @@ class CudaBackend : public Backend {
   // Workspace of the implicit step.
   Real h_ = 0;
   bool in_implicit_step_ = false;
+  bool ghosts_stale_ = false;  // the next contact_force refreshes them
   DeviceArray<Vec3> step_force_, end_force_, residual_, right_hand_side_, correction_;
   DeviceArray<Real> step_loss_, end_loss_, force_magnitude_, stiffening_;
   DeviceArray<Index> matrix_count_;

@@ -93,10 +93,17 @@ PrunedViews CudaBackend::pruned_views(const Vec4* position) {
           v.first_shape};
 }
 
+// The launch of a step on the particles [first, end): all of them, or one of the step's two parts.
+StepRows CudaBackend::step_rows(Index first, Index end) const {
+  const bool in_parts = !ranks_.alone() && interior_ > 0;
+  const unsigned blocks = in_parts ? step_blocks(0, interior_) + step_blocks(interior_, owned_) : step_blocks(0, owned_);
+  return {first, end, ranks_.alone(), blocks};
+}
+
 VerletRequest CudaBackend::verlet_request(Real h) {
   VerletRequest r{};
   r.in = pruned_views(nullptr);
-  r.rows = {0, owned_, true, true}, r.active = layout_.active, r.gravity = model_.gravity;
+  r.rows = step_rows(0, owned_), r.active = layout_.active, r.gravity = model_.gravity;
   r.position[0] = now_.position.data(), r.position[1] = other_.position.data();
   r.velocity[0] = now_.velocity.data(), r.velocity[1] = other_.velocity.data();
   r.state = {nullptr, nullptr,
@@ -175,10 +182,9 @@ void CudaBackend::convert_to_mixed(Real h) {
   for (int k = 0; k < 2; ++k) mixed_place_[k].resize(items), mixed_motion_[k].resize(items);
   mixed_fraction_.resize(owned), mixed_rest_.resize(owned);
   quanta_ = make_quantum_grid(builder_.cutoff(list_skin_));
-  refresh_ghosts(now_.position.data(), now_.velocity.data());
-  for_each(device(), layout_.items,
+  for_each(device(), owned_,  // ghosts come with the first step's halo
            ToMixedItem{now_.position.data(), now_.velocity.data(), now_.acceleration.data(), mixed_views(), quanta_,
-                       subdomain_.box(), owned_, h, list_skin_ / 2});
+                       subdomain_.box(), h, list_skin_ / 2});
   in_mixed_ = true, mixed_h_ = h;
 }
 
@@ -204,37 +210,28 @@ bool CudaBackend::renew_list(StageTimers& timers) {
   return true;
 }
 
-// Queues steps one after the other. queue_ghosts(device, k): the halo of the k-th from now on; queue_rows(rows): the
-// kernel of a step on these particles; key: all that the launches depend on.
-//
-// With several ranks the interior, which meets no ghosts, is computed while the halo is under way; then the rest, and
-// then the ranks share what decides whether the next step may be taken.
+// Queues steps one after the other. queue_ghosts(device, k): the halo of the k-th from now on; queue_rows(device, first,
+// end): the kernel of a step on these particles; key: all that the launches depend on. After each step the ranks share
+// what decides whether the next one may be taken.
 template <class QueueGhosts, class QueueRows>
 void CudaBackend::queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
                                 const QueueRows& queue_rows) {
   if (ranks_.alone()) {
     graph_.queue(stream_, key, steps, [&] {
       queue_ghosts(device(), 0);
-      queue_rows({0, owned_, true, true});
+      queue_rows(device(), 0, owned_);
     });
     return;
   }
   const Device halo{halo_stream_};
   VerletControl* control = result(&Results::control);
-  rows_done_.record(stream_), rows_done_.hold(halo_stream_);
+  halo_after_rows();
   for (Index k = 0; k < steps; ++k) {
-    const bool look = k == 0;  // those behind a stop do nothing that a halo could hide behind
-    if (look) halo_clock_.begin(halo_stream_);
-    if (interior_ > 0) queue_rows({0, interior_, false, false});
-    if (look) halo_clock_.interior_done(stream_);
-    queue_ghosts(halo, k);
-    if (look) halo_clock_.end(halo_stream_);
-    ghosts_ready_.record(halo_stream_), ghosts_ready_.hold(stream_);
-    queue_rows({interior_, owned_, false, true});
-    rows_done_.record(stream_), rows_done_.hold(halo_stream_);
+    HaloClock* clock = k == 0 ? &halo_clock_ : nullptr;  // steps behind a stop do nothing that a halo could hide behind
+    queue_beside_halo([&](Device on) { queue_ghosts(on, k); }, queue_rows, clock);
     halo_.max(halo, control->shared, 2);
     close_kernel<<<1, 1, 0, halo_stream_>>>(control);
-    step_closed_.record(halo_stream_), step_closed_.hold(stream_);
+    rows_after_halo();
   }
   require_cuda(cudaGetLastError(), "explicit step");
 }
@@ -253,16 +250,17 @@ void CudaBackend::queue_steps(Real h, Index steps) {
       for_each(on, halo_.entries(), ghosts);
       halo_.exchange(on, ghosts.position[(parity_[0] + k) % 2], ghosts.velocity[(parity_[1] + k) % 2]);
     };
-    queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, queue_ghosts, [&](const StepRows& rows) {
+    const auto queue_rows = [&](Device on, Index first, Index end) {
       VerletRequest of_rows = r;
-      of_rows.rows = rows;
-      kernels_->verlet_advance(device(), of_rows);
-    });
+      of_rows.rows = step_rows(first, end);
+      kernels_->verlet_advance(on, of_rows);
+    };
+    queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, queue_ghosts, queue_rows);
     return;
   }
   if (!in_mixed_) convert_to_mixed(h);
   MixedRequest r{};
-  r.in = pruned_views(now_.position.data()), r.rows = {0, owned_, true, true}, r.active = layout_.active;
+  r.in = pruned_views(now_.position.data()), r.rows = step_rows(0, owned_), r.active = layout_.active;
   r.gravity = model_.gravity;
   r.state = mixed_views(), r.grid = quanta_, r.h = h;
   r.box = subdomain_.box(), r.drifting = now_.drifting.data(), r.control = result(&Results::control);
@@ -277,11 +275,12 @@ void CudaBackend::queue_steps(Real h, Index steps) {
     const Index parity = (parity_[0] + k) % 2;
     halo_.exchange(on, ghosts.place[parity], ghosts.motion[parity]);
   };
-  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, queue_ghosts, [&](const StepRows& rows) {
+  const auto queue_rows = [&](Device on, Index first, Index end) {
     MixedRequest of_rows = r;
-    of_rows.rows = rows;
-    kernels_->mixed_advance(device(), of_rows);
-  });
+    of_rows.rows = step_rows(first, end);
+    kernels_->mixed_advance(on, of_rows);
+  };
+  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo_.entries()), steps, queue_ghosts, queue_rows);
 }
 
 // Closes the open step without opening another; now_ holds it afterwards. The host knows the parities.

@@ -103,12 +103,13 @@ __global__ void decide_kernel(SolverControl* c) {
   if (!c->stop) decide(c);
 }
 
-__global__ void solver_kernel(Index n, const __grid_constant__ SolverItem item, SolverControl* c) {
+// For the particles [first, end).
+__global__ void solver_kernel(Index first, Index end, const __grid_constant__ SolverItem item, SolverControl* c) {
   if (c->stop) return;
-  const Index i = thread_index();
-  block_max(i < n ? item(i) : 0, &c->largest);
+  const Index i = first + thread_index();
+  block_max(i < end ? item(i) : 0, &c->largest);
   if (threadIdx.x > 0) return;
-  if (is_last_block(&c->finished_blocks) && c->alone) decide(c);
+  if (c->alone && is_last_block(&c->finished_blocks, gridDim.x)) decide(c);
 }
 
 }  // namespace
@@ -151,7 +152,7 @@ void CudaBackend::begin_step(Real h) {
   copy_async(now_.position.data() + layout_.first_shape, other_.position.data() + layout_.first_shape, shapes, stream_);
   copy_async(now_.velocity.data() + layout_.first_shape, other_.velocity.data() + layout_.first_shape, shapes, stream_);
   for_each(device(), owned_, NewmarkItem{step_views()});
-  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  ghosts_stale_ = true;
 }
 
 void CudaBackend::rollback() {
@@ -159,7 +160,7 @@ void CudaBackend::rollback() {
   std::swap(now_.position, other_.position), std::swap(now_.velocity, other_.velocity);
   copy_async(now_.acceleration.data(), other_.acceleration.data(), static_cast<std::size_t>(owned_), stream_);
   refresh_ghosts(now_.position.data(), now_.velocity.data());
-  in_implicit_step_ = false;
+  in_implicit_step_ = ghosts_stale_ = false;
 }
 
 Real CudaBackend::step_displacement() {
@@ -173,13 +174,28 @@ Real CudaBackend::step_displacement() {
 
 ParticleNorms CudaBackend::contact_force() {
   SystemRequest r;
-  r.in = views(), r.n = owned_, r.gravity = model_.gravity;
+  r.in = views(), r.gravity = model_.gravity;
   r.weights = {newmark_position_gain(hht_, h_), newmark_velocity_gain(hht_, h_)};
   r.start = {other_.position.data(), other_.velocity.data(), h_, model_.integrator.resolve_events};
   r.forces = step_forces(), r.matrix = matrix(), r.step = step_views();
   r.residual = residual_.data(), r.stiffening = stiffening_.data(), r.inverse_block = inverse_block_.data();
   r.largest = result(&Results::norms);
-  kernels_->system(device(), r);
+  require_cuda(cudaMemsetAsync(r.largest, 0, sizeof(StepNorms), stream_), "cudaMemsetAsync");
+  const auto queue_rows = [&](Device on, Index first, Index end) {
+    r.first = first, r.end = end;
+    kernels_->system(on, r);
+  };
+  const auto queue_ghosts = [&](Device on) {
+    halo_.update_motion(on, now_.position.data(), now_.velocity.data(), owned_);
+  };
+  if (ghosts_stale_) {
+    halo_after_rows();
+    queue_beside_halo(queue_ghosts, queue_rows, &halo_clock_);
+    rows_after_halo();
+    ghosts_stale_ = false;
+  } else {
+    queue_rows(device(), 0, owned_);
+  }
   if (shape_items() > 0) {
     kernels_->shapes(device(), views(), shape_items(), r.start, h_shape_contacts_.data());
     fetch_shape_contacts(stream_);
@@ -188,6 +204,7 @@ ParticleNorms CudaBackend::contact_force() {
     queue_sums(SlopeItem{residual_.data(), correction_.data()}, &Results::slope);
   copy_async(&h_results_.data()->slope, result(&Results::slope), 1, stream_);
   StepNorms largest = fetch(&Results::norms);
+  halo_clock_.read(balance_.halo);
   Real maxima[4] = {largest.residual, largest.correction_bound, largest.force, largest.stiffening};
   ranks_.max(maxima);
   largest.residual = maxima[0], largest.correction_bound = maxima[1];
@@ -208,7 +225,7 @@ CorrectItem CudaBackend::correct_item(Real share) {
 void CudaBackend::shorten_correction() {
   max_over(device(), owned_, correct_item(line_search_.shorten()), result(&Results::largest));
   for_each(device(), owned_, NewmarkItem{step_views()});
-  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  ghosts_stale_ = true;
 }
 
 // The bodies have already taken their correction: as a known part of the solution it moves to the right.
@@ -242,18 +259,26 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
     return DirectionItem{inverse_block_.data(), residual_.data(), weights.from_last, weights.from_residual};
   };
   for_each(device(), owned_, FirstDirectionItem{direction(), direction_[0].data(), correction_.data()});
+  halo_after_rows();
   for (int product = 0; product < kMostProducts; ++product) {
     DeviceArray<Vec4>&d = direction_[product % 2], &next = direction_[1 - product % 2];
     const DirectionGhostItem ghosts{halo_.ghosts(), halo_.field(0, d.data(), owned_)};
-    for_each(device(), halo_.entries(), ghosts);
-    halo_.exchange(device(), ghosts.direction);
     weights.advance();
     SolverItem item{matrix, direction(), next.data(), correction_.data()};
     item.subtract.d = d.data(), item.subtract.residual = residual_.data();
-    solver_kernel<<<std::max(1u, blocks_for(owned_)), kThreadsPerBlock, 0, stream_>>>(owned_, item, solver_.data());
+    const auto queue_ghosts = [&](Device on) {
+      for_each(on, halo_.entries(), ghosts);
+      halo_.exchange(on, ghosts.direction);
+    };
+    const auto queue_rows = [&](Device on, Index first, Index end) {
+      const unsigned blocks = std::max(1u, blocks_for(end - first));
+      solver_kernel<<<blocks, kThreadsPerBlock, 0, on.stream>>>(first, end, item, solver_.data());
+    };
+    queue_beside_halo(queue_ghosts, queue_rows, nullptr);
     if (!ranks_.alone()) {
-      halo_.max(device(), &solver_.data()->largest, 1);
-      decide_kernel<<<1, 1, 0, stream_>>>(solver_.data());
+      halo_.max({halo_stream_}, &solver_.data()->largest, 1);
+      decide_kernel<<<1, 1, 0, halo_stream_>>>(solver_.data());
+      rows_after_halo();
     }
     require_cuda(cudaGetLastError(), "linear solve");
     if (product % kBatch != kBatch - 1) continue;
@@ -280,7 +305,7 @@ ParticleCorrection CudaBackend::particle_correct() {
     queue_sums(SlopeItem{right_hand_side_.data(), correction_.data()}, &Results::slope);
   }
   for_each(device(), owned_, NewmarkItem{step_views()});
-  refresh_ghosts(now_.position.data(), now_.velocity.data());
+  ghosts_stale_ = true;
   if (right_hand_side > 0) {
     copy_async(&h_results_.data()->largest, result(&Results::largest), 1, stream_);
     line_search_.open(totals(fetch(&Results::slope))[0]);

@@ -81,15 +81,11 @@ void CudaBackend::migrate() {
   other_.grow(now_.position.size(), static_cast<std::size_t>(owned_), 0, stream_);
   Index* leaving = other_.material.data();  // free until the sort
   const LeavesItem leaves{decomposition_.grid(), cuts_.data(), now_.position.data(), ranks_.rank()};
-  std::size_t space = 0;
-  const auto select = [&](void* at) {
-    require_cuda(cub::DeviceSelect::If(at, space, thrust::counting_iterator<Index>(0), leaving,
+  with_space(space_, [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceSelect::If(at, bytes, thrust::counting_iterator<Index>(0), leaving,
                                        result(&Results::index), owned_, leaves, stream_),
                  "select");
-  };
-  select(nullptr);
-  space_.resize(space);
-  select(space_.data());
+  });
   const Index count = fetch(&Results::index);
   balance_.migrated += count;
 

@@ -106,15 +106,11 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
   DeviceArray<std::uint8_t> stays(n);
   DeviceArray<Index> iota(n), staying(n);
   for_each(device(), owned_, StaysItem{now_.drifting.data(), stays.data(), iota.data()});
-  std::size_t space = 0;
-  const auto select = [&](void* at) {
-    require_cuda(cub::DeviceSelect::Flagged(at, space, iota.data(), stays.data(), staying.data(),
+  with_space(space_, [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceSelect::Flagged(at, bytes, iota.data(), stays.data(), staying.data(),
                                             result(&Results::index), owned_, stream_),
                  "select");
-  };
-  select(nullptr);
-  space_.resize(space);
-  select(space_.data());
+  });
   owned_ = fetch(&Results::index);
   reorder(staying.data(), owned_);
   DeviceArray<Index> row_length(static_cast<std::size_t>(owned_));
@@ -155,15 +151,12 @@ void CudaBackend::start_pack() {
   p.ids.resize(n), p.sorted_ids.resize(n), p.order.resize(n), p.sorted_order.resize(n);
   kernels_->energies(device(), views(), owned_, {p.elastic.data(), p.contacts.data(), p.pairs.data()});
   for_each(device(), owned_, IdItem{now_.row_key.data(), p.ids.data(), p.order.data()});
-  std::size_t space = 0;
-  const auto sort = [&](void* at) {
-    require_cuda(cub::DeviceRadixSort::SortPairs(at, space, p.ids.data(), p.sorted_ids.data(), p.order.data(),
+  const auto sort = [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceRadixSort::SortPairs(at, bytes, p.ids.data(), p.sorted_ids.data(), p.order.data(),
                                                  p.sorted_order.data(), owned_, 0, 8 * sizeof(GlobalId), stream_),
                  "sort");
   };
-  sort(nullptr);
-  space_.resize(space);
-  if (n > 0) sort(space_.data());
+  if (n > 0) with_space(space_, sort);
   for_each(device(), owned_,
            PackItem{views_of(now_), p.sorted_order.data(), p.contacts.data(), model_.gravity, model_.space.min,
                     subdomain_.period(), p.packed.data()});

@@ -196,6 +196,15 @@ class DeviceArray {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
+// A library call that needs space on the device: call(nullptr, bytes) asks for how much, call(at, bytes) does the work.
+template <class Call>
+void with_space(DeviceArray<unsigned char>& space, const Call& call) {
+  std::size_t bytes = 0;
+  call(nullptr, bytes);
+  space.resize(std::max<std::size_t>(bytes, 1));
+  call(space.data(), bytes);
+}
+
 // An array in host memory that the device copies to and from without waiting.
 template <class T>
 class PinnedArray {

@@ -212,14 +212,11 @@ void DeviceList::build(Device device, const ListInput& in) {
 
   // The entry past the end is read, though no sum depends on it.
   require_cuda(cudaMemsetAsync(wall_counts_.data() + items, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
-  std::size_t space = 0;
-  require_cuda(cub::DeviceScan::ExclusiveSum(nullptr, space, wall_counts_.data(), wall_offsets_.data(), in.items + 1,
-                                             device.stream),
-               "scan");
-  scan_space_.resize(space);
-  require_cuda(cub::DeviceScan::ExclusiveSum(scan_space_.data(), space, wall_counts_.data(), wall_offsets_.data(),
-                                             in.items + 1, device.stream),
-               "scan");
+  with_space(scan_space_, [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, wall_counts_.data(), wall_offsets_.data(), in.items + 1,
+                                               device.stream),
+                 "scan");
+  });
   copy_async(&h_totals_.data()->wall_entries, wall_offsets_.data() + in.items, 1, device.stream);
   wait_for(device.stream);
   if (h_totals_[0].used > neighbors_.size()) {

@@ -60,10 +60,10 @@ __device__ inline void block_max(Real value, Real* d_largest) {
 
 // Called by one thread per block after its share of a result: whether all blocks have come by. To that one thread
 // what the others wrote before is visible. *finished is 0 again afterwards.
-__device__ inline bool is_last_block(unsigned* finished) {
+__device__ inline bool is_last_block(unsigned* finished, unsigned blocks) {
   // Release alone: an acquire on every block would empty its multiprocessor's cache each time.
   const cuda::atomic_ref<unsigned, cuda::thread_scope_device> count(*finished);
-  if (count.fetch_add(1, cuda::memory_order_release) != gridDim.x - 1) return false;
+  if (count.fetch_add(1, cuda::memory_order_release) != blocks - 1) return false;
   cuda::atomic_thread_fence(cuda::memory_order_acquire, cuda::thread_scope_device);
   *finished = 0;
   return true;

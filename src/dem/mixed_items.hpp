@@ -120,14 +120,13 @@ struct MixedPairForce {
   float loss;  // of the whole contact
 };
 
-// From the double state of an open explicit step. Ghosts' places are made from their own positions.
+// From the double state of an open explicit step.
 struct ToMixedItem {
-  const Vec4 *position, *velocity;  // all items
+  const Vec4 *position, *velocity;
   const Vec3* acceleration;
   MixedViews out;
   QuantumGrid grid;
   OpenBox box;
-  Index owned;
   Real h, half_skin;
 
   SCREE_HD void operator()(Index i) const {
@@ -135,7 +134,6 @@ struct ToMixedItem {
     const Vec3f seen = in_single(xyz(v));
     out.place[0][i] = mixed_place(grid, p);
     out.motion[0][i] = {seen.x, seen.y, seen.z, static_cast<float>(v.w)};
-    if (i >= owned) return;
     const auto part = [&](Real x) { return static_cast<std::uint16_t>(grid.count(x) & 0xffff); };
     out.fraction[i] = {part(p.x), part(p.y), part(p.z),
                        static_cast<std::uint16_t>(box.inside(xyz(p), 2 * half_skin) ? 0 : 1)};

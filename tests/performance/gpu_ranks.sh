@@ -1,23 +1,25 @@
 #!/usr/bin/env bash
-# How explicit steps scale over the GPUs of a host, and over its cores, and a model of how that goes on.
+# How steps scale over the GPUs of a host, and over its cores, and a model of how that goes on.
 #   tests/performance/gpu_ranks.sh BUILD_DIR OUT_DIR [PART ...]
 # PART (default: all, in this order):
 #   weak    settled bed of spheres, 8 million per rank, on 1, 2, 4, ... ranks
 #   strong  16 million in all
 #   bodies  8 million with a net of 20 bodies, solved every step, and without
+#   implicit  the settled bed in implicit steps, 1 million per rank
+#   moving  a column of 2 million spheres that collapses
 #   cpu     1 million discs on 1, 2, 4, ... 16 cores
 #   chain   rank 0's solve against the number of bodies
 #   tables  OUT_DIR/tables.md, from the rows of what was measured in OUT_DIR so far
 #   model   OUT_DIR/scaling_model.md, .csv and .png, from the same (needs numpy, and matplotlib for the figure)
-# The rows go into OUT_DIR/ranks.csv, cpu_ranks.csv and chain.csv; of a run that was made twice the last counts. A run
+# The rows go into OUT_DIR/ranks.csv, implicit_ranks.csv, cpu_ranks.csv and chain.csv; of a run that was made twice the last counts. A run
 # that fails is named at the end, and the others are still made. Settings, with their defaults:
 #   BACKEND=cuda RANKS="1 2 4 8" (as many as GPUs; with BACKEND=cpu as cores)
-#   WEAK=8000000 STRONG=16000000 BODIES=8000000
+#   WEAK=8000000 STRONG=16000000 BODIES=8000000 IMPLICIT=1000000 MOVING=2000000
 #   CPU_RANKS="1 2 4 8 16" (as many as cores) CPU_DISCS=1000000 PYTHON=python3
 #   SAMPLES: options of bed for other samples than its own choice (five of 0.5 s): SAMPLES="--repeats 3 --seconds 0.2"
 #   MODEL: options of scaling_model.py     MPIRUN: options of mpirun
 set -uo pipefail
-all=(weak strong bodies cpu chain tables model)
+all=(weak strong bodies implicit moving cpu chain tables model)
 if (($# < 2)); then
   echo "usage: tests/performance/gpu_ranks.sh BUILD_DIR OUT_DIR [${all[*]}]" >&2
   exit 2
@@ -60,11 +62,14 @@ bed() {
     "$build/tests/performance/bed" --wall --csv "$csv" "$@" "${samples[@]}" >>"$log" 2>&1 ||
     failed+=("$ranks rank(s): $*")
 }
+# Whether there is something to run on.
+have_ranks() { ((${#counts[@]})) || { failed+=("no GPU here; RANKS says how many ranks all the same"); return 1; }; }
+# spheres LOG CSV OPTION ...
 spheres() {
-  local log=$1 n
-  shift
-  ((${#counts[@]})) || { failed+=("no GPU here; RANKS says how many ranks all the same"); return; }
-  for n in "${counts[@]}"; do bed "$log" "$out/ranks.csv" "$n" --backend "$backend" --rebuild 0 "$@"; done
+  local log=$1 csv=$2 n
+  shift 2
+  have_ranks || return
+  for n in "${counts[@]}"; do bed "$log" "$csv" "$n" --backend "$backend" "$@"; done
 }
 
 heading() {
@@ -74,9 +79,17 @@ heading() {
   echo "host: $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2- | sed 's/^ *//'), $cores processors," \
     "load $(cut -d' ' -f1 /proc/loadavg)"
 }
-weak() { spheres "$1" --particles "${WEAK:-8000000}" --per-rank; }
-strong() { spheres "$1" --particles "${STRONG:-16000000}"; }
-bodies() { spheres "$1" --particles "${BODIES:-8000000}" --net; }
+weak() { spheres "$1" "$out/ranks.csv" --rebuild 0 --particles "${WEAK:-8000000}" --per-rank; }
+strong() { spheres "$1" "$out/ranks.csv" --rebuild 0 --particles "${STRONG:-16000000}"; }
+bodies() { spheres "$1" "$out/ranks.csv" --rebuild 0 --particles "${BODIES:-8000000}" --net; }
+implicit() {
+  spheres "$1" "$out/implicit_ranks.csv" --integrator hht --particles "${IMPLICIT:-1000000}" --per-rank
+}
+moving() {
+  have_ranks || return
+  "$python" "$here/moving.py" "$build/scree" --particles "${MOVING:-2000000}" --ranks "${counts[@]}" \
+    --backend "$backend" --mpirun="${MPIRUN:-}" >>"$1" 2>&1 || failed+=("moving: $(tail -n 1 "$1")")
+}
 cpu() {
   local n
   for n in "${cpu_counts[@]}"; do
@@ -86,7 +99,7 @@ cpu() {
 chain() { "$build/tests/performance/chain_scaling" "$out/chain.csv" >>"$1" 2>&1 || failed+=(chain); }
 tables() {
   local csv
-  for csv in "$out/ranks.csv" "$out/cpu_ranks.csv"; do
+  for csv in "$out/ranks.csv" "$out/implicit_ranks.csv" "$out/cpu_ranks.csv"; do
     [[ -e $csv ]] || continue
     "$python" "$here/rank_tables.py" "$csv" || failed+=("tables of $csv")
   done >"$out/tables.md"

@@ -2,6 +2,7 @@
 # Many particles on several ranks: generates them, runs some steps, writes snapshots and checkpoints, and restarts, with
 # the largest memory of a rank after each.
 #   tests/performance/large.sh [BUILD_DIR] [PARTICLES] [RANKS...]      (default build/release 1000000 1 2)
+# BACKEND=cuda in the environment: on GPUs, with more ranks than GPUs on shared ones; default cpu.
 # PARTICLES: about so many, a cubic lattice. The results (some 800 bytes per particle) go to a temporary folder
 # (TMPDIR), which is removed. What a rank takes for a thousand particles is measured first, and taken off per particle.
 set -euo pipefail
@@ -11,11 +12,13 @@ shift $(($# < 2 ? $# : 2))
 counts=("$@")
 (($# > 0)) || counts=(1 2)
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-cmake --build "$build" --target scree >/dev/null
+backend=${BACKEND:-cpu}
+# Programs that were built elsewhere are taken as they are.
+if [[ -e $build/CMakeCache.txt ]]; then cmake --build "$build" --target scree >/dev/null; fi
 side=$(awk -v n="$particles" 'BEGIN { printf "%d", n ^ (1 / 3) + 0.5 }')
 particles=$((side * side * side))
-echo "machine: $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2-), $(nproc) cores, commit \
-$(git rev-parse --short HEAD 2>/dev/null || echo unknown), $particles particles"
+echo "machine: $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2-), $(nproc) cores, backend $backend, commit \
+$("$build/scree" --version | sed -n '1s/.*commit \([^)]*\)).*/\1/p'), $particles particles"
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -60,7 +63,7 @@ run() { # RANKS ARGUMENTS...
   shift
   rm -f "$folder"/memory.*
   mpirun --oversubscribe -n "$ranks" python3 tests/performance/peak_memory.py "$folder/memory" \
-    "$build/scree" run "$folder/large.toml" --backend cpu "$@" >"$folder/log" 2>&1 || {
+    "$build/scree" run "$folder/large.toml" --backend "$backend" "$@" >"$folder/log" 2>&1 || {
     cat "$folder/log"
     exit 1
   }

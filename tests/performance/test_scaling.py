@@ -183,10 +183,11 @@ class FilesTest(unittest.TestCase):
 
     def test_script(self):
         small = {"BACKEND": "cpu", "RANKS": "1 2", "WEAK": "10000", "STRONG": "20000", "BODIES": "10000",
-                 "SAMPLES": "--repeats 1 --seconds 0", "PYTHON": sys.executable, "MODEL": "--weak 1e4 --strong 1e6"}
-        done = subprocess.run([HERE / "gpu_ranks.sh", os.environ["BUILD"], self.folder / "out", "weak", "strong",
-                               "bodies", "chain", "tables", "model"], env=dict(os.environ, **small), text=True,
-                              capture_output=True, timeout=LIMIT)
+                 "IMPLICIT": "10000", "MOVING": "500", "SAMPLES": "--repeats 1 --seconds 0", "PYTHON": sys.executable,
+                 "MODEL": "--weak 1e4 --strong 1e6"}
+        parts = ["weak", "strong", "bodies", "implicit", "moving", "chain", "tables", "model"]
+        done = subprocess.run([HERE / "gpu_ranks.sh", os.environ["BUILD"], self.folder / "out", *parts], text=True,
+                              env=dict(os.environ, **small), capture_output=True, timeout=LIMIT)
         logs = "\n".join(path.read_text() for path in self.folder.glob("out/*.txt"))
         self.assertEqual(done.returncode, 0, done.stderr + logs)
         runs = rank_runs.read_runs([self.folder / "out/ranks.csv"])
@@ -197,8 +198,13 @@ class FilesTest(unittest.TestCase):
             self.assertGreater(run.of_rank[-1]["contact_force"], 0)
             self.assertEqual(run.of_all("receivers"), [run.ranks - 1] * run.ranks)
         tables = (self.folder / "out/tables.md").read_text()
-        for heading in ("Weak scaling, 10,000", "Strong scaling, 20,000", "What bodies cost"):
+        for heading in ("Weak scaling, 10,000", "Strong scaling, 20,000", "What bodies cost", "integrator hht"):
             self.assertIn(heading, tables)
+        moving = [line.split(" | ") for line in (self.folder / "out/moving.txt").read_text().splitlines()
+                  if line.startswith("| 1 |") or line.startswith("| 2 |")]
+        self.assertEqual(len(moving), 2)
+        self.assertEqual(moving[0][-1], moving[1][-1])  # the state
+        self.assertGreater(int(moving[1][5]), 0)  # changed their rank
         self.assertIn("Rank 0's solve is the limit", (self.folder / "out/scaling_model.md").read_text())
 
     def test_script_names_what_fails(self):
