@@ -146,7 +146,9 @@ class SameBitsTest(RanksTest):
 
     def test_uneven_loads_move_the_boxes(self):
         deck, *overrides = CASES["dam break, explicit"][0]
-        self.run_deck(DONE, 4, deck, "dam", [*overrides, "parallel.imbalance=0.1"])
+        log = self.run_deck(DONE, 4, deck, "dam", [*overrides, "parallel.imbalance=0.1"]).stdout
+        self.assertEqual(log.count("\nt = "), 11)  # progress is one line per tenth, then the summary
+        self.assertNotIn("\r", log)
         record = self.record("dam")
         self.assertGreater(record["counts"]["rebalances"], 0)
         self.assertGreater(record["measures"]["largest_imbalance"], 0.1)
@@ -333,6 +335,23 @@ class SignalTest(RanksTest):
                 self.run_deck(DONE, 3, DAM[0], "on", [*self.SETTINGS, f"time.end={end}"], "--restart",
                               self.folder / "out" / "checkpoint.h5")
                 (self.folder / "out" / "checkpoint.h5").unlink()
+
+    def test_a_signal_to_one_rank_before_the_first_step_stops_all(self):
+        fifo = self.folder / "fifo.toml"
+        os.mkfifo(fifo)
+        words = [SCREE, "run", str(DAM[0]), "--output", str(self.folder / "out")]
+        waiting = [str(fifo) if word == str(DAM[0]) else word for word in words]
+        run = subprocess.Popen([MPIEXEC, "-n", "1", *words, ":", "-n", "1", *waiting], env=ENVIRONMENT, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(run.kill)
+        with open(fifo, "w") as deck:  # waits for the rank, which then waits for its deck
+            os.kill(self.children(run.pid)[1], signal.SIGUSR1)
+            deck.write(DAM[0].read_text())
+        text, trouble = run.communicate(timeout=LIMIT)
+        self.assertEqual(run.returncode, STOPPED, text + trouble)
+        self.assertEqual(text.splitlines(), [f"stopped by signal ({signal.strsignal(signal.SIGUSR1)}) before the first "
+                                             "step: there is no new checkpoint"])
+        self.assertFalse((self.folder / "out").exists())
 
     def test_a_killed_rank_ends_the_job_and_leaves_the_last_checkpoint(self):
         run = self.start(2)
