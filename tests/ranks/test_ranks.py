@@ -217,9 +217,9 @@ class FailureTest(RanksTest):
         light = LONELY.replace("count = 2", "count = 1")
         table = LONELY[LONELY.index("[[particles]]"):]
         for old, new in (("two", "heavy"), ("count = 2", "count = 1"), ("origin = [0.25", "origin = [0.75"),
-                         ("mass = 1.0", "mass = 1e10")):
+                         ("mass = 1.0", "mass = 1e308")):
             table = table.replace(old, new)
-        deck = self.write("deck.toml", f"gravity = [0.0, 1e300]\n{light}\n{table}")  # 1e310 N
+        deck = self.write("deck.toml", f"gravity = [0.0, 100.0]\n{light}\n{table}")  # 1e310 N
         for how in (IMPLICIT, EXPLICIT):
             with self.subTest(how=how):
                 result = self.run_deck(FAILED, 2, deck, "out", how)
@@ -255,6 +255,24 @@ class FailureTest(RanksTest):
                 damaged.write_bytes(content.replace(format_name, format_name[:-1] + number))
                 result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)
                 self.assert_one_message(result, "damaged.h5", words)
+
+    def test_a_restart_with_an_absurd_velocity_fails(self):
+        drifting = LONELY.replace('"periodic"', '"open"').replace("dimension = 2", 'dimension = 2\nleaving = "drift"')
+        cases = {"periodic.toml": (LONELY, EXPLICIT, ("stage sort_cells", "particle 1 ", "crossed the whole periodic")),
+                 "open.toml": (drifting, EXPLICIT, ("stage output", "energy of the particles is not finite")),
+                 "implicit.toml": (LONELY, IMPLICIT, ("stage neighbors",))}
+        for name, (text, how, words) in cases.items():
+            deck = self.write(name, text)
+            self.run_deck(DONE, 1, deck, "start", [*how, "time.end=0.1"])
+            content = (self.folder / "start" / "checkpoint_end.h5").read_bytes()
+            speed = content.rindex(struct.pack("<d", VELOCITY))
+            absurd = self.folder / "absurd.h5"
+            absurd.write_bytes(content[:speed] + struct.pack("<d", 1e308) + content[speed + 8:])
+            for ranks in (1, 3):
+                with self.subTest(name=name, ranks=ranks):
+                    result = self.run_deck(FAILED, ranks, deck, "out", how, "--restart", absurd)
+                    self.assert_one_message(result, *words)
+                    self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
 
     @unittest.skipIf(BACKEND == "cuda", "the driver needs more address space than the limit")
     def test_one_rank_without_memory_ends_all(self):
