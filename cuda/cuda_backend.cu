@@ -129,17 +129,17 @@ void CudaBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyW
 
 namespace {
 
-// Wraps a particle into the periodic box. *bad: smallest id of a particle whose position is not finite.
+// Wraps a particle into the periodic box. *bad: smallest id of a particle whose position is not sound.
 struct WrapItem {
   ParticleViews in;
   Vec3 box_min, period;
   long long* bad;
 
   __device__ void operator()(Index i) const {
-    const Vec4 p = in.position[i];
-    const Vec3 x = wrap(box_min, period, xyz(p), in.image[i]);
-    in.position[i] = vec4(x, p.w);
-    if (!is_finite(x)) atomicMin(bad, static_cast<long long>(id_of(in.row_key[i])));
+    Vec3 p = xyz(in.position[i]);
+    if (!wrap_if_sound(box_min, period, in.drifting[i] != 0, p, in.image[i]))
+      atomicMin(bad, static_cast<long long>(id_of(in.row_key[i])));
+    in.position[i] = vec4(p, in.position[i].w);
   }
 };
 
@@ -199,7 +199,7 @@ void CudaBackend::wrap_positions() {
   for_each(device(), owned_,
            WrapItem{views_of(now_), model_.space.min, subdomain_.period(), result(&Results::worst_id)});
   if (const long long bad = smallest_id(); bad < kNoId)
-    throw SimulationError("stage sort_cells: the position of particle " + std::to_string(bad) + " is not finite");
+    throw SimulationError(kUnsoundPosition[0] + std::to_string(bad) + kUnsoundPosition[1]);
 }
 
 // particles: of all ranks.

@@ -132,16 +132,15 @@ void CudaBackend::measure_balance() {
 
 std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks) {
   choose_device(ranks);
-  std::string trouble = device_trouble();
-  if (trouble.empty()) {
-    const std::size_t needed = device_memory(model), free = free_device_memory();
-    if (needed > free)
-      trouble = "the model needs about " + std::to_string(needed / 1000000) + " MB of device memory, " +
-                std::to_string(free / 1000000) + " MB are free on " + device_name();
-  }
-  ranks.together([&] {
-    if (!trouble.empty()) throw InputError(trouble);
-  });
+  const auto refuse = [&](const std::string& trouble) {
+    ranks.together([&] {
+      if (!trouble.empty()) throw InputError(trouble);
+    });
+  };
+  refuse(device_trouble());
+  // All ranks use their GPUs by now: what the driver takes for each is no longer free.
+  const DeviceClaim own{device_uuid(), device_memory(model), free_device_memory()};
+  refuse(device_memory_trouble(ranks.gather_everywhere(std::vector{own}), ranks.rank(), device_name()));
   return std::make_unique<CudaBackend>(model, ranks);
 }
 

@@ -1,6 +1,9 @@
 // The machine's GPU, and what a model needs of its memory.
 #include "device.cuh"
 
+#include <algorithm>
+#include <iterator>
+
 #include "dem/device.hpp"
 
 namespace scree {
@@ -23,6 +26,12 @@ int this_device() {
   int device = 0;
   require_cuda(cudaGetDevice(&device), "cudaGetDevice");
   return device;
+}
+
+cudaDeviceProp this_properties() {
+  cudaDeviceProp properties{};
+  require_cuda(cudaGetDeviceProperties(&properties, this_device()), "cudaGetDeviceProperties");
+  return properties;
 }
 
 }  // namespace
@@ -72,10 +81,14 @@ std::string device_trouble() {
   return status == cudaSuccess ? "" : trouble_of(status);
 }
 
-std::string device_name() {
-  cudaDeviceProp properties{};
-  require_cuda(cudaGetDeviceProperties(&properties, this_device()), "cudaGetDeviceProperties");
-  return properties.name;
+std::string device_name() { return this_properties().name; }
+
+std::array<char, 16> device_uuid() {
+  const cudaDeviceProp properties = this_properties();
+  std::array<char, 16> uuid{};
+  static_assert(sizeof properties.uuid.bytes == sizeof uuid);
+  std::copy(std::begin(properties.uuid.bytes), std::end(properties.uuid.bytes), uuid.begin());
+  return uuid;
 }
 
 std::size_t device_memory_in_use() { return device_bytes_in_use(); }

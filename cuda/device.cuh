@@ -4,6 +4,7 @@
 #include <cuda_runtime.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -20,6 +21,7 @@ struct Device {
 
 // Of the GPU.
 std::size_t multiprocessors();
+std::array<char, 16> device_uuid();
 
 // Throws DeviceError with the runtime's text. what: the call that failed, for the message.
 inline void require_cuda(cudaError_t status, const char* what) {

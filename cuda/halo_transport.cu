@@ -4,7 +4,6 @@
 #include <nccl.h>
 #endif
 
-#include <array>
 #include <vector>
 
 namespace scree {
@@ -124,13 +123,7 @@ class NcclTransport : public HaloTransport {
 
 // Whether two ranks use the same GPU: NCCL takes one rank per GPU.
 bool gpus_are_shared(const Ranks& ranks) {
-  int device = 0;
-  cudaDeviceProp properties{};
-  require_cuda(cudaGetDevice(&device), "cudaGetDevice");
-  require_cuda(cudaGetDeviceProperties(&properties, device), "cudaGetDeviceProperties");
-  std::array<char, sizeof properties.uuid.bytes> own{};
-  std::copy(std::begin(properties.uuid.bytes), std::end(properties.uuid.bytes), own.begin());
-  auto all = ranks.gather_everywhere(std::vector{own});
+  auto all = ranks.gather_everywhere(std::vector{device_uuid()});
   std::sort(all.begin(), all.end());
   return std::adjacent_find(all.begin(), all.end()) != all.end();
 }

@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <CLI/CLI.hpp>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -19,6 +20,7 @@
 #include "partition/ranks.hpp"
 #include "partition/shared_model.hpp"
 #include "run/check.hpp"
+#include "run/signals.hpp"
 #include "run/simulation.hpp"
 
 namespace scree {
@@ -27,7 +29,8 @@ namespace {
 constexpr const char* kExitCodes =
     "Exit codes: 0 done, 2 bad usage or deck, or too little memory for it, 3 the simulation failed,\n"
     "4 a file could not be read or written,\n"
-    "5 stopped by a signal (SIGTERM, SIGINT, SIGUSR1) after writing a checkpoint.\n"
+    "5 stopped by a signal (SIGTERM, SIGINT, SIGUSR1) after writing a checkpoint, or without one\n"
+    "where the model was still being built.\n"
     "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
 
 struct CommandLine {
@@ -87,10 +90,16 @@ auto naming_deck(const std::string& deck, const Action& action) {
 }
 
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
+  catch_signals();  // first: a large model takes a while
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
   const Deck deck = load_deck(arguments.deck, arguments.overrides);
   const Model model = build_model(deck, log, RanksShare(ranks));
+  if (const int signal = signal_received(ranks); signal != 0) {
+    log.info(fmt::format("stopped by signal ({}) before the first step: there is no new checkpoint",
+                         strsignal(signal)));
+    return ExitCode::stopped_by_signal;
+  }
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
   RunOptions options{arguments.backend,

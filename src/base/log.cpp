@@ -6,6 +6,14 @@
 
 namespace scree {
 
+namespace {
+
+// Whether standard output is the terminal that this process runs on. mpirun gives its ranks another one, and
+// copies what they write there, perhaps into the log of a batch job.
+bool on_own_terminal() { return tcgetpgrp(STDOUT_FILENO) == getpgrp(); }
+
+}  // namespace
+
 void Log::end_progress_line() {
   if (progress_line_open_) std::fputc('\n', stdout);
   progress_line_open_ = false;
@@ -34,8 +42,7 @@ void Log::error(const std::string& message) { complain("error", message); }
 
 void Log::progress(const std::string& line, bool force) {
   if (quiet_) return;
-  static const bool terminal = isatty(STDOUT_FILENO) != 0;
-  if (terminal) {
+  if (on_own_terminal()) {
     std::fprintf(stdout, "\r%s\033[K", line.c_str());
     progress_line_open_ = true;
   } else if (force) {

@@ -14,7 +14,7 @@ class Log {
   void info(const std::string& message);     // to standard output
   void warning(const std::string& message);  // to standard error, and kept
   void error(const std::string& message);    // to standard error
-  // Rewrites the progress line in place on a terminal; prints nothing elsewhere unless `force`.
+  // Rewrites the progress line in place on a terminal; elsewhere prints a line if `force`, or nothing.
   void progress(const std::string& line, bool force = false);
   const std::vector<std::string>& warnings() const { return warnings_; }
 

@@ -55,6 +55,11 @@ struct Leaver {
   int rank = 0;                        // that owns it
 };
 
+// What stands before and after the id of a particle that wrap_if_sound() refuses.
+inline constexpr const char* kUnsoundPosition[] = {
+    "stage sort_cells: the position of particle ",
+    " is not finite, or it crossed the whole periodic space in one step"};
+
 // One entry per particle of this rank, any order.
 struct ParticlePack {
   std::vector<GlobalId> global_id;

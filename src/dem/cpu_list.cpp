@@ -12,11 +12,12 @@ namespace scree {
 void CpuBackend::wrap_positions() {
   GlobalId bad = kNone;
   for (Index i = 0; i < store_.owned; ++i) {
-    const Vec4 p = store_.position[i];
-    store_.position[i] = vec4(subdomain_.wrap(xyz(p), store_.image[i]), p.w);
-    if (!is_finite(xyz(p))) bad = std::min(bad, store_.global_id[i]);
+    Vec3 p = xyz(store_.position[i]);
+    if (!wrap_if_sound(model_.space.min, subdomain_.period(), store_.drifting[i], p, store_.image[i]))
+      bad = std::min(bad, store_.global_id[i]);
+    store_.position[i] = vec4(p, store_.position[i].w);
   }
-  fail_if_any(bad, "stage sort_cells: the position of particle ", " is not finite");
+  fail_if_any(bad, kUnsoundPosition[0], kUnsoundPosition[1]);
 }
 
 // Weights are what a step costs about: one for the particle, one for each entry of its row in the last list.

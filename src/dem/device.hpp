@@ -2,8 +2,10 @@
 // functions, without it no_device.cpp does.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "dem/backend.hpp"
@@ -39,8 +41,19 @@ inline constexpr std::size_t kRecordsAtOnce = std::size_t{1} << 22;
 // estimate from the model alone, the same on machines without a GPU.
 std::size_t device_memory(const Model& model);
 
+// What one rank asks of its GPU.
+struct DeviceClaim {
+  std::array<char, 16> device;  // the GPU's name, unique among those of all hosts
+  std::size_t needed, free;     // [B]
+};
+
+// Why the GPU of rank `own` is too small for all ranks that use it; empty if it is not. claims: of all ranks.
+// name: device_name() on that rank.
+std::string device_memory_trouble(std::span<const DeviceClaim> claims, int own, const std::string& name);
+
 // Each rank of a host takes a GPU of its own, as far as there are so many. Throws InputError, on all ranks,
-// where there is no usable GPU on one, or where the model does not fit into its free memory. Collective.
+// where there is no usable GPU on one, or where the parts of the model on one GPU do not fit into its free
+// memory. Collective.
 std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks = {});
 
 }  // namespace scree

@@ -1,5 +1,7 @@
 // How much device memory a model takes: the arrays of cuda/, counted. A GPU test compares it with what they
 // hold.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "dem/backend.hpp"
@@ -96,6 +98,23 @@ std::size_t device_memory(const Model& model) {
   bytes += n.particles * kOutputArrays +
            std::min(n.particles, static_cast<double>(kRecordsAtOnce)) * sizeof(ParticleRecord);
   return static_cast<std::size_t>(bytes);
+}
+
+// What is free the ranks of a GPU may see at different times: the least counts.
+std::string device_memory_trouble(std::span<const DeviceClaim> claims, int own, const std::string& name) {
+  const DeviceClaim& mine = claims[static_cast<std::size_t>(own)];
+  std::size_t needed = 0, free = mine.free;
+  int sharers = 0;
+  for (const DeviceClaim& claim : claims) {
+    if (claim.device != mine.device) continue;
+    needed += claim.needed, free = std::min(free, claim.free), ++sharers;
+  }
+  if (needed <= free) return "";
+  const std::string who = sharers == 1
+                              ? "the model needs about "
+                              : fmt::format("{} ranks share a GPU and together need about ", sharers);
+  return fmt::format("{}{} MB of device memory, {} MB are free on {}", who, needed / 1000000, free / 1000000,
+                     name);
 }
 
 }  // namespace scree

@@ -13,8 +13,7 @@ struct ImageCount {
 };
 
 // The position inside the periodic box that starts at min, and the periods taken off it; exact. period: 0
-// along axes that are not periodic. Coordinates that no particle of a sound run has stay as they are; the
-// cell sort then reports them.
+// along axes that are not periodic. Coordinates that no particle of a sound run has stay as they are.
 SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
   constexpr Real kMostPeriods = 1e6;
   const auto axis = [](Real& x, Real start, Real length, std::int32_t& count) {
@@ -29,6 +28,20 @@ SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
   axis(p.y, min.y, period.y, image.y);
   axis(p.z, min.z, period.z, image.z);
   return p;
+}
+
+// Wraps the position of a particle. Whether steps can have led there since the last list was built: it is
+// finite, and across one periodic side of an axis at most. One that drifts may have gone farther: no list
+// expires for it.
+SCREE_HD bool wrap_if_sound(Vec3 min, Vec3 period, bool drifts, Vec3& p, ImageCount& image) {
+  const ImageCount before = image;
+  p = wrap(min, period, p, image);
+  const auto sound = [drifts](Real x, Real start, Real length, std::int32_t crossed) {
+    if (length == 0) return std::isfinite(x);
+    return x >= start && x < start + length && (drifts || (crossed >= -1 && crossed <= 1));
+  };
+  return sound(p.x, min.x, period.x, image.x - before.x) && sound(p.y, min.y, period.y, image.y - before.y) &&
+         sound(p.z, min.z, period.z, image.z - before.z);
 }
 
 // The sides of the space that are not periodic; the others, and z in 2D, are at infinity.

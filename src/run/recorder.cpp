@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.hpp"
 #include "partition/id_order.hpp"
 
 namespace scree {
@@ -156,6 +157,9 @@ void Recorder::energy_row(State& state, std::vector<Real>& row) {
   const Ledger ledger =
       make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   BalanceState& balance = state.balance;
+  // Not yet at the start: the first step can tell more.
+  if (balance.open && !std::isfinite(particles.kinetic + particles.gravitational + particles.contact_elastic))
+    throw SimulationError("stage output: the energy of the particles is not finite");
   if (!balance.open) balance = {true, ledger.accounted(), 0, ledger};
   balance.exchanged += energy_exchanged(balance.last, ledger);
   balance.last = ledger;

@@ -16,6 +16,6 @@ void catch_signals() {
   for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) std::signal(signal, remember);
 }
 
-int signal_received() { return received; }
+int signal_received(const Ranks& ranks) { return static_cast<int>(ranks.max(static_cast<Real>(received))); }
 
 }  // namespace scree

@@ -13,7 +13,6 @@
 #include "dem/device.hpp"
 #include "output/run_record.hpp"
 #include "partition/id_order.hpp"
-#include "run/signals.hpp"
 #include "run/step_loop.hpp"
 
 namespace scree {
@@ -23,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
 constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
+constexpr double kLogSeconds = 600;           // between those in a log, besides one per tenth of the run
 constexpr double kFlushSeconds =
     5;  // between writes of the history, besides those with snapshots and checkpoints
 
@@ -147,7 +147,8 @@ class Simulation {
   CoupledStep step_;
   std::unique_ptr<Recorder> recorder_;
   std::string started_ = utc_now();
-  Clock::time_point start_ = Clock::now(), last_progress_ = start_, last_flush_ = start_;
+  Clock::time_point start_ = Clock::now(), last_progress_ = start_, last_logged_ = start_,
+                    last_flush_ = start_;
   double start_cpu_ = cpu_seconds();
   double loop_seconds_ = 0;
   Real start_time_ = 0;
@@ -211,14 +212,16 @@ void Simulation::progress(const State& state, Real h) {
   const int tenths = static_cast<int>(10 * share);
   if (since < kProgressSeconds && tenths == tenths_reported_) return;
   last_progress_ = Clock::now();
+  const bool logged = tenths != tenths_reported_ ||
+                      std::chrono::duration<double>(last_progress_ - last_logged_).count() > kLogSeconds;
   if (std::chrono::duration<double>(last_progress_ - last_flush_).count() > kFlushSeconds)
     last_flush_ = last_progress_, ranks_.alone() ? recorder_->flush() : recorder_->flush_history();
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   log_.progress(fmt::format("t = {:.4f} of {:g} s, {} steps, h = {:.2e} s, {:.1f} s elapsed, {:.1f} s to go",
                             state.clock.time, model_.time.end, state.counts.steps, h, elapsed,
                             elapsed * (1 - share) / std::max(share, 1e-9)),
-                tenths != tenths_reported_);
-  tenths_reported_ = tenths;
+                logged);
+  if (logged) tenths_reported_ = tenths, last_logged_ = last_progress_;
 }
 
 ExitCode Simulation::run() {
@@ -361,7 +364,6 @@ void Simulation::summarize() const {
 }  // namespace
 
 ExitCode run_simulation(const Model& model, const RunOptions& options, Log& log) {
-  catch_signals();
   Simulation simulation(model, options, log);
   return simulation.run();
 }

@@ -33,7 +33,7 @@ StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(Stat
 
 LoopEnd StepLoop::run() {
   while (!clock_.done()) {
-    signal_ = static_cast<int>(ranks().max(static_cast<Real>(signal_received())));
+    signal_ = signal_received(ranks());
     if (signal_ != 0) return LoopEnd::stopped_by_signal;
     take_step();
   }

@@ -155,7 +155,7 @@ TEST_CASE("a particle that is not finite ends all ranks with the same message") 
         step(box, 1e-4);
       });
       CHECK(message.find("is not finite") != std::string::npos);
-      if (place) CHECK(message == "stage sort_cells: the position of particle 17 is not finite");
+      if (place) CHECK(message == kUnsoundPosition[0] + std::string("17") + kUnsoundPosition[1]);
       std::string of_all;
       for (int rank = 0; rank < Ranks::world().size(); ++rank) of_all += message;
       const std::vector<char> own(message.begin(), message.end()),

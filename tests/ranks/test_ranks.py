@@ -148,7 +148,9 @@ class SameBitsTest(RanksTest):
 
     def test_uneven_loads_move_the_boxes(self):
         deck, *overrides = CASES["dam break, explicit"][0]
-        self.run_deck(DONE, 4, deck, "dam", [*overrides, "parallel.imbalance=0.1"])
+        log = self.run_deck(DONE, 4, deck, "dam", [*overrides, "parallel.imbalance=0.1"]).stdout
+        self.assertEqual(log.count("\nt = "), 11)  # progress is one line per tenth, then the summary
+        self.assertNotIn("\r", log)
         record = self.record("dam")
         self.assertGreater(record["counts"]["rebalances"], 0)
         self.assertGreater(record["measures"]["largest_imbalance"], 0.1)
@@ -217,9 +219,9 @@ class FailureTest(RanksTest):
         light = LONELY.replace("count = 2", "count = 1")
         table = LONELY[LONELY.index("[[particles]]"):]
         for old, new in (("two", "heavy"), ("count = 2", "count = 1"), ("origin = [0.25", "origin = [0.75"),
-                         ("mass = 1.0", "mass = 1e10")):
+                         ("mass = 1.0", "mass = 1e308")):
             table = table.replace(old, new)
-        deck = self.write("deck.toml", f"gravity = [0.0, 1e300]\n{light}\n{table}")  # 1e310 N
+        deck = self.write("deck.toml", f"gravity = [0.0, 100.0]\n{light}\n{table}")  # 1e310 N
         for how in (IMPLICIT, EXPLICIT):
             with self.subTest(how=how):
                 result = self.run_deck(FAILED, 2, deck, "out", how)
@@ -255,6 +257,24 @@ class FailureTest(RanksTest):
                 damaged.write_bytes(content.replace(format_name, format_name[:-1] + number))
                 result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)
                 self.assert_one_message(result, "damaged.h5", words)
+
+    def test_a_restart_with_an_absurd_velocity_fails(self):
+        drifting = LONELY.replace('"periodic"', '"open"').replace("dimension = 2", 'dimension = 2\nleaving = "drift"')
+        cases = {"periodic.toml": (LONELY, EXPLICIT, ("stage sort_cells", "particle 1 ", "crossed the whole periodic")),
+                 "open.toml": (drifting, EXPLICIT, ("stage output", "energy of the particles is not finite")),
+                 "implicit.toml": (LONELY, IMPLICIT, ("stage neighbors",))}
+        for name, (text, how, words) in cases.items():
+            deck = self.write(name, text)
+            self.run_deck(DONE, 1, deck, "start", [*how, "time.end=0.1"])
+            content = (self.folder / "start" / "checkpoint_end.h5").read_bytes()
+            speed = content.rindex(struct.pack("<d", VELOCITY))
+            absurd = self.folder / "absurd.h5"
+            absurd.write_bytes(content[:speed] + struct.pack("<d", 1e308) + content[speed + 8:])
+            for ranks in (1, 3):
+                with self.subTest(name=name, ranks=ranks):
+                    result = self.run_deck(FAILED, ranks, deck, "out", how, "--restart", absurd)
+                    self.assert_one_message(result, *words)
+                    self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
 
     @unittest.skipIf(BACKEND == "cuda", "the driver needs more address space than the limit")
     def test_one_rank_without_memory_ends_all(self):
@@ -373,6 +393,23 @@ class SignalTest(RanksTest):
                 self.run_deck(DONE, 3, DAM[0], "on", [*self.SETTINGS, f"time.end={end}"], "--restart",
                               self.folder / "out" / "checkpoint.h5")
                 (self.folder / "out" / "checkpoint.h5").unlink()
+
+    def test_a_signal_to_one_rank_before_the_first_step_stops_all(self):
+        fifo = self.folder / "fifo.toml"
+        os.mkfifo(fifo)
+        words = [SCREE, "run", str(DAM[0]), "--output", str(self.folder / "out")]
+        waiting = [str(fifo) if word == str(DAM[0]) else word for word in words]
+        run = subprocess.Popen([MPIEXEC, "-n", "1", *words, ":", "-n", "1", *waiting], env=ENVIRONMENT, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(run.kill)
+        with open(fifo, "w") as deck:  # waits for the rank, which then waits for its deck
+            os.kill(self.children(run.pid)[1], signal.SIGUSR1)
+            deck.write(DAM[0].read_text())
+        text, trouble = run.communicate(timeout=LIMIT)
+        self.assertEqual(run.returncode, STOPPED, text + trouble)
+        self.assertEqual(text.splitlines(), [f"stopped by signal ({signal.strsignal(signal.SIGUSR1)}) before the first "
+                                             "step: there is no new checkpoint"])
+        self.assertFalse((self.folder / "out").exists())
 
     def test_a_killed_rank_ends_the_job_and_leaves_the_last_checkpoint(self):
         run = self.start(2)

@@ -187,6 +187,31 @@ TEST_CASE("particles outside leave once, ordered by global id, and drift or are 
   }
 }
 
+TEST_CASE("an explicit step across the whole periodic space is refused, but to those that drift") {
+  const auto failure = [](const BoxCase& c, Real speed, bool drifting) -> std::string {
+    LoadedBox box(soft_box(c, ParticleIntegrator::velocity_verlet), 0.2);
+    box.records[23].velocity = {0, speed, 0};
+    box.records[23].drifting = drifting;
+    try {
+      box.backend->load(box.records, {});
+      box.backend->build_list(0.2, box.timers);
+      verlet_step(box, 1e-3);
+      box.backend->build_list(0.2, box.timers);
+    } catch (const SimulationError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string refused = kUnsoundPosition[0] + std::string("23") + kUnsoundPosition[1];
+  for (const BoxCase& c : {kBoxes[1], kBoxes[4]}) {
+    CAPTURE(c.name);
+    CHECK(failure(c, 1e5, false) == refused);
+    CHECK(failure(c, 1e5, true).empty());
+    for (const Real speed : {1e30, 1e308})  // farther than anything is wrapped from
+      for (const bool drifting : {false, true}) CHECK(failure(c, speed, drifting) == refused);
+  }
+}
+
 TEST_CASE("a particle that drifts feels gravity alone") {
   Model model = soft_box(kBoxes[0], ParticleIntegrator::velocity_verlet);
   LoadedBox box(model);

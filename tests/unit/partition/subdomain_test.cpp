@@ -2,6 +2,7 @@
 #include "partition/subdomain.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "model/random.hpp"
 #include "support/catch.hpp"
@@ -64,6 +65,35 @@ TEST_CASE("a point moved out by periods is wrapped back to the same bits and cou
       }
     }
   }
+}
+
+TEST_CASE("a particle's position is sound unless it is not finite or crossed the periodic space at once") {
+  for (const Space& s : kPeriodic) {
+    const Subdomain subdomain(s);
+    const Vec3 period = subdomain.period();
+    const Real infinity = std::numeric_limits<Real>::infinity();
+    for (Real Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+      if (s.dimension == 2 && axis == &Vec3::z) continue;
+      const auto sound = [&](Real moved, bool drifts) {
+        Vec3 p = s.min + 0.25 * period;
+        p.*axis += moved;
+        ImageCount image{3, -5, 7};  // counts go on from where they are
+        return wrap_if_sound(s.min, period, drifts, p, image);
+      };
+      for (const Real periods : {-1.0, -0.5, 0.0, 0.5, 1.5}) CHECK(sound(periods * period.*axis, false));
+      for (const Real periods : {-1.5, 2.5, 1e5, -1e5}) {
+        CHECK_FALSE(sound(periods * period.*axis, false));
+        CHECK(sound(periods * period.*axis, true));
+      }
+      for (const Real moved : {1e20, -1e305, infinity, std::nan("")})
+        for (const bool drifts : {false, true}) CHECK_FALSE(sound(moved, drifts));
+    }
+  }
+  const Space open = space_of(3, {0, 0, 0}, {1, 1, 1}, Boundary::open);
+  ImageCount none;
+  Vec3 far{1e305, 0.5, 0.5}, nowhere{0.5, std::nan(""), 0.5};
+  CHECK(wrap_if_sound(open.min, Subdomain(open).period(), false, far, none));
+  CHECK_FALSE(wrap_if_sound(open.min, Subdomain(open).period(), false, nowhere, none));
 }
 
 TEST_CASE("a wrapped point lies inside the box") {
