@@ -227,7 +227,8 @@ void CudaBackend::queue_in_turn(const std::string& key, Index steps, const Queue
   VerletControl* control = result(&Results::control);
   halo_after_rows();
   for (Index k = 0; k < steps; ++k) {
-    HaloClock* clock = k == 0 ? &halo_clock_ : nullptr;  // steps behind a stop do nothing that a halo could hide behind
+    // The first step waits for the host; steps behind a stop do nothing that a halo could hide behind.
+    HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &halo_clock_ : nullptr;
     queue_beside_halo([&](Device on) { queue_ghosts(on, k); }, queue_rows, clock);
     halo_.max(halo, control->shared, 2);
     close_kernel<<<1, 1, 0, halo_stream_>>>(control);
