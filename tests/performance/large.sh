@@ -88,6 +88,7 @@ for n in "${counts[@]}"; do
   write_deck "$side"
   run "$n" --output "$folder/out"
   report "$n" start
+  rm "$folder/out/particles.vtkhdf" "$folder/out/checkpoint_end.h5" # room for the next run's
   run "$n" --output "$folder/again" --restart "$folder/out/checkpoint.h5"
   report "$n" restart
   [[ "$(hash_of out)" == "$(hash_of again)" ]] || {
