@@ -38,18 +38,18 @@ class SpringDamperElement final : public ForceElement {
     }
   }
 
-  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const override {
-    const Line line = line_at(motion, t);
-    const std::array<Real, 6> gradient = gap_gradient(line.geometry, line.direction);
+  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) override {
+    line_ = line_at(motion, t);
+    const std::array<Real, 6> gradient = gap_gradient(line_.geometry, line_.direction);
     for (const std::size_t k : active_) {
-      force[static_cast<std::size_t>(index_[k])] -= line.tension * gradient[k];
+      force[static_cast<std::size_t>(index_[k])] -= line_.tension * gradient[k];
     }
-    return std::abs(line.tension) * length;
+    return std::abs(line_.tension) * length;
   }
 
-  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
+  void add_derivatives(const PlanarMotion& motion, Real, SparseTerm& stiffness,
                        SparseTerm& damping) const override {
-    const Line line = line_at(motion, t);
+    const Line& line = line_;
     const PairGeometry& g = line.geometry;
     const Vec2 e = line.direction;
     const std::array<Real, 6> along = gap_gradient(g, e), across = gap_gradient(g, perp(e));
@@ -111,6 +111,7 @@ class SpringDamperElement final : public ForceElement {
   std::vector<std::size_t> active_;  // places in index_ that are coordinates
   Real stiffness_, damping_, free_length_;
   ScalarFunction actuator_;
+  Line line_;  // of the last add_force()
 };
 
 // theta = theta_2 - theta_1, torque on body 2: -(k (theta - theta_0) + c theta'), opposite on body 1.
@@ -120,7 +121,7 @@ class TorsionalElement final : public ForceElement {
   explicit TorsionalElement(const TorsionalSpringDamper& element)
       : element_(element), index_{pair_coordinates(element.body)[2], pair_coordinates(element.body)[5]} {}
 
-  Real add_force(const PlanarMotion& motion, Real, Real, std::vector<Real>& force) const override {
+  Real add_force(const PlanarMotion& motion, Real, Real, std::vector<Real>& force) override {
     const Real torque = element_.stiffness * twist(motion) + element_.damping * rate(motion);
     add_at(force, index_[0], torque);
     add_at(force, index_[1], -torque);
@@ -167,7 +168,7 @@ class AppliedForceElement final : public ForceElement {
         fy_(element.fy, owner(element), end, Interpolation::linear),
         torque_(element.torque, owner(element), end, Interpolation::linear) {}
 
-  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const override {
+  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) override {
     const Vec2 f = force_at(motion, t);
     const Real moment = moment_at(motion, t);
     add_at(force, 3 * body_, f.x);

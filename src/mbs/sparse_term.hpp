@@ -19,13 +19,10 @@ class SparseTerm {
   // row, column: from 0; an entry with a negative one (the ground, a structural zero) is left out.
   void add(int row, int column, Real value) {
     if (row < 0 || column < 0) return;
-    if (recording_) {
-      rows_.push_back(row);
-      columns_.push_back(column);
-      values_.push_back(value);
-    } else {
+    if (recording_)
+      record(row, column, value);
+    else
       values_[cursor_++] = value;
-    }
   }
 
   std::size_t size() const { return values_.size(); }
@@ -47,6 +44,13 @@ class SparseTerm {
   }
 
  private:
+  // Not inlined: add() then is, in the loops of every step.
+  [[gnu::noinline]] void record(int row, int column, Real value) {
+    rows_.push_back(row);
+    columns_.push_back(column);
+    values_.push_back(value);
+  }
+
   std::vector<int> rows_, columns_;
   std::vector<Real> values_;
   std::size_t cursor_ = 0;
