@@ -65,7 +65,7 @@ Multibody::~Multibody() = default;
 
 MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   MultibodyState state = impl_->start;
-  impl_->system.set_wrenches(wrench);
+  impl_->system.set_contacts({wrench, {}});
   impl_->newton.solve_acceleration(state, 0);
   return state;
 }
@@ -77,8 +77,8 @@ void Multibody::predict(const MultibodyState& state, Real t, Real h) {
   impl_->update_motion();
 }
 
-IterationNorms Multibody::correct(const std::vector<BodyWrench>& wrench) {
-  impl_->system.set_wrenches(wrench);
+IterationNorms Multibody::correct(const ContactWrenches& contacts) {
+  impl_->system.set_contacts(contacts);
   const IterationNorms norms = impl_->newton.iterate();
   impl_->update_motion();
   return norms;
@@ -106,7 +106,7 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.method.close(impl.end);
   book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
   if (!impl.system.has_forces_of(end_wrench)) {
-    impl.system.set_wrenches(end_wrench);
+    impl.system.set_forces(end_wrench);
     impl.newton.change_end_forces(impl.end);
   }
   std::swap(state, impl.end);

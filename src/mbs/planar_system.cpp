@@ -18,13 +18,19 @@ constexpr Real kElasticFloor = 1e-6;
 // The planar part (x, y, rz) of a packed 6x6 block.
 constexpr int kPlanarRows[3] = {0, 1, 5};
 
-void add_planar_block(const std::array<Real, 21>& packed, int body, SparseTerm& out) {
+std::array<Real, 9> planar_block(const std::array<Real, 21>& packed) {
+  std::array<Real, 9> block;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const int row = kPlanarRows[std::min(i, j)], column = kPlanarRows[std::max(i, j)];
-      out.add(3 * body + i, 3 * body + j, packed[static_cast<std::size_t>(packed6(row, column))]);
+      block[static_cast<std::size_t>(3 * i + j)] = packed[static_cast<std::size_t>(packed6(row, column))];
     }
   }
+  return block;
+}
+
+void add_block(const std::array<Real, 9>& block, int first, SparseTerm& out) {
+  for (int k = 0; k < 9; ++k) out.add(first + k / 3, first + k % 3, block[static_cast<std::size_t>(k)]);
 }
 
 Real characteristic_length(const Model& model) {
@@ -55,7 +61,8 @@ PlanarSystem::PlanarSystem(const Model& model)
       length_scale_(characteristic_length(model)),
       motion_(static_cast<int>(model.bodies.size())),
       scratch_(static_cast<int>(model.bodies.size())),
-      wrench_(model.bodies.size()) {
+      wrench_(model.bodies.size()),
+      contact_(model.bodies.size()) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     coordinate_scale_.insert(coordinate_scale_.end(), {length_scale_, length_scale_, 1});
   }
@@ -175,6 +182,16 @@ void PlanarSystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   }
 }
 
+void PlanarSystem::set_contacts(const ContactWrenches& contacts) {
+  wrench_ = contacts.wrench;
+  for (const int body : touched_) contact_[static_cast<std::size_t>(body)] = {};
+  touched_.clear();
+  for (const WrenchStiffness& one : contacts.stiffness) {
+    contact_[static_cast<std::size_t>(one.body)] = {planar_block(one.stiffness), planar_block(one.damping)};
+    touched_.push_back(one.body);
+  }
+}
+
 bool PlanarSystem::has_forces_of(const std::vector<BodyWrench>& wrench) const {
   return std::equal(
       wrench_.begin(), wrench_.end(), wrench.begin(), wrench.end(),
@@ -188,7 +205,8 @@ void PlanarSystem::add_contact(SystemTerms& terms) const {
     force[0] += wrench.force.x;
     force[1] += wrench.force.y;
     force[2] += wrench.torque.z;
-    const Real stiffness = std::max(wrench.stiffness[packed6(0, 0)], wrench.stiffness[packed6(1, 1)]);
+    const std::array<Real, 9>& block = contact_[b].stiffness;
+    const Real stiffness = std::max(block[0], block[4]);
     const Real size = length_scale_ * std::max(norm(wrench.force), kElasticFloor * stiffness * length_scale_);
     terms.force_scale = std::max(terms.force_scale, size);
   }
@@ -201,14 +219,18 @@ void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real
   for (const auto& element : elements_) {
     element->add_derivatives(motion_, at.time, derivatives.stiffness, derivatives.damping);
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (bodies_[b].shapes.empty()) continue;
-    add_planar_block(wrench_[b].stiffness, static_cast<int>(b), derivatives.stiffness);
-    add_planar_block(wrench_[b].damping, static_cast<int>(b), derivatives.damping);
-  }
+  add_contact_blocks(derivatives);
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->hessian(motion_, &multipliers[static_cast<std::size_t>(first_row_[i])],
                              derivatives.stiffness);
+  }
+}
+
+void PlanarSystem::add_contact_blocks(SystemDerivatives& derivatives) const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].shapes.empty()) continue;
+    add_block(contact_[b].stiffness, static_cast<int>(3 * b), derivatives.stiffness);
+    add_block(contact_[b].damping, static_cast<int>(3 * b), derivatives.damping);
   }
 }
 
