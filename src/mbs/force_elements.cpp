@@ -34,7 +34,9 @@ class SpringDamperElement final : public ForceElement {
         actuator_(element.actuator, fmt::format("spring-damper '{}'", element.name), end,
                   Interpolation::linear) {
     for (std::size_t k = 0; k < 6; ++k) {
-      if (index_[k] >= 0) active_.push_back(k);
+      if (index_[k] < 0) continue;
+      active_.push_back(k);
+      coordinates_.push_back(index_[k]);
     }
   }
 
@@ -55,19 +57,23 @@ class SpringDamperElement final : public ForceElement {
     const std::array<Real, 6> along = gap_gradient(g, e), across = gap_gradient(g, perp(e));
     const Real bend1 = dot(e, g.arm[0]), bend2 = -dot(e, g.arm[1]);
     const Real turning = dot(perp(e), g.gap_rate) / line.length;
-    std::array<Real, 6> tension_gradient{};
-    for (const std::size_t k : active_) {
+    std::array<Real, 6> tension_gradient;
+    for (std::size_t k = 0; k < 6; ++k) {
       tension_gradient[k] = stiffness_ * along[k] + damping_ * turning * across[k];
     }
     tension_gradient[2] += damping_ * bend1 * motion[pair_.body[0]].spin;
     tension_gradient[5] += damping_ * bend2 * motion[pair_.body[1]].spin;
-    for (const std::size_t i : active_) {
-      const Real sideways = line.tension / line.length * across[i];
-      for (const std::size_t j : active_) {
-        stiffness.add(index_[i], index_[j], along[i] * tension_gradient[j] + sideways * across[j]);
-        damping.add(index_[i], index_[j], damping_ * along[i] * along[j]);
-      }
+    std::array<Real, 6> sideways, damped;
+    for (std::size_t k = 0; k < 6; ++k) {
+      sideways[k] = line.tension / line.length * across[k];
+      damped[k] = damping_ * along[k];
     }
+    const auto& active = active_;
+    stiffness.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
+      return along[active[i]] * tension_gradient[active[j]] + sideways[active[i]] * across[active[j]];
+    });
+    damping.add_block(coordinates_,
+                      [&](std::size_t i, std::size_t j) { return damped[active[i]] * along[active[j]]; });
     stiffness.add(index_[2], index_[2], line.tension * bend1);
     stiffness.add(index_[5], index_[5], line.tension * bend2);
   }
@@ -109,6 +115,7 @@ class SpringDamperElement final : public ForceElement {
   PointPair pair_;
   PairCoordinates index_;
   std::vector<std::size_t> active_;  // places in index_ that are coordinates
+  std::vector<int> coordinates_;     // index_ at these places
   Real stiffness_, damping_, free_length_;
   ScalarFunction actuator_;
   Line line_;  // of the last add_force()

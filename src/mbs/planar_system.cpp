@@ -29,10 +29,6 @@ std::array<Real, 9> planar_block(const std::array<Real, 21>& packed) {
   return block;
 }
 
-void add_block(const std::array<Real, 9>& block, int first, SparseTerm& out) {
-  for (int k = 0; k < 9; ++k) out.add(first + k / 3, first + k % 3, block[static_cast<std::size_t>(k)]);
-}
-
 Real characteristic_length(const Model& model) {
   Real radius = 0, reach = 0;
   for (const Body& body : model.bodies) {
@@ -229,8 +225,12 @@ void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real
 void PlanarSystem::add_contact_blocks(SystemDerivatives& derivatives) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (bodies_[b].shapes.empty()) continue;
-    add_block(contact_[b].stiffness, static_cast<int>(3 * b), derivatives.stiffness);
-    add_block(contact_[b].damping, static_cast<int>(3 * b), derivatives.damping);
+    const int first = static_cast<int>(3 * b), coordinate[3] = {first, first + 1, first + 2};
+    const ContactBlock& block = contact_[b];
+    derivatives.stiffness.add_block(coordinate,
+                                    [&](std::size_t i, std::size_t j) { return block.stiffness[3 * i + j]; });
+    derivatives.damping.add_block(coordinate,
+                                  [&](std::size_t i, std::size_t j) { return block.damping[3 * i + j]; });
   }
 }
 

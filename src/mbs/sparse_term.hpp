@@ -1,6 +1,7 @@
 // A sparse matrix given as a sequence of contributions that is the same in every evaluation.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -23,6 +24,21 @@ class SparseTerm {
       record(row, column, value);
     else
       values_[cursor_++] = value;
+  }
+
+  // The same for all pairs (coordinate[i], coordinate[j]) and value(i, j), row by row; none is negative.
+  template <class Value>
+  void add_block(std::span<const int> coordinate, const Value& value) {
+    const std::size_t n = coordinate.size();
+    if (recording_) {
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) record(coordinate[i], coordinate[j], value(i, j));
+      return;
+    }
+    Real* out = values_.data() + cursor_;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) *out++ = value(i, j);
+    cursor_ += n * n;
   }
 
   std::size_t size() const { return values_.size(); }
