@@ -53,7 +53,7 @@ void BodyLink::broadcast_motion(Backend& backend) {
 
 void BodyLink::broadcast_motion(Backend& backend, const MultibodyState& state, Real tau) {
   if (!has_bodies()) return;
-  if (multibody_) motion_ = multibody_->motion(state, tau);
+  if (multibody_) multibody_->motion(state, tau, motion_);
   broadcast(backend);
 }
 

@@ -69,6 +69,7 @@ class Multibody {
   const std::vector<BodyMotion>& motion() const;
   // The same for a state; for an instant tau [s] after it along q + tau q' + tau^2/2 q''.
   std::vector<BodyMotion> motion(const MultibodyState& state, Real tau = 0) const;
+  void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;

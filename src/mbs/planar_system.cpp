@@ -59,8 +59,11 @@ PlanarSystem::PlanarSystem(const Model& model)
       scratch_(static_cast<int>(model.bodies.size())),
       wrench_(model.bodies.size()),
       contact_(model.bodies.size()) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (const Body& body : bodies_) {
     coordinate_scale_.insert(coordinate_scale_.end(), {length_scale_, length_scale_, 1});
+    weight_.insert(weight_.end(), {body.mass * gravity_.x, body.mass * gravity_.y, 0});
+    constant_force_scale_ =
+        std::max(constant_force_scale_, length_scale_ * body.mass * norm(planar(gravity_)));
   }
   std::vector<bool> driven(model.joints.size(), false);
   for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
@@ -78,7 +81,8 @@ PlanarSystem::PlanarSystem(const Model& model)
     elements_.push_back(make_force_element(e, model.time.end));
   }
   for (const auto& element : elements_) {
-    elastic_floor_ = std::max(elastic_floor_, kElasticFloor * element->elastic_scale(length_scale_));
+    constant_force_scale_ =
+        std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
   }
 }
 
@@ -152,20 +156,9 @@ void PlanarSystem::add_group(const std::string& title, const std::string& name,
 
 void PlanarSystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   motion_.set(at.position, at.velocity);
-  terms.mass.begin();
-  terms.force_scale = elastic_floor_;
-  int b = 0;
-  for (const Body& body : bodies_) {
-    Real* force = &terms.applied_force[static_cast<std::size_t>(3 * b)];
-    force[0] = body.mass * gravity_.x;
-    force[1] = body.mass * gravity_.y;
-    force[2] = 0;
-    terms.mass.add(3 * b, 3 * b, body.mass);
-    terms.mass.add(3 * b + 1, 3 * b + 1, body.mass);
-    terms.mass.add(3 * b + 2, 3 * b + 2, body.inertia);
-    terms.force_scale = std::max(terms.force_scale, length_scale_ * body.mass * norm(planar(gravity_)));
-    ++b;
-  }
+  if (terms.mass.size() == 0) add_mass(terms.mass);  // it is constant
+  terms.applied_force = weight_;
+  terms.force_scale = constant_force_scale_;
   for (const auto& element : elements_) {
     const Real size = element->add_force(motion_, at.time, length_scale_, terms.applied_force);
     terms.force_scale = std::max(terms.force_scale, size);
@@ -185,6 +178,16 @@ void PlanarSystem::set_contacts(const ContactWrenches& contacts) {
   for (const WrenchStiffness& one : contacts.stiffness) {
     contact_[static_cast<std::size_t>(one.body)] = {planar_block(one.stiffness), planar_block(one.damping)};
     touched_.push_back(one.body);
+  }
+}
+
+void PlanarSystem::add_mass(SparseTerm& mass) const {
+  mass.begin();
+  for (int b = 0; b < static_cast<int>(bodies_.size()); ++b) {
+    const Body& body = bodies_[static_cast<std::size_t>(b)];
+    mass.add(3 * b, 3 * b, body.mass);
+    mass.add(3 * b + 1, 3 * b + 1, body.mass);
+    mass.add(3 * b + 2, 3 * b + 2, body.inertia);
   }
 }
 

@@ -78,14 +78,16 @@ class PlanarSystem final : public MechanicalSystem {
   void add_driver(const Driver& driver, const Joint& joint, Real end);
   void add_group(const std::string& title, const std::string& name,
                  std::vector<std::unique_ptr<Constraint>> parts);
+  void add_mass(SparseTerm& mass) const;
   void add_contact(SystemTerms& terms) const;
   void add_contact_blocks(SystemDerivatives& derivatives) const;
 
   std::vector<Body> bodies_;
   Vec3 gravity_;
   Real length_scale_ = 1;
-  Real elastic_floor_ = 0;  // see SystemTerms::force_scale [J]
-  PlanarMotion motion_;     // of the last evaluate()
+  Real constant_force_scale_ = 0;  // of the weights and of stiffness; see SystemTerms::force_scale [J]
+  std::vector<Real> weight_;       // generalized forces of gravity
+  PlanarMotion motion_;            // of the last evaluate()
   PlanarMotion scratch_;
   std::vector<BodyWrench> wrench_;
   std::vector<ContactBlock> contact_;  // per body; zero where nothing touches
