@@ -44,8 +44,9 @@ class PlanarMotion {
       PlanarPose& pose = poses_[i + 1];
       pose.position = {q[0], q[1]}, pose.velocity = {v[0], v[1]}, pose.spin = v[2];
       // Many instants in a row are the same one, and the angle of many bodies stays.
-      if (std::bit_cast<std::uint64_t>(q[2]) == std::bit_cast<std::uint64_t>(pose.angle)) continue;
-      pose.angle = q[2], pose.cosine = std::cos(q[2]), pose.sine = std::sin(q[2]);
+      const Real angle = q[2];
+      if (std::bit_cast<std::uint64_t>(angle) == std::bit_cast<std::uint64_t>(pose.angle)) continue;
+      pose.angle = angle, pose.cosine = std::cos(angle), pose.sine = std::sin(angle);
     }
   }
   const PlanarPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }
