@@ -123,9 +123,11 @@ void CudaBackend::fetch_shape_contacts(cudaStream_t stream) {
   std::copy(h_shape_contacts_.data(), h_shape_contacts_.data() + n, side_.contacts().begin());
 }
 
-void CudaBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
+void CudaBackend::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {
   side_.reduce(layout_, ranks_, step, end);
 }
+
+void CudaBackend::reduce_wrench(std::vector<BodyWrench>& end) { side_.reduce(layout_, ranks_, end); }
 
 namespace {
 

@@ -53,7 +53,8 @@ class CudaBackend : public Backend {
   Real step_displacement() override;
   ParticleNorms contact_force() override;
   GlobalId worst_particle() const override;
-  void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) override;
+  void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) override;
+  void reduce_wrench(std::vector<BodyWrench>& end) override;
   ParticleCorrection particle_correct() override;
   void shorten_correction() override;
   Real error() override;

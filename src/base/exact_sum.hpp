@@ -2,6 +2,7 @@
 // split.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -52,8 +53,12 @@ class ExactSum {
     if (top_ == kNotFinite) return NAN;
     if (bin_[0] == 0 && bin_[1] == 0 && bin_[2] == 0) return 0;
     const __int128 whole = ((static_cast<__int128>(bin_[0]) * kBinSize + bin_[1]) * kBinSize) + bin_[2];
-    return std::ldexp(static_cast<Real>(whole),
-                      static_cast<int>(kBinBits * (top_ - kBins + 1)) - kExponentBias);
+    const std::int64_t exponent = kBinBits * (top_ - kBins + 1) - kExponentBias;
+    const Real rounded = static_cast<Real>(whole);
+    // A power of two that is a normal number: the product is what ldexp() gives, sooner.
+    if (exponent > -kExponentBias)
+      return rounded * std::bit_cast<Real>((exponent + kExponentBias) << kMantissaBits);
+    return std::ldexp(rounded, static_cast<int>(exponent));
   }
 
  private:

@@ -7,7 +7,7 @@ namespace scree {
 BodyLink::BodyLink(const Model& model, const Ranks& ranks)
     : ranks_(ranks),
       motion_(model.bodies.size()),
-      step_wrench_(model.bodies.size()),
+      step_wrench_{std::vector<BodyWrench>(model.bodies.size()), {}},
       end_wrench_(model.bodies.size()) {
   if (model.bodies.empty()) return;
   ranks_.on_root([&] { multibody_ = std::make_unique<Multibody>(model); });
@@ -53,7 +53,7 @@ void BodyLink::broadcast_motion(Backend& backend) {
 
 void BodyLink::broadcast_motion(Backend& backend, const MultibodyState& state, Real tau) {
   if (!has_bodies()) return;
-  if (multibody_) motion_ = multibody_->motion(state, tau);
+  if (multibody_) multibody_->motion(state, tau, motion_);
   broadcast(backend);
 }
 
@@ -61,12 +61,16 @@ void BodyLink::reduce_wrench(Backend& backend) {
   if (has_bodies()) backend.reduce_wrench(step_wrench_, end_wrench_);
 }
 
+void BodyLink::reduce_end_wrench(Backend& backend) {
+  if (has_bodies()) backend.reduce_wrench(end_wrench_);
+}
+
 void BodyLink::set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
                                int substeps) {
-  for (std::size_t b = 0; b < step_wrench_.size(); ++b) {
-    step_wrench_[b] = {};
-    step_wrench_[b].force = (Real(2) / substeps) * sum[b].force - start[b].force;
-    step_wrench_[b].torque = (Real(2) / substeps) * sum[b].torque - start[b].torque;
+  step_wrench_.stiffness.clear();
+  for (std::size_t b = 0; b < sum.size(); ++b) {
+    step_wrench_.wrench[b].force = (Real(2) / substeps) * sum[b].force - start[b].force;
+    step_wrench_.wrench[b].torque = (Real(2) / substeps) * sum[b].torque - start[b].torque;
   }
 }
 

@@ -25,7 +25,7 @@ class BodyLink {
   // The functions of Multibody on rank 0; collective, and nothing without bodies.
   void set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench);
   void predict(const MultibodyState& bodies, Real t, Real h);
-  IterationNorms correct();             // with step_wrench(); the norms on every rank
+  IterationNorms correct();             // with the step's wrench; the norms on every rank
   Real error() const;                   // on every rank
   void accept(MultibodyState& bodies);  // with end_wrench()
 
@@ -36,12 +36,12 @@ class BodyLink {
   // All -> rank 0: contact wrench and contact stiffness per body, as Backend::reduce_wrench. The wrenches are
   // rank 0's; zero elsewhere.
   void reduce_wrench(Backend& backend);
+  void reduce_end_wrench(Backend& backend);  // end_wrench() alone
   // Replaces the step's wrench by the one whose trapezoidal impulse over `substeps` equal parts is their sum:
   // twice the mean force less the force at the start. sum: of the forces at the parts' ends, the outer two
   // halved.
   void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
                        int substeps);
-  const std::vector<BodyWrench>& step_wrench() const { return step_wrench_; }
   const std::vector<BodyWrench>& end_wrench() const { return end_wrench_; }
   const std::vector<BodyMotion>& motion() const { return motion_; }
 
@@ -51,7 +51,8 @@ class BodyLink {
   Ranks ranks_;
   std::unique_ptr<Multibody> multibody_;
   std::vector<BodyMotion> motion_;
-  std::vector<BodyWrench> step_wrench_, end_wrench_;
+  ContactWrenches step_wrench_;
+  std::vector<BodyWrench> end_wrench_;
 };
 
 }  // namespace scree

@@ -21,9 +21,8 @@ constexpr Real kMostSkin = 4;
 
 namespace {
 
-// sum += weight * wrenches; an empty sum counts as zero.
+// sum += weight * wrenches
 void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
-  sum.resize(wrenches.size());
   for (std::size_t b = 0; b < wrenches.size(); ++b) {
     sum[b].force += weight * wrenches[b].force;
     sum[b].torque += weight * wrenches[b].torque;
@@ -53,7 +52,7 @@ void CoupledStep::start(MultibodyState& bodies) {
   resume(bodies);
   backend_.initial_forces();
   // Only now are the contact wrenches at the start known.
-  link_.reduce_wrench(backend_);
+  link_.reduce_end_wrench(backend_);
   link_.set_initial_state(bodies, link_.end_wrench());
   bodies.wrench = link_.end_wrench();
 }
@@ -246,7 +245,8 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
 // Returns whether the particles' next step is open.
 bool CoupledStep::explicit_step_with_bodies(MultibodyState& bodies, Real t, Real h, bool keep_open) {
   const int substeps = model_.integrator.substeps;
-  std::vector<BodyWrench> sum;
+  std::vector<BodyWrench>& sum = wrench_sum_;
+  sum.assign(bodies.wrench.size(), BodyWrench{});
   add_wrenches(sum, bodies.wrench, 0.5);
   bool open = true;
   for (int s = 1; s <= substeps; ++s) {
@@ -256,7 +256,7 @@ bool CoupledStep::explicit_step_with_bodies(MultibodyState& bodies, Real t, Real
     }
     open = backend_.verlet_run(h / substeps, 1, s < substeps || keep_open, timers_).open;
     const auto scope = timers_.time(Stage::reduce_wrench);
-    link_.reduce_wrench(backend_);
+    link_.reduce_end_wrench(backend_);
     add_wrenches(sum, link_.end_wrench(), s < substeps ? 1 : 0.5);
   }
   link_.set_mean_wrench(bodies.wrench, sum, substeps);
@@ -289,7 +289,7 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
   {
     const auto scope = timers_.time(Stage::reduce_wrench);
     backend_.shape_contacts();
-    link_.reduce_wrench(backend_);
+    link_.reduce_end_wrench(backend_);
   }
   const auto scope = timers_.time(Stage::accept);
   link_.accept(bodies);

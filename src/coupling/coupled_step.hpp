@@ -68,6 +68,7 @@ class CoupledStep {
   StageTimers& timers_;
   Real largest_radius_ = 0;  // of particles and shapes [m]
   StepCounts counts_;
+  std::vector<BodyWrench> wrench_sum_;  // over the substeps of an explicit step
 };
 
 }  // namespace scree

@@ -109,9 +109,10 @@ class Backend {
   virtual ParticleNorms contact_force() = 0;
   // The particle with the largest residual in the last contact_force; -1 without particles.
   virtual GlobalId worst_particle() const = 0;
-  // Contact wrenches on the bodies: what the step needs, and at the end of the step; equal unless contacts
-  // open or close within it. On rank 0; zero elsewhere.
-  virtual void reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) = 0;
+  // Contact wrenches on the bodies: what an implicit step needs, and at the end of a step; equal unless
+  // contacts open or close within it. On rank 0; zero elsewhere.
+  virtual void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) = 0;
+  virtual void reduce_wrench(std::vector<BodyWrench>& end) = 0;
   virtual ParticleCorrection particle_correct() = 0;
   // Takes part of the last correction back, after contact_force has reported an overshoot.
   virtual void shorten_correction() = 0;

@@ -125,9 +125,11 @@ void CpuBackend::shorten_correction() {
   refresh_ghosts();
 }
 
-void CpuBackend::reduce_wrench(std::vector<BodyWrench>& step, std::vector<BodyWrench>& end) {
+void CpuBackend::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {
   side_.reduce(layout_, ranks_, step, end);
 }
+
+void CpuBackend::reduce_wrench(std::vector<BodyWrench>& end) { side_.reduce(layout_, ranks_, end); }
 
 ParticleCorrection CpuBackend::particle_correct() {
   const Index n = layout_.owned;

@@ -28,11 +28,12 @@ struct ExactSym3 {
 };
 
 // What crosses the ranks of the contacts of one shape. Every contact force passes through the shape's centre.
-struct ShapeForces {             // of no meaning without contacts
-  ExactVec3 step;                // for the step: see StepContact [N]
-  ExactVec3 end;                 // at the end of the step [N]
-  ExactSym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
+// What every reader wants comes first.
+struct ShapeForces {  // of no meaning without contacts
   std::int64_t contacts = 0;
+  ExactVec3 end;                 // at the end of the step [N]
+  ExactVec3 step;                // for the step: see StepContact [N]
+  ExactSym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
 
   SCREE_HD void add(const ShapeForces& part) {
     step.add(part.step), end.add(part.end), stiffness.add(part.stiffness), damping.add(part.damping);
@@ -43,10 +44,10 @@ struct ShapeForces {             // of no meaning without contacts
 // What the contacts of one shape item of a body sum to. The energies are those of contacts with other shapes
 // and with walls alone, which one rank sees.
 struct ShapeContact {
-  ShapeForces forces;
   Real step_loss = 0, end_loss = 0;  // the shape's share [W]
   Real energy = 0;                   // the shape's share of the contacts' elastic energy [J]
   Real pairs = 0;                    // the shape's share of the number of contacts
+  ShapeForces forces;
 };
 
 // Puts a sum where it belongs; most shapes touch nothing, and their forces are not written.

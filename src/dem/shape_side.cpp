@@ -76,15 +76,32 @@ void ShapeSide::for_each_touched(const ItemLayout& layout, const Ranks& ranks, c
     if (contacts_[s].forces.contacts > 0) visit(static_cast<Index>(s), contacts_[s].forces);
 }
 
-void ShapeSide::reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& step,
+Vec3 ShapeSide::arm_of(const ShapeItem& shape) const {
+  return point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
+}
+
+void ShapeSide::reduce(const ItemLayout& layout, const Ranks& ranks, ContactWrenches& step,
                        std::vector<BodyWrench>& end) const {
-  std::fill(step.begin(), step.end(), BodyWrench{});
+  std::fill(step.wrench.begin(), step.wrench.end(), BodyWrench{});
+  std::fill(end.begin(), end.end(), BodyWrench{});
+  step.stiffness.clear();
+  for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
+    const ShapeItem& shape = shapes_.items()[s];
+    const Vec3 arm = arm_of(shape);
+    add_point_force(step.wrench[shape.body], f.step.value(), arm);
+    add_point_force(end[shape.body], f.end.value(), arm);
+    // The shapes of a body follow each other.
+    if (step.stiffness.empty() || step.stiffness.back().body != shape.body)
+      step.stiffness.push_back({shape.body});
+    add_point_stiffness(step.stiffness.back(), arm, f.stiffness.value(), f.damping.value());
+  });
+}
+
+void ShapeSide::reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& end) const {
   std::fill(end.begin(), end.end(), BodyWrench{});
   for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
     const ShapeItem& shape = shapes_.items()[s];
-    const Vec3 arm = point_motion(motion_[shape.body], shape.offset).position - motion_[shape.body].position;
-    add_point_force(step[shape.body], f.step.value(), arm, f.stiffness.value(), f.damping.value());
-    add_point_force(end[shape.body], f.end.value(), arm, {}, {});
+    add_point_force(end[shape.body], f.end.value(), arm_of(shape));
   });
 }
 

@@ -47,10 +47,11 @@ class ShapeSide {
   std::vector<ShapeContact>& contacts() { return contacts_; }      // filled by the backend
 
   // reduce_wrench: brings the shapes' contacts() of all ranks to rank 0, one message per rank, and sums them
-  // up to the contact wrenches on the bodies for the step and at its end; on other ranks they come out as
-  // zero. Collective.
-  void reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& step,
+  // up to the contact wrenches on the bodies for the step and at its end, or at its end alone; on other ranks
+  // they come out as zero. Collective.
+  void reduce(const ItemLayout& layout, const Ranks& ranks, ContactWrenches& step,
               std::vector<BodyWrench>& end) const;
+  void reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& end) const;
   // Books the dissipation of a step of length h from contacts(): trapezoidal, like the particles' losses.
   void book_losses(Real h);
   ShapeLosses& losses() { return losses_; }
@@ -67,6 +68,7 @@ class ShapeSide {
     Index shape;
     ShapeForces forces;
   };
+  Vec3 arm_of(const ShapeItem& shape) const;  // from the centre of its body [m]
   std::vector<Touched> touched(const ItemLayout& layout, const Ranks& ranks) const;
   // Calls visit(shape, forces) for the touched shapes of all ranks, on rank 0.
   template <class Visit>

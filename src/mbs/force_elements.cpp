@@ -34,40 +34,46 @@ class SpringDamperElement final : public ForceElement {
         actuator_(element.actuator, fmt::format("spring-damper '{}'", element.name), end,
                   Interpolation::linear) {
     for (std::size_t k = 0; k < 6; ++k) {
-      if (index_[k] >= 0) active_.push_back(k);
+      if (index_[k] < 0) continue;
+      active_.push_back(k);
+      coordinates_.push_back(index_[k]);
     }
   }
 
-  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const override {
-    const Line line = line_at(motion, t);
-    const std::array<Real, 6> gradient = gap_gradient(line.geometry, line.direction);
+  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) override {
+    line_ = line_at(motion, t);
+    const std::array<Real, 6> gradient = gap_gradient(line_.geometry, line_.direction);
     for (const std::size_t k : active_) {
-      force[static_cast<std::size_t>(index_[k])] -= line.tension * gradient[k];
+      force[static_cast<std::size_t>(index_[k])] -= line_.tension * gradient[k];
     }
-    return std::abs(line.tension) * length;
+    return std::abs(line_.tension) * length;
   }
 
-  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
+  void add_derivatives(const PlanarMotion& motion, Real, SparseTerm& stiffness,
                        SparseTerm& damping) const override {
-    const Line line = line_at(motion, t);
+    const Line& line = line_;
     const PairGeometry& g = line.geometry;
     const Vec2 e = line.direction;
     const std::array<Real, 6> along = gap_gradient(g, e), across = gap_gradient(g, perp(e));
     const Real bend1 = dot(e, g.arm[0]), bend2 = -dot(e, g.arm[1]);
     const Real turning = dot(perp(e), g.gap_rate) / line.length;
-    std::array<Real, 6> tension_gradient{};
-    for (const std::size_t k : active_) {
+    std::array<Real, 6> tension_gradient;
+    for (std::size_t k = 0; k < 6; ++k) {
       tension_gradient[k] = stiffness_ * along[k] + damping_ * turning * across[k];
     }
     tension_gradient[2] += damping_ * bend1 * motion[pair_.body[0]].spin;
     tension_gradient[5] += damping_ * bend2 * motion[pair_.body[1]].spin;
-    for (const std::size_t i : active_) {
-      const Real sideways = line.tension / line.length * across[i];
-      for (const std::size_t j : active_) {
-        stiffness.add(index_[i], index_[j], along[i] * tension_gradient[j] + sideways * across[j]);
-        damping.add(index_[i], index_[j], damping_ * along[i] * along[j]);
-      }
+    std::array<Real, 6> sideways, damped;
+    for (std::size_t k = 0; k < 6; ++k) {
+      sideways[k] = line.tension / line.length * across[k];
+      damped[k] = damping_ * along[k];
     }
+    const auto& active = active_;
+    stiffness.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
+      return along[active[i]] * tension_gradient[active[j]] + sideways[active[i]] * across[active[j]];
+    });
+    damping.add_block(coordinates_,
+                      [&](std::size_t i, std::size_t j) { return damped[active[i]] * along[active[j]]; });
     stiffness.add(index_[2], index_[2], line.tension * bend1);
     stiffness.add(index_[5], index_[5], line.tension * bend2);
   }
@@ -109,8 +115,10 @@ class SpringDamperElement final : public ForceElement {
   PointPair pair_;
   PairCoordinates index_;
   std::vector<std::size_t> active_;  // places in index_ that are coordinates
+  std::vector<int> coordinates_;     // index_ at these places
   Real stiffness_, damping_, free_length_;
   ScalarFunction actuator_;
+  Line line_;  // of the last add_force()
 };
 
 // theta = theta_2 - theta_1, torque on body 2: -(k (theta - theta_0) + c theta'), opposite on body 1.
@@ -120,7 +128,7 @@ class TorsionalElement final : public ForceElement {
   explicit TorsionalElement(const TorsionalSpringDamper& element)
       : element_(element), index_{pair_coordinates(element.body)[2], pair_coordinates(element.body)[5]} {}
 
-  Real add_force(const PlanarMotion& motion, Real, Real, std::vector<Real>& force) const override {
+  Real add_force(const PlanarMotion& motion, Real, Real, std::vector<Real>& force) override {
     const Real torque = element_.stiffness * twist(motion) + element_.damping * rate(motion);
     add_at(force, index_[0], torque);
     add_at(force, index_[1], -torque);
@@ -167,7 +175,7 @@ class AppliedForceElement final : public ForceElement {
         fy_(element.fy, owner(element), end, Interpolation::linear),
         torque_(element.torque, owner(element), end, Interpolation::linear) {}
 
-  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) const override {
+  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) override {
     const Vec2 f = force_at(motion, t);
     const Real moment = moment_at(motion, t);
     add_at(force, 3 * body_, f.x);

@@ -27,6 +27,7 @@ SparsePattern compress(Columns& columns) {
 }
 
 void scatter(const SparseTerm& term, const std::vector<int>& slots, Real weight, std::span<Real> values) {
+  if (weight == 0) return;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     values[static_cast<std::size_t>(slots[i])] += weight * term.value(i);
   }

@@ -42,12 +42,13 @@ struct Multibody::Impl {
         start(checked_start(model, system)),
         method(system, model.integrator.hht_alpha, start.position, start.velocity),
         newton(system, method),
-        motion(model.bodies.size()) {}
+        motion(model.bodies.size()) {
+    for (const Body& body : model.bodies) plane.push_back(body.position.z);
+  }
 
   void update_motion() {
     for (std::size_t b = 0; b < motion.size(); ++b) {
-      motion[b] =
-          body_motion(&method.position()[3 * b], &method.velocity()[3 * b], system.bodies()[b].position.z);
+      motion[b] = body_motion(&method.position()[3 * b], &method.velocity()[3 * b], plane[b]);
     }
   }
 
@@ -55,6 +56,7 @@ struct Multibody::Impl {
   MultibodyState start;  // q, q' of the model
   HhtMethod method;
   NewtonSolver newton;
+  std::vector<Real> plane;  // z of each body [m]
   std::vector<BodyMotion> motion;
   MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;       // of the open step's start [s]
@@ -65,7 +67,7 @@ Multibody::~Multibody() = default;
 
 MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   MultibodyState state = impl_->start;
-  impl_->system.set_wrenches(wrench);
+  impl_->system.set_contacts({wrench, {}});
   impl_->newton.solve_acceleration(state, 0);
   return state;
 }
@@ -77,8 +79,8 @@ void Multibody::predict(const MultibodyState& state, Real t, Real h) {
   impl_->update_motion();
 }
 
-IterationNorms Multibody::correct(const std::vector<BodyWrench>& wrench) {
-  impl_->system.set_wrenches(wrench);
+IterationNorms Multibody::correct(const ContactWrenches& contacts) {
+  impl_->system.set_contacts(contacts);
   const IterationNorms norms = impl_->newton.iterate();
   impl_->update_motion();
   return norms;
@@ -106,7 +108,7 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.method.close(impl.end);
   book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
   if (!impl.system.has_forces_of(end_wrench)) {
-    impl.system.set_wrenches(end_wrench);
+    impl.system.set_forces(end_wrench);
     impl.newton.change_end_forces(impl.end);
   }
   std::swap(state, impl.end);
@@ -115,17 +117,22 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
 const std::vector<BodyMotion>& Multibody::motion() const { return impl_->motion; }
 
 std::vector<BodyMotion> Multibody::motion(const MultibodyState& state, Real tau) const {
-  std::vector<BodyMotion> motion(impl_->motion.size());
-  for (std::size_t b = 0; b < motion.size(); ++b) {
+  std::vector<BodyMotion> out;
+  motion(state, tau, out);
+  return out;
+}
+
+void Multibody::motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const {
+  out.resize(impl_->motion.size());
+  for (std::size_t b = 0; b < out.size(); ++b) {
     Real q[3], v[3];
     for (std::size_t k = 0; k < 3; ++k) {
       const Real rate = state.velocity[3 * b + k], acceleration = state.acceleration[3 * b + k];
       q[k] = state.position[3 * b + k] + tau * rate + tau * tau / 2 * acceleration;
       v[k] = rate + tau * acceleration;
     }
-    motion[b] = body_motion(q, v, impl_->system.bodies()[b].position.z);
+    out[b] = body_motion(q, v, impl_->plane[b]);
   }
-  return motion;
 }
 
 MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const {

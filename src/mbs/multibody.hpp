@@ -19,7 +19,7 @@ struct MultibodyState {
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
-  std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body; its derivatives are not used
+  std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body
   Real dissipated = 0;             // in force elements since t = 0 [J]
   Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
   Real driver_work = 0;            // done by drivers, actuators and applied forces since t = 0 [J]
@@ -57,7 +57,7 @@ class Multibody {
   void predict(const MultibodyState& state, Real t, Real h);
   // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError
   // naming the joint or body on a singular matrix or a non-finite residual.
-  IterationNorms correct(const std::vector<BodyWrench>& wrench);
+  IterationNorms correct(const ContactWrenches& contacts);
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
   // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:
@@ -69,6 +69,7 @@ class Multibody {
   const std::vector<BodyMotion>& motion() const;
   // The same for a state; for an instant tau [s] after it along q + tau q' + tau^2/2 q''.
   std::vector<BodyMotion> motion(const MultibodyState& state, Real tau = 0) const;
+  void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/error.hpp"
@@ -18,7 +19,11 @@ constexpr Real kReuseContraction = 1e-2;
 }  // namespace
 
 NewtonSolver::NewtonSolver(const MechanicalSystem& system, HhtMethod& method)
-    : system_(system), method_(method), solver_(method.pattern()) {}
+    : system_(system),
+      method_(method),
+      solver_(method.pattern()),
+      acceleration_solver_(method.pattern()),
+      acceleration_matrix_(method.pattern().column.size()) {}
 
 void NewtonSolver::begin_step() { first_ = true; }
 
@@ -60,23 +65,33 @@ Real NewtonSolver::scaled_correction() const {
   return method_.position_gain() * largest;
 }
 
-void NewtonSolver::solve_linear(bool refactor) {
-  if (solver_.solve(refactor)) return;
+void NewtonSolver::solve_linear(PetscSolver& solver, bool refactor) {
+  if (solver.solve(refactor)) return;
   throw SimulationError(fmt::format("mbs_correct, rank 0: at t = {} s the matrix of the multibody system {}",
                                     method_.end_time(),
-                                    matrix_failure(system_, method_.pattern(), solver_.values())));
+                                    matrix_failure(system_, method_.pattern(), solver.values())));
+}
+
+void NewtonSolver::solve_acceleration_level() {
+  const std::span<Real> factored = acceleration_solver_.values();
+  const bool refactor = !has_acceleration_factors_ ||
+                        std::memcmp(factored.data(), acceleration_matrix_.data(), factored.size_bytes()) != 0;
+  has_acceleration_factors_ = false;  // should this fail
+  if (refactor) std::copy(acceleration_matrix_.begin(), acceleration_matrix_.end(), factored.begin());
+  solve_linear(acceleration_solver_, refactor);
+  has_acceleration_factors_ = true;
 }
 
 void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {
-  method_.acceleration_system(state, t, solver_.values(), solver_.rhs());
-  solve_linear(true);
-  method_.set_acceleration(solver_.solution(), state);
+  method_.acceleration_system(state, t, acceleration_matrix_, acceleration_solver_.rhs());
+  solve_acceleration_level();
+  method_.set_acceleration(acceleration_solver_.solution(), state);
 }
 
 void NewtonSolver::change_end_forces(MultibodyState& state) {
-  if (!method_.change_system(state, solver_.values(), solver_.rhs())) return;
-  solve_linear(true);
-  method_.apply_change(solver_.solution(), state);
+  if (!method_.change_system(state, acceleration_matrix_, acceleration_solver_.rhs())) return;
+  solve_acceleration_level();
+  method_.apply_change(acceleration_solver_.solution(), state);
 }
 
 IterationNorms NewtonSolver::iterate() {
@@ -86,7 +101,7 @@ IterationNorms NewtonSolver::iterate() {
   const bool refactor = first_ || norms.residual > kReuseContraction * last_residual_;
   if (refactor) method_.newton_matrix(solver_.values());
   std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
-  solve_linear(refactor);
+  solve_linear(solver_, refactor);
   norms.correction = scaled_correction();
   method_.apply_correction(solver_.solution());
   last_residual_ = norms.residual;

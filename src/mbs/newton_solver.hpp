@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mbs/hht_method.hpp"
 #include "mbs/petsc_solver.hpp"
@@ -9,8 +10,9 @@
 namespace scree {
 
 // Full Newton. Within a step the factored matrix of the last iteration is used once more if that iteration
-// already cut the residual to 1e-2 or less: the matrix then describes the step well. Nothing is kept from
-// step to step, so that a restarted run repeats the bits of an uninterrupted one.
+// already cut the residual to 1e-2 or less: the matrix then describes the step well. What is kept from step
+// to step are factors of a matrix that is the same bit for bit, so that a restarted run repeats the bits of
+// an uninterrupted one.
 class NewtonSolver {
  public:
   // `system` and `method` must outlive the solver.
@@ -33,13 +35,19 @@ class NewtonSolver {
   std::string description() const { return solver_.description(); }
 
  private:
+  // Solves the system of acceleration_matrix_ for the right-hand side in acceleration_solver_.
+  void solve_acceleration_level();
   Real scaled_residual() const;
   Real scaled_correction() const;
-  void solve_linear(bool refactor);
+  void solve_linear(PetscSolver& solver, bool refactor);
 
   const MechanicalSystem& system_;
   HhtMethod& method_;
   PetscSolver solver_;
+  // [M, Phi_q^T; Phi_q, 0] has factors of its own: where Phi_q is constant they stay.
+  PetscSolver acceleration_solver_;
+  std::vector<Real> acceleration_matrix_;  // [entries of the pattern]
+  bool has_acceleration_factors_ = false;  // of acceleration_solver_.values()
   Real last_residual_ = 0;
   bool first_ = true;  // iteration of its step
 };

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "base/types.hpp"
@@ -39,7 +41,12 @@ class PlanarMotion {
   void set(const std::vector<Real>& position, const std::vector<Real>& velocity) {
     for (std::size_t i = 0; i + 1 < poses_.size(); ++i) {
       const Real *q = &position[3 * i], *v = &velocity[3 * i];
-      poses_[i + 1] = {{q[0], q[1]}, {v[0], v[1]}, q[2], v[2], std::cos(q[2]), std::sin(q[2])};
+      PlanarPose& pose = poses_[i + 1];
+      pose.position = {q[0], q[1]}, pose.velocity = {v[0], v[1]}, pose.spin = v[2];
+      // Many instants in a row are the same one, and the angle of many bodies stays.
+      const Real angle = q[2];
+      if (std::bit_cast<std::uint64_t>(angle) == std::bit_cast<std::uint64_t>(pose.angle)) continue;
+      pose.angle = angle, pose.cosine = std::cos(angle), pose.sine = std::sin(angle);
     }
   }
   const PlanarPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }

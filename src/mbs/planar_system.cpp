@@ -18,13 +18,15 @@ constexpr Real kElasticFloor = 1e-6;
 // The planar part (x, y, rz) of a packed 6x6 block.
 constexpr int kPlanarRows[3] = {0, 1, 5};
 
-void add_planar_block(const std::array<Real, 21>& packed, int body, SparseTerm& out) {
+std::array<Real, 9> planar_block(const std::array<Real, 21>& packed) {
+  std::array<Real, 9> block;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const int row = kPlanarRows[std::min(i, j)], column = kPlanarRows[std::max(i, j)];
-      out.add(3 * body + i, 3 * body + j, packed[static_cast<std::size_t>(packed6(row, column))]);
+      block[static_cast<std::size_t>(3 * i + j)] = packed[static_cast<std::size_t>(packed6(row, column))];
     }
   }
+  return block;
 }
 
 Real characteristic_length(const Model& model) {
@@ -55,9 +57,13 @@ PlanarSystem::PlanarSystem(const Model& model)
       length_scale_(characteristic_length(model)),
       motion_(static_cast<int>(model.bodies.size())),
       scratch_(static_cast<int>(model.bodies.size())),
-      wrench_(model.bodies.size()) {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      wrench_(model.bodies.size()),
+      contact_(model.bodies.size()) {
+  for (const Body& body : bodies_) {
     coordinate_scale_.insert(coordinate_scale_.end(), {length_scale_, length_scale_, 1});
+    weight_.insert(weight_.end(), {body.mass * gravity_.x, body.mass * gravity_.y, 0});
+    constant_force_scale_ =
+        std::max(constant_force_scale_, length_scale_ * body.mass * norm(planar(gravity_)));
   }
   std::vector<bool> driven(model.joints.size(), false);
   for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
@@ -75,7 +81,8 @@ PlanarSystem::PlanarSystem(const Model& model)
     elements_.push_back(make_force_element(e, model.time.end));
   }
   for (const auto& element : elements_) {
-    elastic_floor_ = std::max(elastic_floor_, kElasticFloor * element->elastic_scale(length_scale_));
+    constant_force_scale_ =
+        std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
   }
 }
 
@@ -149,20 +156,9 @@ void PlanarSystem::add_group(const std::string& title, const std::string& name,
 
 void PlanarSystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   motion_.set(at.position, at.velocity);
-  terms.mass.begin();
-  terms.force_scale = elastic_floor_;
-  int b = 0;
-  for (const Body& body : bodies_) {
-    Real* force = &terms.applied_force[static_cast<std::size_t>(3 * b)];
-    force[0] = body.mass * gravity_.x;
-    force[1] = body.mass * gravity_.y;
-    force[2] = 0;
-    terms.mass.add(3 * b, 3 * b, body.mass);
-    terms.mass.add(3 * b + 1, 3 * b + 1, body.mass);
-    terms.mass.add(3 * b + 2, 3 * b + 2, body.inertia);
-    terms.force_scale = std::max(terms.force_scale, length_scale_ * body.mass * norm(planar(gravity_)));
-    ++b;
-  }
+  if (terms.mass.size() == 0) add_mass(terms.mass);  // it is constant
+  terms.applied_force = weight_;
+  terms.force_scale = constant_force_scale_;
   for (const auto& element : elements_) {
     const Real size = element->add_force(motion_, at.time, length_scale_, terms.applied_force);
     terms.force_scale = std::max(terms.force_scale, size);
@@ -172,6 +168,26 @@ void PlanarSystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->value(motion_, at.time, &terms.constraint[static_cast<std::size_t>(first_row_[i])]);
     constraints_[i]->jacobian(motion_, first_row_[i], terms.constraint_jacobian);
+  }
+}
+
+void PlanarSystem::set_contacts(const ContactWrenches& contacts) {
+  wrench_ = contacts.wrench;
+  for (const int body : touched_) contact_[static_cast<std::size_t>(body)] = {};
+  touched_.clear();
+  for (const WrenchStiffness& one : contacts.stiffness) {
+    contact_[static_cast<std::size_t>(one.body)] = {planar_block(one.stiffness), planar_block(one.damping)};
+    touched_.push_back(one.body);
+  }
+}
+
+void PlanarSystem::add_mass(SparseTerm& mass) const {
+  mass.begin();
+  for (int b = 0; b < static_cast<int>(bodies_.size()); ++b) {
+    const Body& body = bodies_[static_cast<std::size_t>(b)];
+    mass.add(3 * b, 3 * b, body.mass);
+    mass.add(3 * b + 1, 3 * b + 1, body.mass);
+    mass.add(3 * b + 2, 3 * b + 2, body.inertia);
   }
 }
 
@@ -188,7 +204,8 @@ void PlanarSystem::add_contact(SystemTerms& terms) const {
     force[0] += wrench.force.x;
     force[1] += wrench.force.y;
     force[2] += wrench.torque.z;
-    const Real stiffness = std::max(wrench.stiffness[packed6(0, 0)], wrench.stiffness[packed6(1, 1)]);
+    const std::array<Real, 9>& block = contact_[b].stiffness;
+    const Real stiffness = std::max(block[0], block[4]);
     const Real size = length_scale_ * std::max(norm(wrench.force), kElasticFloor * stiffness * length_scale_);
     terms.force_scale = std::max(terms.force_scale, size);
   }
@@ -201,14 +218,22 @@ void PlanarSystem::differentiate(const SystemInstant& at, const std::vector<Real
   for (const auto& element : elements_) {
     element->add_derivatives(motion_, at.time, derivatives.stiffness, derivatives.damping);
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (bodies_[b].shapes.empty()) continue;
-    add_planar_block(wrench_[b].stiffness, static_cast<int>(b), derivatives.stiffness);
-    add_planar_block(wrench_[b].damping, static_cast<int>(b), derivatives.damping);
-  }
+  add_contact_blocks(derivatives);
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->hessian(motion_, &multipliers[static_cast<std::size_t>(first_row_[i])],
                              derivatives.stiffness);
+  }
+}
+
+void PlanarSystem::add_contact_blocks(SystemDerivatives& derivatives) const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].shapes.empty()) continue;
+    const int first = static_cast<int>(3 * b), coordinate[3] = {first, first + 1, first + 2};
+    const ContactBlock& block = contact_[b];
+    derivatives.stiffness.add_block(coordinate,
+                                    [&](std::size_t i, std::size_t j) { return block.stiffness[3 * i + j]; });
+    derivatives.damping.add_block(coordinate,
+                                  [&](std::size_t i, std::size_t j) { return block.damping[3 * i + j]; });
   }
 }
 

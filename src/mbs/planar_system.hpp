@@ -1,6 +1,7 @@
 // Planar rigid bodies with joints, drivers, force elements and contact wrenches as a MechanicalSystem.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,8 +42,10 @@ class PlanarSystem final : public MechanicalSystem {
   std::string coordinate_name(int coordinate) const override;
   std::string constraint_name(int constraint) const override;
 
-  // Wrenches that the next evaluate() and differentiate() use, one per body; the model starts without any.
-  void set_wrenches(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
+  // Contacts as the next evaluate() and differentiate() use them; the model starts without any.
+  void set_contacts(const ContactWrenches& contacts);
+  // The same contacts with other wrenches, one per body.
+  void set_forces(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
   // The wrenches set last have the same forces and torques.
   bool has_forces_of(const std::vector<BodyWrench>& wrench) const;
 
@@ -66,19 +69,29 @@ class PlanarSystem final : public MechanicalSystem {
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
 
  private:
+  // Planar part of the contact's WrenchStiffness on one body, (x, y, angle) row by row.
+  struct ContactBlock {
+    std::array<Real, 9> stiffness{}, damping{};
+  };
+
   void add_joint(const Joint& joint, bool driven);
   void add_driver(const Driver& driver, const Joint& joint, Real end);
   void add_group(const std::string& title, const std::string& name,
                  std::vector<std::unique_ptr<Constraint>> parts);
+  void add_mass(SparseTerm& mass) const;
   void add_contact(SystemTerms& terms) const;
+  void add_contact_blocks(SystemDerivatives& derivatives) const;
 
   std::vector<Body> bodies_;
   Vec3 gravity_;
   Real length_scale_ = 1;
-  Real elastic_floor_ = 0;  // see SystemTerms::force_scale [J]
-  PlanarMotion motion_;     // of the last evaluate()
+  Real constant_force_scale_ = 0;  // of the weights and of stiffness; see SystemTerms::force_scale [J]
+  std::vector<Real> weight_;       // generalized forces of gravity
+  PlanarMotion motion_;            // of the last evaluate()
   PlanarMotion scratch_;
   std::vector<BodyWrench> wrench_;
+  std::vector<ContactBlock> contact_;  // per body; zero where nothing touches
+  std::vector<int> touched_;           // bodies with another contact_
   std::vector<std::unique_ptr<Constraint>> constraints_;
   std::vector<int> first_row_;  // of every constraint object
   std::vector<bool> is_angle_;  // of every row

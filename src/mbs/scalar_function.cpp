@@ -66,14 +66,13 @@ TimeValue ScalarFunction::table_value(Real t) const {
   return {at.value + at.rate * (t - inside), at.rate, at.acceleration};
 }
 
-TimeValue ScalarFunction::operator()(Real t) const {
+TimeValue ScalarFunction::moving_value(Real t) const {
   switch (function_.kind) {
-    case TimeFunction::Kind::constant:
-      return {function_.value, 0, 0};
     case TimeFunction::Kind::ramp:
       return ramp_function(function_.value, function_.rate, t);
     case TimeFunction::Kind::sine:
       return sine_function(function_.value, function_.amplitude, function_.frequency, function_.phase, t);
+    case TimeFunction::Kind::constant:
     case TimeFunction::Kind::table:
       break;
   }

@@ -25,11 +25,15 @@ class ScalarFunction {
   explicit ScalarFunction(Real value) { function_.value = value; }
 
   // t [s]; round-off past a table's ends follows the end tangent, which keeps both derivatives continuous.
-  TimeValue operator()(Real t) const;
+  TimeValue operator()(Real t) const {
+    if (function_.kind == TimeFunction::Kind::constant) return {function_.value, 0, 0};  // most of them
+    return moving_value(t);
+  }
 
  private:
   void check_table(const std::string& owner, Real end) const;
   void find_second_derivatives();
+  TimeValue moving_value(Real t) const;
   TimeValue table_value(Real t) const;
 
   TimeFunction function_;

@@ -1,6 +1,7 @@
 // A sparse matrix given as a sequence of contributions that is the same in every evaluation.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -19,13 +20,25 @@ class SparseTerm {
   // row, column: from 0; an entry with a negative one (the ground, a structural zero) is left out.
   void add(int row, int column, Real value) {
     if (row < 0 || column < 0) return;
-    if (recording_) {
-      rows_.push_back(row);
-      columns_.push_back(column);
-      values_.push_back(value);
-    } else {
+    if (recording_)
+      record(row, column, value);
+    else
       values_[cursor_++] = value;
+  }
+
+  // The same for all pairs (coordinate[i], coordinate[j]) and value(i, j), row by row; none is negative.
+  template <class Value>
+  void add_block(std::span<const int> coordinate, const Value& value) {
+    const std::size_t n = coordinate.size();
+    if (recording_) {
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) record(coordinate[i], coordinate[j], value(i, j));
+      return;
     }
+    Real* out = values_.data() + cursor_;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) *out++ = value(i, j);
+    cursor_ += n * n;
   }
 
   std::size_t size() const { return values_.size(); }
@@ -47,6 +60,13 @@ class SparseTerm {
   }
 
  private:
+  // Not inlined: add() then is, in the loops of every step.
+  [[gnu::noinline]] void record(int row, int column, Real value) {
+    rows_.push_back(row);
+    columns_.push_back(column);
+    values_.push_back(value);
+  }
+
   std::vector<int> rows_, columns_;
   std::vector<Real> values_;
   std::size_t cursor_ = 0;

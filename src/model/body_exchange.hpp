@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
@@ -23,20 +24,32 @@ struct PointMotion {
 };
 
 inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
+  if (offset.x == 0 && offset.y == 0) return {body.position + offset, body.velocity};  // most shapes
   const Real c = std::cos(body.angle), s = std::sin(body.angle);
   const Vec3 arm{c * offset.x - s * offset.y, s * offset.x + c * offset.y, offset.z};
   const Vec3 spin{-body.angular_velocity * arm.y, body.angular_velocity * arm.x, 0};
   return {body.position + arm, body.velocity + spin};
 }
 
-// Contact wrench on one body and minus its derivatives with respect to the body's own motion.
+// Contact wrench on one body.
 struct BodyWrench {
   Vec3 force;   // [N]
   Vec3 torque;  // about the centre of mass [N m]
-  // Symmetric 6x6 blocks, rows and columns (x, y, z, rx, ry, rz), upper triangle row by row:
-  // -d(force, torque)/d(position, rotation) and -d(force, torque)/d(velocity, angular velocity).
+};
+
+// Minus the derivatives of the contact wrench on a body with respect to its own motion. Symmetric 6x6 blocks,
+// rows and columns (x, y, z, rx, ry, rz), upper triangle row by row: -d(force, torque)/d(position, rotation)
+// and -d(force, torque)/d(velocity, angular velocity).
+struct WrenchStiffness {
+  int body = 0;
   std::array<Real, 21> stiffness{};  // [N/m, N/rad, N m/rad]
   std::array<Real, 21> damping{};    // the same times [s]
+};
+
+// What a Newton iteration of the bodies needs of their contacts.
+struct ContactWrenches {
+  std::vector<BodyWrench> wrench;          // per body
+  std::vector<WrenchStiffness> stiffness;  // of bodies that are touched, no body twice
 };
 
 // Slot of (row, column), row <= column, in the packed upper triangle of a 6x6 block.
@@ -52,15 +65,17 @@ inline void add_point_block(std::array<Real, 21>& packed, const Sym3& block, Vec
   }
 }
 
-// Adds a force that acts at `arm` [m] from the centre of mass, with minus its derivatives with respect to the
-// point's position and velocity. The change of the arm under the force itself is left out: it is not
-// definite.
-inline void add_point_force(BodyWrench& wrench, Vec3 force, Vec3 arm, const Sym3& stiffness,
-                            const Sym3& damping) {
+// Adds a force that acts at `arm` [m] from the centre of mass.
+inline void add_point_force(BodyWrench& wrench, Vec3 force, Vec3 arm) {
   wrench.force += force;
   wrench.torque += cross(arm, force);
-  add_point_block(wrench.stiffness, stiffness, arm);
-  add_point_block(wrench.damping, damping, arm);
+}
+
+// Adds minus that force's derivatives with respect to the point's position and velocity. The change of the
+// arm under the force itself is left out: it is not definite.
+inline void add_point_stiffness(WrenchStiffness& sum, Vec3 arm, const Sym3& stiffness, const Sym3& damping) {
+  add_point_block(sum.stiffness, stiffness, arm);
+  add_point_block(sum.damping, damping, arm);
 }
 
 }  // namespace scree

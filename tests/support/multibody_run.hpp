@@ -69,8 +69,10 @@ inline Model paper_net(Real damping = 100) {
 class MultibodyRun {
  public:
   explicit MultibodyRun(const Model& model, Real tolerance = 1e-10)
-      : multibody((petsc(), model)), tolerance_(tolerance), wrench_(model.bodies.size()) {
-    state = multibody.initial_state(wrench_);
+      : multibody((petsc(), model)),
+        tolerance_(tolerance),
+        contacts_{std::vector<BodyWrench>(model.bodies.size()), {}} {
+    state = multibody.initial_state(contacts_.wrench);
   }
 
   // One step of length h; throws if Newton needs more than 20 iterations.
@@ -82,11 +84,11 @@ class MultibodyRun {
       if (++iteration > 20) {
         throw std::runtime_error("Newton did not converge at t = " + std::to_string(time));
       }
-      norms = multibody.correct(wrench_);
+      norms = multibody.correct(contacts_);
     } while (norms.residual > tolerance_ || norms.correction > tolerance_);
     most_iterations = std::max(most_iterations, iteration);
     iterations += iteration;
-    multibody.accept(state, wrench_);
+    multibody.accept(state, contacts_.wrench);
     ++steps_;
     time = start_time_ + steps_ * h;
   }
@@ -108,7 +110,7 @@ class MultibodyRun {
 
  private:
   Real tolerance_;
-  std::vector<BodyWrench> wrench_;
+  ContactWrenches contacts_;
   Real start_time_ = 0;
   int steps_ = 0;
 };

@@ -60,14 +60,15 @@ Real difference(const std::vector<ParticleRecord>& a, const std::vector<Particle
 Real allowed(const BoxCase& box) { return box.exponent == 1 ? 0 : kRoundOff; }
 
 void check_wrenches(Pair& pair, Real tolerance) {
-  std::vector<BodyWrench> step[2], end[2];
+  ContactWrenches step[2];
+  std::vector<BodyWrench> end[2];
   for (int k = 0; k < 2; ++k) {
-    step[k].resize(pair.model.bodies.size()), end[k].resize(pair.model.bodies.size());
+    step[k].wrench.resize(pair.model.bodies.size()), end[k].resize(pair.model.bodies.size());
     (k == 0 ? pair.cpu : pair.cuda)->reduce_wrench(step[k], end[k]);
   }
   for (std::size_t b = 0; b < pair.model.bodies.size(); ++b) {
-    CHECK(difference(step[0][b].force, step[1][b].force) <= tolerance);
-    CHECK(difference(step[0][b].torque, step[1][b].torque) <= tolerance);
+    CHECK(difference(step[0].wrench[b].force, step[1].wrench[b].force) <= tolerance);
+    CHECK(difference(step[0].wrench[b].torque, step[1].wrench[b].torque) <= tolerance);
     CHECK(difference(end[0][b].force, end[1][b].force) <= tolerance);
   }
 }

@@ -44,12 +44,13 @@ Model touched_body(int dimension) {
 }
 
 // Force and torque of the step's wrench as one row of six.
-std::array<Real, 6> wrench_at(LoadedBox& box, const BodyMotion& motion, BodyWrench& wrench) {
-  std::vector<BodyWrench> step(1), end(1);
+std::array<Real, 6> wrench_at(LoadedBox& box, const BodyMotion& motion, ContactWrenches& step) {
+  std::vector<BodyWrench> end(1);
+  step.wrench.resize(1);
   box.backend->place_bodies(std::vector<BodyMotion>{motion});
   box.backend->contact_force();
   box.backend->reduce_wrench(step, end);
-  wrench = step[0];
+  const BodyWrench& wrench = step.wrench[0];
   return {wrench.force.x, wrench.force.y, wrench.force.z, wrench.torque.x, wrench.torque.y, wrench.torque.z};
 }
 
@@ -74,8 +75,10 @@ TEST_CASE("the wrench's blocks are minus its derivatives") {
   for (const int dimension : {2, 3}) {
     LoadedBox box(touched_body(dimension));
     box.backend->begin_step(1e-4);
-    BodyWrench wrench, unused;
-    wrench_at(box, box.motion[0], wrench);
+    ContactWrenches contacts, unused;
+    wrench_at(box, box.motion[0], contacts);
+    REQUIRE(contacts.stiffness.size() == 1);
+    const WrenchStiffness blocks = contacts.stiffness[0];
     for (const int column : kColumns) {
       if (dimension == 2 && column == 2) continue;
       CAPTURE(dimension, column);
@@ -88,8 +91,8 @@ TEST_CASE("the wrench's blocks are minus its derivatives") {
         const auto r = static_cast<std::size_t>(row);
         CAPTURE(row);
         const Real stiffness = (down[r] - up[r]) / (2 * dx), damping = (slower[r] - faster[r]) / (2 * dv);
-        CHECK(block(wrench.stiffness, row, column) == Approx(stiffness).margin(kGeometric * kStiffness));
-        CHECK(block(wrench.damping, row, column) == Approx(damping).margin(kGeometric * kDamping));
+        CHECK(block(blocks.stiffness, row, column) == Approx(stiffness).margin(kGeometric * kStiffness));
+        CHECK(block(blocks.damping, row, column) == Approx(damping).margin(kGeometric * kDamping));
       }
     }
   }
@@ -102,14 +105,14 @@ TEST_CASE("a point's block becomes the block of its body for every rigid motion"
     Sym3 stiffness;
     for (int k = 0; k < 3; ++k) stiffness += outer(random.uniform(), vector());
     const Vec3 arm = vector(), shift = vector(), turn = vector();
-    BodyWrench wrench;
-    add_point_force(wrench, {}, arm, stiffness, {});
+    WrenchStiffness blocks;
+    add_point_stiffness(blocks, arm, stiffness, {});
     const Vec3 force = stiffness * (shift + cross(turn, arm)), torque = cross(arm, force);
     const Real motion[6] = {shift.x, shift.y, shift.z, turn.x, turn.y, turn.z};
     const Real expected[6] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
     for (int row = 0; row < 6; ++row) {
       Real sum = 0;
-      for (int column = 0; column < 6; ++column) sum += block(wrench.stiffness, row, column) * motion[column];
+      for (int column = 0; column < 6; ++column) sum += block(blocks.stiffness, row, column) * motion[column];
       CHECK(sum == Approx(expected[row]).margin(1e-12));
     }
   }

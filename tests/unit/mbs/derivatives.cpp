@@ -214,7 +214,7 @@ TEST_CASE("Newton's matrix is the derivative of the residual, contact included")
   constexpr Real kStep = 0.02;
 
   // A contact of body 1 with a plane: a linear spring and damper along n at an arm from its centre.
-  std::vector<BodyWrench> wrench(2);
+  ContactWrenches contacts{std::vector<BodyWrench>(2), {}};
   const Vec3 normal{0.6, 0.8, 0}, arm{0.03, -0.04, 0};
   const Sym3 stiffness = outer(300, normal), damping = outer(5, normal);
   const auto residual_at = [&](const std::vector<Real>& unknowns) {
@@ -228,9 +228,11 @@ TEST_CASE("Newton's matrix is the derivative of the residual, contact included")
     const Vec3 moved{q[3] - arm.y * q[5], q[4] + arm.x * q[5], 0},
         rate{v[3] - arm.y * v[5], v[4] + arm.x * v[5], 0};
     const Vec3 force = -(stiffness * moved) - damping * rate;
-    wrench[1] = {};
-    add_point_force(wrench[1], force, arm, stiffness, damping);
-    probe.system.set_wrenches(wrench);
+    contacts.wrench[1] = {};
+    add_point_force(contacts.wrench[1], force, arm);
+    contacts.stiffness = {{1}};
+    add_point_stiffness(contacts.stiffness[0], arm, stiffness, damping);
+    probe.system.set_contacts(contacts);
     method.evaluate_residual();
     return method.residual();
   };

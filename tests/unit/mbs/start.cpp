@@ -167,22 +167,23 @@ TEST_CASE(
     "a wrench that is not a number stops the step by the body's name, and the step can be taken again") {
   petsc();
   Multibody multibody(closed_chain());
-  std::vector<BodyWrench> wrench(2);
-  MultibodyState state = multibody.initial_state(wrench);
+  ContactWrenches contacts{std::vector<BodyWrench>(2), {}};
+  MultibodyState state = multibody.initial_state(contacts.wrench);
   const MultibodyState before = state;
   multibody.predict(state, 0, 1e-3);
-  wrench[1].force.x = std::numeric_limits<Real>::quiet_NaN();
-  CHECK(contains(message_of<SimulationError>([&] { multibody.correct(wrench); }), "body 'two' (id 1)"));
-  wrench[1] = {};
-  wrench[0].stiffness[packed6(0, 0)] = std::numeric_limits<Real>::quiet_NaN();
+  contacts.wrench[1].force.x = std::numeric_limits<Real>::quiet_NaN();
+  CHECK(contains(message_of<SimulationError>([&] { multibody.correct(contacts); }), "body 'two' (id 1)"));
+  contacts.wrench[1] = {};
+  contacts.stiffness.resize(1);  // of body 0
+  contacts.stiffness[0].stiffness[packed6(0, 0)] = std::numeric_limits<Real>::quiet_NaN();
   multibody.predict(state, 0, 1e-3);
-  CHECK(contains(message_of<SimulationError>([&] { multibody.correct(wrench); }),
+  CHECK(contains(message_of<SimulationError>([&] { multibody.correct(contacts); }),
                  "not finite at body 'one' (id 0)"));
   CHECK(state.position == before.position);
-  wrench[0] = {};
+  contacts.stiffness.clear();
   multibody.predict(state, 0, 1e-3);
-  for (int i = 0; i < 5; ++i) multibody.correct(wrench);
-  CHECK(multibody.correct(wrench).residual < 1e-12);
+  for (int i = 0; i < 5; ++i) multibody.correct(contacts);
+  CHECK(multibody.correct(contacts).residual < 1e-12);
 }
 
 TEST_CASE("PETSc's options: words that are none, unused ones, packages") {

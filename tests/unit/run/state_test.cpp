@@ -42,7 +42,7 @@ State awkward_state() {
   for (std::vector<Real>* v : {&s.bodies.position, &s.bodies.velocity, &s.bodies.acceleration,
                                &s.bodies.multipliers, &s.bodies.force, &s.bodies.applied})
     for (int k = 0; k < 6; ++k) v->push_back(n.real());
-  for (int b = 0; b < 2; ++b) s.bodies.wrench.push_back({n.vector(), n.vector(), {}, {}});
+  for (int b = 0; b < 2; ++b) s.bodies.wrench.push_back({n.vector(), n.vector()});
   s.bodies.dissipated = n.real(), s.bodies.integrator_loss = n.real(), s.bodies.driver_work = n.real();
   for (int i = 0; i < 9; ++i)
     s.particles.push_back({n.integer(),
