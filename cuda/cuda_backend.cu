@@ -113,14 +113,13 @@ void CudaBackend::find_shape_contacts() {
   if (shape_items() == 0) return;
   const ShapePlaces places{now_.position.data() + layout_.first_shape, now_.velocity.data() + layout_.first_shape};
   kernels_->shapes(device(), views(), places, shape_items(), h_shape_contacts_.data());
-  fetch_shape_contacts(stream_);
+  fetch_shape_contacts(ContactSpan::instant, stream_);
 }
 
 // Waits for the stream.
-void CudaBackend::fetch_shape_contacts(cudaStream_t stream) {
-  const auto n = static_cast<std::size_t>(shape_items());
+void CudaBackend::fetch_shape_contacts(ContactSpan span, cudaStream_t stream) {
   wait_for(stream);
-  std::copy(h_shape_contacts_.data(), h_shape_contacts_.data() + n, side_.contacts().begin());
+  side_.take_contacts(span, {h_shape_contacts_.data(), static_cast<std::size_t>(shape_items())});
 }
 
 void CudaBackend::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {

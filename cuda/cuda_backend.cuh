@@ -136,7 +136,7 @@ class CudaBackend : public Backend {
   void put_shapes(ParticleArrays& arrays);
   const Vec4* stage_shapes();
   void find_shape_contacts();
-  void fetch_shape_contacts(cudaStream_t stream);
+  void fetch_shape_contacts(ContactSpan span, cudaStream_t stream);
   void report_not_finite(const Vec3* force) const;
 
   // Parts of the implicit step.

@@ -53,7 +53,7 @@ bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) 
     places_copied_.hold(stream_);
     if (keep_open) queue_steps(h, 1);
     if (idle_work_) idle_work_();
-    fetch_shape_contacts(shape_stream_);
+    fetch_shape_contacts(ContactSpan::instant, shape_stream_);
     const VerletControl& control = h_results_[0].control;
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
     if (before.expired) {  // what was queued has done nothing
@@ -86,7 +86,7 @@ void CudaBackend::shape_contacts() {
   places_copied_.record(shape_stream_);
   kernels_->shapes({shape_stream_}, views(position, velocity), {shape_places_.data(), shape_places_.data() + n},
                    shape_items(), h_shape_contacts_.data());
-  fetch_shape_contacts(shape_stream_);
+  fetch_shape_contacts(ContactSpan::instant, shape_stream_);
 }
 
 }  // namespace scree

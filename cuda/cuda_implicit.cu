@@ -198,7 +198,7 @@ ParticleNorms CudaBackend::contact_force() {
   }
   if (shape_items() > 0) {
     kernels_->shapes(device(), views(), shape_items(), r.start, h_shape_contacts_.data());
-    fetch_shape_contacts(stream_);
+    fetch_shape_contacts(ContactSpan::step, stream_);
   }
   if (line_search_.is_open())
     queue_sums(SlopeItem{residual_.data(), correction_.data()}, &Results::slope);

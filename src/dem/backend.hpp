@@ -109,8 +109,8 @@ class Backend {
   virtual ParticleNorms contact_force() = 0;
   // The particle with the largest residual in the last contact_force; -1 without particles.
   virtual GlobalId worst_particle() const = 0;
-  // Contact wrenches on the bodies: what an implicit step needs, and at the end of a step; equal unless
-  // contacts open or close within it. On rank 0; zero elsewhere.
+  // Contact wrenches on the bodies: after contact_force, what the implicit step needs, and at its end (equal
+  // unless contacts open or close within it); else, where the shapes are. On rank 0; zero elsewhere.
   virtual void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) = 0;
   virtual void reduce_wrench(std::vector<BodyWrench>& end) = 0;
   virtual ParticleCorrection particle_correct() = 0;

@@ -31,8 +31,8 @@ struct ExactSym3 {
 // What every reader wants comes first.
 struct ShapeForces {  // of no meaning without contacts
   std::int64_t contacts = 0;
-  ExactVec3 end;                 // at the end of the step [N]
-  ExactVec3 step;                // for the step: see StepContact [N]
+  ExactVec3 end;                 // at the end of the step, or at an instant [N]
+  ExactVec3 step;                // for the step, of its contacts alone: see StepContact [N]
   ExactSym3 stiffness, damping;  // -d(force)/d(position), -d(force)/d(velocity) of the centre [N/m], [N s/m]
 
   SCREE_HD void add(const ShapeForces& part) {
@@ -50,14 +50,20 @@ struct ShapeContact {
   ShapeForces forces;
 };
 
-// Puts a sum where it belongs; most shapes touch nothing, and their forces are not written.
-SCREE_HD void store(const ShapeContact& sum, ShapeContact& out) {
-  if (sum.forces.contacts > 0) {
-    out = sum;
-    return;
-  }
-  out.forces.contacts = 0;
-  out.step_loss = out.end_loss = out.energy = out.pairs = 0;
+// What the contacts of shapes are found for: an instant, or an implicit step.
+enum class ContactSpan { instant, step };
+
+// Puts a sum where it belongs, but for what has no meaning: the forces of a shape that touches nothing, like most, and
+// at an instant what is a step's. A GPU writes this to the host's memory.
+SCREE_HD void store(ContactSpan span, const ShapeContact& sum, ShapeContact& out) {
+  out.step_loss = sum.step_loss, out.end_loss = sum.end_loss;
+  out.energy = sum.energy, out.pairs = sum.pairs;
+  out.forces.contacts = sum.forces.contacts;
+  if (sum.forces.contacts == 0) return;
+  if (span == ContactSpan::step)
+    out.forces = sum.forces;
+  else
+    out.forces.end = sum.forces.end;
 }
 
 // Where the shape items are, indexed from first_shape.
@@ -91,7 +97,7 @@ struct ShapeStepItem {
       add(c, normal, shape_share(j, contacts.in.first_shape));
     });
     contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
-    store(sum, out[shape]);
+    store(ContactSpan::step, sum, out[shape]);
   }
 };
 
@@ -137,8 +143,8 @@ struct ShapeContactItem {
       const Overlap o = wall_overlap(p, wall);
       if (o.overlap > 0) add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
     }
-    sum.forces.step = sum.forces.end, sum.step_loss = sum.end_loss;
-    store(sum, out[shape]);
+    sum.step_loss = sum.end_loss;
+    store(ContactSpan::instant, sum, out[shape]);
   }
 };
 

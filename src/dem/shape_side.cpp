@@ -105,6 +105,10 @@ void ShapeSide::reduce(const ItemLayout& layout, const Ranks& ranks, std::vector
   });
 }
 
+void ShapeSide::take_contacts(ContactSpan span, std::span<const ShapeContact> found) {
+  for (std::size_t s = 0; s < found.size(); ++s) store(span, found[s], contacts_[s]);
+}
+
 void ShapeSide::book_losses(Real h) {
   Real step_power = 0, end_power = 0;
   for (const ShapeContact& contact : contacts_)
@@ -137,7 +141,7 @@ ShapePack ShapeSide::pack(const ItemLayout& layout, const Ranks& ranks) const {
   }
   pack.force.resize(shapes_.items().size()), pack.contacts.resize(shapes_.items().size());
   for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
-    pack.force[s] = f.step.value();
+    pack.force[s] = f.end.value();
     pack.contacts[s] = static_cast<int>(f.contacts);
   });
   return pack;

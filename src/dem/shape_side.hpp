@@ -45,6 +45,8 @@ class ShapeSide {
   const std::vector<Vec4>& velocity() const { return velocity_; }  // x, y, z, 0
   const std::vector<Vec3>& step() const { return step_; }          // displacement by the last place() [m]
   std::vector<ShapeContact>& contacts() { return contacts_; }      // filled by the backend
+  // The same from memory that a device has written.
+  void take_contacts(ContactSpan span, std::span<const ShapeContact> found);
 
   // reduce_wrench: brings the shapes' contacts() of all ranks to rank 0, one message per rank, and sums them
   // up to the contact wrenches on the bodies for the step and at its end, or at its end alone; on other ranks

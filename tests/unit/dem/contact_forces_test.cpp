@@ -92,10 +92,8 @@ TEST_CASE("the wrench on a body is the sum over its shapes, with their arms") {
     CAPTURE(c.name);
     LoadedBox box(random_box(c, kParticles, 12));
     const BruteContacts contacts = brute_contacts(box);
-    std::vector<BodyWrench> end(box.motion.size()), alone = end;
-    ContactWrenches step{end, {}};
-    box.backend->reduce_wrench(step, end);
-    box.backend->reduce_wrench(alone);
+    std::vector<BodyWrench> end(box.motion.size());
+    box.backend->reduce_wrench(end);
     std::size_t item = kParticles;
     for (std::size_t b = 0; b < box.motion.size(); ++b) {
       Vec3 force, torque;
@@ -106,8 +104,6 @@ TEST_CASE("the wrench on a body is the sum over its shapes, with their arms") {
       }
       CHECK(norm(end[b].force - force) <= kRoundOff * contacts.magnitude);
       CHECK(norm(end[b].torque - torque) <= kRoundOff * contacts.magnitude);
-      CHECK(end[b].force == step.wrench[b].force);  // at one instant nothing opens or closes
-      CHECK((end[b].force == alone[b].force && end[b].torque == alone[b].torque));
     }
   }
 }

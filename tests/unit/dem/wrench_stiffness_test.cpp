@@ -45,11 +45,13 @@ Model touched_body(int dimension) {
 
 // Force and torque of the step's wrench as one row of six.
 std::array<Real, 6> wrench_at(LoadedBox& box, const BodyMotion& motion, ContactWrenches& step) {
-  std::vector<BodyWrench> end(1);
+  std::vector<BodyWrench> end(1), alone(1);
   step.wrench.resize(1);
   box.backend->place_bodies(std::vector<BodyMotion>{motion});
   box.backend->contact_force();
   box.backend->reduce_wrench(step, end);
+  box.backend->reduce_wrench(alone);
+  CHECK((end[0].force == alone[0].force && end[0].torque == alone[0].torque));
   const BodyWrench& wrench = step.wrench[0];
   return {wrench.force.x, wrench.force.y, wrench.force.z, wrench.torque.x, wrench.torque.y, wrench.torque.z};
 }
