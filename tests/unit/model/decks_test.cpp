@@ -1,4 +1,4 @@
-// Every deck in input/ loads, builds and says what METHOD.md's cases say.
+// Every deck in input/ loads, builds and says what the paper's cases say.
 #include <filesystem>
 
 #include "support/catch.hpp"

@@ -31,9 +31,9 @@ Real distance(const SimulationRun& run, const Rows& truth) {
 }  // namespace
 
 TEST_CASE("5.2 at h = 1e-5 follows the truth, and its energy never rises") {
-  // Physical: perturbations grow by 2e3 in the first second (METHOD.md 4).
+  // Physical: perturbations grow by 2e3 in the first second (tests/reference/README.md).
   constexpr Real kPhysical070 = 1e-5, kPhysical080 = 4e-4, kPhysical100 = 5e-3;  // [m]
-  constexpr Real kEnergyRise = 1e-9;                                             // [J], METHOD.md 5
+  constexpr Real kEnergyRise = 1e-9;                                             // [J], of 300 J exchanged
   constexpr Real kBalance = 1e-4;
   const Rows truth = reference_rows("coll52_tensile.csv"),
              energies = reference_rows("coll52_tensile_energy.csv");

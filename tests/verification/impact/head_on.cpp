@@ -109,7 +109,7 @@ TEST_CASE("the adaptive step at its default tolerance keeps the rebound") {
   }
 }
 
-// Step sizes of METHOD.md's table and its rms errors, given to one or two digits.
+// The table of tests/reference/README.md, whose rms errors have one or two digits.
 TEST_CASE("with the force at the end of the step the rebound errs as the paper's method does") {
   constexpr Real kTableDigits = 1;  // of the last digit given: rounding, and another set of phases
   struct Column {
@@ -133,7 +133,7 @@ TEST_CASE("with the force at the end of the step the rebound errs as the paper's
 }
 
 TEST_CASE("resolved contact events keep the rebound at any step") {
-  constexpr Real kPhysical = 2.5e-3;  // of energy-momentum contact at h = 1e-3, METHOD.md 6
+  constexpr Real kPhysical = 2.5e-3;  // a little more than energy-momentum contact at h = 1e-3
   const ReboundError error = fixed_step_error(1e-3, 400, 0, true);
   report("resolved, h = 1e-3", error);
   CHECK(error.largest < kPhysical);

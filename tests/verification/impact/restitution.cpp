@@ -116,7 +116,7 @@ TEST_CASE("restitution and contact time follow the closed forms") {
   }
 }
 
-TEST_CASE("the closed forms give METHOD.md's values") {
+TEST_CASE("the closed forms give known values") {
   const std::array<std::array<Real, 2>, 4> known = {
       {{0.05, 0.854468}, {0.1, 0.729248}, {0.2, 0.526621}, {0.5, 0.163034}}};
   for (const auto& [ratio, restitution] : known)
