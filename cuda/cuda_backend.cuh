@@ -128,9 +128,14 @@ class CudaBackend : public Backend {
   void refresh_ghosts(Vec4* position, Vec4* velocity) {
     halo_.update_motion(device(), position, velocity, owned_);
   }
-  // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.
-  void halo_after_rows() { rows_done_.record(stream_), rows_done_.hold(halo_stream_); }
-  void rows_after_halo() { halo_done_.record(halo_stream_), halo_done_.hold(stream_); }
+  // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse. One rank
+  // alone does not use that stream.
+  void halo_after_rows() {
+    if (!ranks_.alone()) rows_done_.record(stream_), rows_done_.hold(halo_stream_);
+  }
+  void rows_after_halo() {
+    if (!ranks_.alone()) halo_done_.record(halo_stream_), halo_done_.hold(stream_);
+  }
   template <class QueueGhosts, class QueueRows>
   void queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock);
   void put_shapes(ParticleArrays& arrays);

@@ -182,7 +182,8 @@ void CudaBackend::convert_to_mixed(Real h) {
   for (int k = 0; k < 2; ++k) mixed_place_[k].resize(items), mixed_motion_[k].resize(items);
   mixed_fraction_.resize(owned), mixed_rest_.resize(owned);
   quanta_ = make_quantum_grid(builder_.cutoff(list_skin_));
-  for_each(device(), owned_,  // ghosts come with the first step's halo
+  // Ghosts come with the first step's halo.
+  for_each(device(), owned_,
            ToMixedItem{now_.position.data(), now_.velocity.data(), now_.acceleration.data(), mixed_views(), quanta_,
                        subdomain_.box(), h, list_skin_ / 2});
   in_mixed_ = true, mixed_h_ = h;

@@ -34,8 +34,8 @@ struct MotionGhostItem {
   }
 };
 
-// Looks at one halo of every batch of explicit steps: how long it took, and how long the rows that need none left the
-// step waiting for it.
+// Looks at some halos of positions and velocities: one of every batch of explicit steps, those of implicit forces. How long
+// each took, and how long the rows that need none left it waited for.
 class HaloClock {
  public:
   void begin(cudaStream_t halo) { begin_.record(halo); }

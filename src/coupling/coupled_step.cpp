@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -127,14 +128,16 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
       return outcome;
     }
   }
+  MultibodyState end = bodies;
   try {
     check_inside();
+    link_.accept(end);
   } catch (const SimulationError&) {
     undo_step(bodies);
     throw;
   }
   backend_.accept();
-  link_.accept(bodies);
+  bodies = std::move(end);
   ++counts_.steps;
   return outcome;
 }

@@ -58,7 +58,7 @@ struct Leaver {
 // What stands before and after the id of a particle that wrap_if_sound() refuses.
 inline constexpr const char* kUnsoundPosition[] = {
     "stage sort_cells: the position of particle ",
-    " is not finite, or it crossed the whole periodic space in one step"};
+    " is not finite, or it crossed the whole periodic space since the last list"};
 
 // One entry per particle of this rank, any order.
 struct ParticlePack {

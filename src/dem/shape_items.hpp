@@ -53,8 +53,8 @@ struct ShapeContact {
 // What the contacts of shapes are found for: an instant, or an implicit step.
 enum class ContactSpan { instant, step };
 
-// Puts a sum where it belongs, but for what has no meaning: the forces of a shape that touches nothing, like most, and
-// at an instant what is a step's. A GPU writes this to the host's memory.
+// Puts a sum where it belongs, but for what has no meaning: the forces of a shape that touches nothing, like
+// most, and at an instant what is a step's. A GPU writes this to the host's memory.
 SCREE_HD void store(ContactSpan span, const ShapeContact& sum, ShapeContact& out) {
   out.step_loss = sum.step_loss, out.end_loss = sum.end_loss;
   out.energy = sum.energy, out.pairs = sum.pairs;

@@ -65,7 +65,8 @@ class ShapeSide {
   ShapePack pack(const ItemLayout& layout, const Ranks& ranks) const;
 
  private:
-  // A shape that is touched, and what its contacts sum to.
+  // A shape that is touched, and what its contacts sum to; what they have no meaning for at an instant
+  // travels along.
   struct Touched {
     Index shape;
     ShapeForces forces;

@@ -23,7 +23,7 @@ class ForceElement {
 
   // Adds to Q [coordinates]. Returns the size of what it added [J]: a force times `length` [m], or a torque.
   virtual Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) = 0;
-  // Adds -Q_q and -Q_q' [coordinates, coordinates], at the instant of the last add_force().
+  // Adds -Q_q and -Q_q' [coordinates, coordinates]. motion and t: those of the last add_force().
   virtual void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
                                SparseTerm& damping) const = 0;
   virtual void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const = 0;

@@ -42,6 +42,7 @@ class MechanicalSystem {
   virtual int coordinates() const = 0;
   virtual int constraints() const = 0;
 
+  // terms: always the same ones; what is constant is written there once.
   virtual void evaluate(const SystemInstant& at, SystemTerms& terms) = 0;
   // At the instant of the last evaluate().
   virtual void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration,

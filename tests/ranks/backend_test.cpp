@@ -112,11 +112,14 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
         if (k == 12) many.backend->build_list(3 * kSkin, many.timers);  // wider than a cell of the boxes
       }
       CHECK(same(one.records(), many.records()));
-      if (c.exponent == 1 || integrator == ParticleIntegrator::hht) {
-        std::vector<BodyWrench> end_a(model.bodies.size()), end_b = end_a;
+      std::vector<BodyWrench> end_a(model.bodies.size()), end_b = end_a;
+      if (integrator == ParticleIntegrator::hht) {
         ContactWrenches step_a{end_a, {}}, step_b = step_a;
         one.backend->reduce_wrench(step_a, end_a), many.backend->reduce_wrench(step_b, end_b);
         if (world.is_root()) CHECK((same(step_a, step_b) && same(end_a, end_b)));
+      } else if (c.exponent == 1) {
+        one.backend->reduce_wrench(end_a), many.backend->reduce_wrench(end_b);
+        if (world.is_root()) CHECK(same(end_a, end_b));
       }
       CHECK(world.sum(many.backend->balance().halo.owned) == kParticles);
       const ParticleLedger p = one.backend->ledger(0), q = many.backend->ledger(0);

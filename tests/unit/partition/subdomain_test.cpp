@@ -89,6 +89,15 @@ TEST_CASE("a particle's position is sound unless it is not finite or crossed the
         for (const bool drifts : {false, true}) CHECK_FALSE(sound(moved, drifts));
     }
   }
+  // A side need not be a multiple of the quantum: on it a point may lie outside by round-off.
+  for (const Real side : {0.17, 0.1, 0.3, 1e-3}) {
+    const Subdomain uneven(space_of(2, {side, 0, 0}, {1, 1, 0}, Boundary::periodic));
+    for (const Real x : {side, 1.0}) {
+      ImageCount image;
+      Vec3 p = snap({x, 0.5, 0}, uneven.snap_constant());
+      CHECK(wrap_if_sound({side, 0, 0}, uneven.period(), false, p, image));
+    }
+  }
   const Space open = space_of(3, {0, 0, 0}, {1, 1, 1}, Boundary::open);
   ImageCount none;
   Vec3 far{1e305, 0.5, 0.5}, nowhere{0.5, std::nan(""), 0.5};

@@ -1,0 +1,105 @@
+"""What the tests of the program under mpirun share."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+try:
+    import h5py
+except ImportError:  # snapshots are then not compared
+    h5py = None
+
+SCREE = os.environ["SCREE"]
+MPIEXEC = os.environ.get("MPIEXEC", "mpirun")
+BACKEND = os.environ.get("SCREE_TEST_BACKEND", "cpu")
+HERE = pathlib.Path(__file__).resolve().parent
+INPUT = HERE.parent.parent / "input"
+LIMIT = 300  # [s] for any one run: past it, the run hangs
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_rmaps_base_oversubscribe="1")
+
+DONE, BAD_INPUT, FAILED, IO_FAILED, STOPPED = 0, 2, 3, 4, 5
+
+EXPLICIT = ["integrator.particles=velocity-verlet"]
+IMPLICIT = ["integrator.particles=hht"]
+DAM = [HERE / "dam_break.toml"]
+
+# Alone in a periodic box, far from each other: they keep their velocity, digit for digit.
+LONELY = """[space]
+dimension = 2
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+x_min = "periodic"
+x_max = "periodic"
+y_min = "periodic"
+y_max = "periodic"
+
+[time]
+end = 1.0
+step = 1e-3
+
+[[contact.pairs]]
+stiffness = 1e5
+
+[[particles]]
+name = "two"
+kind = "row"
+count = 2
+origin = [0.25, 0.5]
+spacing = [0.5, 0.0]
+radius = 0.05
+mass = 1.0
+velocity = [0.0, 0.123456789]
+"""
+VELOCITY = 0.123456789
+
+
+class RanksTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="scree_ranks_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def command(self, ranks, deck, output, overrides, *words):
+        settings = [word for override in overrides for word in ("--set", override)]
+        return [MPIEXEC, "-n", str(ranks), SCREE, "run", str(deck), "--backend", BACKEND, "--output",
+                str(self.folder / output), *settings, *map(str, words)]
+
+    def run_deck(self, code, ranks, deck, output, overrides=(), *words):
+        result = subprocess.run(self.command(ranks, deck, output, overrides, *words), cwd=self.folder, env=ENVIRONMENT,
+                                capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def record(self, output):
+        return json.loads((self.folder / output / "run_record.json").read_text())
+
+    def hash(self, output):
+        return self.record(output)["run"]["state_hash"]
+
+    def bytes_of(self, output, name):
+        return (self.folder / output / name).read_bytes()
+
+    def datasets(self, output, name):
+        """Contents and layout of an HDF5 file, without the times of day that are in it; None without h5py or file."""
+        path = self.folder / output / name
+        if h5py is None or not path.exists():
+            return None
+        contents = {}
+
+        def add(at, item):
+            if isinstance(item, h5py.Dataset):
+                value = item[()] if item.shape is not None else b""
+                contents[at] = (item.dtype, item.shape, item.chunks, item.compression, item.compression_opts,
+                                dict(item.attrs), value if isinstance(value, bytes) else value.tobytes())
+        with h5py.File(path) as file:
+            file.visititems(add)
+        return contents

@@ -1,0 +1,263 @@
+"""Failures and signals under mpirun end all ranks, with one message and without losing what was written.
+Usage: SCREE=path/to/scree MPIEXEC=path/to/mpirun python3 test_failures.py
+on GPUs: SCREE_TEST_BACKEND=cuda HOLD_DEVICE_MEMORY=path/to/hold_device_memory and the same"""
+
+import math
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import unittest
+
+from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, IO_FAILED, LIMIT, LONELY, MPIEXEC,
+                      SCREE, STOPPED, VELOCITY, RanksTest, h5py)
+
+HOLD_DEVICE_MEMORY = os.environ.get("HOLD_DEVICE_MEMORY", "hold_device_memory")
+
+
+def gpus():
+    """How many the driver lists."""
+    if shutil.which("nvidia-smi") is None:
+        return 0
+    return subprocess.run(["nvidia-smi", "-L"], capture_output=True, text=True).stdout.count("GPU ")
+
+
+class FailureTest(RanksTest):
+    def assert_one_message(self, result, *words):
+        self.assertEqual(result.stderr.count("error:"), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+    def test_bad_input_is_reported_once(self):
+        deck = self.write("bad.toml", LONELY.replace("step = 1e-3", "stp = 1e-3"))
+        self.assert_one_message(self.run_deck(BAD_INPUT, 2, deck, "out"), "time.stp", "did you mean")
+        self.assert_one_message(self.run_deck(IO_FAILED, 2, self.folder / "none.toml", "out"), "none.toml")
+
+    def test_bad_input_that_only_rank_0_sees_is_reported_once(self):
+        self.write("out", "a file where the results should go")
+        deck = self.write("deck.toml", LONELY)
+        self.assert_one_message(self.run_deck(IO_FAILED, 3, deck, "out"), "output folder")
+        result = self.run_deck(BAD_INPUT, 2, deck, "results", (), "--", "no_option")
+        self.assert_one_message(result, "no_option")
+
+    def test_subdomains_narrower_than_the_halo_are_refused(self):
+        deck = self.write("deck.toml", LONELY.replace("periodic", "wall"))
+        result = self.run_deck(BAD_INPUT, 4, deck, "out", ["contact.skin=0.6"])
+        self.assert_one_message(result, "mpirun -n 4", "narrower", "only")
+
+    def test_ranks_without_particles_are_fine(self):
+        deck = self.write("deck.toml", LONELY)
+        for ranks in (1, 8):
+            self.run_deck(DONE, ranks, deck, f"out {ranks}")
+        self.assertEqual(self.hash("out 8"), self.hash("out 1"))
+
+    def test_a_value_that_is_not_finite_on_one_rank_ends_all(self):
+        light = LONELY.replace("count = 2", "count = 1")
+        table = LONELY[LONELY.index("[[particles]]"):]
+        for old, new in (("two", "heavy"), ("count = 2", "count = 1"), ("origin = [0.25", "origin = [0.75"),
+                         ("mass = 1.0", "mass = 1e308")):
+            table = table.replace(old, new)
+        deck = self.write("deck.toml", f"gravity = [0.0, 100.0]\n{light}\n{table}")  # 1e310 N
+        for how in (IMPLICIT, EXPLICIT):
+            with self.subTest(how=how):
+                result = self.run_deck(FAILED, 2, deck, "out", how)
+                # Without a list that covers its motion, an implicit step does not come to look at forces.
+                words = ("particle 1", "not finite") if how == EXPLICIT else ("stage neighbors",)
+                self.assert_one_message(result, *words)
+                self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
+
+    def test_a_damaged_checkpoint_is_refused(self):
+        def ids(*both):  # with no image counts, and not drifting
+            return b"".join(struct.pack("<5q", one, 0, 0, 0, 0) for one in both)
+        speed = struct.pack("<d", VELOCITY)
+        format_name = b"scree checkpoint 2"
+        damages = {
+            "ids must increase": (ids(0, 1), ids(0, 0)), "comes after particle 1": (ids(0, 1), ids(1, 0)),
+            "particle id -1": (ids(0, 1), ids(-1, 1)), "particle id 2": (ids(0, 1), ids(0, 2)),
+            "particle 0 is not finite": (speed, struct.pack("<d", math.nan)),
+        }
+        deck = self.write("deck.toml", LONELY)
+        self.run_deck(DONE, 1, deck, "start", [*EXPLICIT, "time.end=0.1"])
+        content = (self.folder / "start" / "checkpoint_end.h5").read_bytes()
+        damaged = self.folder / "damaged.h5"
+        for ranks in (1, 3):
+            for words, (healthy, ill) in damages.items():
+                with self.subTest(ranks=ranks, words=words):
+                    self.assertIn(healthy, content)
+                    damaged.write_bytes(content.replace(healthy, ill, 1))
+                    result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
+                    self.assert_one_message(result, "damaged.h5: not a valid checkpoint: ", words)
+        self.assertEqual(content.count(format_name), 1)
+        for number, words in ((b"1", "of an older version"), (b"3", "of a newer version")):
+            with self.subTest(words=words):
+                damaged.write_bytes(content.replace(format_name, format_name[:-1] + number))
+                result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)
+                self.assert_one_message(result, "damaged.h5", words)
+
+    def test_a_restart_with_an_absurd_velocity_fails(self):
+        drifting = LONELY.replace('"periodic"', '"open"').replace("dimension = 2", 'dimension = 2\nleaving = "drift"')
+        cases = {"periodic.toml": (LONELY, EXPLICIT, ("stage sort_cells", "particle 1 ", "crossed the whole periodic")),
+                 "open.toml": (drifting, EXPLICIT, ("stage output", "energy of the particles is not finite")),
+                 "implicit.toml": (LONELY, IMPLICIT, ("stage neighbors",))}
+        for name, (text, how, words) in cases.items():
+            deck = self.write(name, text)
+            self.run_deck(DONE, 1, deck, "start", [*how, "time.end=0.1"])
+            content = (self.folder / "start" / "checkpoint_end.h5").read_bytes()
+            speed = content.rindex(struct.pack("<d", VELOCITY))
+            absurd = self.folder / "absurd.h5"
+            absurd.write_bytes(content[:speed] + struct.pack("<d", 1e308) + content[speed + 8:])
+            for ranks in (1, 3):
+                with self.subTest(name=name, ranks=ranks):
+                    result = self.run_deck(FAILED, ranks, deck, "out", how, "--restart", absurd)
+                    self.assert_one_message(result, *words)
+                    self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
+
+    @unittest.skipIf(BACKEND == "cuda", "the driver needs more address space than the limit")
+    def test_one_rank_without_memory_ends_all(self):
+        many = LONELY
+        for old, new in (("periodic", "wall"), ("max = [1.0, 1.0]", "max = [130.0, 130.0]"), ('"row"', '"lattice"'),
+                         ("count = 2", "size = [1000, 1000]"), ("spacing = [0.5, 0.0]", "spacing = [0.12, 0.12]")):
+            many = many.replace(old, new)
+        deck = self.write("deck.toml", many)
+        run = [SCREE, "run", str(deck), "--output", str(self.folder / "out"), "--set", EXPLICIT[0]]
+        short = f"ulimit -v 640000; exec {' '.join(run)}"  # [KiB]
+        result = subprocess.run([MPIEXEC, "-n", "1", *run, ":", "-n", "1", "bash", "-c", short], cwd=self.folder,
+                                env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(result.returncode, BAD_INPUT, result.stdout + result.stderr)
+        self.assertIn("not enough memory: a run of 1000000 particles takes about 0.6 GB on 2 ranks, 0.3 GB on each",
+                      result.stderr)
+
+    @unittest.skipUnless(BACKEND == "cuda" and gpus() > 1, "needs two GPUs")
+    def test_a_rank_without_device_memory_ends_all(self):
+        crowd = LONELY
+        for old, new in (("dimension = 2", "dimension = 3"), ("min = [0.0, 0.0]", "min = [0.0, 0.0, 0.0]"),
+                         ("max = [1.0, 1.0]", "max = [100.0, 100.0, 100.0]"), ('"row"', '"lattice"'),
+                         ("count = 2", "size = [100, 100, 100]"), ("origin = [0.25, 0.5]", "origin = [0.5, 0.5, 0.5]"),
+                         ("spacing = [0.5, 0.0]", "spacing = [1.0, 1.0, 1.0]"), ("radius = 0.05", "radius = 0.3"),
+                         ("velocity = [0.0, 0.123456789]", "random_velocity = 1.0"), ("end = 1.0", "end = 1e4"),
+                         ('y_max = "periodic"', 'y_max = "periodic"\nz_min = "periodic"\nz_max = "periodic"')):
+            self.assertIn(old, crowd)
+            crowd = crowd.replace(old, new)
+        deck = self.write("deck.toml", crowd)
+        # Memory that a checkpoint wants for a while, and memory that a list wants that has more than the one before.
+        for interval in ("0.2", "1e3"):
+            with self.subTest(checkpoint_interval=interval):
+                settings = [*EXPLICIT, f"output.checkpoint_interval={interval}", "output.history_interval=0.2"]
+                run = subprocess.Popen(self.command(2, deck, interval, settings), cwd=self.folder, env=ENVIRONMENT,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                self.addCleanup(run.kill)
+                history = self.folder / interval / "history.h5"
+                deadline = time.monotonic() + LIMIT
+                while not history.exists():
+                    self.assertLess(time.monotonic(), deadline)
+                    self.assertIsNone(run.poll())
+                    time.sleep(0.05)
+                with subprocess.Popen([HOLD_DEVICE_MEMORY, "1"], stdout=subprocess.PIPE, text=True) as hold:
+                    self.addCleanup(hold.kill)
+                    self.assertEqual(hold.stdout.readline(), "held\n")
+                    message = run.communicate(timeout=LIMIT)[1]
+                    hold.kill()
+                self.assertEqual(run.returncode, FAILED, message)
+                self.assertEqual(message.count("error:"), 1, message)
+                self.assertIn("device memory", message)
+        reached = self.record("0.2")["measures"]["simulated_time"]
+        self.run_deck(DONE, 2, deck, "on", [*EXPLICIT, f"time.end={reached + 1}"], "--restart",
+                      self.folder / "0.2" / "checkpoint.h5")
+
+    def test_check_says_what_is_per_rank(self):
+        words = [MPIEXEC, "-n", "3", SCREE, "check", str(DAM[0])]
+        text = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT, check=True).stdout
+        self.assertIn("particles      500 on 3 ranks together", text)
+        self.assertRegex(text, r"memory  +about [0-9.]+ MB of state and scratch on all ranks together, [0-9.]+ MB on rank 0")
+        self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU of each rank \(estimate\)")
+
+    def test_a_full_disk_ends_all_with_one_message(self):
+        settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.05", "output.snapshot_interval=0.005"]
+        words = " ".join(f"'{word}'" for word in self.command(1, DAM[0], "out", settings)[3:])
+        limited = f"ulimit -f 300; trap '' XFSZ; exec {words}"  # [KiB], more than one snapshot
+        both = [MPIEXEC, "-n", "1", "bash", "-c", limited, ":", "-n", "1", "bash", "-c", limited]
+        result = subprocess.run(both, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(result.returncode, IO_FAILED, result.stdout + result.stderr)
+        self.assert_one_message(result, "particles.vtkhdf.spare: cannot")
+        self.assertIn("particles.vtkhdf.spare", self.record("out")["run"]["status"])
+        if h5py is not None:
+            with h5py.File(self.folder / "out" / "particles.vtkhdf") as file:
+                self.assertGreater(file["VTKHDF/Steps"].attrs["NSteps"], 0)
+
+    def test_a_rank_without_a_gpu_is_reported_once(self):
+        deck = self.write("deck.toml", LONELY)
+        run = [SCREE, "run", str(deck), "--backend", "cuda"]
+        for ranks in ([run, ["env", "CUDA_VISIBLE_DEVICES=", *run]], [["env", "CUDA_VISIBLE_DEVICES=", *run]] * 2):
+            with self.subTest(ranks=ranks):
+                result = subprocess.run([MPIEXEC, "-n", "1", *ranks[0], ":", "-n", "1", *ranks[1]], cwd=self.folder,
+                                        env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+                self.assertEqual(result.returncode, BAD_INPUT, result.stderr)
+                self.assert_one_message(result, "--backend cuda: ", "allowed here: auto, cpu")
+
+
+class SignalTest(RanksTest):
+    SETTINGS = [*EXPLICIT, "integrator.substeps=3", "time.end=40", "output.checkpoint_interval=0.02"]
+
+    def start(self, ranks):
+        """A run that would take long, once it has written a checkpoint."""
+        run = subprocess.Popen(self.command(ranks, DAM[0], "out", self.SETTINGS), cwd=self.folder, env=ENVIRONMENT,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(run.kill)
+        checkpoint = self.folder / "out" / "checkpoint.h5"
+        deadline = time.monotonic() + LIMIT
+        while not checkpoint.exists():
+            self.assertLess(time.monotonic(), deadline)
+            self.assertIsNone(run.poll())
+            time.sleep(0.05)
+        return run
+
+    def children(self, parent):
+        listed = subprocess.run(["ps", "-o", "pid=,comm=", "--ppid", str(parent)], capture_output=True, text=True)
+        lines = [line.split() for line in listed.stdout.splitlines()]
+        return [int(words[0]) for words in lines if "scree" in words[1]]
+
+    def test_a_signal_stops_all_ranks_with_a_checkpoint(self):
+        for to_one_rank in (True, False):  # or to mpirun, as a batch system does it
+            with self.subTest(to_one_rank=to_one_rank):
+                run = self.start(2)
+                os.kill(self.children(run.pid)[1] if to_one_rank else run.pid, signal.SIGUSR1)
+                self.assertEqual(run.wait(LIMIT), STOPPED)
+                record = self.record("out")
+                self.assertIn("stopped by signal", record["run"]["status"])
+                end = record["measures"]["simulated_time"] + 0.01
+                self.run_deck(DONE, 3, DAM[0], "on", [*self.SETTINGS, f"time.end={end}"], "--restart",
+                              self.folder / "out" / "checkpoint.h5")
+                (self.folder / "out" / "checkpoint.h5").unlink()
+
+    def test_a_signal_to_one_rank_before_the_first_step_stops_all(self):
+        fifo = self.folder / "fifo.toml"
+        os.mkfifo(fifo)
+        words = [SCREE, "run", str(DAM[0]), "--output", str(self.folder / "out")]
+        waiting = [str(fifo) if word == str(DAM[0]) else word for word in words]
+        run = subprocess.Popen([MPIEXEC, "-n", "1", *words, ":", "-n", "1", *waiting], env=ENVIRONMENT, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(run.kill)
+        with open(fifo, "w") as deck:  # waits for the rank, which then waits for its deck
+            os.kill(self.children(run.pid)[1], signal.SIGUSR1)
+            deck.write(DAM[0].read_text())
+        text, trouble = run.communicate(timeout=LIMIT)
+        self.assertEqual(run.returncode, STOPPED, text + trouble)
+        self.assertEqual(text.splitlines(), [f"stopped by signal ({signal.strsignal(signal.SIGUSR1)}) before the first "
+                                             "step: there is no new checkpoint"])
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_a_killed_rank_ends_the_job_and_leaves_the_last_checkpoint(self):
+        run = self.start(2)
+        os.kill(self.children(run.pid)[1], signal.SIGKILL)
+        self.assertNotEqual(run.wait(LIMIT), DONE)
+        with self.subTest("the checkpoint is complete"):
+            result = subprocess.run(self.command(1, DAM[0], "on", [*self.SETTINGS, "time.end=0.0"], "--restart",
+                                                 self.folder / "out" / "checkpoint.h5"), cwd=self.folder,
+                                    env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+            self.assertIn("time.end", result.stderr)  # it was read
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
