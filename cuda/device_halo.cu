@@ -21,7 +21,7 @@ struct TargetItem {
       const HaloTarget& target = targets[t];
       if (!target.box.reaches(p + target.shift, reach)) continue;
       const unsigned long long entry = atomicAdd(&next[t], 1ull);
-      if (ghosts != nullptr) ghosts[entry] = {i, target.shift, target.image};
+      if (ghosts != nullptr) ghosts[entry] = {i, target.image, {}, target.shift};
     }
   }
 };

@@ -6,8 +6,8 @@
 #
 # Builds the preset cuda and runs its tests with the label gpu. With BIN=FOLDER in the environment it builds nothing and
 # runs the test programs in that folder, each as on_gpu test_...: for programs that were built elsewhere.
-# --sanitize adds compute-sanitizer's memcheck, racecheck and initcheck on unit/cuda, unit/dem and the first
-# steps of three decks. FILTER in the environment is passed to the test programs as Catch2's choice of tests: FILTER='explicit*'.
+# --sanitize adds compute-sanitizer's memcheck, racecheck and initcheck on unit/cuda, unit/dem, the first
+# steps of three decks, and those of a fourth on two ranks. FILTER in the environment is passed to the test programs as Catch2's choice of tests: FILTER='explicit*'.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -85,6 +85,12 @@ if "$sanitize"; then
       for setting in "${words[@]:1}"; do settings+=(--set "$setting"); done
       run "$tool scree ${words[0]}" "${sanitizer[@]}" "$scree" run "input/${words[0]}.toml" --backend cuda \
         "${settings[@]}" --output "$scratch/results"
+    done
+    # Through host memory: what NCCL's own kernels do is not looked at.
+    for method in hht velocity-verlet; do
+      run "$tool scree dam_break, $method, 2 ranks" mpirun --oversubscribe -n 2 "${sanitizer[@]}" "$scree" run \
+        tests/ranks/dam_break.toml --backend cuda --set parallel.transport=staged --set time.end=2e-3 \
+        --set "integrator.particles=$method" --output "$scratch/results"
     done
   done
 fi

@@ -7,6 +7,7 @@
 #include "dem/backend.hpp"
 #include "dem/device.hpp"
 #include "dem/mixed_items.hpp"
+#include "partition/halo.hpp"
 
 namespace scree {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kParticleArrays = 2 * (2 * sizeof(Vec3) + 3 * sizeof(Real) + si
 constexpr double kSortArrays =
     4 * sizeof(Index) + 2 * sizeof(Index);  // keys and order twice, the library's buffers
 constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);  // counts, walls, positions at the build
-constexpr double kGhostArrays = 40 + kSortArrays + sizeof(Index);
+constexpr double kGhostArrays = sizeof(Ghost) + kSortArrays + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
 constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));

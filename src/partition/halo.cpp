@@ -15,7 +15,7 @@ std::vector<Ghost> periodic_images(const Subdomain& subdomain, const Space& spac
   const HaloBox box{space.min, space.max, period, width};
   for (Index i = 0; i < static_cast<Index>(position.size()); ++i)
     for_each_ghost(box, xyz(position[static_cast<std::size_t>(i)]), [&](Vec3 shift, std::int8_t image) {
-      ghosts.push_back({i, shift, image});
+      ghosts.push_back({i, image, {}, shift});
     });
   return ghosts;
 }
@@ -53,7 +53,7 @@ void Halo::find_ghosts(std::span<const Vec4> position) {
     for (const HaloTarget& t : plan_.targets())
       if (t.box.reaches(p + t.shift, plan_.reach()))
         (t.neighbor == HaloTarget::kItself ? own_ : ghosts[static_cast<std::size_t>(t.neighbor)])
-            .push_back({i, t.shift, t.image});
+            .push_back({i, t.image, {}, t.shift});
   }
   std::vector<std::size_t> counts;
   for (const std::vector<Ghost>& list : ghosts) {

@@ -15,12 +15,15 @@
 
 namespace scree {
 
-// One ghost: a copy of an owned item, moved by whole periods.
+// One ghost: a copy of an owned item, moved by whole periods. No byte of it is without a value, because a
+// kernel reads several at once.
 struct Ghost {
-  Index source;       // local index of the original
-  Vec3 shift;         // ghost position minus original position [m]
-  std::int8_t image;  // number of the shift among the 27, 13 for none
+  Index source;           // local index of the original
+  std::int8_t image;      // number of the shift among the 27, 13 for none
+  std::int8_t unused[3];  // 0
+  Vec3 shift;             // ghost position minus original position [m]
 };
+static_assert(sizeof(Ghost) == sizeof(Index) + 4 + sizeof(Vec3));
 
 // What decides which images of a point lie near the box.
 struct HaloBox {

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Many particles on several ranks: generates them, runs some steps, writes snapshots and checkpoints, and restarts, with
-# the largest memory of a rank after each.
+# Many particles on several ranks: generates them, runs some steps, writes snapshots and checkpoints, and restarts from the
+# one on the way, which must end in the same state; with the largest memory of a rank after each.
 #   tests/performance/large.sh [BUILD_DIR] [PARTICLES] [RANKS...]      (default build/release 1000000 1 2)
 # BACKEND=cuda in the environment: on GPUs, with more ranks than GPUs on shared ones; default cpu.
-# PARTICLES: about so many, a cubic lattice. The results (some 800 bytes per particle) go to a temporary folder
+# PARTICLES: about so many, a cubic lattice. The results (some 700 bytes per particle) go to a temporary folder
 # (TMPDIR), which is removed. What a rank takes for a thousand particles is measured first, and taken off per particle.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -51,9 +51,9 @@ radius = 0.49
 mass = 1.0
 random_velocity = 0.1
 [output]
-snapshot_interval = 1e-3
+snapshot_interval = 2e-3
 history_interval = 1e-3
-checkpoint_interval = 1e-3
+checkpoint_interval = 1.2e-3
 DECK
 }
 

@@ -76,7 +76,7 @@ struct ContactProblem {
       Index seen = partner;
       if (through_ghosts) {
         seen = kParticles + static_cast<Index>(ghosts.size());
-        ghosts.push_back({partner, {}, 0});
+        ghosts.push_back({partner, 0, {}, {}});
       }
       rows[static_cast<std::size_t>(row)].emplace_back(seen, sign * b);
     }
