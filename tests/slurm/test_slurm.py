@@ -4,6 +4,7 @@ ctest shows as skipped, where SLURM is not installed. Usage: SCREE=path/to/scree
 import json
 import os
 import pathlib
+import re
 import signal
 import sys
 import time
@@ -168,8 +169,11 @@ class RunTest(SlurmTest):
                     self.assertEqual(shown.returncode, 0, shown.stderr)
                     lines = sorted(shown.stdout.splitlines())
                     self.assertEqual(len(lines), ranks, shown.stdout)
+                    nodes = [re.search(r"node (\w+),", line)[1] for line in lines]
+                    self.assertEqual(len(set(nodes)), ranks // 2)  # any, where one is still busy with the last job's end
                     for rank, line in enumerate(lines):
-                        self.assertIn(f"rank {rank} of {ranks}: node n{rank // 2}, local rank {rank % 2}, ", line)
+                        node = nodes[rank // 2 * 2]
+                        self.assertIn(f"rank {rank} of {ranks}: node {node}, local rank {rank % 2}, ", line)
                         self.assertIn(f"GPU {rank % 2} of 0 1", line)
         alone = cluster.run("srun", "--nodes=1", "--ntasks=2", "--gpus-per-task=1", "jobs/mapping.sh", cwd=ROOT)
         self.assertEqual(len(alone.stdout.splitlines()), 2, alone.stdout + alone.stderr)
