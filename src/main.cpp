@@ -8,6 +8,7 @@
 #include <functional>
 #include <iostream>
 #include <optional>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
@@ -90,7 +91,6 @@ auto naming_deck(const std::string& deck, const Action& action) {
 }
 
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
-  catch_signals();  // first: a large model takes a while
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
   const Deck deck = load_deck(arguments.deck, arguments.overrides);
@@ -210,6 +210,8 @@ ExitCode guarded(const std::function<ExitCode()>& body) {
 }  // namespace scree
 
 int main(int count, char** values) {
+  // Before MPI starts, which takes a while, too.
+  if (count > 1 && std::string_view(values[1]) == "run") scree::catch_signals();
   MPI_Init(&count, &values);
   const scree::CommandLine line = scree::split(count, values);
   const scree::ExitCode code = scree::guarded([&] { return scree::dispatch(line); });

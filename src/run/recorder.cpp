@@ -158,9 +158,8 @@ void Recorder::energy_row(State& state, std::vector<Real>& row) {
       make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   BalanceState& balance = state.balance;
   // Not yet at the start: the first step can tell more.
-  const Real energy = particles.kinetic + particles.gravitational + particles.contact_elastic;
-  if (balance.open && link_.ranks().any(!std::isfinite(energy)))
-    throw SimulationError("stage output: the energy of the particles is not finite");
+  if (balance.open && link_.ranks().any(!std::isfinite(ledger.mechanical())))
+    throw SimulationError("stage output: the energy of particles and bodies is not finite");
   if (!balance.open) balance = {true, ledger.accounted(), 0, ledger};
   balance.exchanged += energy_exchanged(balance.last, ledger);
   balance.last = ledger;

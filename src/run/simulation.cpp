@@ -217,7 +217,7 @@ void Simulation::progress(const State& state, Real h) {
   if (std::chrono::duration<double>(last_progress_ - last_flush_).count() > kFlushSeconds)
     last_flush_ = last_progress_, ranks_.alone() ? recorder_->flush() : recorder_->flush_history();
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  log_.progress(fmt::format("t = {:.4f} of {:g} s, {} steps, h = {:.2e} s, {:.1f} s elapsed, {:.1f} s to go",
+  log_.progress(fmt::format("t = {:.6g} of {:g} s, {} steps, h = {:.2e} s, {:.1f} s elapsed, {:.1f} s to go",
                             state.clock.time, model_.time.end, state.counts.steps, h, elapsed,
                             elapsed * (1 - share) / std::max(share, 1e-9)),
                 logged);
