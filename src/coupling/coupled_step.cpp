@@ -283,7 +283,8 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
                         limits.max_iterations));
       ++counts_.newton_iterations;
       norms = link_.correct();
-    } while (!(norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance));
+    } while (
+        !(norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance));
   }
   {
     const auto scope = timers_.time(Stage::broadcast_motion);
