@@ -15,7 +15,8 @@ enum class ExitCode : int {
   stopped_by_signal = 5
 };
 
-// The user's: bad usage or deck, or a deck that is too large for the machine. The message names file, line, key, value and what is allowed.
+// The user's: bad usage or deck, or a deck that is too large for the machine. The message names file, line,
+// key, value and what is allowed.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -18,10 +18,6 @@ constexpr Real kSkinPerMotion = 5;
 // of every other. A step that needs more is shortened.
 constexpr Real kMostSkin = 4;
 
-}  // namespace
-
-namespace {
-
 // sum += weight * wrenches
 void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
   for (std::size_t b = 0; b < wrenches.size(); ++b) {

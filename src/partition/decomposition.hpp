@@ -116,8 +116,7 @@ struct HaloSize {
   std::int64_t owned = 0, ghosts = 0;
   std::int64_t neighbors = 0;  // ranks that it sends to
   std::int64_t bytes = 0;      // sent per update of positions and velocities [B]
-  // On GPUs, means over the updates that were looked at: what one takes, and what of it the rows wait for
-  // [s].
+  // On GPUs, means over the updates that were looked at: what one takes, and what of it rows wait for [s].
   double seconds = 0, exposed_seconds = 0;
 };
 
