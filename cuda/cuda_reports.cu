@@ -26,10 +26,17 @@ struct LeaverItem {
   }
 };
 
+// Wraps the leavers a last time and marks them.
 struct MarkItem {
   const Index* particles;
-  std::uint8_t* drifting;
-  SCREE_HD void operator()(Index k) const { drifting[particles[k]] = 1; }
+  ParticleViews in;
+  Vec3 box_min, period;
+  SCREE_HD void operator()(Index k) const {
+    const Index i = particles[k];
+    const Vec4 x = in.position[i];
+    in.position[i] = vec4(wrap(box_min, period, xyz(x), in.image[i]), x.w);
+    in.drifting[i] = 1;
+  }
 };
 
 struct StaysItem {
@@ -98,7 +105,8 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
     if (leaver.rank == ranks_.rank()) particles.push_back(leaver.local_index);
   DeviceArray<Index> d_particles;
   d_particles.upload(particles, stream_);
-  for_each(device(), static_cast<Index>(particles.size()), MarkItem{d_particles.data(), now_.drifting.data()});
+  for_each(device(), static_cast<Index>(particles.size()),
+           MarkItem{d_particles.data(), views_of(now_), model_.space.min, subdomain_.period()});
   layout_changed_ = true;
   if (model_.space.leaving != Leaving::remove) return;
 

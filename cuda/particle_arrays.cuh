@@ -65,7 +65,7 @@ struct ReorderItem {
   }
 };
 
-// Records of the particles from `first` on: position inside the periodic box.
+// Records of the particles from `first` on: position inside the periodic box, but for those that drift.
 struct RecordItem {
   ParticleViews in;
   Index first;
@@ -77,12 +77,13 @@ struct RecordItem {
     ParticleRecord r;
     r.global_id = id_of(in.row_key[i]);
     r.image = in.image[i];
-    r.position = wrap(box_min, period, xyz(in.position[i]), r.image);
+    r.position = xyz(in.position[i]);
     r.velocity = xyz(in.velocity[i]);
     r.acceleration = in.acceleration[i], r.force = in.force[i];
     r.contact_loss = in.contact_loss[i], r.loss_power = in.loss_power[i];
     r.integrator_loss = in.integrator_loss[i];
     r.drifting = in.drifting[i] != 0;
+    if (!r.drifting) r.position = wrap(box_min, period, r.position, r.image);
     out[k] = r;
   }
 };

@@ -31,7 +31,8 @@ void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLos
 
 std::vector<ParticleRecord> CpuBackend::records() const {
   std::vector<ParticleRecord> out = store_.records();
-  for (ParticleRecord& r : out) r.position = subdomain_.wrap(r.position, r.image);
+  for (ParticleRecord& r : out)
+    if (!r.drifting) r.position = subdomain_.wrap(r.position, r.image);
   return out;
 }
 

@@ -31,8 +31,13 @@ std::vector<Leaver> CpuBackend::outside() const {
 }
 
 void CpuBackend::take_out(const std::vector<Leaver>& leavers) {
-  for (const Leaver& leaver : leavers)
-    if (leaver.rank == ranks_.rank()) store_.drifting[leaver.local_index] = 1;
+  for (const Leaver& leaver : leavers) {
+    if (leaver.rank != ranks_.rank()) continue;
+    const auto i = static_cast<std::size_t>(leaver.local_index);
+    const Vec4& p = store_.position[i];
+    store_.position[i] = vec4(subdomain_.wrap(xyz(p), store_.image[i]), p.w);
+    store_.drifting[i] = 1;
+  }
   layout_changed_ = true;
   if (model_.space.leaving != Leaving::remove) return;
   std::vector<Index> staying;

@@ -31,16 +31,16 @@ SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
 }
 
 // Wraps the position of a particle. Whether steps can have led there since the last list was built: it is
-// finite, and across one periodic side of an axis at most. One that drifts, for which no list expires, may
-// have gone farther, up to what wrap() brings back.
+// finite, and across one periodic side of an axis at most. One that drifts was wrapped when it left and keeps
+// its coordinates from then on: far outside, where quanta are lost, taking off a period would not be exact.
 SCREE_HD bool wrap_if_sound(Vec3 min, Vec3 period, bool drifts, Vec3& p, ImageCount& image) {
+  if (drifts) return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
   const ImageCount before = image;
   p = wrap(min, period, p, image);
-  const auto sound = [drifts](Real x, Real start, Real length, std::int32_t crossed) {
+  const auto sound = [](Real x, Real start, Real length, std::int32_t crossed) {
     if (length == 0) return std::isfinite(x);
-    const bool wrapped =
-        x >= start - length && x <= start + 2 * length;  // on a side to round-off, or not at all
-    return wrapped && (drifts || (crossed >= -1 && crossed <= 1));
+    // Wrapped but for round-off at a side.
+    return x >= start - length && x <= start + 2 * length && crossed >= -1 && crossed <= 1;
   };
   return sound(p.x, min.x, period.x, image.x - before.x) && sound(p.y, min.y, period.y, image.y - before.y) &&
          sound(p.z, min.z, period.z, image.z - before.z);

@@ -43,6 +43,49 @@ seed = 5
 history_interval = 3.3e-3
 )";
 
+// Two discs that leave at once and go on for some 150 periods along the periodic axis, where coordinates have
+// lost the quanta in which a period can be taken off exactly; and one that bounces on.
+inline const std::string kFarDrifters = R"(
+gravity = [0.0, -9.8066]
+[space]
+dimension = 2
+min = [0.17, 0.0]
+max = [1.0, 1.0]
+x_min = "periodic"
+x_max = "periodic"
+y_min = "wall"
+leaving = "drift"
+[time]
+end = 4.0
+step = 1e-3
+[[contact.pairs]]
+stiffness = 1e5
+damping = 10.0
+[[particles]]
+name = "right"
+kind = "list"
+positions = [[0.3, 0.9]]
+velocity = [37.0123, 3.1]
+radius = 0.05
+mass = 1.0
+[[particles]]
+name = "left"
+kind = "list"
+positions = [[0.7, 0.95]]
+velocity = [-29.0456, 5.7]
+radius = 0.05
+mass = 1.0
+[[particles]]
+name = "bouncing"
+kind = "list"
+positions = [[0.5, 0.2]]
+velocity = [1.3, 0.0]
+radius = 0.05
+mass = 1.0
+[output]
+history_interval = 0.05
+)";
+
 // Each case with each integrator and step control that it can have.
 inline std::vector<RestartCase> restart_cases() {
   const std::vector<std::vector<std::string>> ways = {
@@ -63,6 +106,7 @@ inline std::vector<RestartCase> restart_cases() {
                      input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
     for (const std::string policy : {"remove", "drift"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
+    cases.push_back({"far drifters" + how, model_of(kFarDrifters, with({})), true});
     cases.push_back(
         {"periodic gas" + how,
          input_model("examples/gas_periodic.toml", with({"time.end=0.02", "particles.gas.count=1000"})),
