@@ -130,6 +130,8 @@ void CudaBackend::measure_balance() {
   balance_.largest = std::max(balance_.largest, balance_.imbalance);
 }
 
+DeviceClaim claim_device(const Model& model) { return {device_uuid(), device_memory(model), free_device_memory()}; }
+
 std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks) {
   choose_device(ranks);
   const auto refuse = [&](const std::string& trouble) {
@@ -139,8 +141,8 @@ std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& rank
   };
   refuse(device_trouble());
   // All ranks use their GPUs by now: what the driver takes for each is no longer free.
-  const DeviceClaim own{device_uuid(), device_memory(model), free_device_memory()};
-  refuse(device_memory_trouble(ranks.gather_everywhere(std::vector{own}), ranks.rank(), device_name()));
+  const std::vector<DeviceClaim> claims = ranks.gather_everywhere(std::vector{claim_device(model)});
+  refuse(device_memory_trouble(claims, ranks.rank(), device_name()));
   return std::make_unique<CudaBackend>(model, ranks);
 }
 

@@ -136,7 +136,7 @@ ExitCode check(const Arguments& arguments) {
   }
   naming_deck(arguments.deck, [&] {
     naming_memory(model.particles.totals.count, ranks.size(),
-                  [&] { log.info(check_report(model, ranks.size()) + constraints); });
+                  [&] { log.info(check_report(model, ranks) + constraints); });
   });
   return ExitCode::done;
 }

@@ -47,6 +47,16 @@ struct DeviceClaim {
   std::size_t needed, free;     // [B]
 };
 
+// Of this rank; only where device_trouble() is empty.
+DeviceClaim claim_device(const Model& model);
+
+// What all ranks that use the GPU of rank `own` ask of it. claims: of all ranks.
+struct DeviceLoad {
+  int ranks = 0;
+  std::size_t needed = 0, free = 0;  // [B]
+};
+DeviceLoad load_of_device(std::span<const DeviceClaim> claims, int own);
+
 // Why the GPU of rank `own` is too small for all ranks that use it; empty if it is not. claims: of all ranks.
 // name: device_name() on that rank.
 std::string device_memory_trouble(std::span<const DeviceClaim> claims, int own, const std::string& name);

@@ -102,20 +102,24 @@ std::size_t device_memory(const Model& model) {
 }
 
 // What is free the ranks of a GPU may see at different times: the least counts.
-std::string device_memory_trouble(std::span<const DeviceClaim> claims, int own, const std::string& name) {
+DeviceLoad load_of_device(std::span<const DeviceClaim> claims, int own) {
   const DeviceClaim& mine = claims[static_cast<std::size_t>(own)];
-  std::size_t needed = 0, free = mine.free;
-  int sharers = 0;
+  DeviceLoad load{.free = mine.free};
   for (const DeviceClaim& claim : claims) {
     if (claim.device != mine.device) continue;
-    needed += claim.needed, free = std::min(free, claim.free), ++sharers;
+    load.needed += claim.needed, load.free = std::min(load.free, claim.free), ++load.ranks;
   }
-  if (needed <= free) return "";
-  const std::string who = sharers == 1
+  return load;
+}
+
+std::string device_memory_trouble(std::span<const DeviceClaim> claims, int own, const std::string& name) {
+  const DeviceLoad load = load_of_device(claims, own);
+  if (load.needed <= load.free) return "";
+  const std::string who = load.ranks == 1
                               ? "the model needs about "
-                              : fmt::format("{} ranks share a GPU and together need about ", sharers);
-  return fmt::format("{}{} MB of device memory, {} MB are free on {}", who, needed / 1000000, free / 1000000,
-                     name);
+                              : fmt::format("{} ranks share a GPU and together need about ", load.ranks);
+  return fmt::format("{}{} MB of device memory, {} MB are free on {}", who, load.needed / 1000000,
+                     load.free / 1000000, name);
 }
 
 }  // namespace scree

@@ -24,12 +24,13 @@ Real smallest_of_all(const Share& share, Real value) {
 void count_particles(ParticleSet& particles, int materials, const Share& share) {
   ParticleTotals totals;
   const auto slots = static_cast<std::size_t>(materials);
-  Extremes radius, mass;
+  Extremes radius, mass, radii_per_second;
   std::vector<std::int64_t> count(slots);
   std::vector<Extremes> radius_of(slots), mass_of(slots);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto material = static_cast<std::size_t>(particles.material[i]);
     radius.add(particles.radius[i]), mass.add(particles.mass[i]), ++count[material];
+    radii_per_second.add(norm(particles.velocity[i]) / particles.radius[i]);
     radius_of[material].add(particles.radius[i]), mass_of[material].add(particles.mass[i]);
   }
   totals.count = share.sum(static_cast<std::int64_t>(particles.size()));
@@ -37,6 +38,7 @@ void count_particles(ParticleSet& particles, int materials, const Share& share) 
   totals.largest_radius = share.max(radius.largest);
   totals.smallest_mass = smallest_of_all(share, mass.smallest);
   totals.largest_mass = share.max(mass.largest);
+  totals.most_radii_per_second = share.max(radii_per_second.largest);
   for (std::size_t m = 0; m < slots; ++m)
     totals.materials.push_back({share.sum(count[m]), smallest_of_all(share, radius_of[m].smallest),
                                 smallest_of_all(share, mass_of[m].smallest)});

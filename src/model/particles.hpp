@@ -18,6 +18,7 @@ struct ParticleTotals {
   std::int64_t count = 0;
   Real smallest_radius = 0, largest_radius = 0;  // [m]
   Real smallest_mass = 0, largest_mass = 0;      // [kg]
+  Real most_radii_per_second = 0;                // speed over the particle's own radius [1/s]
   std::vector<OfMaterial> materials;             // as many as Contact::material_names
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "dem/device.hpp"
 #include "model/limits.hpp"
@@ -111,24 +112,32 @@ std::string memory_line(const Model& model, int ranks) {
       megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown);
 }
 
-std::string device_memory_line(const Model& model, int ranks) {
+// Of rank 0, whose GPU has as many ranks as any.
+std::string device_memory_line(const Model& model, const Ranks& ranks) {
+  const std::string line =
+      fmt::format("device memory  about {} {} (estimate)", megabytes(static_cast<Real>(device_memory(model))),
+                  ranks.alone() ? "on the GPU" : "on the GPU of each rank");
+  choose_device(ranks);
   const std::string trouble = device_trouble();
-  const std::string free =
-      trouble.empty() ? fmt::format("{} are free on {}", megabytes(static_cast<Real>(free_device_memory())),
-                                    device_name())
-                      : trouble;
-  return fmt::format("device memory  about {} {} (estimate); {}\n",
-                     megabytes(static_cast<Real>(device_memory(model))),
-                     ranks == 1 ? "on the GPU" : "on the GPU of each rank", free);
+  if (ranks.any(!trouble.empty()))
+    return line + "; " + (trouble.empty() ? "another rank finds no GPU" : trouble) + "\n";
+  const DeviceLoad load =
+      load_of_device(ranks.gather_everywhere(std::vector{claim_device(model)}), ranks.rank());
+  const std::string together = load.ranks == 1
+                                   ? ""
+                                   : fmt::format(", {} for the {} ranks that share one",
+                                                 megabytes(static_cast<Real>(load.needed)), load.ranks);
+  return fmt::format("{}{}; {} are free on {}\n", line, together, megabytes(static_cast<Real>(load.free)),
+                     device_name());
 }
 
 }  // namespace
 
-std::string check_report(const Model& model, int ranks) {
+std::string check_report(const Model& model, const Ranks& ranks) {
   const std::string title = model.title.empty() ? "" : "title          " + model.title + "\n";
-  return title + space_lines(model, ranks) + multibody_lines(model) + limit_lines(model) + time_lines(model) +
-         fmt::format("search         skin {:.4g} m\n", model.contact.skin) + memory_line(model, ranks) +
-         device_memory_line(model, ranks);
+  return title + space_lines(model, ranks.size()) + multibody_lines(model) + limit_lines(model) +
+         time_lines(model) + fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
+         memory_line(model, ranks.size()) + device_memory_line(model, ranks);
 }
 
 }  // namespace scree

@@ -172,6 +172,10 @@ class FailureTest(RanksTest):
         self.assertIn("particles      500 on 3 ranks together", text)
         self.assertRegex(text, r"memory  +about [0-9.]+ MB of state and scratch on all ranks together, [0-9.]+ MB on rank 0")
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU of each rank \(estimate\)")
+        if BACKEND == "cuda":
+            both = [MPIEXEC, "-n", "2", "env", "CUDA_VISIBLE_DEVICES=0", SCREE, "check", str(DAM[0])]
+            text = subprocess.run(both, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT, check=True).stdout
+            self.assertRegex(text, r"\(estimate\), [0-9.]+ MB for the 2 ranks that share one; [0-9]+ MB are free")
 
     def test_a_full_disk_ends_all_with_one_message(self):
         settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.05", "output.snapshot_interval=0.005"]

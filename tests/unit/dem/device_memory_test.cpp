@@ -32,6 +32,13 @@ TEST_CASE("the needs of ranks that share a GPU add up") {
   for (const int own : {1, 3}) CHECK(device_memory_trouble(claims, own, "GPU") == "");
 }
 
+TEST_CASE("the load of a GPU is that of all ranks that use it") {
+  const DeviceClaim claims[] = {claim('a', 200, 500), claim('b', 100, 300), claim('a', 150, 400)};
+  const DeviceLoad shared = load_of_device(claims, 2), single = load_of_device(claims, 1);
+  CHECK((shared.ranks == 2 && shared.needed == 350 * kMegabyte && shared.free == 400 * kMegabyte));
+  CHECK((single.ranks == 1 && single.needed == 100 * kMegabyte && single.free == 300 * kMegabyte));
+}
+
 TEST_CASE("ranks of a GPU agree on what is free: the least that one of them saw") {
   const DeviceClaim claims[] = {claim('a', 200, 450), claim('a', 200, 390)};
   for (const int own : {0, 1})

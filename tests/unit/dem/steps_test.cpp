@@ -205,10 +205,10 @@ TEST_CASE("an explicit step across the whole periodic space is refused, but to t
   const std::string refused = kUnsoundPosition[0] + std::string("23") + kUnsoundPosition[1];
   for (const BoxCase& c : {kBoxes[1], kBoxes[4]}) {
     CAPTURE(c.name);
-    CHECK(failure(c, 1e5, false) == refused);
-    CHECK(failure(c, 1e5, true).empty());
-    for (const Real speed : {1e30, 1e308})  // farther than anything is wrapped from
-      for (const bool drifting : {false, true}) CHECK(failure(c, speed, drifting) == refused);
+    for (const Real speed : {1e5, 1e30, 1e308}) {
+      CHECK(failure(c, speed, false) == refused);
+      CHECK(failure(c, speed, true).empty());
+    }
   }
 }
 

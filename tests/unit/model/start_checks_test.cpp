@@ -139,6 +139,27 @@ TEST_CASE("a step far above the contact time is a warning") {
   CHECK(model_warnings(kDeck, {"time.step=5e-3", "time.control=adaptive"}).empty());
 }
 
+TEST_CASE("a particle that goes farther than its radius in a step is a warning") {
+  // Two discs of radius 0.05; the substeps count.
+  const std::string verlet = "integrator.particles=velocity-verlet",
+                    fast = "particles.0.velocity=[-15.0, 20.0]";
+  CHECK(model_warnings(kDeck, {fast, "time.step=1.9e-3"}).empty());
+  CHECK(model_warnings(kDeck, {fast, verlet, "integrator.substeps=2", "time.step=3.9e-3"}).empty());
+  for (const std::vector<std::string>& settings :
+       {std::vector<std::string>{fast, "time.step=2.5e-3"},
+        {fast, verlet, "integrator.substeps=2", "time.step=5e-3"}}) {
+    const std::vector<std::string> warnings = model_warnings(kDeck, settings);
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0] ==
+          "time.step: in a step of 0.0025 s a particle goes 1.25 times its radius with its speed at t = 0, "
+          "and may pass through others unnoticed; steps of 0.002 s are short enough");
+  }
+  const std::vector<std::string> adaptive =
+      model_warnings(kDeck, {fast, "time.control=adaptive", "time.max_step=0.01"});
+  REQUIRE(adaptive.size() == 1);
+  CHECK(contains(adaptive[0], "time.max_step: in a step of 0.01 s a particle goes 5 times"));
+}
+
 TEST_CASE("an explicit step past the stability limit is an error") {
   // 2 / sqrt(6 K/m) = 8.165e-3 s.
   const std::string verlet = "integrator.particles=velocity-verlet";
