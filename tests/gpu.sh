@@ -7,7 +7,8 @@
 # Builds the preset cuda and runs its tests with the label gpu. With BIN=FOLDER in the environment it builds nothing and
 # runs the test programs in that folder, each as on_gpu test_...: for programs that were built elsewhere.
 # --sanitize adds compute-sanitizer's memcheck, racecheck and initcheck on unit/cuda, unit/dem, the first
-# steps of three decks, and those of a fourth on two ranks. FILTER in the environment is passed to the test programs as Catch2's choice of tests: FILTER='explicit*'.
+# steps of three decks, and those of a fourth on two ranks. FILTER in the environment is passed to the test
+# programs as Catch2's choice of tests: FILTER='explicit*'.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
