@@ -249,6 +249,7 @@ class CudaBackend : public Backend {
   bool mixed_;              // explicit runs are in mixed precision
   bool in_mixed_ = false;   // where the open step is: in the arrays below, or in now_ and other_
   Real mixed_h_ = 0;        // [s]
+  Index mixed_start_ = 0;   // steps closed when the open step was brought there
   QuantumGrid quanta_;
   DeviceArray<MixedPlace> mixed_place_[2];
   DeviceArray<MixedMotion> mixed_motion_[2];

@@ -186,13 +186,14 @@ void CudaBackend::convert_to_mixed(Real h) {
   for_each(device(), owned_,
            ToMixedItem{now_.position.data(), now_.velocity.data(), now_.acceleration.data(), mixed_views(), quanta_,
                        subdomain_.box(), h, list_skin_ / 2});
-  in_mixed_ = true, mixed_h_ = h;
+  in_mixed_ = true, mixed_h_ = h, mixed_start_ = h_results_.data()->control.closed;
 }
 
 void CudaBackend::convert_from_mixed() {
   for_each(device(), owned_,
            FromMixedItem{mixed_views(), parity_[0], quanta_, now_.position.data(), now_.velocity.data(),
-                         now_.acceleration.data(), now_.contact_loss.data(), mixed_h_});
+                         now_.acceleration.data(), now_.contact_loss.data(), now_.drifting.data(), model_.gravity,
+                         mixed_h_, h_results_.data()->control.closed - mixed_start_});
   in_mixed_ = false;
 }
 

@@ -16,8 +16,9 @@ std::size_t& device_bytes_in_use() {
 void choose_device(const Ranks& ranks) {
   const int number = ranks.local_rank();
   int devices = 0;
-  if (!ranks.alone() && cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0)
-    require_cuda(cudaSetDevice(number % devices), "cudaSetDevice");
+  if (ranks.alone() || cudaGetDeviceCount(&devices) != cudaSuccess || devices == 0) return;
+  // Why a device cannot be had device_trouble() says.
+  if (cudaSetDevice(number % devices) != cudaSuccess) cudaGetLastError();
 }
 
 namespace {

@@ -12,7 +12,7 @@ namespace scree {
 
 // Position without the periodic box [m].
 SCREE_HD Vec3 unwrapped(Vec4 position, const ImageCount& image, Vec3 period) {
-  return xyz(position) + Vec3{image.x * period.x, image.y * period.y, image.z * period.z};
+  return moved_by_periods(xyz(position), image, period);
 }
 
 // Kinetic and gravitational energy of a particle [J]; velocity: mass in w.

@@ -142,7 +142,7 @@ struct ToMixedItem {
   }
 };
 
-// Back to the double state. position, velocity: as they were converted.
+// Back to the double state. position, velocity: as they were converted, so many steps ago.
 struct FromMixedItem {
   MixedViews in;
   int parity;
@@ -150,9 +150,13 @@ struct FromMixedItem {
   Vec4 *position, *velocity;
   Vec3* acceleration;
   Real* contact_loss;
+  const std::uint8_t* drifting;
+  Vec3 gravity;
   Real h;
+  Index steps;
 
   SCREE_HD void operator()(Index i) const {
+    if (drifting[i]) return drift(i);
     const MixedMotion u = (parity == 0 ? in.motion[0] : in.motion[1])[i];
     const MixedPlace place = (parity == 0 ? in.place[0] : in.place[1])[i];
     const MixedRest rest = in.rest[i];
@@ -163,6 +167,19 @@ struct FromMixedItem {
     velocity[i] = vec4(seen, velocity[i].w);
     acceleration[i] = verlet_acceleration(h, seen, middle);
     contact_loss[i] += rest.loss;
+  }
+
+ private:
+  // No list covers what drifts, so that it may be farther away than places tell apart; but it feels gravity
+  // alone.
+  SCREE_HD void drift(Index i) const {
+    if (steps == 0) return;
+    const Vec4 p = position[i], v = velocity[i];
+    const Vec3 first = verlet_middle_velocity(h, xyz(v), acceleration[i]);
+    const Vec3 last = verlet_middle_after(steps, h, first, gravity);
+    position[i] = vec4(xyz(p) + verlet_displacement_of(steps, h, first, gravity), p.w);
+    velocity[i] = vec4(verlet_predicted_from_middle(h, last, gravity), v.w);
+    acceleration[i] = gravity;
   }
 };
 

@@ -11,7 +11,7 @@ ShapeSide::ShapeSide(const Model& model, const Subdomain& subdomain)
     : subdomain_(subdomain),
       shapes_(model),
       motion_(model.bodies.size()),
-      shift_(static_cast<std::size_t>(shapes_.size())) {}
+      image_(static_cast<std::size_t>(shapes_.size())) {}
 
 void ShapeSide::lay_out(const Space& space, Real width, ItemLayout& layout) {
   layout.shapes = shapes_.size();
@@ -19,10 +19,8 @@ void ShapeSide::lay_out(const Space& space, Real width, ItemLayout& layout) {
   for (Index s = 0; s < layout.shapes; ++s) {
     const ShapeItem& shape = shapes_.items()[s];
     const Vec3 p = snap(point_motion(motion_[shape.body], shape.offset).position, subdomain_.snap_constant());
-    ImageCount unused;
-    const Vec3 wrapped = subdomain_.wrap(p, unused);
-    shift_[s] = wrapped - p;
-    centers[s] = vec4(wrapped, shape.radius);
+    image_[s] = {};
+    centers[s] = vec4(subdomain_.wrap(p, image_[s]), shape.radius);
   }
   layout.shape_images = periodic_images(subdomain_, space, centers, width);
   layout.items = layout.first_shape + layout.shapes + static_cast<Index>(layout.shape_images.size());
@@ -37,7 +35,9 @@ Real ShapeSide::place(const ItemLayout& layout) {
     const Index item = layout.first_shape + s, shape = layout.shape_of(item);
     const ShapeItem& source = shapes_.items()[shape];
     const PointMotion point = point_motion(motion_[source.body], source.offset);
-    Vec3 position = snap(point.position, subdomain_.snap_constant()) + shift_[shape];
+    const ImageCount image = image_[shape];
+    Vec3 position = moved_by_periods(snap(point.position, subdomain_.snap_constant()),
+                                     {-image.x, -image.y, -image.z}, subdomain_.period());
     if (layout.is_shape_image(item)) position += layout.shape_images[s - layout.shapes].shift;
     step_[s] = position - xyz(position_[s]);
     squared = std::max(squared, dot(step_[s], step_[s]));

@@ -80,7 +80,7 @@ class ShapeSide {
   const Subdomain& subdomain_;
   BodyShapes shapes_;
   std::vector<BodyMotion> motion_;  // of the bodies as last set
-  std::vector<Vec3> shift_;         // brings each shape into the periodic box [m]
+  std::vector<ImageCount> image_;   // of each shape when it was laid out
   std::vector<Vec4> position_, velocity_;
   std::vector<Vec3> step_;
   std::vector<ShapeContact> contacts_;

@@ -248,14 +248,17 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
 }
 
 // A particle that goes farther than its radius in a step may pass through others and through walls. No law
-// of contact says so, and neither does an error estimate: uniform motion is integrated without error. key: of
-// the deck, that limits the step [s].
-void check_speeds(const Model& model, const char* key, Real step, Log& log) {
+// of contact says so, and neither does an error estimate: uniform motion is integrated without error.
+void check_speeds(const Model& model, Real step, Log& log) {
   const Real radii = model.particles.totals.most_radii_per_second * step;
   if (radii <= 1) return;
-  log.warning(fmt::format("{}: in a step of {:.4g} s a particle goes {:.3g} times its radius with its speed "
-                          "at t = 0, and may pass through others unnoticed; steps of {:.2g} s are short enough",
-                          key, step, radii, step / radii));
+  const bool is_fixed = model.time.control == StepControl::fixed;
+  // Rounded to two digits the advice must still be short enough.
+  log.warning(fmt::format(
+      "{}: in a step of {}{:.4g} s a particle goes {:.3g} times its radius with its speed at t = 0, and "
+      "may pass through others unnoticed; the step should be at most {:.2g} s",
+      is_fixed ? "time.step" : "time.max_step", model.integrator.substeps > 1 ? "step / substeps = " : "",
+      step, radii, 0.95 * step / radii));
 }
 
 }  // namespace
@@ -290,7 +293,7 @@ void check_steps(const DeckTable& deck, const Model& model, Log& log) {
   const bool is_fixed = model.time.control == StepControl::fixed;
   const Real step =
       is_fixed ? model.time.step / (is_explicit ? model.integrator.substeps : 1) : model.time.max_step;
-  check_speeds(model, is_fixed ? "time.step" : "time.max_step", step, log);
+  check_speeds(model, step, log);
   const std::optional<PairLimit> shortest = shortest_contact(limits);
   if (!shortest || !is_fixed) return;
   if (is_explicit) check_explicit_step(deck, model, limits, log);

@@ -12,6 +12,12 @@ struct ImageCount {
   std::int32_t x = 0, y = 0, z = 0;
 };
 
+// p moved by whole periods, rounded once: the same from whichever of its images.
+SCREE_HD Vec3 moved_by_periods(Vec3 p, const ImageCount& count, Vec3 period) {
+  return {std::fma(count.x, period.x, p.x), std::fma(count.y, period.y, p.y),
+          std::fma(count.z, period.z, p.z)};
+}
+
 // The position inside the periodic box that starts at min, and the periods taken off it; exact. period: 0
 // along axes that are not periodic. Coordinates that no particle of a sound run has stay as they are.
 SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
@@ -19,7 +25,7 @@ SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
   const auto axis = [](Real& x, Real start, Real length, std::int32_t& count) {
     if (length == 0 || !(std::abs(x - start) < kMostPeriods * length)) return;
     const Real periods = std::floor((x - start) / length);
-    x -= periods * length;
+    x = std::fma(-periods, length, x);
     count += static_cast<std::int32_t>(periods);
     while (x < start) x += length, --count;
     while (x >= start + length) x -= length, ++count;

@@ -88,6 +88,14 @@ SCREE_HD Vec3 verlet_acceleration(Real h, Vec3 predicted, Vec3 middle) {
   return (2 / h) * (predicted - middle);
 }
 
+// So many of these steps under a constant acceleration: the middle velocity after them, and the displacement.
+SCREE_HD Vec3 verlet_middle_after(Real steps, Real h, Vec3 middle, Vec3 a) {
+  return middle + (steps * h) * a;
+}
+SCREE_HD Vec3 verlet_displacement_of(Real steps, Real h, Vec3 middle, Vec3 a) {
+  return (steps * h) * (middle + ((steps + 1) / 2 * h) * a);
+}
+
 // Verlet's energy error is the difference of a function of state: this function [J].
 SCREE_HD Real verlet_energy_shift(Real h, Real mass, Vec3 a) { return mass * h * h / 8 * dot(a, a); }
 

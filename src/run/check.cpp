@@ -112,7 +112,7 @@ std::string memory_line(const Model& model, int ranks) {
       megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown);
 }
 
-// Of rank 0, whose GPU has as many ranks as any.
+// Of the GPU that is the fullest, where ranks share GPUs or hosts differ.
 std::string device_memory_line(const Model& model, const Ranks& ranks) {
   const std::string line =
       fmt::format("device memory  about {} {} (estimate)", megabytes(static_cast<Real>(device_memory(model))),
@@ -121,13 +121,20 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
   const std::string trouble = device_trouble();
   if (ranks.any(!trouble.empty()))
     return line + "; " + (trouble.empty() ? "another rank finds no GPU" : trouble) + "\n";
-  const DeviceLoad load =
-      load_of_device(ranks.gather_everywhere(std::vector{claim_device(model)}), ranks.rank());
-  const std::string together = load.ranks == 1
+  const std::vector<DeviceClaim> claims = ranks.gather_everywhere(std::vector{claim_device(model)});
+  DeviceLoad fullest;
+  for (int rank = 0; rank < ranks.size(); ++rank) {
+    const DeviceLoad load = load_of_device(claims, rank);
+    const auto share = [](const DeviceLoad& of) {
+      return static_cast<Real>(of.needed) / static_cast<Real>(std::max<std::size_t>(of.free, 1));
+    };
+    if (rank == 0 || share(load) > share(fullest)) fullest = load;
+  }
+  const std::string together = fullest.ranks == 1
                                    ? ""
                                    : fmt::format(", {} for the {} ranks that share one",
-                                                 megabytes(static_cast<Real>(load.needed)), load.ranks);
-  return fmt::format("{}{}; {} are free on {}\n", line, together, megabytes(static_cast<Real>(load.free)),
+                                                 megabytes(static_cast<Real>(fullest.needed)), fullest.ranks);
+  return fmt::format("{}{}; {} are free on {}\n", line, together, megabytes(static_cast<Real>(fullest.free)),
                      device_name());
 }
 

@@ -121,4 +121,26 @@ TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum") {
   std::printf("momentum of the gas: changed by %.1e of the sum of sizes in 20000 steps\n", drift * 1e-9);
 }
 
+TEST_CASE("mixed precision: what drifts outside keeps its place however far it goes") {
+  Model model = box_model(100, Precision::mixed);
+  model.gravity = {0, -9.81, 0};
+  model.space.leaving = Leaving::drift;
+  add_sphere(model, {50, -3, 50}, {-900, -20, 35}), add_sphere(model, {50, 50, 50}, {});
+  Run mixed(model, true), exact(model, false);
+  for (Run* run : {&mixed, &exact}) {
+    std::vector<ParticleRecord> records = run->backend->records();
+    records[0].drifting = true;
+    run->backend->load(records, {});
+    run->backend->build_list(model.contact.skin, run->timers);
+    run->backend->initial_forces();
+    for (int part = 0; part < 3; ++part) run->advance(1e-4, 4000);  // a kilometre
+  }
+  const std::vector<ParticleRecord> a = mixed.backend->records(), b = exact.backend->records();
+  CHECK(b[0].position.x < -1000);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(norm(a[i].position - b[i].position) <= 1e-9 * norm(b[i].position));
+    CHECK(norm(a[i].velocity - b[i].velocity) <= 1e-6 * norm(b[i].velocity));
+  }
+}
+
 }  // namespace scree

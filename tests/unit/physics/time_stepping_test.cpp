@@ -171,4 +171,15 @@ TEST_CASE("time functions: rates and accelerations are derivatives") {
   CHECK(spline_function(segment, 3).acceleration == -0.4);
 }
 
+TEST_CASE("many Verlet steps under a constant acceleration are taken at once") {
+  Vec3 middle = kVelocity, displacement;
+  constexpr int kSteps = 37;
+  for (int step = 0; step < kSteps; ++step) {
+    middle = verlet_next_middle(kStep, middle, kStart);
+    displacement += kStep * middle;
+  }
+  CHECK(near(verlet_middle_after(kSteps, kStep, kVelocity, kStart), middle));
+  CHECK(near(verlet_displacement_of(kSteps, kStep, kVelocity, kStart), displacement));
+}
+
 }  // namespace scree

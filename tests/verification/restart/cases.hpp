@@ -86,6 +86,84 @@ mass = 1.0
 history_interval = 0.05
 )";
 
+// A body and two discs go round the periodic axis some 80 times and touch all the while: contacts and
+// energies must not depend on how many periods were taken off whom, and when.
+inline const std::string kRoundAndRound = R"(
+gravity = [3.3, 0.0]
+[space]
+dimension = 2
+min = [0.17, 0.0]
+max = [1.0, 0.5]
+x_min = "periodic"
+x_max = "periodic"
+y_min = "wall"
+y_max = "wall"
+[time]
+end = 3.0
+step = 1e-3
+[contact]
+skin = 0.3
+[[contact.pairs]]
+stiffness = 1e4
+[[particles]]
+kind = "list"
+positions = [[0.5, 0.06], [0.5, 0.44]]
+velocity = [19.0, 1.0]
+radius = 0.05
+mass = 1.0
+[[bodies]]
+name = "runner"
+mass = 3.0
+inertia = 0.01
+position = [0.51, 0.25]
+velocity = [19.0, 0.3]
+shapes = [{ radius = 0.05, offset = [0.02, 0.01] }]
+[output]
+history_interval = 0.05
+)";
+
+// Discs that leave, each with its energy, after many rounds along the periodic axis.
+inline const std::string kLateLeavers = R"(
+gravity = [3.3, 0.0]
+[space]
+dimension = 2
+min = [0.17, 0.0]
+max = [1.0, 1.0]
+x_min = "periodic"
+x_max = "periodic"
+leaving = "remove"
+[time]
+end = 3.0
+step = 1e-3
+[contact]
+skin = 0.3
+[[contact.pairs]]
+stiffness = 1e5
+[[particles]]
+name = "right"
+kind = "list"
+positions = [[0.3, 0.2]]
+velocity = [37.0123, 0.41]
+radius = 0.05
+mass = 1.0
+[[particles]]
+name = "left"
+kind = "list"
+positions = [[0.7, 0.4]]
+velocity = [-29.0456, 0.41]
+radius = 0.05
+mass = 1.0
+[[particles]]
+name = "last"
+kind = "list"
+positions = [[0.5, 0.6]]
+velocity = [21.3, 0.1567]
+radius = 0.05
+mass = 1.0
+[output]
+history_interval = 0.05
+)";
+
 // Each case with each integrator and step control that it can have.
 inline std::vector<RestartCase> restart_cases() {
   const std::vector<std::vector<std::string>> ways = {
@@ -107,6 +185,8 @@ inline std::vector<RestartCase> restart_cases() {
     for (const std::string policy : {"remove", "drift"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
     cases.push_back({"far drifters" + how, model_of(kFarDrifters, with({})), true});
+    cases.push_back({"round and round" + how, model_of(kRoundAndRound, with({})), false});
+    cases.push_back({"late leavers" + how, model_of(kLateLeavers, with({})), true});
     cases.push_back(
         {"periodic gas" + how,
          input_model("examples/gas_periodic.toml", with({"time.end=0.02", "particles.gas.count=1000"})),
