@@ -1,8 +1,8 @@
 // Speed of explicit and implicit steps on settled beds, and what a net of bodies costs on top. Usage: bed
 // --help.
 //
-// The CPU's times are CPU seconds, the GPU's, and those of several ranks of mpirun, wall seconds around calls
-// that return when the work is done; of ranks the longest.
+// The CPU's times are CPU seconds, the GPU's, and those of several ranks of mpirun, wall seconds around
+// batches of steps that return when the work is done, launches and waiting included; of ranks the longest.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -299,7 +299,7 @@ void measure_all(const Options& options) {
   if (options.on_gpu()) choose_device(options.ranks);
   if (options.on_gpu() && !device_trouble().empty()) throw InputError("--backend cuda: " + device_trouble());
   fmt::print("commit {}, {}, {}, {}{}{}\n", commit(),
-             options.on_gpu()        ? device_name()
+             options.on_gpu()        ? device_name() + ", wall seconds around synchronised batches"
              : options.ranks.alone() ? options.wall ? "one core, wall seconds" : "one core, CPU seconds"
                                      : fmt::format("{} ranks, wall seconds", options.ranks.size()),
              options.precision, options.dimension == 3 ? "spheres" : "discs",

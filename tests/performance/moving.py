@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 DIAMETER, SPACING = 0.01, 0.0102  # [m]
+STEP = 1e-5  # [s]
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
 DECK = """gravity = [0.0, -9.81, 0.0]
@@ -29,7 +30,7 @@ z_max = "periodic"
 particles = "velocity-verlet"
 [time]
 end = {end}
-step = 1e-5
+step = {step}
 [[contact.pairs]]
 stiffness = 1e5
 damping = 2.0
@@ -51,16 +52,19 @@ def write_deck(path, particles, end):
     side = round(particles ** (1 / 3))
     width = side * SPACING
     path.write_text(DECK.format(side=side, spacing=SPACING, half=SPACING / 2, radius=DIAMETER / 2, width=width,
-                                length=3 * width, end=end))
+                                length=3 * width, end=end, step=STEP))
 
 
-def run(arguments, ranks, folder):
-    words = ["mpirun", "--oversubscribe", *shlex.split(arguments.mpirun), "-n", str(ranks), arguments.scree, "run",
-             str(folder / "moving.toml"), "--backend", arguments.backend, "--output", str(folder / str(ranks))]
+def run(scree, deck, folder, backend, ranks=1, mpirun="", settings=()):
+    """Runs the deck into the folder, with settings (key=value) of its keys; the run record."""
+    words = ["mpirun", "--oversubscribe", *shlex.split(mpirun), "-n", str(ranks), scree, "run", str(deck), "--backend",
+             backend, "--output", str(folder)]
+    for setting in settings:
+        words += ["--set", setting]
     done = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"error: {' '.join(words)}: exit code {done.returncode}\n{done.stderr}")
-    return json.loads((folder / str(ranks) / "run_record.json").read_text())
+    return json.loads((folder / "run_record.json").read_text())
 
 
 def step_seconds(record):
@@ -84,7 +88,8 @@ def main():
         folder = pathlib.Path(name)
         write_deck(folder / "moving.toml", arguments.particles, arguments.end)
         for ranks in arguments.ranks:
-            record = run(arguments, ranks, folder)
+            record = run(arguments.scree, folder / "moving.toml", folder / str(ranks), arguments.backend, ranks,
+                         arguments.mpirun)
             counts, measures = record["counts"], record["measures"]
             print(f"| {ranks} | {counts['particles']:,} | {counts['steps']:,} | "
                   f"{1e3 * step_seconds(record):.4g} | {counts['list_builds']:,} | "

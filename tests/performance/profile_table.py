@@ -1,12 +1,15 @@
 """Markdown tables, one row per kernel, from the files that profile.sh writes.
 
     profile_table.py --copy-bandwidth GB/s FILE.csv ...
+    profile_table.py --metrics      # what profile.sh asks Nsight Compute for
 
 copy-bandwidth: what copy_bandwidth prints for the device, bytes read and written. Rates are sums over the kernel's
-calls; registers, occupancy and hit rates are means over them, weighted by time.
+calls; registers, occupancy, hit rates, throughputs and stalls are means over them, weighted by time. Stalls: the reasons for
+which warps did not issue an instruction, by Nsight Compute's names, in percent of the warps' time; those of 10 % and more.
 """
 import argparse
 import csv
+import math
 import pathlib
 import re
 import sys
@@ -17,8 +20,17 @@ MEANS = {
     "occupancy [%]": "sm__warps_active.avg.pct_of_peak_sustained_active",
     "L1 hits [%]": "l1tex__t_sector_hit_rate.pct",
     "L2 hits [%]": "lts__t_sector_hit_rate.pct",
-    "L2 throughput [%]": "lts__t_sectors.avg.pct_of_peak_sustained_elapsed",
+    "L1 throughput [%]": "l1tex__throughput.avg.pct_of_peak_sustained_active",
+    "L2 throughput [%]": "lts__throughput.avg.pct_of_peak_sustained_elapsed",
 }
+# Warps in each state per issued instruction; LATENCY is the sum over all states, also those not asked for.
+LATENCY = "smsp__average_warp_latency_per_inst_issued.ratio"
+STALLS = {reason.replace("_", " "): f"smsp__average_warps_issue_stalled_{reason}_per_issue_active.ratio" for reason in (
+    "long_scoreboard", "lg_throttle", "short_scoreboard", "mio_throttle", "math_pipe_throttle", "wait", "not_selected",
+    "barrier", "membar", "drain", "no_instruction", "branch_resolving", "imc_miss")}
+NEEDED = (TIME, READ, WRITE)
+METRICS = (*NEEDED, *MEANS.values(), LATENCY, *STALLS.values())
+LEAST_STALL = 10  # [%]
 TIME_UNITS = {"ns": 1e-9, "nsecond": 1e-9, "us": 1e-6, "usecond": 1e-6, "ms": 1e-3, "msecond": 1e-3, "s": 1.0,
               "second": 1.0}
 BYTE_UNITS = {"byte": 1.0, "Kbyte": 1e3, "Mbyte": 1e6, "Gbyte": 1e9}
@@ -32,15 +44,15 @@ def read_launches(path):
         raise SystemExit(f"error: {path}: no table of launches; must be written by profile.sh")
     rows = list(csv.reader(line for line in lines[first:] if line.startswith('"')))
     header, units = rows[0], rows[1]
-    missing = [name for name in (TIME, READ, WRITE, *MEANS.values()) if name not in header]
+    missing = [name for name in NEEDED if name not in header]
     if missing:
         raise SystemExit(f"error: {path}: no metric {missing[0]}; profile.sh asks for it")
     launches = []
     for row in rows[2:]:
         launch = {"kernel": row[header.index("Kernel Name")]}
-        for name in (TIME, READ, WRITE, *MEANS.values()):
-            column = header.index(name)
-            launch[name] = number(row[column]) * factor(path, name, units[column])
+        for name in METRICS:
+            column = header.index(name) if name in header else None
+            launch[name] = math.nan if column is None else number(row[column]) * factor(path, name, units[column])
         launches.append(launch)
     if not launches:
         raise SystemExit(f"error: {path}: no launches; the program made fewer than profile.sh skips (SKIP)")
@@ -60,7 +72,7 @@ def number(text):
     try:
         return float(text.replace(",", ""))
     except ValueError:
-        return float("nan")  # ncu's "n/a": not measured for this kernel
+        return math.nan  # ncu's "n/a": not measured for this kernel
 
 
 def short_name(kernel):
@@ -77,30 +89,52 @@ def short_name(kernel):
     return name if len(name) <= 90 else name[:87] + "..."
 
 
+def mean(group, metric):
+    """Over the launches that have the metric, weighted by time; NaN without one."""
+    known = [launch for launch in group if not math.isnan(launch[metric])]
+    time = sum(launch[TIME] for launch in known)
+    return sum(launch[metric] * launch[TIME] for launch in known) / time if time > 0 else math.nan
+
+
+def whole(value):
+    return "-" if math.isnan(value) else f"{value:.0f}"
+
+
+def stalls(group):
+    shares = {reason: 100 * mean(group, metric) / mean(group, LATENCY) for reason, metric in STALLS.items()}
+    largest = sorted((item for item in shares.items() if item[1] >= LEAST_STALL), key=lambda item: -item[1])
+    return ", ".join(f"{reason} {share:.0f}" for reason, share in largest) or "-"
+
+
 def table(path, copy_bandwidth):
     kernels = {}
     for launch in read_launches(path):
         kernels.setdefault(launch["kernel"], []).append(launch)
     total = sum(launch[TIME] for group in kernels.values() for launch in group)
-    columns = ["kernel", "calls", "time [us]", "of all time [%]", "MB per call", "GB/s", "of copy [%]", *MEANS]
+    columns = ["kernel", "calls", "time [us]", "of all time [%]", "MB per call", "GB/s", "of copy [%]", *MEANS, "stalls [%]"]
     lines = [f"### {path.stem}", "", "| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     for kernel, group in sorted(kernels.items(), key=lambda item: -sum(launch[TIME] for launch in item[1])):
         time = sum(launch[TIME] for launch in group)
         moved = sum(launch[READ] + launch[WRITE] for launch in group)
-        means = [sum(launch[name] * launch[TIME] for launch in group) / time for name in MEANS.values()]
         cells = [f"`{short_name(kernel)}`", str(len(group)), f"{1e6 * time / len(group):.1f}",
                  f"{100 * time / total:.1f}",
                  f"{1e-6 * moved / len(group):.2f}", f"{1e-9 * moved / time:.0f}",
-                 f"{1e-7 * moved / time / copy_bandwidth:.0f}", *(f"{mean:.0f}" for mean in means)]
+                 f"{1e-7 * moved / time / copy_bandwidth:.0f}", *(whole(mean(group, name)) for name in MEANS.values()), stalls(group)]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE.csv")
-    parser.add_argument("--copy-bandwidth", type=float, required=True, metavar="GB/s")
+    parser.add_argument("files", nargs="*", type=pathlib.Path, metavar="FILE.csv")
+    parser.add_argument("--copy-bandwidth", type=float, metavar="GB/s")
+    parser.add_argument("--metrics", action="store_true", help="print the metrics that the tables are made of")
     arguments = parser.parse_args()
+    if arguments.metrics:
+        print(",".join(METRICS))
+        return
+    if not arguments.files or arguments.copy_bandwidth is None:
+        parser.error("--copy-bandwidth GB/s and FILE.csv are needed, or --metrics")
     if not arguments.copy_bandwidth > 0:
         parser.error(f"--copy-bandwidth {arguments.copy_bandwidth:g}: must be positive")
     print(f"Time per call; GB/s: device memory read and written; of copy: over {arguments.copy_bandwidth:.0f} GB/s.\n")

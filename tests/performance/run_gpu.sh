@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # Everything that is measured on a GPU, in one go; each part writes its own file into OUT_DIR.
 #   tests/performance/run_gpu.sh BUILD_DIR OUT_DIR [PART ...]
-# PART: copy explicit implicit net table4 profile (default: all). A part that fails is named at the end, and the
+# PART: copy explicit implicit net output table4 profile (default: all). A part that fails is named at the end, and the
 # others still run. SCREE_COMMIT names the commit where the build does not know it. BUDGET: seconds per run of table4.
 # SAMPLES: options of bed for other samples than its own choice (five of 0.5 s): SAMPLES="--repeats 3 --seconds 0.15".
 set -uo pipefail
 if (($# < 2)); then
-  echo "usage: tests/performance/run_gpu.sh BUILD_DIR OUT_DIR [copy explicit implicit net table4 profile]" >&2
+  echo "usage: tests/performance/run_gpu.sh BUILD_DIR OUT_DIR [copy explicit implicit net output table4 profile]" >&2
   exit 2
 fi
 build=$1 out=$2
 shift 2
 parts=("$@")
-((${#parts[@]} == 0)) && parts=(copy explicit implicit net table4 profile)
+((${#parts[@]} == 0)) && parts=(copy explicit implicit net output table4 profile)
 here=$(dirname "${BASH_SOURCE[0]}")
 read -ra samples <<<"${SAMPLES:-}"
 bed=("$build/tests/performance/bed" "${samples[@]}")
@@ -28,14 +28,13 @@ heading() {
 copy() { "$build/tests/performance/copy_bandwidth"; }
 
 explicit() {
-  local precision rebuild status=0
+  local sizes=(10000 100000 1000000 4000000 16000000) precision rebuild status=0
   for precision in double mixed; do
     for rebuild in 25 0; do
-      "${bed[@]}" --backend cuda --precision "$precision" --rebuild "$rebuild" \
-        --particles 10000 100000 1000000 4000000 16000000 || status=1
+      "${bed[@]}" --backend cuda --precision "$precision" --rebuild "$rebuild" --particles "${sizes[@]}" ||
+        status=1
     done
-    "${bed[@]}" --backend cuda --precision "$precision" --rebuild 0 --dimension 2 \
-      --particles 10000 100000 1000000 || status=1
+    "${bed[@]}" --backend cuda --precision "$precision" --rebuild 0 --dimension 2 --particles "${sizes[@]}" || status=1
   done
   "${bed[@]}" --particles 10000 100000 1000000 || status=1
   return $status
@@ -50,6 +49,8 @@ implicit() {
 
 net() { "${bed[@]}" --backend cuda --net --particles 10000 100000 1000000 4000000; }
 
+output() { python3 "$here/output_cost.py" "$build/scree"; }
+
 table4() {
   python3 "$here/table4.py" "$build/scree" --backends cpu cuda --budget "${BUDGET:-30}" --out "$out/table4"
   local status=$?
@@ -58,22 +59,18 @@ table4() {
 }
 
 profile() {
-  local bandwidth file status=0
-  bandwidth=$("$build/tests/performance/copy_bandwidth" | sed -n 's/.*written: \([0-9.]*\) GB\/s.*/\1/p')
+  local status=0
   "$here/profile.sh" "$build" "$out/profile" >"$out/profile.log" 2>&1 || { tail -n 5 "$out/profile.log"; status=1; }
-  # A case that failed leaves no table; the others have theirs.
-  for file in "$out"/profile/*.csv; do
-    python3 "$here/profile_table.py" --copy-bandwidth "$bandwidth" "$file" || status=1
-  done
+  cat "$out/profile/profile.md" || status=1
   return $status
 }
 
 failed=()
 for part in "${parts[@]}"; do
   case $part in
-    copy | explicit | implicit | net | table4 | profile) ;;
+    copy | explicit | implicit | net | output | table4 | profile) ;;
     *)
-      echo "error: part $part; allowed: copy explicit implicit net table4 profile" >&2
+      echo "error: part $part; allowed: copy explicit implicit net output table4 profile" >&2
       exit 2
       ;;
   esac
