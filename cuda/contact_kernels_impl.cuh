@@ -217,26 +217,27 @@ class ContactKernelsOf : public DeviceContactKernels {
              ContactEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, out.energy, out.contacts, out.pairs});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
-    const bool eagerly = fits(r.rows, verlet_blocks(kFewThreadsAtOnce));
+    const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
     launch(device, r, eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
                               : verlet_advance_kernel<0, Elastic, Laws>);
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    const bool eagerly = fits(r.rows, mixed_blocks(kFewThreadsAtOnce));
+    const bool eagerly = several_at_once(r.rows, mixed_blocks(kFewThreadsAtOnce));
     launch(device, r, eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
                               : mixed_advance_kernel<0, Elastic, Laws>);
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
     if (r.rows.end == 0) return;
-    verlet_finish_kernel<Elastic><<<blocks_for(r.rows.end), kThreadsPerBlock, 0, device.stream>>>(r, laws_, largest);
+    verlet_finish_kernel<Elastic><<<blocks_for(r.rows.end), launches().block, 0, device.stream>>>(r, laws_, largest);
     require_cuda(cudaGetLastError(), "explicit step");
   }
 
  private:
   // Whether so many particles have room side by side on the GPU, with so many blocks on a multiprocessor.
-  bool fits(const StepRows& rows, int blocks) const {
-    return step_blocks(rows.first, rows.end) <= multiprocessors_ * static_cast<unsigned>(blocks);
+  bool several_at_once(const StepRows& rows, int blocks) const {
+    const bool fits = step_blocks(rows.first, rows.end) <= multiprocessors_ * static_cast<unsigned>(blocks);
+    return launches().several_at_once.value_or(fits);
   }
   template <class Request>
   void launch(Device device, const Request& r, void (*kernel)(Request, Laws)) const {

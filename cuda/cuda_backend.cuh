@@ -71,6 +71,7 @@ class CudaBackend : public Backend {
   ParticlePack pack_particles() override;
   ShapePack pack_shapes() override;
   bool computes_asynchronously() const override { return true; }
+  bool is_mixed() const override { return mixed_; }
 
  private:
   // Small results that the device writes and the host reads.

@@ -272,7 +272,7 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
     };
     const auto queue_rows = [&](Device on, Index first, Index end) {
       const unsigned blocks = std::max(1u, blocks_for(end - first));
-      solver_kernel<<<blocks, kThreadsPerBlock, 0, on.stream>>>(first, end, item, solver_.data());
+      solver_kernel<<<blocks, launches().block, 0, on.stream>>>(first, end, item, solver_.data());
     };
     queue_beside_halo(queue_ghosts, queue_rows, nullptr);
     if (!ranks_.alone()) {

@@ -228,7 +228,7 @@ void DeviceList::build(Device device, const ListInput& in) {
   }
   walls_.resize(static_cast<std::size_t>(h_totals_[0].wall_entries));
   if (h_totals_[0].wall_entries == 0) return;
-  fill_walls_kernel<<<blocks_for(in.items), kThreadsPerBlock, 0, device.stream>>>(in, wall_offsets_.data(),
+  fill_walls_kernel<<<blocks_for(in.items), launches().block, 0, device.stream>>>(in, wall_offsets_.data(),
                                                                                   walls_.data());
   require_cuda(cudaGetLastError(), "walls");
 }

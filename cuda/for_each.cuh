@@ -6,12 +6,11 @@
 
 #include "base/types.hpp"
 #include "device.cuh"
+#include "launches.hpp"
 
 namespace scree {
 
-inline constexpr int kThreadsPerBlock = 128;
-
-inline unsigned blocks_for(std::int64_t n, int threads = kThreadsPerBlock) {
+inline unsigned blocks_for(std::int64_t n, int threads = launches().block) {
   return static_cast<unsigned>((n + threads - 1) / threads);
 }
 
@@ -29,7 +28,7 @@ template <class Item>
 void for_each(Device device, Index n, const Item& item) {
   static_assert(std::is_trivially_copyable_v<Item>, "an item travels to the device as bytes");
   if (n <= 0) return;
-  for_each_kernel<<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item);
+  for_each_kernel<<<blocks_for(n), launches().block, 0, device.stream>>>(n, item);
   require_cuda(cudaGetLastError(), "for_each");
 }
 
@@ -83,7 +82,7 @@ void max_over(Device device, Index n, const Item& item, Real* d_largest) {
   static_assert(sizeof(Real) == sizeof(unsigned long long));
   require_cuda(cudaMemsetAsync(d_largest, 0, sizeof(Real), device.stream), "max_over");
   if (n <= 0) return;
-  max_over_kernel<<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item, d_largest);
+  max_over_kernel<<<blocks_for(n), launches().block, 0, device.stream>>>(n, item, d_largest);
   require_cuda(cudaGetLastError(), "max_over");
 }
 

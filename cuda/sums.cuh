@@ -55,9 +55,9 @@ __global__ void add_terms_kernel(Index n, const Item item, ExactSums<N>* sums) {
 template <int N, class Item, class Share>
 void exact_sums(Device device, Index n, const Item& item, ExactSums<N>* d_sums, const Share& share) {
   require_cuda(cudaMemsetAsync(d_sums, 0, sizeof(ExactSums<N>), device.stream), "exact_sums");
-  if (n > 0) largest_terms_kernel<N><<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item, d_sums);
+  if (n > 0) largest_terms_kernel<N><<<blocks_for(n), launches().block, 0, device.stream>>>(n, item, d_sums);
   share(d_sums->largest);
-  if (n > 0) add_terms_kernel<N><<<blocks_for(n), kThreadsPerBlock, 0, device.stream>>>(n, item, d_sums);
+  if (n > 0) add_terms_kernel<N><<<blocks_for(n), launches().block, 0, device.stream>>>(n, item, d_sums);
   require_cuda(cudaGetLastError(), "exact_sums");
 }
 

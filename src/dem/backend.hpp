@@ -143,6 +143,9 @@ class Backend {
 
   // Whether steps go on while the host does something else.
   virtual bool computes_asynchronously() const { return false; }
+  // Whether explicit steps get their contact forces in single precision. The step that verlet_run closes
+  // without opening another gets them in double even so: where runs end changes bits.
+  virtual bool is_mixed() const { return false; }
   // Called by backends that compute asynchronously where they would only wait: from within verlet_run and
   // particle_correct. It must not change the backend.
   void set_idle_work(std::function<void()> work) { idle_work_ = std::move(work); }

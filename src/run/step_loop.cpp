@@ -13,12 +13,30 @@ namespace {
 constexpr double kGoodStateShare = 0.02;
 // Explicit steps are taken in batches of about this length [s], and of no more substeps than this.
 constexpr double kBatchSeconds = 0.05, kMostSubsteps = 1e6;
+// The same in mixed precision, as numbers of the deck: substeps times particles in a batch, about 0.07 s on
+// one H200; so many particles more stand for what a substep of few takes; and no fewer substeps than these,
+// 0.6 s where the particles fill its memory.
+constexpr double kMixedBatch = 1e9, kMixedIdle = 1e5, kFewestMixed = 32;
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
+
+// In mixed precision a batch closes its last step with forces in double: if the clock chose that step, a
+// rerun would have other bits. So the deck alone does. Beside bodies the host's work may take the longest,
+// and the batch is short.
+std::size_t batch_length(const Model& model, bool mixed, double step_seconds) {
+  const double substeps = model.integrator.substeps;
+  double steps = kBatchSeconds / step_seconds;
+  if (mixed) {
+    const auto particles = static_cast<double>(model.particles.totals.count);
+    const double most = model.bodies.empty() ? kMixedBatch / (kMixedIdle + particles) : 0;
+    steps = std::max(most, kFewestMixed) / substeps;
+  }
+  return static_cast<std::size_t>(std::clamp(steps, 1.0, kMostSubsteps / substeps));
+}
 
 StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(State&)> write_checkpoint,
                    std::function<void(const State&, Real)> progress)
@@ -52,13 +70,12 @@ void StepLoop::take_step() {
 
 // Equal steps up to the next output, but no longer than until the next look at signals and progress.
 void StepLoop::take_explicit_steps(Real h) {
-  const std::vector<Real> times = clock_.equal_steps(batch_);
+  const std::vector<Real> times =
+      clock_.equal_steps(batch_length(parts_.model, parts_.backend.is_mixed(), step_seconds_));
   const double start = seconds_now();
   const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h);
-  const double each = (seconds_now() - start) / static_cast<double>(taken);
-  batch_ = static_cast<std::size_t>(
-      std::clamp(kBatchSeconds / each, 1.0, kMostSubsteps / parts_.model.integrator.substeps));
-  ranks().broadcast(batch_);  // clocks differ
+  step_seconds_ = (seconds_now() - start) / static_cast<double>(taken);
+  ranks().broadcast(step_seconds_);  // clocks differ
   for (std::size_t k = 0; k < taken; ++k) clock_.accepted(0);
   close_step(h);
 }

@@ -1,7 +1,9 @@
 // The loop over steps: reads from top to bottom as the algorithm.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <limits>
 
 #include "base/log.hpp"
 #include "coupling/coupled_step.hpp"
@@ -22,6 +24,10 @@ struct LoopParts {
   Recorder& recorder;
   StageTimers& timers;
 };
+
+// Explicit steps of the bodies to take at once, where the last ones took so many seconds each. mixed: that of
+// the backend.
+std::size_t batch_length(const Model& model, bool mixed, double step_seconds);
 
 class StepLoop {
  public:
@@ -53,7 +59,7 @@ class StepLoop {
   std::function<void(State&)> write_checkpoint_;
   std::function<void(const State&, Real)> progress_;
   bool implicit_;
-  std::size_t batch_ = 1;  // explicit steps to take at once
+  double step_seconds_ = std::numeric_limits<double>::infinity();  // of the last explicit steps
   int signal_ = 0;
   State good_;            // explicit: the copy
   double good_cost_ = 0;  // seconds that keeping it took

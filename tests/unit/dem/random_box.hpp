@@ -133,10 +133,12 @@ inline std::vector<BodyMotion> motion_of(const std::vector<Body>& bodies) {
 
 // A model on a backend with its list built and its first forces known.
 struct LoadedBox {
-  explicit LoadedBox(const Model& of, Real skin = 0.02)
+  explicit LoadedBox(const Model& of, Real skin = 0.02,
+                     std::unique_ptr<Backend> (*make)(const Model&, const Ranks&) = make_test_backend)
       : model(of),
         records(initial_records(model.particles, Subdomain(model.space))),
-        motion(motion_of(model.bodies)) {
+        motion(motion_of(model.bodies)),
+        backend(make(model, {})) {
     backend->load(records, {});
     backend->place_bodies(motion);
     backend->build_list(skin, timers);
@@ -148,7 +150,7 @@ struct LoadedBox {
   Model model;
   std::vector<ParticleRecord> records;
   std::vector<BodyMotion> motion;
-  std::unique_ptr<Backend> backend = make_test_backend(model);
+  std::unique_ptr<Backend> backend;
   StageTimers timers;
 };
 

@@ -1,0 +1,118 @@
+// No result depends on how kernels are launched: with blocks of other sizes, and with either form of the
+// explicit step's kernel, bits are the same.
+#include "launches.hpp"
+
+#include "dem/device.hpp"
+#include "output/checkpoint.hpp"
+#include "support/bits.hpp"
+#include "support/catch.hpp"
+#include "unit/dem/random_box.hpp"
+
+namespace scree {
+namespace {
+
+constexpr int kParticles = 3000;
+
+// Kernels are launched so as long as this lives.
+class Launched {
+ public:
+  explicit Launched(const Launches& choice) : before_(launches()) { launches() = choice; }
+  ~Launched() { launches() = before_; }
+  Launched(const Launched&) = delete;
+  Launched& operator=(const Launched&) = delete;
+
+ private:
+  Launches before_;
+};
+
+struct Outcome {
+  Checkpoint state;
+  std::vector<Real> sums;
+};
+
+Outcome outcome_of(LoadedBox& box, Real verlet_step) {
+  State state;
+  state.particles = box.backend->records();
+  const ParticleLedger l = box.backend->ledger(verlet_step);
+  std::vector<Real> sums{l.kinetic,      l.gravitational,   l.contact_elastic,
+                         l.contact_loss, l.integrator_loss, static_cast<Real>(l.contacts)};
+  for (const Vec3& v : {l.momentum, l.angular_momentum}) sums.insert(sums.end(), {v.x, v.y, v.z});
+  CHECK(l.contacts > 0);
+  return {with_rows_as_arrays(pack(state)), sums};
+}
+
+Outcome implicit_steps(const BoxCase& c, const Launches& choice) {
+  const Launched launched(choice);
+  LoadedBox box(dense_box(c, ParticleIntegrator::hht, kParticles), 0.1, make_cuda_backend);
+  for (int k = 0; k < 2; ++k) hht_step(*box.backend, box.motion, 1e-4);
+  return outcome_of(box, 0);
+}
+
+// Over several lists, and rows pruned several times for each.
+Outcome explicit_steps(const BoxCase& c, Precision precision, const Launches& choice) {
+  const Launched launched(choice);
+  Model model = dense_box(c, ParticleIntegrator::velocity_verlet, kParticles);
+  model.integrator.precision = precision;
+  model.contact.skin = 0.02;
+  LoadedBox box(model, model.contact.skin, make_cuda_backend);
+  constexpr Real kStep = 1e-5;
+  const Index steps = 300, at_once = model.bodies.empty() ? steps : 1;
+  box.backend->verlet_start(kStep);
+  for (Index left = steps; left > 0; left -= at_once) {
+    box.backend->place_bodies(box.motion);
+    REQUIRE(box.backend->verlet_run(kStep, at_once, left > at_once, box.timers).closed == at_once);
+  }
+  CHECK(box.backend->list_builds() > 1);
+  return outcome_of(box, kStep);
+}
+
+void check_same(const Outcome& a, const Outcome& b) {
+  CHECK(differing_arrays(a.state, b.state) == "");
+  CHECK(same_bits(a.sums, b.sums));
+}
+
+struct ExplicitCase {
+  const BoxCase& box;
+  Precision precision;
+};
+
+// Periodic on all sides; exponents 1, 1.5 and, beside bodies, 1.
+const ExplicitCase kExplicit[] = {{kBoxes[1], Precision::full},
+                                  {kBoxes[4], Precision::full},
+                                  {kBoxes[5], Precision::full},
+                                  {kBoxes[1], Precision::mixed},
+                                  {kBoxes[4], Precision::mixed}};
+
+}  // namespace
+
+TEST_CASE("blocks of any size give the same bits") {
+  for (const BoxCase& c : kBoxes) {
+    const Outcome usual = implicit_steps(c, {});
+    for (const int block : {32, 64, 256}) {
+      CAPTURE(c.name, block);
+      check_same(usual, implicit_steps(c, {block, {}}));
+    }
+  }
+  for (const ExplicitCase& c : kExplicit) {
+    const Outcome usual = explicit_steps(c.box, c.precision, {});
+    for (const int block : {32, 64, 256}) {
+      CAPTURE(c.box.name, static_cast<int>(c.precision), block);
+      check_same(usual, explicit_steps(c.box, c.precision, {block, {}}));
+    }
+  }
+}
+
+TEST_CASE("both forms of the explicit step's kernel give the same bits") {
+  for (const ExplicitCase& c : kExplicit) {
+    CAPTURE(c.box.name, static_cast<int>(c.precision));
+    Launches several, one_by_one;
+    several.several_at_once = true, one_by_one.several_at_once = false;
+    const Outcome outcome = explicit_steps(c.box, c.precision, several);
+    check_same(outcome, explicit_steps(c.box, c.precision, one_by_one));
+    // Mixed is something else: these are not the same kernels four times.
+    if (c.precision == Precision::mixed)
+      CHECK(differing_arrays(outcome.state, explicit_steps(c.box, Precision::full, several).state) != "");
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,130 @@
+// How many explicit steps the loop takes at once.
+#include "run/step_loop.hpp"
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dem/cpu_backend.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/petsc_run.hpp"
+#include "unit/output/scratch.hpp"
+
+namespace scree {
+
+namespace {
+
+Model model_with(std::int64_t particles, int substeps, int bodies = 0) {
+  Model model;
+  model.particles.totals.count = particles;
+  model.integrator.substeps = substeps;
+  model.bodies.resize(static_cast<std::size_t>(bodies));
+  return model;
+}
+
+// A disc on its way, one output at the end.
+const std::string kDeck = R"(
+[space]
+dimension = 2
+min = [-1.0, -1.0]
+max = [1.0, 1.0]
+[time]
+end = 1.0
+step = 5e-5
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e4
+[[particles]]
+name = "disc"
+kind = "list"
+positions = [[-0.5, 0.0]]
+velocity = [1.0, 0.0]
+radius = 0.1
+mass = 1.0
+[output]
+history_interval = 1.0
+)";
+
+// Says that it is mixed, or not; dawdles, and keeps how many steps it had to take at once.
+class SlowBackend : public CpuBackend {
+ public:
+  SlowBackend(const Model& model, bool mixed, int milliseconds)
+      : CpuBackend(model), mixed_(mixed), milliseconds_(milliseconds) {}
+  bool is_mixed() const override { return mixed_; }
+  VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) override {
+    batches.push_back(most);
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds_));
+    return CpuBackend::verlet_run(h, most, keep_open, timers);
+  }
+
+  std::vector<Index> batches;
+
+ private:
+  bool mixed_;
+  int milliseconds_;
+};
+
+// The batches of a whole run.
+std::vector<Index> batches(bool mixed, int milliseconds) {
+  const Model model = (petsc(), model_of(kDeck));
+  const ScratchDirectory folder;
+  SlowBackend backend(model, mixed, milliseconds);
+  BodyLink link(model);
+  StageTimers timers;
+  CoupledStep step(model, backend, link, timers);
+  State state;
+  state.clock = StepClock(model).state();
+  backend.load(initial_records(model.particles, Subdomain(model.space)), {});
+  step.start(state.bodies);
+  Recorder recorder(model, backend, link, folder.path(), state);
+  StepLoop loop(
+      {model, backend, link, step, recorder, timers}, state, [](State&) {}, [](const State&, Real) {});
+  CHECK(loop.run() == LoopEnd::done);
+  return backend.batches;
+}
+
+}  // namespace
+
+TEST_CASE("in double a batch follows the clock: some 0.05 s of steps, one before the first is measured") {
+  const Model model = model_with(1000000, 1);
+  CHECK(batch_length(model, false, std::numeric_limits<double>::infinity()) == 1);
+  CHECK(batch_length(model, false, 1) == 1);
+  CHECK(batch_length(model, false, 1e-3) == 50);
+  CHECK(batch_length(model_with(1, 1), false, 1e-9) == 1000000);
+  CHECK(batch_length(model_with(1, 100), false, 1e-9) == 10000);
+}
+
+TEST_CASE("in mixed precision a batch follows from the deck, and a GPU takes well under a second for it") {
+  struct Size {
+    std::int64_t particles;
+    double step;  // seconds that an H200 takes
+  };
+  for (const Size& size :
+       {Size{1, 7e-6}, {10000, 7.4e-6}, {1000000, 75.7e-6}, {16000000, 1.06e-3}, {250000000, 1.66e-2}})
+    for (const int substeps : {1, 10}) {
+      CAPTURE(size.particles, substeps);
+      const Model model = model_with(size.particles, substeps);
+      const std::size_t steps = batch_length(model, true, 1e-3);
+      CHECK(steps == batch_length(model, true, 1));
+      CHECK(steps == batch_length(model, true, std::numeric_limits<double>::infinity()));
+      const double seconds = static_cast<double>(steps) * substeps * size.step;
+      CHECK(seconds < 0.7);
+      CHECK(seconds > 0.02);
+    }
+  // No step is cut, and the equations of 10,000 bodies, 19 ms, are not solved for minutes.
+  CHECK(batch_length(model_with(100, 1000000), true, 1) == 1);
+  CHECK(batch_length(model_with(100, 1, 10000), true, 1) == 32);
+}
+
+TEST_CASE("in mixed precision no clock decides where the loop's batches end") {
+  const std::vector<Index> quick = batches(true, 0);
+  CHECK(quick.size() > 2);
+  CHECK(quick == batches(true, 20));
+  CHECK(batches(false, 0) != batches(false, 20));
+}
+
+}  // namespace scree
