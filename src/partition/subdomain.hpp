@@ -14,8 +14,8 @@ struct ImageCount {
 
 // p moved by whole periods, rounded once: the same from whichever of its images.
 SCREE_HD Vec3 moved_by_periods(Vec3 p, const ImageCount& count, Vec3 period) {
-  return {std::fma(count.x, period.x, p.x), std::fma(count.y, period.y, p.y),
-          std::fma(count.z, period.z, p.z)};
+  return {std::fma(Real(count.x), period.x, p.x), std::fma(Real(count.y), period.y, p.y),
+          std::fma(Real(count.z), period.z, p.z)};
 }
 
 // The position inside the periodic box that starts at min, and the periods taken off it; exact. period: 0
