@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "base/log.hpp"
 #include "coupling/coupled_step.hpp"
@@ -55,9 +56,9 @@ class StepLoop {
   bool implicit_;
   std::size_t batch_ = 1;  // explicit steps to take at once
   int signal_ = 0;
-  State good_;            // explicit: the copy
-  double good_cost_ = 0;  // seconds that keeping it took
-  double good_age_ = 0;   // steady clock when it was kept [s]
+  std::optional<State> good_;  // explicit: the copy
+  double good_cost_ = 0;       // seconds that keeping it took
+  double good_age_ = 0;        // steady clock when it was kept [s]
 };
 
 }  // namespace scree
