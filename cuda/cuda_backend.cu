@@ -21,6 +21,7 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
       mixed_(model.integrator.precision == Precision::mixed && side_.shapes().size() == 0),
       pack_(std::make_unique<PackArrays>()) {
   results_.zero(stream_);
+  records_.resize_clean(kRecordsAtOnce, stream_);
   laws_.upload(model.contact.laws, stream_);
   kernels_ = make_device_contact_kernels(model.contact, laws_.data());
   planes_.upload(wall_planes(model), stream_);
@@ -63,18 +64,22 @@ void CudaBackend::load(const std::vector<ParticleRecord>& records, const ShapeLo
   now_.integrator_loss.upload(store.integrator_loss, stream_), now_.image.upload(store.image, stream_);
   now_.drifting.upload(store.drifting, stream_);
   layout_changed_ = true;
+  // records() must work where no memory is left, and a kernel takes some when it is launched first.
+  for_each(device(), std::min<Index>(owned_, 1), record_item(0));
+}
+
+RecordItem CudaBackend::record_item(Index first) const {
+  return {views_of(now_), first, model_.space.min, subdomain_.period(), records_.data()};
 }
 
 std::vector<ParticleRecord> CudaBackend::records() const {
+  if (migrating_) throw DeviceError("particles were on their way between ranks");
   std::vector<ParticleRecord> out(static_cast<std::size_t>(owned_));
-  DeviceArray<ParticleRecord> d_records;
-  d_records.resize_clean(std::min(out.size(), kRecordsAtOnce), stream_);
-  const auto at_once = static_cast<Index>(d_records.size());
+  const auto at_once = static_cast<Index>(records_.size());
   for (Index first = 0; first < owned_; first += at_once) {
     const Index n = std::min(at_once, owned_ - first);
-    for_each(device(), n,
-             RecordItem{views_of(now_), first, model_.space.min, subdomain_.period(), d_records.data()});
-    copy_async(out.data() + first, d_records.data(), static_cast<std::size_t>(n), stream_);
+    for_each(device(), n, record_item(first));
+    copy_async(out.data() + first, records_.data(), static_cast<std::size_t>(n), stream_);
   }
   wait_for(stream_);
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
@@ -218,26 +223,30 @@ void CudaBackend::sort_cells(Real skin, std::int64_t particles) {
   copy_async(&h_results_.data()->active, particle_sort_.starts() + outside, 1, stream_);
   copy_async(&h_results_.data()->staying, particle_sort_.starts() + outside + 1, 1, stream_);
   wait_for(stream_);
-  owned_ = h_results_[0].staying;
+  reorder(particle_sort_.order(), h_results_[0].staying);
+  migrating_ = false;
   interior_ = h_results_[0].interior / kStepBlock * kStepBlock;
   layout_.owned = owned_, layout_.active = h_results_[0].active;
-  reorder(particle_sort_.order(), owned_);
 }
 
-// Particle i becomes the one that was order[i].
+// Particle i becomes the one that was order[i]; n of them stay.
 void CudaBackend::reorder(const Index* order, Index n) {
   const auto size = static_cast<std::size_t>(n);
   other_.grow(std::max(size, now_.position.size()), size, 0, stream_);
   for_each(device(), n, ReorderItem{views_of(now_), views_of(other_), order});
   std::swap(now_, other_);
+  owned_ = n;
 }
 
 void CudaBackend::find_ghosts(Real width) {
   if (!decomposition_.exists()) decomposition_ = Decomposition(ranks_, make_domain_grid(model_.space, width), {}, {});
-  halo_.find(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(), layout_.active);
+  halo_.count(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(), layout_.active);
   layout_.first_shape = owned_ + halo_.size();
   layout_.shapes_meet = ranks_.is_root();
-  grow_items(layout_.first_shape);
+  ranks_.together([&] {
+    halo_.list(device(), now_.position.data(), layout_.active);
+    grow_items(layout_.first_shape);
+  });
   const GhostNameItem item{halo_.ghosts(), halo_.field(0, now_.material.data(), owned_),
                            halo_.field(1, now_.row_key.data(), owned_)};
   for_each(device(), halo_.entries(), item);
@@ -312,8 +321,28 @@ void CudaBackend::search(Real skin) {
   list_.build(device(), in);
 }
 
+// What of the list each rank makes alone: what takes most of the memory.
+void CudaBackend::find_rows(Real skin) {
+  index_others();
+  search(skin);
+  const auto items = static_cast<std::size_t>(layout_.items);
+  list_position_.resize(items);
+  copy_async(list_position_.data(), now_.position.data(), items, stream_);
+  if (!ranks_.alone()) {
+    row_length_.resize(static_cast<std::size_t>(owned_));
+    copy_async(row_length_.data(), list_.rows().counts, row_length_.size(), stream_);
+  }
+  if (model_.integrator.particles == ParticleIntegrator::hht)
+    size_step_arrays();
+  else
+    list_.pruned_rows(layout_.first_shape);  // makes room for them
+}
+
+// Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`: all ranks
+// then fail, and can write their last good state.
 void CudaBackend::build_list(Real skin, StageTimers& timers) {
   settle();
+  layout_changed_ = true;
   std::int64_t particles = 0;
   {
     const auto scope = timers.time(Stage::migrate);
@@ -330,11 +359,7 @@ void CudaBackend::build_list(Real skin, StageTimers& timers) {
     lay_out_items(skin);
   }
   const auto scope = timers.time(Stage::neighbors);
-  index_others();
-  search(skin);
-  const auto items = static_cast<std::size_t>(layout_.items);
-  list_position_.resize(items);
-  copy_async(list_position_.data(), now_.position.data(), items, stream_);
+  ranks_.together([&] { find_rows(skin); });
   h_list_shapes_ = side_.position();
   list_skin_ = skin;
   bound_ = 0, new_list_ = true;
@@ -342,7 +367,6 @@ void CudaBackend::build_list(Real skin, StageTimers& timers) {
   layout_changed_ = false;
   ++list_builds_;
   measure_balance();
-  if (model_.integrator.particles == ParticleIntegrator::hht) size_step_arrays();
 }
 
 Real CudaBackend::list_displacement() {

@@ -123,6 +123,7 @@ class CudaBackend : public Backend {
   void lay_out_items(Real skin);
   void index_others();
   void search(Real skin);
+  void find_rows(Real skin);
   void measure_balance();
   void size_step_arrays();
 
@@ -191,6 +192,7 @@ class CudaBackend : public Backend {
   mutable ParticleArrays now_;
   ParticleArrays other_;
   Index owned_ = 0;
+  bool migrating_ = false;  // some are on their way between ranks
   ItemLayout layout_;  // without its list of ghosts
   Decomposition decomposition_;
   DeviceArray<DomainCut> cuts_;
@@ -214,7 +216,7 @@ class CudaBackend : public Backend {
   Event places_copied_, step_queued_;
   Event rows_done_, halo_done_;
   PinnedArray<ShapeContact> h_shape_contacts_;  // written by the device: few, and awaited
-  bool layout_changed_ = true;  // particles left since the list was built
+  bool layout_changed_ = true;  // particles left since the list was built, or it is not finished
   std::int64_t list_builds_ = 0;
 
   mutable DeviceArray<Results> results_;
@@ -258,6 +260,8 @@ class CudaBackend : public Backend {
   DeviceArray<MixedRest> mixed_rest_;
 
   // Output.
+  RecordItem record_item(Index first) const;
+  mutable DeviceArray<ParticleRecord> records_;  // on their way to the host
   struct PackArrays;
   std::unique_ptr<PackArrays> pack_;
 };

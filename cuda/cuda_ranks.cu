@@ -89,8 +89,9 @@ void CudaBackend::migrate() {
   const Index count = fetch(&Results::index);
   balance_.migrated += count;
 
-  constexpr auto kAtOnce = static_cast<Index>(kRecordsAtOnce);
+  constexpr Index kAtOnce = 1 << 22;
   const auto parts = static_cast<Index>(ranks_.max(static_cast<Real>((count + kAtOnce - 1) / kAtOnce)));
+  migrating_ = parts > 0;
   for (Index part = 0; part < parts; ++part) {
     const Index first = std::min(part * kAtOnce, count), n = std::min(kAtOnce, count - first);
     std::vector<std::vector<Migrant>> to(static_cast<std::size_t>(ranks_.size()));
@@ -124,8 +125,6 @@ void CudaBackend::measure_balance() {
   halo.owned = owned_, halo.ghosts = halo_.size(), halo.neighbors = halo_.plan().receivers();
   halo.bytes = std::int64_t{halo_.plan().sent()} * 2 * static_cast<std::int64_t>(sizeof(Vec4));
   if (ranks_.alone()) return;
-  row_length_.resize(static_cast<std::size_t>(owned_));
-  copy_async(row_length_.data(), list_.rows().counts, row_length_.size(), stream_);
   balance_.imbalance = measure_imbalance(ranks_, owned_ + list_.entries());
   balance_.largest = std::max(balance_.largest, balance_.imbalance);
 }

@@ -103,27 +103,28 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
   std::vector<Index> particles;
   for (const Leaver& leaver : leavers)
     if (leaver.rank == ranks_.rank()) particles.push_back(leaver.local_index);
-  DeviceArray<Index> d_particles;
+  const bool remove = model_.space.leaving == Leaving::remove;
+  const auto n = remove ? static_cast<std::size_t>(owned_) : 0;
+  // Memory first: where there is none, nothing has changed yet.
+  DeviceArray<Index> d_particles, iota(n), staying(n), row_length(ranks_.alone() ? 0 : n);
+  DeviceArray<std::uint8_t> stays(n);
   d_particles.upload(particles, stream_);
   for_each(device(), static_cast<Index>(particles.size()),
            MarkItem{d_particles.data(), views_of(now_), model_.space.min, subdomain_.period()});
   layout_changed_ = true;
-  if (model_.space.leaving != Leaving::remove) return;
+  if (!remove) return;
 
-  const auto n = static_cast<std::size_t>(owned_);
-  DeviceArray<std::uint8_t> stays(n);
-  DeviceArray<Index> iota(n), staying(n);
   for_each(device(), owned_, StaysItem{now_.drifting.data(), stays.data(), iota.data()});
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceSelect::Flagged(at, bytes, iota.data(), stays.data(), staying.data(),
                                             result(&Results::index), owned_, stream_),
                  "select");
   });
-  owned_ = fetch(&Results::index);
-  reorder(staying.data(), owned_);
-  DeviceArray<Index> row_length(static_cast<std::size_t>(owned_));
-  if (!ranks_.alone())
+  reorder(staying.data(), fetch(&Results::index));
+  if (!ranks_.alone()) {
+    row_length.resize(static_cast<std::size_t>(owned_));
     for_each(device(), owned_, GatherItem{row_length_.data(), staying.data(), row_length.data()});
+  }
   wait_for(stream_);  // before the arrays above go
   row_length_.swap(row_length);
 }

@@ -13,12 +13,17 @@ std::size_t& device_bytes_in_use() {
   return bytes;
 }
 
+namespace {
+
+cudaError_t chosen = cudaSuccess;  // what came of choose_device
+
+}  // namespace
+
 void choose_device(const Ranks& ranks) {
   const int number = ranks.local_rank();
   int devices = 0;
-  if (ranks.alone() || cudaGetDeviceCount(&devices) != cudaSuccess || devices == 0) return;
-  // Why a device cannot be had device_trouble() says.
-  if (cudaSetDevice(number % devices) != cudaSuccess) cudaGetLastError();
+  if (!ranks.alone() && cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0)
+    chosen = cudaSetDevice(number % devices);
 }
 
 namespace {
@@ -64,6 +69,7 @@ std::string trouble_of(cudaError_t status) {
       return "the GPU is of generation " + std::to_string(major) + "." + std::to_string(minor) +
              ", this program was built for " SCREE_CUDA_ARCHITECTURES " (CMAKE_CUDA_ARCHITECTURES)";
     }
+    case cudaErrorMemoryAllocation: return "the GPU's memory is taken by others";
     default: return cudaGetErrorString(status);
   }
 }
@@ -72,7 +78,8 @@ std::string trouble_of(cudaError_t status) {
 
 std::string device_trouble() {
   int devices = 0;
-  cudaError_t status = cudaGetDeviceCount(&devices);
+  cudaError_t status = chosen;
+  if (status == cudaSuccess) status = cudaGetDeviceCount(&devices);
   if (status == cudaSuccess && devices == 0) status = cudaErrorNoDevice;
   if (status == cudaSuccess) {
     trial_kernel<<<1, 1>>>();

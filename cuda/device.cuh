@@ -23,9 +23,12 @@ struct Device {
 std::size_t multiprocessors();
 std::array<char, 16> device_uuid();
 
-// Throws DeviceError with the runtime's text. what: the call that failed, for the message.
+// Throws DeviceError with the runtime's text. what: the call that failed, for the message. Where memory was wanting the
+// device works on, and the runtime forgets the error: the next launch would report it as its own.
 inline void require_cuda(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) throw DeviceError(std::string("cuda: ") + what + ": " + cudaGetErrorString(status));
+  if (status == cudaSuccess) return;
+  if (status == cudaErrorMemoryAllocation) cudaGetLastError();
+  throw DeviceError(std::string("cuda: ") + what + ": " + cudaGetErrorString(status));
 }
 
 inline void wait_for(cudaStream_t stream) { require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize"); }

@@ -31,7 +31,7 @@ struct TargetItem {
 DeviceHalo::DeviceHalo(const Ranks& ranks, Transport transport)
     : transport_(ranks.alone() ? nullptr : make_halo_transport(ranks, transport)) {}
 
-void DeviceHalo::find(Device device, const HaloPlan& plan, const Vec4* position, Index n) {
+void DeviceHalo::count(Device device, const HaloPlan& plan, const Vec4* position, Index n) {
   plan_ = plan;
   const std::vector<HaloTarget>& targets = plan_.targets();
   std::vector<std::size_t> sent(plan_.neighbors().size());
@@ -39,9 +39,7 @@ void DeviceHalo::find(Device device, const HaloPlan& plan, const Vec4* position,
   targets_.upload(targets, device.stream);
   counts_.resize(targets.size());
   counts_.zero(device.stream);
-  TargetItem item{position, plan_.box(), plan_.reach(), targets_.data(), static_cast<int>(targets.size()),
-                  counts_.data(), nullptr};
-  for_each(device, n, item);
+  visit_targets(device, position, n, nullptr);
   std::vector<unsigned long long> first = counts_.download(device.stream);
   std::size_t own = 0, all = 0;
   for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -51,10 +49,19 @@ void DeviceHalo::find(Device device, const HaloPlan& plan, const Vec4* position,
   }
   plan_.set_counts(own, sent);
   counts_.upload(first, device.stream);
-  ghost_.resize(all);
+}
+
+void DeviceHalo::list(Device device, const Vec4* position, Index n) {
+  if (entries() == 0) return;
+  ghost_.resize(static_cast<std::size_t>(entries()));
   for (DeviceArray<Vec4>& buffer : packed_) buffer.resize(static_cast<std::size_t>(plan_.sent()));
-  item.ghosts = ghost_.data();
-  for_each(device, n, item);
+  visit_targets(device, position, n, ghost_.data());
+}
+
+void DeviceHalo::visit_targets(Device device, const Vec4* position, Index n, Ghost* ghosts) {
+  for_each(device, n,
+           TargetItem{position, plan_.box(), plan_.reach(), targets_.data(), static_cast<int>(plan_.targets().size()),
+                      counts_.data(), ghosts});
 }
 
 void DeviceHalo::update_motion(Device device, Vec4* position, Vec4* velocity, Index first_ghost) {

@@ -65,9 +65,11 @@ class DeviceHalo {
   // Whether the host waits for the device in every exchange.
   bool waits() const { return transport_ && transport_->waits(); }
 
-  // exchange_halo: finds who is a ghost where among items at position[0 ... n-1], and tells the neighbours. Waits for
-  // the stream. Collective.
-  void find(Device device, const HaloPlan& plan, const Vec4* position, Index n);
+  // exchange_halo: counts the ghosts among items at position[0 ... n-1], and tells the neighbours. Waits for the stream.
+  // Collective.
+  void count(Device device, const HaloPlan& plan, const Vec4* position, Index n);
+  // Then lists the same.
+  void list(Device device, const Vec4* position, Index n);
   Index size() const { return plan_.ghosts(); }
   const HaloPlan& plan() const { return plan_; }
   // What the ghosts' fields are filled from: for_each over entries() with an item that puts into fields, then exchange.
@@ -96,6 +98,8 @@ class DeviceHalo {
   }
 
  private:
+  void visit_targets(Device device, const Vec4* position, Index n, Ghost* ghosts);
+
   std::unique_ptr<HaloTransport> transport_;  // none for one rank
   HaloPlan plan_;
   DeviceArray<Ghost> ghost_;

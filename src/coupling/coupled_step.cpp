@@ -105,6 +105,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
       if (l.lost) check_inside();  // through a wall: a shorter step may not
   } catch (const DeviceError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
+    counts_ = before;
     undo_step(bodies);
     throw;
   } catch (const SimulationError& error) {

@@ -96,8 +96,7 @@ std::size_t device_memory(const Model& model) {
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.shapes)
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
-  bytes += n.particles * kOutputArrays +
-           std::min(n.particles, static_cast<double>(kRecordsAtOnce)) * sizeof(ParticleRecord);
+  bytes += n.particles * kOutputArrays + static_cast<double>(kRecordsAtOnce) * sizeof(ParticleRecord);
   return static_cast<std::size_t>(bytes);
 }
 

@@ -92,8 +92,8 @@ void StepLoop::leave() {
     const auto scope = parts_.timers.time(Stage::migrate);
     const std::vector<Leaver> leavers = parts_.step.check_inside();
     if (leavers.empty()) return;
-    book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
     parts_.backend.take_out(leavers);
+    book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
   }
   parts_.step.rebuild_list(parts_.model.contact.skin);  // has stages of its own
 }
@@ -117,11 +117,11 @@ void StepLoop::keep_good_state() {
   if (implicit_) return;
   const double start = seconds_now();
   parts_.recorder.write_pending();  // the copy counts it, also where the backend fails before it is written
-  good_.particles = {};             // two copies are not needed
+  good_.reset();                    // two copies are not needed
   std::vector<ParticleRecord> particles = std::move(complete_state().particles);
   state_.particles = {};
   good_ = state_;
-  good_.particles = std::move(particles);
+  good_->particles = std::move(particles);
   good_age_ = seconds_now();
   good_cost_ = good_age_ - start;
 }
@@ -134,6 +134,6 @@ State& StepLoop::complete_state() {
   return state_;
 }
 
-State& StepLoop::last_good_state() { return implicit_ ? complete_state() : good_; }
+State& StepLoop::last_good_state() { return good_ ? *good_ : complete_state(); }
 
 }  // namespace scree

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "base/log.hpp"
 #include "coupling/coupled_step.hpp"
@@ -61,9 +62,9 @@ class StepLoop {
   bool implicit_;
   double step_seconds_ = std::numeric_limits<double>::infinity();  // of the last explicit steps
   int signal_ = 0;
-  State good_;            // explicit: the copy
-  double good_cost_ = 0;  // seconds that keeping it took
-  double good_age_ = 0;   // steady clock when it was kept [s]
+  std::optional<State> good_;  // explicit: the copy
+  double good_cost_ = 0;       // seconds that keeping it took
+  double good_age_ = 0;        // steady clock when it was kept [s]
 };
 
 }  // namespace scree

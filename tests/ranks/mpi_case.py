@@ -5,6 +5,7 @@ import os
 import pathlib
 import subprocess
 import tempfile
+import time
 import unittest
 
 try:
@@ -73,6 +74,14 @@ class RanksTest(unittest.TestCase):
                                 capture_output=True, text=True, timeout=LIMIT)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
+
+    def wait_for(self, run, path):
+        """Until the run has written the file."""
+        deadline = time.monotonic() + LIMIT
+        while not path.exists():
+            self.assertIsNone(run.poll(), f"the run ended before it wrote {path.name}")
+            self.assertLess(time.monotonic(), deadline, f"no {path.name} in {LIMIT} s")
+            time.sleep(0.01)
 
     def write(self, name, text):
         path = self.folder / name

@@ -79,7 +79,7 @@ TEST_CASE("mixed precision: rebound velocities are within 1e-4 of those in doubl
   }
 }
 
-TEST_CASE("mixed precision: a settled heap stays settled for a million steps") {
+TEST_CASE("mixed precision: a settled heap stays settled for a million steps", "[long]") {
   Model model = box_model(8, Precision::mixed);
   model.gravity = {0, 0, -1};
   model.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, 0},
@@ -109,7 +109,7 @@ TEST_CASE("mixed precision: a settled heap stays settled for a million steps") {
 }
 
 // One size on either side of where another form of the step's kernel takes over.
-TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum") {
+TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum", "[long]") {
   const int spheres = GENERATE(100000, 110000);
   Model model = box_model(62, Precision::mixed);
   model.space.boundary.fill(Boundary::periodic);
