@@ -4,7 +4,6 @@ on GPUs: SCREE_TEST_BACKEND=cuda HOLD_DEVICE_MEMORY=path/to/hold_device_memory a
 
 import math
 import os
-import shutil
 import signal
 import struct
 import subprocess
@@ -12,24 +11,12 @@ import time
 import unittest
 
 from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, IO_FAILED, LIMIT, LONELY, MPIEXEC,
-                      SCREE, STOPPED, VELOCITY, RanksTest, h5py)
+                      SCREE, STOPPED, VELOCITY, RanksTest, gpus, h5py)
 
 HOLD_DEVICE_MEMORY = os.environ.get("HOLD_DEVICE_MEMORY", "hold_device_memory")
 
 
-def gpus():
-    """How many the driver lists."""
-    if shutil.which("nvidia-smi") is None:
-        return 0
-    return subprocess.run(["nvidia-smi", "-L"], capture_output=True, text=True).stdout.count("GPU ")
-
-
 class FailureTest(RanksTest):
-    def assert_one_message(self, result, *words):
-        self.assertEqual(result.stderr.count("error:"), 1, result.stderr)
-        for word in words:
-            self.assertIn(word, result.stderr)
-
     def test_bad_input_is_reported_once(self):
         deck = self.write("bad.toml", LONELY.replace("step = 1e-3", "stp = 1e-3"))
         self.assert_one_message(self.run_deck(BAD_INPUT, 2, deck, "out"), "time.stp", "did you mean")
