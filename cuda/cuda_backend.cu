@@ -2,6 +2,7 @@
 #include "cuda_backend.cuh"
 
 #include "backend_parts.cuh"
+#include "base/countable.hpp"
 #include "dem/device.hpp"
 
 namespace scree {
@@ -241,9 +242,10 @@ void CudaBackend::reorder(const Index* order, Index n) {
 void CudaBackend::find_ghosts(Real width) {
   if (!decomposition_.exists()) decomposition_ = Decomposition(ranks_, make_domain_grid(model_.space, width), {}, {});
   halo_.count(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(), layout_.active);
-  layout_.first_shape = owned_ + halo_.size();
   layout_.shapes_meet = ranks_.is_root();
   ranks_.together([&] {
+    layout_.first_shape = countable(static_cast<std::size_t>(owned_) + static_cast<std::size_t>(halo_.size()),
+                                    kTooManyItems);
     halo_.list(device(), now_.position.data(), layout_.active);
     grow_items(layout_.first_shape);
   });

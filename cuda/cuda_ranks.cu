@@ -4,6 +4,7 @@
 #include <thrust/iterator/counting_iterator.h>
 
 #include "backend_parts.cuh"
+#include "base/countable.hpp"
 #include "dem/device.hpp"
 
 namespace scree {
@@ -114,9 +115,10 @@ void CudaBackend::add_migrants(const std::vector<Migrant>& arriving) {
   DeviceArray<Migrant> unpacked;
   unpacked.upload(arriving, stream_);
   const auto before = static_cast<std::size_t>(owned_), n = before + arriving.size();
+  const Index owned = countable(n, kTooManyParticles);
   now_.grow(std::max(n, now_.position.size()), n, before, stream_);
   for_each(device(), static_cast<Index>(arriving.size()), ArrivalItem{unpacked.data(), views_of(now_), owned_});
-  owned_ = static_cast<Index>(n);
+  owned_ = owned;
   wait_for(stream_);  // before the array above goes
 }
 

@@ -149,7 +149,8 @@ std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport
     std::string allowed = "\"auto\"";
     if (no_mpi.empty()) allowed += ", \"cuda-aware\"";
     if (no_nccl.empty()) allowed += ", \"nccl\"";
-    throw InputError("parallel.transport = \"" + key + "\": " + why + "; allowed here: " + allowed + ", \"staged\"");
+    throw TransportError("parallel.transport = \"" + key + "\": " + why + "; allowed here: " + allowed +
+                         ", \"staged\"");
   };
   if (wanted == Transport::automatic)
     wanted = no_mpi.empty() ? Transport::cuda_aware : no_nccl.empty() ? Transport::nccl : Transport::staged;

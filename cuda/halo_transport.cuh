@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "dem/device.hpp"
 #include "device.cuh"
 #include "model/model.hpp"
 #include "partition/halo_plan.hpp"
@@ -26,7 +27,7 @@ class HaloTransport {
 
 // The one that the deck names or, for automatic, the first that works here: MPI where it takes device memory, NCCL
 // where the program was built with it and no two ranks share a GPU, else copies in host memory. Collective. Throws
-// InputError where the deck names one that does not work here.
+// TransportError where the deck names one that does not work here.
 std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted);
 
 }  // namespace scree

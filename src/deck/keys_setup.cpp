@@ -157,7 +157,8 @@ const TableKeys& parallel_keys() {
            .one_of({"auto", "cuda-aware", "nccl", "staged"})
            .otherwise("\"auto\"")
            .about("How ghosts travel between GPUs: by an MPI library that takes device memory, by NCCL, or "
-                  "through host memory. auto: the first of these that works here.")},
+                  "through host memory. auto: the first of these that works here; another that does not work "
+                  "here ends the run.")},
       ""};
   return keys;
 }

@@ -60,6 +60,10 @@ inline constexpr const char* kUnsoundPosition[] = {
     "stage sort_cells: the position of particle ",
     " is not finite, or it crossed the whole periodic space since the last list"};
 
+// What countable() says of a rank's own particles, and of those with its ghosts.
+inline constexpr const char* kTooManyParticles = "stage migrate: more particles";
+inline constexpr const char* kTooManyItems = "stage exchange_halo: more particles and ghosts";
+
 // One entry per particle of this rank, any order.
 struct ParticlePack {
   std::vector<GlobalId> global_id;

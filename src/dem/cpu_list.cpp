@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "base/error.hpp"
+#include "base/countable.hpp"
 #include "dem/cpu_backend.hpp"
 
 namespace scree {
@@ -45,6 +45,7 @@ void CpuBackend::migrate() {
   }
   balance_.migrated += store_.owned - static_cast<std::int64_t>(staying.size());
   const std::vector<Migrant> arriving = ranks_.deal_out(leaving);
+  countable(staying.size() + arriving.size(), kTooManyParticles);
   store_.reorder(staying);
   for (const Migrant& particle : arriving) store_.add(particle);
 }
@@ -75,7 +76,8 @@ void CpuBackend::lay_out_items(Real skin) {
   halo_.exchange(ranks_, decomposition_, subdomain_, model_.space,
                  {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
   layout_.ghost_images = halo_.images();
-  layout_.first_shape = layout_.owned + halo_.size();
+  layout_.first_shape = countable(
+      static_cast<std::size_t>(layout_.owned) + static_cast<std::size_t>(halo_.size()), kTooManyItems);
   layout_.shapes_meet = ranks_.is_root();
 
   side_.lay_out(model_.space, width, layout_);

@@ -8,10 +8,16 @@
 #include <span>
 #include <string>
 
+#include "base/error.hpp"
 #include "dem/backend.hpp"
 #include "model/model.hpp"
 
 namespace scree {
+
+// The deck forces a transport between GPUs that does not work here. The message says which ones do.
+struct TransportError : InputError {
+  using InputError::InputError;
+};
 
 // Takes a GPU of its own for each rank of a host, in turn where there are fewer; one rank alone stays with
 // the first. The functions below are about that GPU. Collective.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
+#include "base/countable.hpp"
 
 namespace scree {
 
@@ -172,9 +172,7 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
                   list);
     if (is_shape && shapes_apart) collect_row(store, layout, all_shapes_, i, layout.items, list);
     order_row(store, layout, list.neighbors.data() + begin, list.neighbors.data() + list.neighbors.size());
-    if (list.neighbors.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-      throw SimulationError("stage neighbors: more neighbours than one rank can count");
-    list.offsets[i + 1] = static_cast<Index>(list.neighbors.size());
+    list.offsets[i + 1] = countable(list.neighbors.size(), "stage neighbors: more neighbours");
   }
   collect_walls(store, layout, list);
 }

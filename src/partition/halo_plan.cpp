@@ -3,9 +3,8 @@
 #include <mpi.h>
 
 #include <algorithm>
-#include <limits>
 
-#include "base/error.hpp"
+#include "base/countable.hpp"
 #include "partition/entry_type.hpp"
 
 namespace scree {
@@ -33,12 +32,7 @@ void for_each_shift(Vec3 period, const Visit& visit) {
               static_cast<std::int8_t>((z + 1) * 9 + (y + 1) * 3 + x + 1));
 }
 
-Index countable(std::size_t ghosts) {
-  if (ghosts > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-    throw SimulationError(
-        "stage exchange_halo: more ghosts than one rank can count; more ranks have fewer each");
-  return static_cast<Index>(ghosts);
-}
+Index countable_ghosts(std::size_t count) { return countable(count, "stage exchange_halo: more ghosts"); }
 
 }  // namespace
 
@@ -104,11 +98,11 @@ void HaloPlan::find_targets(const Decomposition& decomposition, const Subdomain&
 void HaloPlan::set_counts(std::size_t own, std::span<const std::size_t> sent) {
   std::size_t all = 0;
   for (std::size_t k = 0; k < neighbors_.size(); ++k) {
-    neighbors_[k].first_sent = countable(all);
-    neighbors_[k].sent = countable(sent[k]);
+    neighbors_[k].first_sent = countable_ghosts(all);
+    neighbors_[k].sent = countable_ghosts(sent[k]);
     all += sent[k];
   }
-  sent_ = countable(all);
+  sent_ = countable_ghosts(all);
   if (!neighbors_.empty()) {
     const EntryType type(sizeof(Index));
     Transfers transfers(ranks_, 2 * neighbors_.size());
@@ -117,10 +111,10 @@ void HaloPlan::set_counts(std::size_t own, std::span<const std::size_t> sent) {
   }
   std::size_t ghosts = own;
   for (HaloNeighbor& n : neighbors_) {
-    n.first_received = countable(ghosts);
+    n.first_received = countable_ghosts(ghosts);
     ghosts += static_cast<std::size_t>(n.received);
   }
-  own_ = countable(own), ghosts_ = countable(ghosts);
+  own_ = countable_ghosts(own), ghosts_ = countable_ghosts(ghosts);
 }
 
 Index HaloPlan::receivers() const {

@@ -66,7 +66,8 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
   return make_cpu_backend(model, ranks);
 }
 
-// The one that --backend names, or for auto the one that is likely to be faster.
+// The one that --backend names, or for auto the one that is likely to be faster. Where the deck forces a
+// transport between GPUs, the CPU does not stand in for one that cannot be had.
 std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name,
                                       Log& log) {
   if (name == "cpu") return make_cpu(model, ranks, "chosen by --backend", log);
@@ -78,9 +79,16 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
                     log);
   try {
     return make_gpu(model, ranks, log);
+  } catch (const TransportError&) {
+    throw;
   } catch (const InputError& error) {
-    if (name == "auto") return make_cpu(model, ranks, error.what(), log);
-    throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));
+    if (name == "cuda")
+      throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));
+    if (model.parallel.transport != Transport::automatic && !ranks.alone())
+      throw InputError(
+          fmt::format("parallel.transport = \"{}\" is for GPUs: {}; allowed here: \"auto\", or --backend cpu",
+                      key_of(model.parallel.transport), error.what()));
+    return make_cpu(model, ranks, error.what(), log);
   }
 }
 

@@ -2,6 +2,8 @@
 // rank.
 #include "dem/backend.hpp"
 
+#include <mpi.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,6 +12,22 @@
 #include "support/catch.hpp"
 #include "support/petsc_run.hpp"
 #include "unit/dem/random_box.hpp"
+
+namespace {
+
+// What this rank has sent by MPI_Send, which is how entries are gathered on rank 0.
+struct Sent {
+  int messages = 0, entries = 0;
+} sent;
+
+}  // namespace
+
+// MPI lets a program look at its own calls this way.
+extern "C" int MPI_Send(const void* data, int count, MPI_Datatype type, int to, int tag,
+                        MPI_Comm communicator) {
+  ++sent.messages, sent.entries += count;
+  return PMPI_Send(data, count, type, to, tag, communicator);
+}
 
 namespace scree {
 
@@ -82,6 +100,36 @@ bool same(const ContactWrenches& a, const ContactWrenches& b) {
   };
   return same(a.wrench, b.wrench) &&
          std::equal(a.stiffness.begin(), a.stiffness.end(), b.stiffness.begin(), b.stiffness.end(), equal);
+}
+
+constexpr int kRow = 20, kFarBodies = 300;
+
+// A row of particles far from each other, a body that touches it beside each of the first ones, and many
+// bodies that nothing reaches.
+Model row_beside_bodies(int touched, ParticleIntegrator integrator) {
+  constexpr Real kRadius = 0.1, kSpacing = 1;
+  Model model;
+  model.integrator.particles = integrator;
+  model.space.dimension = 2;
+  model.space.min = {0, 0, 0}, model.space.max = {kSpacing * (kRow + 1), kSpacing * (kRow + 1), 0};
+  model.contact.material_names = {"material"};
+  model.contact.laws.push_back({1e3, 0, 1, false});
+  const auto add_body = [&](Vec3 position) {
+    Body body;
+    body.mass = 1, body.inertia = 1, body.position = position;
+    body.shapes.push_back({{}, kRadius, 0});
+    model.bodies.push_back(body);
+  };
+  for (int i = 0; i < kRow; ++i) {
+    const Vec3 p = kSpacing * Vec3{i + 1.0, 1, 0};
+    model.particles.position.push_back(p), model.particles.velocity.emplace_back();
+    model.particles.radius.push_back(kRadius), model.particles.mass.push_back(1);
+    model.particles.material.push_back(0);
+    if (i < touched) add_body(p + Vec3{1.5 * kRadius, 0, 0});
+  }
+  for (int k = 0; k < kFarBodies; ++k) add_body(kSpacing * Vec3{1.0 + k % kRow, 3.0 + k / kRow, 0});
+  count_particles(model.particles, 1);
+  return model;
 }
 
 std::string failure(const std::function<void()>& action) {
@@ -175,6 +223,34 @@ TEST_CASE("a particle that is not finite ends all ranks with the same message") 
       CHECK(std::string(all.begin(), all.end()) == of_all);
       // All ranks came to the same end: the next collective is the same one everywhere.
       CHECK(Ranks::world().sum(std::int64_t{1}) == Ranks::world().size());
+    }
+}
+
+TEST_CASE("of the bodies' shapes only those that a rank touches are sent, in one message") {
+  petsc();
+  const Ranks world = Ranks::world();
+  for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet})
+    for (const int touched : {0, 3, kRow}) {
+      CAPTURE(static_cast<int>(integrator), touched);
+      RankedBox box(row_beside_bodies(touched, integrator), world);
+      std::vector<BodyWrench> end(box.model.bodies.size());
+      ContactWrenches step{end, {}};
+      if (integrator == ParticleIntegrator::hht) box.backend->begin_step(1e-6), box.backend->contact_force();
+      sent = {};
+      if (integrator == ParticleIntegrator::hht)
+        box.backend->reduce_wrench(step, end);
+      else
+        box.backend->reduce_wrench(end);
+      const Sent by_this_rank = sent;
+      const std::vector<ParticleRecord> own = box.backend->records();
+      const auto in_touch =
+          std::count_if(own.begin(), own.end(), [&](const auto& p) { return p.global_id < touched; });
+      CHECK(by_this_rank.messages == (world.is_root() ? 0 : 1));
+      CHECK(by_this_rank.entries == (world.is_root() ? 0 : in_touch));
+      if (touched == kRow && !world.alone()) CHECK(world.sum(std::int64_t{by_this_rank.entries}) > 0);
+      const auto moved =
+          std::count_if(end.begin(), end.end(), [](const BodyWrench& w) { return w.force.x > 0; });
+      CHECK(moved == (world.is_root() ? touched : 0));
     }
 }
 

@@ -1,5 +1,6 @@
 """What the tests of the program under mpirun share."""
 
+import ctypes
 import json
 import os
 import pathlib
@@ -58,20 +59,32 @@ velocity = [0.0, 0.123456789]
 VELOCITY = 0.123456789
 
 
+def gpus():
+    """How many a CUDA program finds."""
+    try:
+        driver = ctypes.CDLL("libcuda.so.1")
+    except OSError:
+        return 0
+    count = ctypes.c_int(0)
+    found = driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0
+    return count.value if found else 0
+
+
 class RanksTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="scree_ranks_")
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def command(self, ranks, deck, output, overrides, *words):
+    def command(self, ranks, deck, output, overrides, *words, backend=BACKEND, before=()):
+        """before: words in front of the program, such as env and a variable."""
         settings = [word for override in overrides for word in ("--set", override)]
-        return [MPIEXEC, "-n", str(ranks), SCREE, "run", str(deck), "--backend", BACKEND, "--output",
+        return [MPIEXEC, "-n", str(ranks), *before, SCREE, "run", str(deck), "--backend", backend, "--output",
                 str(self.folder / output), *settings, *map(str, words)]
 
-    def run_deck(self, code, ranks, deck, output, overrides=(), *words):
-        result = subprocess.run(self.command(ranks, deck, output, overrides, *words), cwd=self.folder, env=ENVIRONMENT,
-                                capture_output=True, text=True, timeout=LIMIT)
+    def run_deck(self, code, ranks, deck, output, overrides=(), *words, **how):
+        result = subprocess.run(self.command(ranks, deck, output, overrides, *words, **how), cwd=self.folder,
+                                env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
@@ -82,6 +95,11 @@ class RanksTest(unittest.TestCase):
             self.assertIsNone(run.poll(), f"the run ended before it wrote {path.name}")
             self.assertLess(time.monotonic(), deadline, f"no {path.name} in {LIMIT} s")
             time.sleep(0.01)
+
+    def assert_one_message(self, result, *words):
+        self.assertEqual(result.stderr.count("error:"), 1, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
 
     def write(self, name, text):
         path = self.folder / name

@@ -84,6 +84,11 @@ TEST_CASE("collectives are exact, and a NaN wins") {
   CHECK((sums[1] == -huge * n - 3 * n * (n - 1) / 2));
 }
 
+TEST_CASE("ranks of one host count through, so that each takes the GPU of its number") {
+  const Ranks ranks = world();
+  CHECK(ranks.local_rank() == ranks.rank());  // the tests run on one host
+}
+
 TEST_CASE("contents find their ranks") {
   const Ranks ranks = world();
   const int n = ranks.size(), r = ranks.rank();
@@ -213,6 +218,27 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
       CHECK((halo.receivers() > 0) == (halo.sent() > 0));
       CHECK(halo.receivers() < ranks.size());
     }
+}
+
+TEST_CASE("more ghosts than an Index counts are refused") {
+  const Ranks ranks = world();
+  const Space space = box_space(2, 1);
+  const Points all = random_points(space, 500, 9), own = dealt(all, ranks);
+  const Decomposition boxes(ranks, make_domain_grid(space, 0.15), own.position, own.weight);
+  HaloPlan plan(ranks, boxes, Subdomain(space), 0.15);
+  constexpr std::size_t kMost = std::numeric_limits<Index>::max();
+  const std::vector<std::size_t> none(plan.neighbors().size());
+  plan.set_counts(kMost, none);
+  CHECK((plan.own() == kMost && plan.ghosts() == kMost));
+  CHECK_THROWS_AS(plan.set_counts(kMost + 1, none), SimulationError);
+  REQUIRE(none.empty() == ranks.alone());
+  if (ranks.alone()) return;
+  std::vector<std::size_t> sent(none.size(), 1);  // to and from each neighbour
+  plan.set_counts(kMost - sent.size(), sent);
+  CHECK(plan.ghosts() == kMost);
+  CHECK_THROWS_AS(plan.set_counts(kMost - sent.size() + 1, sent), SimulationError);
+  sent.back() = kMost, sent.front() += sent.size() > 1 ? 0 : 1;  // kMost + 1 in all, or more
+  CHECK_THROWS_AS(plan.set_counts(0, sent), SimulationError);
 }
 
 // Takes 14 GB of memory, so that it runs only when it is asked for: mpirun -n 2 test_ranks "[large]".

@@ -10,7 +10,8 @@ import signal
 import subprocess
 import unittest
 
-from mpi_case import (BAD_INPUT, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, LIMIT, LONELY, SCREE, STOPPED, RanksTest)
+from mpi_case import (BAD_INPUT, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, LIMIT, LONELY, SCREE, STOPPED, RanksTest,
+                      gpus)
 
 HOLD_DEVICE_MEMORY = os.environ["HOLD_DEVICE_MEMORY"]
 
@@ -54,13 +55,6 @@ velocity = [1.0, 0.0, 0.0]
 history_interval = 1.0
 checkpoint_interval = 1.0
 """
-
-
-def gpus():
-    """How many the driver lists."""
-    if shutil.which("nvidia-smi") is None:
-        return 0
-    return subprocess.run(["nvidia-smi", "-L"], capture_output=True, text=True).stdout.count("GPU ")
 
 
 class DeviceMemoryTest(RanksTest):

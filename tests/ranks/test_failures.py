@@ -14,11 +14,6 @@ from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, FAIL
 
 
 class FailureTest(RanksTest):
-    def assert_one_message(self, result, *words):
-        self.assertEqual(result.stderr.count("error:"), 1, result.stderr)
-        for word in words:
-            self.assertIn(word, result.stderr)
-
     def test_bad_input_is_reported_once(self):
         deck = self.write("bad.toml", LONELY.replace("step = 1e-3", "stp = 1e-3"))
         self.assert_one_message(self.run_deck(BAD_INPUT, 2, deck, "out"), "time.stp", "did you mean")
@@ -131,16 +126,21 @@ class FailureTest(RanksTest):
 
     def test_a_full_disk_ends_all_with_one_message(self):
         settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.05", "output.snapshot_interval=0.005"]
-        words = " ".join(f"'{word}'" for word in self.command(1, DAM[0], "out", settings)[3:])
-        limited = f"ulimit -f 300; trap '' XFSZ; exec {words}"  # [KiB], more than one snapshot
-        both = [MPIEXEC, "-n", "1", "bash", "-c", limited, ":", "-n", "1", "bash", "-c", limited]
-        result = subprocess.run(both, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
-        self.assertEqual(result.returncode, IO_FAILED, result.stdout + result.stderr)
-        self.assert_one_message(result, "particles.vtkhdf.spare: cannot")
-        self.assertIn("particles.vtkhdf.spare", self.record("out")["run"]["status"])
-        if h5py is not None:
-            with h5py.File(self.folder / "out" / "particles.vtkhdf") as file:
-                self.assertGreater(file["VTKHDF/Steps"].attrs["NSteps"], 0)
+        for on_both in (False, True):
+            with self.subTest(on_both=on_both):
+                out = f"full on both: {on_both}"
+                free = self.command(1, DAM[0], out, settings)[3:]
+                words = " ".join(f"'{word}'" for word in free)
+                limited = ["bash", "-c", f"ulimit -f 300; trap '' XFSZ; exec {words}"]  # [KiB], more than one snapshot
+                second = limited if on_both else free
+                result = subprocess.run([MPIEXEC, "-n", "1", *limited, ":", "-n", "1", *second], cwd=self.folder,
+                                        env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+                self.assertEqual(result.returncode, IO_FAILED, result.stdout + result.stderr)
+                self.assert_one_message(result, "particles.vtkhdf.spare: cannot")
+                self.assertIn("particles.vtkhdf.spare", self.record(out)["run"]["status"])
+                if h5py is not None:
+                    with h5py.File(self.folder / out / "particles.vtkhdf") as file:
+                        self.assertGreater(file["VTKHDF/Steps"].attrs["NSteps"], 0)
 
     def test_a_rank_without_a_gpu_is_reported_once(self):
         deck = self.write("deck.toml", LONELY)
