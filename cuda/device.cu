@@ -59,10 +59,10 @@ std::string trouble_of(cudaError_t status) {
   switch (status) {
     case cudaErrorNoDevice: return "there is no GPU that CUDA can use";
     case cudaErrorInsufficientDriver:
+    case cudaErrorUnsupportedPtxVersion:  // no machine code for the GPU, and a driver too old to make it
       return driver == 0 ? "there is no NVIDIA driver here"
                          : "the NVIDIA driver supports CUDA " + version(driver) + ", this program needs " + version(runtime);
-    case cudaErrorNoKernelImageForDevice:
-    case cudaErrorUnsupportedPtxVersion: {
+    case cudaErrorNoKernelImageForDevice: {
       int major = 0, minor = 0;
       cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, this_device());
       cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, this_device());

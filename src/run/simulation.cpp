@@ -50,9 +50,9 @@ const char* key_of(Transport transport) {
   return transport == Transport::staged ? "staged" : "auto";
 }
 
-std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, Log& log) {
+std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   std::unique_ptr<Backend> backend = make_cuda_backend(model, ranks);
-  log.info("backend cuda: " + device_name());
+  log.info("backend cuda: " + why + "; " + device_name());
   return backend;
 }
 
@@ -70,15 +70,15 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
 // transport between GPUs, the CPU does not stand in for one that cannot be had.
 std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name,
                                       Log& log) {
-  if (name == "cpu") return make_cpu(model, ranks, "chosen by --backend", log);
   const std::int64_t particles = model.particles.totals.count / ranks.size();
-  if (name == "auto" && particles < kGpuParticles)
-    return make_cpu(model, ranks,
-                    fmt::format("{} particles{} are fewer than {}, from which a GPU is faster", particles,
-                                ranks.alone() ? "" : " per rank", kGpuParticles),
-                    log);
+  const bool few = particles < kGpuParticles;
+  const std::string why = name != "auto" ? "chosen by --backend"
+                                         : fmt::format("{} particles{} are {} {}, from which a GPU is faster",
+                                                       particles, ranks.alone() ? "" : " per rank",
+                                                       few ? "fewer than" : "at least", kGpuParticles);
+  if (name == "cpu" || (name == "auto" && few)) return make_cpu(model, ranks, why, log);
   try {
-    return make_gpu(model, ranks, log);
+    return make_gpu(model, ranks, why, log);
   } catch (const TransportError&) {
     throw;
   } catch (const InputError& error) {

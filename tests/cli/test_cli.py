@@ -239,7 +239,8 @@ class RunTest(CommandLineTest):
     def test_the_gpu_is_used_or_refused_with_the_reason(self):
         trouble = self.gpu_trouble()
         if not trouble:
-            self.assertIn("\nbackend cuda: ", "\n" + self.run_deck(DONE, "out", *self.SHORT, "--backend", "cuda").stdout)
+            self.assertRegex(self.run_deck(DONE, "out", *self.SHORT, "--backend", "cuda").stdout,
+                             r"(?m)^backend cuda: chosen by --backend; \w")
             return
         message = self.run_deck(BAD_INPUT, "out", "--backend", "cuda").stderr
         self.assertEqual(message, f"error: --backend cuda: {trouble}; allowed here: auto, cpu\n")
@@ -254,8 +255,8 @@ class RunTest(CommandLineTest):
         many = ("--set", "particles.0.size=[300, 100]", "--set", "particles.0.spacing=[1e-3, 1e-3]",
                 "--set", "particles.0.radius=4e-4", "--set", "time.end=1e-4")
         trouble = self.gpu_trouble()
-        self.assertIn(f"\nbackend cpu: {trouble}\n" if trouble else "\nbackend cuda: ",
-                      "\n" + self.run_deck(DONE, "out", *many).stdout)
+        why = f"cpu: {trouble}\n" if trouble else "cuda: 30000 particles are at least 2000, from which a GPU is faster; "
+        self.assertIn("\nbackend " + why, "\n" + self.run_deck(DONE, "out", *many).stdout)
 
     def test_mixed_precision_on_the_cpu_is_double(self):
         both = (*self.SHORT, *EXPLICIT, "--backend", "cpu")

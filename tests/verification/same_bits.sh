@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# Runs the paper's cases 5.2 and 5.3 on both backends and compares the histories, digit for digit; needs a GPU.
+# Both backends give the same bits, run by run: the paper's cases 5.1 to 5.3, and runs that one backend begins and the other
+# continues from its checkpoint. Compares the histories, whose digits stand for all bits, and the hashes of the last states.
+# Needs a GPU.
 #   tests/verification/same_bits.sh SCREE
 set -euo pipefail
 if (($# != 1)); then
@@ -7,29 +9,67 @@ if (($# != 1)); then
   exit 2
 fi
 scree=$1
-decks=$(dirname "${BASH_SOURCE[0]}")/../../input/paper
+decks=$(dirname "${BASH_SOURCE[0]}")/../../input
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 
-# same DECK OPTIONS...: one backend after the other, each from the start.
-same() {
-  local deck=$1 backend
-  shift
-  for backend in cpu cuda; do
-    "$scree" run "$decks/$deck.toml" --backend "$backend" --output "$results/$backend" \
-      --set output.history_csv=true --set output.history_interval=1e-3 "$@" >"$results/log" 2>&1 ||
-      { tail -n 5 "$results/log"; exit 1; }
-  done
-  if cmp "$results/cpu/history.csv" "$results/cuda/history.csv"; then
-    echo "same digits in $(wc -l <"$results/cpu/history.csv") rows: $deck $*"
-  else
-    exit 1
-  fi
+# run BACKEND FOLDER DECK OPTIONS...
+run() {
+  local backend=$1 folder=$2 deck=$3
+  shift 3
+  "$scree" run "$decks/$deck.toml" --backend "$backend" --output "$results/$folder" --set output.history_csv=true "$@" \
+    >"$results/log" 2>&1 ||
+    { tail -n 5 "$results/log"; exit 1; }
 }
 
-same valley --set time.end=1 --set time.step=1e-3
-same valley --set time.end=0.8 --set time.step=1e-4
-same net_9 --set time.end=0.5 --set time.step=1e-4
-same net_400 --set time.end=0.7 --set time.step=5e-4
-same net_400 --set time.end=0.7 --set time.step=1e-4 --set integrator.particles=velocity-verlet \
-  --set integrator.substeps=10
+state_hash() {
+  grep -oE '"state_hash" *: *"[0-9a-f]{16}"' "$results/$1/run_record.json" || { echo "no state_hash in $1" >&2; exit 1; }
+}
+
+# compare FOLDER FOLDER WHAT: of two runs.
+compare() {
+  local a b
+  cmp "$results/$1/history.csv" "$results/$2/history.csv"
+  a=$(state_hash "$1") b=$(state_hash "$2")
+  if [[ "$a" != "$b" ]]; then
+    echo "$3: the same history, but $a in $1 and $b in $2"
+    exit 1
+  fi
+  echo "same bits in $(($(wc -l <"$results/$1/history.csv") - 1)) rows and the last state: $3"
+}
+
+# same DECK OPTIONS...: one backend after the other, each from the start.
+same() {
+  local backend
+  for backend in cpu cuda; do run "$backend" "$backend" "$@" --set output.history_interval=1e-3; done
+  compare cpu cuda "$*"
+}
+
+# continued DECK HALF END OPTIONS...: what one backend computes up to HALF the other continues to END. Both are whole 256ths
+# of a second, so that the run from start to end comes by at exactly HALF, too.
+continued() {
+  local deck=$1 half=$2 end=$3 first second
+  shift 3
+  local options=(--set output.history_interval=0.00390625 "$@")
+  run cpu whole "$deck" --set "time.end=$end" "${options[@]}"
+  for first in cpu cuda; do
+    second=$([[ "$first" == cpu ]] && echo cuda || echo cpu)
+    run "$first" parts "$deck" --set "time.end=$half" "${options[@]}"
+    run "$second" parts "$deck" --set "time.end=$end" "${options[@]}" --restart "$results/parts/checkpoint_end.h5"
+    compare whole parts "$first up to $half s, then $second: $deck $*"
+  done
+}
+
+explicit=(--set integrator.particles=velocity-verlet --set integrator.substeps=10)
+
+same paper/net --set time.end=1
+same paper/valley --set time.end=1 --set time.step=1e-3
+same paper/valley --set time.end=0.8 --set time.step=1e-4
+same paper/net_9 --set time.end=0.5 --set time.step=1e-4
+same paper/net_400 --set time.end=0.7 --set time.step=5e-4
+same paper/net_400 --set time.end=0.7 --set time.step=1e-4 "${explicit[@]}"
+# Implicit and explicit, with bodies and without; particles touch at half time.
+continued paper/net_400 0.5 0.5625 --set time.step=1e-3
+continued paper/net_400 0.5 0.5625 --set time.step=1e-4 "${explicit[@]}"
+continued examples/heap_900 0.0625 0.125
+continued examples/gas_periodic 0.03125 0.0625

@@ -1,0 +1,7 @@
+// Prints why this program cannot use the GPU. tests/CMakeLists.txt builds it for a generation older than any
+// that Scree is for, so that there is a reason on every machine.
+#include <cstdio>
+
+#include "dem/device.hpp"
+
+int main() { std::puts(scree::device_trouble().c_str()); }
