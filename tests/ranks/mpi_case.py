@@ -58,6 +58,8 @@ VELOCITY = 0.123456789
 
 
 class RanksTest(unittest.TestCase):
+    program = SCREE
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="scree_ranks_")
         self.addCleanup(folder.cleanup)
@@ -65,7 +67,7 @@ class RanksTest(unittest.TestCase):
 
     def command(self, ranks, deck, output, overrides, *words):
         settings = [word for override in overrides for word in ("--set", override)]
-        return [MPIEXEC, "-n", str(ranks), SCREE, "run", str(deck), "--backend", BACKEND, "--output",
+        return [MPIEXEC, "-n", str(ranks), self.program, "run", str(deck), "--backend", BACKEND, "--output",
                 str(self.folder / output), *settings, *map(str, words)]
 
     def run_deck(self, code, ranks, deck, output, overrides=(), *words):
