@@ -7,6 +7,8 @@
 
 #include <array>
 
+#include "output/shared_rows.hpp"
+
 namespace scree {
 
 namespace {
@@ -14,7 +16,8 @@ namespace {
 std::string hdf5_version() {
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
-  return fmt::format("{}.{}.{}", major, minor, release);
+  return fmt::format("{}.{}.{}, {}", major, minor, release,
+                     kParallelHdf5 ? "all ranks write" : "rank 0 writes for all");
 }
 
 // The first part of the library's own sentence, e.g. "Open MPI v4.1.4".

@@ -14,6 +14,9 @@
 #endif
 
 namespace scree {
+
+const bool kParallelHdf5 = SCREE_PARALLEL_HDF5;
+
 namespace {
 
 // What a rank writes at once, and what rank 0 then holds of another rank.

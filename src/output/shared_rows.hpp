@@ -20,7 +20,7 @@
 namespace scree {
 
 // Whether this build writes collectively; else rank 0 writes for all.
-inline constexpr bool kParallelHdf5 = SCREE_PARALLEL_HDF5;
+extern const bool kParallelHdf5;
 
 // A rank's part of rows that are written or read: rows [first, first + count) of the dataset.
 struct RowPart {

@@ -1,4 +1,4 @@
-// Speed of explicit and implicit steps on settled beds, and what a net of bodies costs on top. Usage: bed
+// Speed of explicit and implicit steps on settled beds, and what bodies cost on top. Usage: bed
 // --help.
 //
 // The CPU's times are CPU seconds, the GPU's, and those of several ranks of mpirun, wall seconds around
@@ -8,39 +8,21 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
-#include <functional>
 #include <iostream>
 #include <numeric>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "bed_cases.hpp"
-#include "bed_report.hpp"
-#include "coupling/coupled_step.hpp"
+#include "bed_run.hpp"
 #include "dem/device.hpp"
 #include "mbs/petsc_session.hpp"
 #include "partition/shared_model.hpp"
 
 namespace scree {
 namespace {
-
-struct Options {
-  int dimension = 3;
-  std::string backend = "cpu", precision = "double", integrator = "verlet";
-  std::vector<std::int64_t> particles;
-  Index rebuild = 25;
-  int repeats = 5;
-  double seconds = 0.5;
-  bool net = false, wall = false, per_rank = false;
-  std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", csv;
-  Ranks ranks = Ranks::world();
-
-  bool on_gpu() const { return backend == "cuda"; }
-};
 
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");
@@ -53,101 +35,6 @@ std::string processor_name() {
 constexpr Index kCoupledBatch = 1000;
 // The bed's own steps before anything is measured, implicit: the contacts adapt to the longer step.
 constexpr int kImplicitWarmUp = 5;
-
-double seconds_now(const Options& options) {
-  timespec time{};
-  clock_gettime(
-      options.on_gpu() || options.wall || !options.ranks.alone() ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID,
-      &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-struct Samples {
-  Index steps = 0;              // per sample
-  std::vector<double> seconds;  // per step, in increasing order
-
-  double median() const { return seconds[seconds.size() / 2]; }
-};
-
-// Sections of equal length, in multiples of `quantum` steps. advance(n) takes n steps and returns when they
-// are done; before_samples is called between the search for the length and the first sample.
-Samples sample(
-    const Options& options, Index quantum, const std::function<void(Index)>& advance,
-    const std::function<void()>& before_samples = [] {}) {
-  const auto timed = [&](Index steps) {
-    const double start = seconds_now(options);
-    advance(steps);
-    return options.ranks.max(seconds_now(options) - start);
-  };
-  advance(quantum);
-  Index steps = quantum;
-  double taken = timed(steps);
-  while (taken < 0.2 * options.seconds) taken = timed(steps *= 4);
-  const double quanta =
-      std::ceil(options.seconds / taken * static_cast<double>(steps) / static_cast<double>(quantum));
-  Samples samples;
-  samples.steps = quantum * std::max<Index>(1, static_cast<Index>(quanta));
-  before_samples();
-  for (int r = 0; r < options.repeats; ++r)
-    samples.seconds.push_back(timed(samples.steps) / static_cast<double>(samples.steps));
-  std::sort(samples.seconds.begin(), samples.seconds.end());
-  return samples;
-}
-
-Measured measured(const Samples& samples, const Model& bed, std::int64_t list_builds) {
-  const auto count = static_cast<double>(samples.seconds.size());
-  Measured out;
-  out.particles = bed.particles.totals.count, out.bodies = bed.bodies.size();
-  out.seconds = samples.median(), out.fastest = samples.seconds.front(), out.slowest = samples.seconds.back();
-  out.mean = std::accumulate(samples.seconds.begin(), samples.seconds.end(), 0.0) / count;
-  out.steps = static_cast<double>(samples.steps) * count, out.list_builds = list_builds;
-  return out;
-}
-
-// Of a bed that every rank has made whole, its part.
-Model part_of(Model bed, const Ranks& ranks) {
-  ParticleSet& set = bed.particles;
-  if (std::ssize(set.position) < set.totals.count) return bed;
-  const IdRange own = id_range(set.totals.count, ranks.rank(), ranks.size());
-  const auto cut = [&](auto& values) {
-    values = std::decay_t<decltype(values)>(values.begin() + own.first, values.begin() + own.last);
-  };
-  cut(set.position), cut(set.velocity), cut(set.radius), cut(set.mass), cut(set.material);
-  set.first_id = own.first;
-  return bed;
-}
-
-// A bed on its backend.
-struct Run {
-  Run(Model bed, const Options& options)
-      : model(part_of(std::move(bed), options.ranks)),
-        backend(options.on_gpu() ? make_cuda_backend(model, options.ranks)
-                                 : make_cpu_backend(model, options.ranks)),
-        link(model, options.ranks),
-        ranks(options.ranks),
-        step(model, *backend, link, timers) {
-    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
-  }
-  double listed() const {
-    return static_cast<double>(ranks.sum(backend->list_entries())) /
-           static_cast<double>(model.particles.totals.count);
-  }
-
-  Model model;
-  StageTimers timers;
-  std::unique_ptr<Backend> backend;
-  BodyLink link;
-  Ranks ranks;
-  CoupledStep step;
-  MultibodyState bodies;
-};
-
-// "2.51e+07 (2.44e+07 to 2.53e+07) particle-steps/s, 398 us per step"
-std::string speed_text(const Samples& samples, std::int64_t particles) {
-  const double n = static_cast<double>(particles);
-  return fmt::format("{:.3g} ({:.3g} to {:.3g}) particle-steps/s, {:.4g} us per step", n / samples.median(),
-                     n / samples.seconds.back(), n / samples.seconds.front(), 1e6 * samples.median());
-}
 
 void measure_explicit(Model bed, Real h, const Options& options, BedReport& report) {
   bed.integrator.particles = ParticleIntegrator::velocity_verlet;
@@ -182,22 +69,6 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
              run.model.particles.totals.count, speed_text(samples, run.model.particles.totals.count),
              options.repeats, samples.steps, builds, run.listed());
   report.add(measured(samples, run.model, builds), timers, run.timers, backend);
-}
-
-// steps: between the two.
-void print_stages(const StageTimers& before, const StageTimers& after, double steps) {
-  double all = 0;
-  const auto seconds = [&](int s) {
-    return after[static_cast<Stage>(s)].seconds - before[static_cast<Stage>(s)].seconds;
-  };
-  for (int s = 0; s < static_cast<int>(Stage::count); ++s) all += seconds(s);
-  std::string text;
-  for (int s = 0; s < static_cast<int>(Stage::count); ++s)
-    if (seconds(s) > 0)
-      text += fmt::format("{}{} {:.1f} % ({:.4g} us)", text.empty() ? "" : ", ",
-                          kStageNames[static_cast<std::size_t>(s)], 100 * seconds(s) / all,
-                          1e6 * seconds(s) / steps);
-  fmt::print("{:10} {}\n", "", text);
 }
 
 void measure_implicit(Model bed, const Options& options, BedReport& report) {
@@ -235,10 +106,15 @@ void measure_implicit(Model bed, const Options& options, BedReport& report) {
 
 struct CoupledSamples {
   Samples samples;
-  double iterations = 0;  // of the bodies' Newton loop per step
-  double contacts = 0;    // of the bodies' shapes, mean of looks after each batch
-  StageTimers timers;     // of all steps
+  double iterations = 0;      // of the bodies' Newton loop per step
+  std::vector<int> contacts;  // of the bodies' shapes, after each batch of the samples
+  StageTimers timers;         // of all steps
   double steps = 0;
+
+  int least_contacts() const { return *std::min_element(contacts.begin(), contacts.end()); }
+  double mean_contacts() const {
+    return std::accumulate(contacts.begin(), contacts.end(), 0.0) / static_cast<double>(contacts.size());
+  }
 };
 
 // The coupled explicit step, with bodies solved every step where the bed has some.
@@ -248,52 +124,66 @@ CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& repo
   run.step.start(run.bodies);
   Index taken = 0;
   CoupledSamples out;
-  double looks = 0;
   std::int64_t builds = 0;
   StageTimers timers;
   const auto advance = [&](Index steps) {
     for (Index done = 0; done < steps; done += kCoupledBatch) {
       std::vector<Real> times;
       for (Index k = 0; k < kCoupledBatch; ++k) times.push_back(static_cast<Real>(taken++) * kSphereStep);
+      if (options.plough && run.link.has_bodies() && times.back() > run.model.time.end)
+        throw InputError(
+            "--plough: it has come through the bed; fewer --repeats, --seconds or more --particles");
       if (run.step.explicit_steps(run.bodies, times, kSphereStep) != times.size())
         throw SimulationError("a particle has left the bed");
-      for (const int contacts : run.backend->pack_shapes().contacts) out.contacts += contacts;
-      ++looks;
+      const std::vector<int> contacts = run.backend->pack_shapes().contacts;
+      out.contacts.push_back(std::accumulate(contacts.begin(), contacts.end(), 0));
     }
     run.backend->list_displacement();
   };
-  out.samples = sample(options, kCoupledBatch, advance,
-                       [&] { builds = run.backend->list_builds(), timers = run.timers; });
+  out.samples = sample(options, kCoupledBatch, advance, [&] {
+    builds = run.backend->list_builds(), timers = run.timers;
+    out.contacts.clear();
+  });
   builds = run.backend->list_builds() - builds;
-  report.add(measured(out.samples, run.model, builds), timers, run.timers, *run.backend);
+  Measured result = measured(out.samples, run.model, builds);
+  result.contacts = out.mean_contacts();
+  report.add(result, timers, run.timers, *run.backend);
   const StepCounts& counts = run.step.counts();
   out.iterations = static_cast<double>(counts.newton_iterations) / static_cast<double>(counts.steps);
-  out.contacts /= looks;
   out.timers = run.timers, out.steps = static_cast<double>(counts.steps);
   return out;
 }
 
-void measure_net(Model bed, const Options& options, BedReport& report) {
-  add_net(bed);
+// The bed as it is, without the particles in the bodies' way, and with the bodies there: the same steps.
+void measure_bodies(Model bed, const Options& options, BedReport& report) {
+  const std::int64_t whole = bed.particles.totals.count;
+  const Samples plain = sample_coupled(bed, options, report).samples;
+  options.net ? add_net(bed) : add_plough(bed);
   const std::int64_t particles = bed.particles.totals.count;
   const std::size_t bodies = bed.bodies.size();
   Model bare = bed;
-  bare.bodies.clear(), bare.joints.clear(), bare.spring_dampers.clear(), bare.applied_forces.clear();
+  bare.bodies.clear(), bare.joints.clear(), bare.drivers.clear(), bare.spring_dampers.clear();
+  bare.applied_forces.clear();
   const Samples without = sample_coupled(std::move(bare), options, report).samples;
   const CoupledSamples with = sample_coupled(std::move(bed), options, report);
-  fmt::print("{:10d} without bodies: {}\n", particles, speed_text(without, particles));
+  fmt::print("{:10d} the plain bed: {}\n", whole, speed_text(plain, whole));
+  fmt::print("{:10d} without bodies, in their place a hole: {}\n", particles, speed_text(without, particles));
   fmt::print(
-      "{:10} with {} bodies: {}; {:.1f} iterations of the bodies per step, {:.1f} contacts of theirs\n", "",
-      bodies, speed_text(with.samples, particles), with.iterations, with.contacts);
-  fmt::print("{:10} {:.4g} times as long, {:.4g} us more per step\n", "",
-             with.samples.median() / without.median(), 1e6 * (with.samples.median() - without.median()));
+      "{:10} with {} bodies: {}; {:.1f} iterations of the bodies per step, {:.1f} contacts of theirs (at "
+      "least {})\n",
+      "", bodies, speed_text(with.samples, particles), with.iterations, with.mean_contacts(),
+      with.least_contacts());
+  for (const auto& [name, other] : {std::pair("the hole", without), std::pair("the plain bed", plain)})
+    fmt::print("{:10} {:.4g} times as long as {}, {:.4g} us more per step\n", "",
+               with.samples.median() / other.median(), name, 1e6 * (with.samples.median() - other.median()));
   print_stages({}, with.timers, with.steps);
 }
 
 void measure_all(const Options& options) {
-  if (options.dimension == 2 && (options.net || options.integrator == "hht"))
-    throw InputError("--dimension 2: allowed for --integrator verlet without --net");
-  if (options.net && options.integrator == "hht") throw InputError("--net: allowed for --integrator verlet");
+  if (options.dimension == 2 && (options.with_bodies() || options.integrator == "hht"))
+    throw InputError("--dimension 2: allowed for --integrator verlet without --net and --plough");
+  if (options.with_bodies() && options.integrator == "hht")
+    throw InputError("--net, --plough: allowed for --integrator verlet");
   if (options.precision == "mixed" && (!options.on_gpu() || options.integrator == "hht"))
     throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
   if (options.on_gpu()) choose_device(options.ranks);
@@ -304,10 +194,10 @@ void measure_all(const Options& options) {
                                      : fmt::format("{} ranks, wall seconds", options.ranks.size()),
              options.precision, options.dimension == 3 ? "spheres" : "discs",
              options.integrator == "hht" ? ", implicit" : ", explicit",
-             options.integrator == "hht" || options.net ? ""
+             options.integrator == "hht" || options.with_bodies() ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
                                    : ", list rebuilds where needed");
-  const std::string rebuild = options.net                   ? "coupled"
+  const std::string rebuild = options.with_bodies()         ? "coupled"
                               : options.integrator == "hht" ? "0"
                                                             : fmt::format("{}", options.rebuild);
   BedReport report(
@@ -315,8 +205,8 @@ void measure_all(const Options& options) {
       fmt::format("{},\"{}\",{},{},{},{},{}", commit(), options.on_gpu() ? device_name() : processor_name(),
                   options.backend, options.precision, options.dimension, options.integrator, rebuild),
       options.ranks);
-  // The net finds its place on all of the bed.
-  const RanksShare share(options.net ? Ranks() : options.ranks);
+  // Bodies find their place on all of the bed.
+  const RanksShare share(options.with_bodies() ? Ranks() : options.ranks);
   std::vector<Vec3> discs;
   if (options.dimension == 2) discs = settled_discs();
   for (const std::int64_t size : options.particles) {
@@ -324,8 +214,8 @@ void measure_all(const Options& options) {
     Model bed =
         options.dimension == 3 ? sphere_bed(options.tile, particles, share) : disc_bed(discs, particles);
     if (options.precision == "mixed") bed.integrator.precision = Precision::mixed;
-    if (options.net)
-      measure_net(std::move(bed), options, report);
+    if (options.with_bodies())
+      measure_bodies(std::move(bed), options, report);
     else if (options.integrator == "hht")
       measure_implicit(std::move(bed), options, report);
     else
@@ -350,7 +240,12 @@ ExitCode run(int count, char** values) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--repeats", options.repeats, "samples per size")->check(CLI::PositiveNumber);
   app.add_option("--seconds", options.seconds, "length of a sample, about")->check(CLI::NonNegativeNumber);
-  app.add_flag("--net", options.net, "the bed with a net of 20 bodies, solved every step, and without");
+  app.add_option("--steps", options.steps, "least number of steps in a sample")
+      ->check(CLI::NonNegativeNumber);
+  CLI::Option* net =
+      app.add_flag("--net", options.net, "the bed with a net of 20 bodies, solved every step, and without");
+  app.add_flag("--plough", options.plough, "the same with a row of 20 bodies that is drawn through the bed")
+      ->excludes(net);
   app.add_flag("--wall", options.wall, "wall seconds also on one core");
   app.add_flag("--per-rank", options.per_rank, "sizes are those of a rank's share, not of the bed");
   app.add_option("--tile", options.tile, "file with the tile of spheres");

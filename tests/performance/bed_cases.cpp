@@ -14,10 +14,13 @@
 namespace scree {
 namespace {
 
-constexpr Real kSphereTile = 25, kSphereRadius = 0.5;  // width of the tile, radius [m]
+constexpr Real kSphereTile = 25, kSphereRadius = 0.5, kSphereDiameter = 1;  // width of the tile [m]
 constexpr int kDiscRow = 100;
 constexpr Real kDiscRadius = 0.05, kDiscSpacing = 0.102, kDiscTile = kDiscRow * kDiscSpacing;  // [m]
-constexpr int kNetBodies = 20;
+constexpr int kRowBodies = 20;
+// Of the plough: what it keeps from the walls at its start and its end, its height, deep within the bed [m],
+// and its speed [m/s].
+constexpr Real kPloughMargin = 3, kPloughHeight = 5, kPloughSpeed = 2;
 
 std::int64_t tiles_of(std::int64_t particles) {
   if (particles < kTileParticles || particles % kTileParticles != 0)
@@ -51,6 +54,53 @@ Model disc_model(std::int64_t tiles, Real step, Real damping) {
   model.integrator.substeps = 10;
   model.time.end = 1, model.time.step = model.integrator.substeps * step;
   return model;
+}
+
+// Where body b of a row along x stands that is in the middle of the bed.
+Real row_x(const Model& bed, int b) {
+  return 0.5 * (bed.space.min.x + bed.space.max.x) + (b - 0.5 * (kRowBodies - 1)) * kSphereDiameter;
+}
+
+// Spheres joined by spring-dampers, in the place of the particles that are in their way.
+void add_row(Model& bed, Real y, Real z) {
+  for (int b = 0; b < kRowBodies; ++b) {
+    Body body;
+    body.name = fmt::format("row.{}", b);
+    body.mass = 1, body.inertia = 0.1;
+    body.position = {row_x(bed, b), y, z};
+    body.shapes = {{{0, 0, 0}, kSphereRadius, 0}};
+    bed.bodies.push_back(body);
+  }
+  for (int b = 0; b + 1 < kRowBodies; ++b) {
+    SpringDamper cord;
+    cord.name = fmt::format("cord.{}", b);
+    cord.body[0] = b, cord.body[1] = b + 1;
+    cord.stiffness = 1e5, cord.damping = 100, cord.free_length = 0.999 * kSphereDiameter;  // taut
+    bed.spring_dampers.push_back(cord);
+  }
+  const auto in_the_way = [&](const Vec3& p) {
+    return std::any_of(bed.bodies.begin(), bed.bodies.end(), [&](const Body& body) {
+      const Vec3 r = p - body.position;
+      return dot(r, r) < kSphereDiameter * kSphereDiameter;
+    });
+  };
+  // All particles are alike: what goes with the positions is only made shorter.
+  ParticleSet& set = bed.particles;
+  set.position.erase(std::remove_if(set.position.begin(), set.position.end(), in_the_way),
+                     set.position.end());
+  const std::size_t left = set.position.size();
+  set.velocity.resize(left), set.radius.resize(left), set.mass.resize(left), set.material.resize(left);
+  count_particles(set, bed.contact.materials());
+}
+
+// Between the ground and body b, where it stands, and along y if it has an axis; returns its index.
+int add_joint(Model& bed, JointKind kind, int b) {
+  Joint joint;
+  joint.name = fmt::format("joint.{}", b);
+  joint.kind = kind, joint.body[1] = b, joint.axis = {0, 1, 0};
+  joint.point[0] = bed.bodies[static_cast<std::size_t>(b)].position;
+  bed.joints.push_back(joint);
+  return static_cast<int>(bed.joints.size()) - 1;
 }
 
 }  // namespace
@@ -101,63 +151,39 @@ Real implicit_sphere_step(const Model& bed) {
 }
 
 void add_net(Model& bed) {
-  const Real diameter = 2 * kSphereRadius;
   const Vec3 middle = 0.5 * (bed.space.min + bed.space.max);
-  const auto x_of = [&](int body) { return middle.x + (body - 0.5 * (kNetBodies - 1)) * diameter; };
   // The height at which body b touches the particle at p from above; 0 where it passes beside it.
   const auto touching_height = [&](int b, const Vec3& p) {
-    const Real dx = p.x - x_of(b), dy = p.y - middle.y, height2 = diameter * diameter - dx * dx - dy * dy;
+    const Real dx = p.x - row_x(bed, b), dy = p.y - middle.y,
+               height2 = kSphereDiameter * kSphereDiameter - dx * dx - dy * dy;
     return height2 > 0 ? p.z + std::sqrt(height2) : 0;
   };
-  ParticleSet& set = bed.particles;
   Real level = 0;
-  for (const Vec3& p : set.position)
-    for (int b = 0; b < kNetBodies; ++b) level = std::max(level, touching_height(b, p));
-  level -= diameter;
-  const auto in_the_way = [&](const Vec3& p) {
-    for (int b = 0; b < kNetBodies; ++b) {
-      const Vec3 r = p - Vec3{x_of(b), middle.y, level};
-      if (dot(r, r) < diameter * diameter) return true;
-    }
-    return false;
-  };
-  // All particles are alike: what goes with the positions is only made shorter.
-  set.position.erase(std::remove_if(set.position.begin(), set.position.end(), in_the_way),
-                     set.position.end());
-  const std::size_t left = set.position.size();
-  set.velocity.resize(left), set.radius.resize(left), set.mass.resize(left), set.material.resize(left);
-  count_particles(set, bed.contact.materials());
-
-  for (int b = 0; b < kNetBodies; ++b) {
-    Body body;
-    body.name = fmt::format("net.{}", b);
-    body.mass = 1, body.inertia = 0.1;
-    body.position = {x_of(b), middle.y, level};
-    body.shapes = {{{0, 0, 0}, kSphereRadius, 0}};
-    bed.bodies.push_back(body);
-  }
-  for (int b = 0; b + 1 < kNetBodies; ++b) {
-    SpringDamper cord;
-    cord.name = fmt::format("cord.{}", b);
-    cord.body[0] = b, cord.body[1] = b + 1;
-    cord.stiffness = 1e5, cord.damping = 100, cord.free_length = 0.999 * diameter;  // taut
-    bed.spring_dampers.push_back(cord);
-  }
+  for (const Vec3& p : bed.particles.position)
+    for (int b = 0; b < kRowBodies; ++b) level = std::max(level, touching_height(b, p));
+  add_row(bed, middle.y, level - kSphereDiameter);
   // Bodies move in planes of constant z, which gravity is normal to here: the net hangs sideways instead.
-  for (int b = 0; b < kNetBodies; ++b) {
+  for (int b = 0; b < kRowBodies; ++b) {
     AppliedForce weight;
     weight.name = fmt::format("weight.{}", b);
     weight.body = b;
     weight.fy.value = -5;
     bed.applied_forces.push_back(weight);
   }
-  for (const int b : {0, kNetBodies - 1}) {
-    Joint pin;
-    pin.name = fmt::format("pin.{}", b);
-    pin.body[1] = b;
-    pin.point[0] = bed.bodies[static_cast<std::size_t>(b)].position;
-    bed.joints.push_back(pin);
+  for (const int b : {0, kRowBodies - 1}) add_joint(bed, JointKind::revolute, b);
+}
+
+void add_plough(Model& bed) {
+  add_row(bed, bed.space.min.y + kPloughMargin, kPloughHeight);
+  for (Body& body : bed.bodies) body.velocity.y = kPloughSpeed;
+  for (const int b : {0, kRowBodies - 1}) {
+    Driver drive;
+    drive.name = fmt::format("drive.{}", b);
+    drive.joint = add_joint(bed, JointKind::translational, b);
+    drive.motion.kind = TimeFunction::Kind::ramp, drive.motion.rate = kPloughSpeed;
+    bed.drivers.push_back(drive);
   }
+  bed.time.end = (bed.space.max.y - bed.space.min.y - 2 * kPloughMargin) / kPloughSpeed;
 }
 
 Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles) {

@@ -37,8 +37,9 @@ BedReport::BedReport(const std::string& path, const std::string& kind, const Ran
     file_.open(path_, std::ios::app);
     if (is_new) {
       file_ << kKindColumns
-            << ",bodies,ranks,rank,particles,owned,ghosts,receivers,halo_bytes,imbalance,list_builds,steps,"
-               "seconds_per_step,fastest,slowest,mean,host_bytes,device_bytes,halo_seconds,halo_exposed";
+            << ",bodies,contacts,ranks,rank,particles,owned,ghosts,receivers,halo_bytes,imbalance,"
+               "list_builds,steps,seconds_per_step,fastest,slowest,mean,host_bytes,device_bytes,halo_seconds,"
+               "halo_exposed";
       for (const char* name : kStageNames) file_ << ',' << name;
       file_ << '\n' << std::flush;
     }
@@ -61,12 +62,12 @@ void BedReport::add(const Measured& measured, const StageTimers& before, const S
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
       const OfRank& r = all[rank];
       file_ << fmt::format(
-          "{},{},{},{},{},{},{},{},{},{:.4g},{},{:.0f},{:.6g},{:.6g},{:.6g},{:.6g},{:.0f},{:.0f},{:.4g},{:."
-          "4g}",
-          kind_, measured.bodies, ranks_.size(), rank, measured.particles, r.halo.owned, r.halo.ghosts,
-          r.halo.neighbors, r.halo.bytes, r.imbalance, measured.list_builds, measured.steps, measured.seconds,
-          measured.fastest, measured.slowest, measured.mean, r.host_bytes, r.device_bytes, r.halo.seconds,
-          r.halo.exposed_seconds);
+          "{},{},{:.4g},{},{},{},{},{},{},{},{:.4g},{},{:.0f},{:.6g},{:.6g},{:.6g},{:.6g},{:.0f},{:.0f},"
+          "{:.4g},{:.4g}",
+          kind_, measured.bodies, measured.contacts, ranks_.size(), rank, measured.particles, r.halo.owned,
+          r.halo.ghosts, r.halo.neighbors, r.halo.bytes, r.imbalance, measured.list_builds, measured.steps,
+          measured.seconds, measured.fastest, measured.slowest, measured.mean, r.host_bytes, r.device_bytes,
+          r.halo.seconds, r.halo.exposed_seconds);
       for (const double seconds : r.stage_seconds) file_ << fmt::format(",{:.6g}", seconds);
       file_ << '\n';
     }

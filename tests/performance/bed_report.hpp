@@ -15,6 +15,7 @@ namespace scree {
 struct Measured {
   std::int64_t particles = 0;  // of all ranks
   std::size_t bodies = 0;
+  double contacts = 0;  // of the bodies, mean of looks now and then
   // Per step: median, extremes and mean of the samples. The stages' times are means.
   double seconds = 0, fastest = 0, slowest = 0, mean = 0;
   double steps = 0;              // of all samples

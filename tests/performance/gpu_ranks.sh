@@ -4,7 +4,8 @@
 # PART (default: all, in this order):
 #   weak    settled bed of spheres, 8 million per rank, on 1, 2, 4, ... ranks
 #   strong  16 million in all
-#   bodies  8 million with a net of 20 bodies, solved every step, and without
+#   bodies  8 million, the same with a hole for 20 bodies, and with the bodies: a row that is drawn through the bed by its
+#           ends, 0.2 mm in each step, and solved every step
 #   implicit  the settled bed in implicit steps, 1 million per rank
 #   moving  a column of 2 million spheres that collapses
 #   cpu     1 million discs on 1, 2, 4, ... 16 cores
@@ -15,6 +16,7 @@
 # that fails is named at the end, and the others are still made. Settings, with their defaults:
 #   BACKEND=cuda RANKS="1 2 4 8" (as many as GPUs; with BACKEND=cpu as cores)
 #   WEAK=8000000 STRONG=16000000 BODIES=8000000 IMPLICIT=1000000 MOVING=2000000
+#   BODY_STEPS=15000 (of bodies, in a sample at least: the row then moves by three diameters of a particle)
 #   CPU_RANKS="1 2 4 8 16" (as many as cores) CPU_DISCS=1000000 PYTHON=python3
 #   SAMPLES: options of bed for other samples than its own choice (five of 0.5 s): SAMPLES="--repeats 3 --seconds 0.2"
 #   MODEL: options of scaling_model.py     MPIRUN: options of mpirun
@@ -81,7 +83,7 @@ heading() {
 }
 weak() { spheres "$1" "$out/ranks.csv" --rebuild 0 --particles "${WEAK:-8000000}" --per-rank; }
 strong() { spheres "$1" "$out/ranks.csv" --rebuild 0 --particles "${STRONG:-16000000}"; }
-bodies() { spheres "$1" "$out/ranks.csv" --rebuild 0 --particles "${BODIES:-8000000}" --net; }
+bodies() { spheres "$1" "$out/ranks.csv" --particles "${BODIES:-8000000}" --plough --steps "${BODY_STEPS:-15000}"; }
 implicit() {
   spheres "$1" "$out/implicit_ranks.csv" --integrator hht --particles "${IMPLICIT:-1000000}" --per-rank
 }

@@ -19,9 +19,9 @@ CPU ranks the others wait. What a step with bodies takes beyond that is coupling
 runs with bodies, and the bytes of motion (down a tree) and contact sums (to rank 0; as if all bodies were touched) at
 --network-bandwidth.
 
-Prints the terms, the steps per second and efficiencies from 1 to 1,000 ranks, and from where on rank 0's solve is the
-limit: where it takes as long as the step of the particles. Writes DIR/scaling_model.md, .csv and, where there is
-matplotlib, .png.
+Prints the terms, the steps per second and efficiencies from 1 to 1,000 ranks, from where on rank 0 is the limit (its
+solve and the exchange with it take as long as the step of the particles), and how many ranks take the most steps per
+second. Writes DIR/scaling_model.md, .csv and, where there is matplotlib, .png.
 """
 import argparse
 import csv
@@ -101,6 +101,7 @@ class Model:
     error: float = 0  # largest relative, of the particles' steps
     coupling_error: float | None = None  # the same with bodies; none measured
     smallest: float = 0  # particles per rank that were measured
+    coupling_ranks: tuple = ()  # that bodies were measured on
 
     def particles(self, n, ranks):
         """Seconds of a step of n particles per rank."""
@@ -139,17 +140,18 @@ class Model:
         return (max(own, solve) if self.hidden else own + solve) + self.exchange(bodies, ranks)
 
     def limit(self, bodies, ranks_to_particles):
-        """The least number of ranks, up to the largest of RANKS, at which the solve takes as long as the particles'
-        step; None where it does nowhere. ranks_to_particles(P): per rank."""
+        """The least number of ranks, up to the largest of RANKS, at which rank 0 is the limit: its solve and the
+        exchange with it take as long as the particles' step, halo and collectives included; None where they do
+        nowhere. ranks_to_particles(P): per rank."""
         if bodies == 0:
             return None
         solve = self.serial(bodies)
-        return next((p for p in range(1, RANKS[-1] + 1) if solve >= self.particles(ranks_to_particles(p), p)), None)
+        return next((p for p in range(1, RANKS[-1] + 1)
+                     if solve + self.exchange(bodies, p) >= self.particles(ranks_to_particles(p), p)), None)
 
-    def particles_at_limit(self, bodies):
-        """Particles per rank below which the solve takes longer than their step, halo and collectives left out."""
-        t = self.terms
-        return max(0.0, (self.serial(bodies) - t["fixed"]) / t["per_particle"]) if bodies else 0.0
+    def fastest(self, bodies, total):
+        """The number of ranks, up to the largest of RANKS, that take the most steps per second of so many particles."""
+        return min(range(1, RANKS[-1] + 1), key=lambda p: self.step(total / p, p, bodies))
 
 
 def row_of(run):
@@ -205,6 +207,7 @@ def fit_coupling(model, runs, bare):
             values = dict(zip(columns, solution))
             least, best = error, (float(values.get(0, 0)), float(values.get(1, 0)))
     model.coupling, model.coupling_per_rank = best
+    model.coupling_ranks = tuple(sorted({ranks for _, ranks in rows}))
     model.coupling_error = float(numpy.max(numpy.abs(matrix @ numpy.array(best) - target)))
 
 
@@ -251,7 +254,8 @@ def markdown(model, rows, runs, weak, totals):
         lines.append("| coupling with bodies | not measured: 0 |")
     else:
         lines.append(f"| coupling with bodies | {1e6 * model.coupling:.4g} us + {1e6 * model.coupling_per_rank:.4g} us "
-                     f"per rank, largest error {100 * model.coupling_error:.2g} % of a step |")
+                     f"per rank, largest error {100 * model.coupling_error:.2g} % of a step; from runs on "
+                     f"{', '.join(map(str, model.coupling_ranks))} ranks, beyond them extrapolated |")
     lines += [f"| rank 0's solve of {bodies:,} bodies | {1e3 * seconds:.4g} ms |" for bodies, seconds in model.solve]
     lines += [f"| assumed past {model.network.per_host} ranks | {1e6 * model.network.latency:.3g} us more per message, "
               f"at most {1e-9 * model.network.bandwidth:.3g} GB/s |", ""]
@@ -267,16 +271,31 @@ def markdown(model, rows, runs, weak, totals):
                 f"{1 / row['seconds_per_step']:.4g} ({100 * row['efficiency']:.1f} %){'' if row['within'] else '*'}"
                 for row in cells) + " |")
         lines.append("")
-    lines += ["Rank 0's solve is the limit (takes as long as the step of the particles) from so many ranks on:", "",
-              "| bodies | solve [ms] | below particles per rank | " +
-              f"weak, {weak:,.0f} per rank | " + " | ".join(f"{total:,.0f} in all" for total in totals) + " |",
-              "|" + "---|" * (4 + len(totals))]
-    for bodies in BODIES[1:]:
-        limits = [model.limit(bodies, lambda p: weak)] + \
-            [model.limit(bodies, lambda p, total=total: total / p) for total in totals]
-        lines.append(f"| {bodies:,} | {1e3 * model.serial(bodies):.4g} | {model.particles_at_limit(bodies):,.0f} | " +
-                     " | ".join("nowhere up to 1,000" if p is None else f"{p:,}" for p in limits) + " |")
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines + limits(model, weak, totals)) + "\n"
+
+
+def count(number):
+    """With three digits, and in millions from one on: 7.94 million."""
+    millions = number >= 1e6
+    return f"{float(f'{number / 1e6 if millions else number:.3g}'):,g}{' million' if millions else ''}"
+
+
+def limits(model, weak, totals):
+    """Sentences on where rank 0 is the limit, and on the ranks with the most steps per second."""
+    lines = ["Rank 0 is the limit where its solve and the exchange with it take as long as the step of the particles:",
+             ""]
+    for bodies in BODIES:
+        if bodies:
+            at = model.limit(bodies, lambda p: weak)
+            lines.append(f"- {bodies:,} bodies, {count(weak)} particles per rank: " +
+                         ("the limit nowhere" if at is None else f"the limit from {at:,} rank(s) on"))
+        for total in totals:
+            at, best = model.limit(bodies, lambda p: total / p), model.fastest(bodies, total)
+            where = "nowhere" if at is None else f"from {at:,} rank(s) on ({count(total / at)} particles per rank)"
+            lines.append(f"- {bodies:,} bodies, {count(total)} particles in all: the limit {where}; "
+                         f"most steps per second, {1 / model.step(total / best, best, bodies):,.4g}, on {best:,} rank(s) "
+                         f"({count(total / best)} particles per rank)")
+    return lines
 
 
 def plot(path, model, rows, runs, weak, totals):
@@ -294,6 +313,9 @@ def plot(path, model, rows, runs, weak, totals):
             if limit:
                 n = size if kind == "weak" else size / limit
                 axis.plot([limit], [1 / model.step(n, limit, bodies)], "v", color=line.get_color())
+            if kind == "strong":
+                best = model.fastest(bodies, size)
+                axis.plot([best], [1 / model.step(size / best, best, bodies)], "*", color=line.get_color())
         measured = [run for run in runs if run.bodies == 0 and
                     abs(run.particles / (run.ranks if kind == "weak" else 1) / size - 1) < 1e-2]
         if measured:
@@ -302,7 +324,7 @@ def plot(path, model, rows, runs, weak, totals):
         axis.set(xscale="log", yscale="log", xlabel="ranks", ylabel="steps per second",
                  title=f"{size:,.0f} particles {'per rank' if kind == 'weak' else 'in all'}")
         axis.grid(True, which="major", alpha=0.3)
-        axis.legend(fontsize=8, title="triangle: rank 0's solve is the limit", title_fontsize=7)
+        axis.legend(fontsize=8, title="triangle: rank 0 is the limit; star: most steps/s", title_fontsize=7)
     figure.tight_layout()
     figure.savefig(path, dpi=150)
 
@@ -350,7 +372,7 @@ def main():
     parser.add_argument("--strong", type=positive, nargs="+", default=[64e6, 1e9], metavar="N",
                         help="particles in all (default: 64e6 1e9)")
     parser.add_argument("--iterations", type=positive, default=2,
-                        help="of the bodies' solve per step, as bed --net prints (default: 2)")
+                        help="of the bodies' solve per step, as bed --plough prints (default: 2)")
     parser.add_argument("--per-host", type=positive, default=8, metavar="RANKS", help="ranks of one host (default: 8)")
     parser.add_argument("--network-latency", type=positive, default=5e-6, metavar="S", help="assumed (default: 5e-6)")
     parser.add_argument("--network-bandwidth", type=positive, default=40e9, metavar="B/S",

@@ -35,8 +35,8 @@ def run_of(model, particles, ranks, bodies=0, noise=1.0):
     faces, messages = scaling_model.faces_and_messages(ranks)
     seconds = noise * model.step(n, ranks, bodies)
     kind = dict.fromkeys(rank_runs.KIND, "x") | {"backend": "cuda", "dimension": "3"}
-    whole = {"bodies": bodies, "ranks": ranks, "particles": particles, "list_builds": 1, "steps": 1000.0,
-             "seconds_per_step": seconds, "fastest": seconds, "slowest": seconds, "mean": seconds}
+    whole = {"bodies": bodies, "contacts": 0.7 * bodies, "ranks": ranks, "particles": particles, "list_builds": 1,
+             "steps": 1000.0, "seconds_per_step": seconds, "fastest": seconds, "slowest": seconds, "mean": seconds}
     rank = dict.fromkeys(rank_runs.OF_RANK, 0) | {"owned": n, "receivers": messages, "device_bytes": 500.0 * n,
                                                   "halo_bytes": PER_FACE * faces * math.sqrt(n),
                                                   "mbs_correct": model.serial(bodies)}
@@ -104,17 +104,35 @@ class FitTest(unittest.TestCase):
         self.assertTrue(all(value >= 0 for value in model.terms.values()))
         self.assertIsNone(model.coupling_error)
 
-    def test_the_limit_is_where_the_solve_takes_as_long(self):
+    def test_the_limit_is_where_rank_0_takes_as_long(self):
         only_particles = dict.fromkeys(scaling_model.TERMS, 0.0) | {"per_particle": 1e-10}
         model = known_model(terms=only_particles, per_face=0.0, solve=[(20, 1e-5), (1000, 1e-3), (10000, 1e-2)],
-                            network=scaling_model.Network(10**6, 1e-9, 1e12))
-        self.assertAlmostEqual(model.particles_at_limit(1000), 1e7, delta=1)
-        self.assertEqual(model.limit(1000, lambda p: 1e9 / p), 100)
-        self.assertEqual(model.limit(10000, lambda p: 1e9 / p), 10)
+                            coupling=0.0, coupling_per_rank=0.0,
+                            network=scaling_model.Network(10**6, 1e-9, 1e18))
+        self.assertEqual(model.limit(1000, lambda p: 0.999e9 / p), 100)
+        self.assertEqual(model.limit(10000, lambda p: 0.999e9 / p), 10)
         self.assertIsNone(model.limit(20, lambda p: 1e9 / p))
         self.assertIsNone(model.limit(1000, lambda p: 2e7))
         self.assertEqual(model.limit(1000, lambda p: 1e6), 1)
         self.assertIsNone(model.limit(0, lambda p: 1.0))
+        # What rank 0 takes for the exchange counts, too: 4e-3 p = 0.0999 / p at p = 5.
+        model.coupling_per_rank = 4e-3
+        self.assertEqual(model.limit(20, lambda p: 0.999e9 / p), 5)
+
+    def test_the_most_steps_per_second_are_where_ranks_begin_to_cost_more_than_they_save(self):
+        only_particles = dict.fromkeys(scaling_model.TERMS, 0.0) | {"per_particle": 1e-10}
+        model = known_model(terms=only_particles, per_face=0.0, solve=[(20, 1e-9), (1000, 1e-9)], coupling=0.0,
+                            coupling_per_rank=1e-5, network=scaling_model.Network(10**6, 1e-9, 1e18))
+        # 0.1 / p + 1e-5 p is least at p = 100, and there both parts are alike.
+        self.assertEqual(model.fastest(20, 1e9), 100)
+        self.assertEqual(model.limit(20, lambda p: 1e9 / p), 100)
+        self.assertEqual(model.fastest(0, 1e9), 1000)
+        # A solve that takes longer than the particles' step gains nothing from more ranks.
+        model.solve = [(20, 1e-2), (1000, 1e-2)]
+        self.assertEqual(model.fastest(20, 1e9), 10)
+        text = "\n".join(scaling_model.limits(model, 8e6, [1e9]))
+        self.assertIn("20 bodies, 1,000 million particles in all: the limit from 10 rank(s) on (100 million "
+                      "particles per rank); most steps per second, 99.01, on 10 rank(s) (100 million particles per rank)", text)
 
     def test_boxes_of_a_square(self):
         faces_and_messages = {p: scaling_model.faces_and_messages(p) for p in (1, 2, 4, 8, 16, 1000)}
@@ -181,9 +199,21 @@ class FilesTest(unittest.TestCase):
         text = rank_tables.report(runs)
         self.assertIn("| 500 |", text)  # memory per particle [B]
 
+    def test_bodies_are_compared_with_the_hole_and_the_plain_bed(self):
+        model = known_model()
+        steps = {(0, 1e6): 2e-4, (0, 999000): 1.25e-4, (20, 999000): 2.5e-4}
+        runs = [run_of(model, n, 1, bodies) for bodies, n in steps]
+        for run in runs:
+            run.whole["seconds_per_step"] = steps[run.bodies, run.particles]
+        (row,) = rank_tables.bodies(runs)
+        self.assertEqual(row[2:6], ["20", "14.0", "0.25", "1000"])
+        self.assertEqual(row[7:], ["0.125", "1000", "100.0 %", "0.2", "1000", "25.0 %"])
+        self.assertEqual(rank_tables.bodies(runs[1:]), [])
+
     def test_script(self):
         small = {"BACKEND": "cpu", "RANKS": "1 2", "WEAK": "10000", "STRONG": "20000", "BODIES": "10000",
-                 "IMPLICIT": "10000", "MOVING": "500", "SAMPLES": "--repeats 1 --seconds 0", "PYTHON": sys.executable,
+                 "BODY_STEPS": "1000", "IMPLICIT": "10000", "MOVING": "500",
+                 "SAMPLES": "--repeats 1 --seconds 0", "PYTHON": sys.executable,
                  "MODEL": "--weak 1e4 --strong 1e6"}
         parts = ["weak", "strong", "bodies", "implicit", "moving", "chain", "tables", "model"]
         done = subprocess.run([HERE / "gpu_ranks.sh", os.environ["BUILD"], self.folder / "out", *parts], text=True,
@@ -191,8 +221,12 @@ class FilesTest(unittest.TestCase):
         logs = "\n".join(path.read_text() for path in self.folder.glob("out/*.txt"))
         self.assertEqual(done.returncode, 0, done.stderr + logs)
         runs = rank_runs.read_runs([self.folder / "out/ranks.csv"])
-        # On two ranks the beds of weak and strong are the same: the later one counts.
-        self.assertEqual(sorted((r.bodies, r.ranks) for r in runs), [(0, 1)] * 3 + [(0, 2)] * 2 + [(20, 1), (20, 2)])
+        # On two ranks the beds of weak and strong are the same: the later one counts. Of bodies there are the plain bed
+        # and the one with a hole.
+        self.assertEqual(sorted((r.bodies, r.ranks) for r in runs), [(0, 1)] * 4 + [(0, 2)] * 3 + [(20, 1), (20, 2)])
+        contacts = [run.contacts for run in runs if run.bodies > 0]
+        self.assertGreater(contacts[0], 0)
+        self.assertEqual(contacts[0], contacts[1])
         for run in runs:
             self.assertEqual(sum(run.of_all("owned")), run.particles)
             self.assertGreater(run.of_rank[-1]["contact_force"], 0)
@@ -205,7 +239,8 @@ class FilesTest(unittest.TestCase):
         self.assertEqual(len(moving), 2)
         self.assertEqual(moving[0][-1], moving[1][-1])  # the state
         self.assertGreater(int(moving[1][5]), 0)  # changed their rank
-        self.assertIn("Rank 0's solve is the limit", (self.folder / "out/scaling_model.md").read_text())
+        self.assertIn("from runs on 1, 2 ranks, beyond them extrapolated",
+                      (self.folder / "out/scaling_model.md").read_text())
 
     def test_script_names_what_fails(self):
         done = subprocess.run([HERE / "gpu_ranks.sh", os.environ["BUILD"], self.folder / "out", "weak"], text=True,

@@ -71,6 +71,8 @@ def gpus():
 
 
 class RanksTest(unittest.TestCase):
+    program = SCREE
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="scree_ranks_")
         self.addCleanup(folder.cleanup)
@@ -79,7 +81,7 @@ class RanksTest(unittest.TestCase):
     def command(self, ranks, deck, output, overrides, *words, backend=BACKEND, before=()):
         """before: words in front of the program, such as env and a variable."""
         settings = [word for override in overrides for word in ("--set", override)]
-        return [MPIEXEC, "-n", str(ranks), *before, SCREE, "run", str(deck), "--backend", backend, "--output",
+        return [MPIEXEC, "-n", str(ranks), *before, self.program, "run", str(deck), "--backend", backend, "--output",
                 str(self.folder / output), *settings, *map(str, words)]
 
     def run_deck(self, code, ranks, deck, output, overrides=(), *words, **how):

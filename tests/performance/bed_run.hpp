@@ -1,0 +1,65 @@
+// A bed on its backend, and the samples of the time that its steps take.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bed_report.hpp"
+#include "coupling/coupled_step.hpp"
+
+namespace scree {
+
+// Of bed's command line.
+struct Options {
+  int dimension = 3;
+  std::string backend = "cpu", precision = "double", integrator = "verlet";
+  std::vector<std::int64_t> particles;
+  Index rebuild = 25;
+  int repeats = 5;
+  Index steps = 0;
+  double seconds = 0.5;
+  bool net = false, plough = false, wall = false, per_rank = false;
+  std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", csv;
+  Ranks ranks = Ranks::world();
+
+  bool on_gpu() const { return backend == "cuda"; }
+  bool with_bodies() const { return net || plough; }
+};
+
+struct Samples {
+  Index steps = 0;              // per sample
+  std::vector<double> seconds;  // per step, in increasing order
+
+  double median() const { return seconds[seconds.size() / 2]; }
+};
+
+// Sections of equal length, in multiples of `quantum` steps, and of at least options.steps. advance(n) takes
+// n steps and returns when they are done; before_samples is called between the search for the length and the
+// first sample.
+Samples sample(
+    const Options& options, Index quantum, const std::function<void(Index)>& advance,
+    const std::function<void()>& before_samples = [] {});
+Measured measured(const Samples& samples, const Model& bed, std::int64_t list_builds);
+
+struct Run {
+  Run(Model bed, const Options& options);
+  double listed() const;  // neighbours per particle
+
+  Model model;
+  StageTimers timers;
+  std::unique_ptr<Backend> backend;
+  BodyLink link;
+  Ranks ranks;
+  CoupledStep step;
+  MultibodyState bodies;
+};
+
+// "2.51e+07 (2.44e+07 to 2.53e+07) particle-steps/s, 398 us per step"
+std::string speed_text(const Samples& samples, std::int64_t particles);
+// Each stage's share of what all took between the two, and its time over the steps.
+void print_stages(const StageTimers& before, const StageTimers& after, double steps);
+
+}  // namespace scree
