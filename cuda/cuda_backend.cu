@@ -239,6 +239,7 @@ void CudaBackend::reorder(const Index* order, Index n) {
   owned_ = n;
 }
 
+// Lays out all items, makes room for them, and names the ghosts among them.
 void CudaBackend::find_ghosts(Real width) {
   if (!decomposition_.exists()) decomposition_ = Decomposition(ranks_, make_domain_grid(model_.space, width), {}, {});
   halo_.count(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(), layout_.active);
@@ -246,8 +247,10 @@ void CudaBackend::find_ghosts(Real width) {
   ranks_.together([&] {
     layout_.first_shape = countable(static_cast<std::size_t>(owned_) + static_cast<std::size_t>(halo_.size()),
                                     kTooManyItems);
+    side_.lay_out(model_.space, width, layout_);
     halo_.list(device(), now_.position.data(), layout_.active);
-    grow_items(layout_.first_shape);
+    const auto items = static_cast<std::size_t>(layout_.items), owned = static_cast<std::size_t>(owned_);
+    now_.grow(items, owned, owned, stream_), other_.grow(items, owned, 0, stream_);
   });
   const GhostNameItem item{halo_.ghosts(), halo_.field(0, now_.material.data(), owned_),
                            halo_.field(1, now_.row_key.data(), owned_)};
@@ -255,18 +258,8 @@ void CudaBackend::find_ghosts(Real width) {
   halo_.exchange(device(), item.material, item.key);
 }
 
-// Room for so many items; the particles and ghosts stay.
-void CudaBackend::grow_items(Index items) {
-  const auto n = static_cast<std::size_t>(items), owned = static_cast<std::size_t>(owned_);
-  now_.grow(n, owned, std::min(n, now_.position.size()), stream_), other_.grow(n, owned, 0, stream_);
-}
-
 void CudaBackend::lay_out_items(Real skin) {
-  const Real width = builder_.cutoff(skin);
-  find_ghosts(width);
-  side_.lay_out(model_.space, width, layout_);
-  grow_items(layout_.items);
-
+  find_ghosts(builder_.cutoff(skin));
   const auto n = static_cast<std::size_t>(shape_items());
   std::vector<int> material, body;
   std::vector<std::int64_t> keys;

@@ -119,7 +119,6 @@ class CudaBackend : public Backend {
   void sort_cells(Real skin, std::int64_t particles);
   void reorder(const Index* order, Index n);
   void find_ghosts(Real width);
-  void grow_items(Index items);
   void lay_out_items(Real skin);
   void index_others();
   void search(Real skin);
