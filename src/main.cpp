@@ -210,9 +210,10 @@ ExitCode guarded(const std::function<ExitCode()>& body) {
 }  // namespace scree
 
 int main(int count, char** values) {
-  // Before MPI starts, which takes a while, too.
-  if (count > 1 && std::string_view(values[1]) == "run") scree::catch_signals();
+  const bool runs = count > 1 && std::string_view(values[1]) == "run";
+  if (runs) scree::catch_signals();  // before MPI starts, which takes a while, too
   MPI_Init(&count, &values);
+  if (runs) scree::catch_signals();
   const scree::CommandLine line = scree::split(count, values);
   const scree::ExitCode code = scree::guarded([&] { return scree::dispatch(line); });
   MPI_Finalize();

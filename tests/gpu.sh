@@ -8,7 +8,7 @@
 # runs the test programs in that folder, each as on_gpu test_...: for programs that were built elsewhere.
 # --sanitize adds compute-sanitizer's memcheck, racecheck and initcheck on unit/cuda, unit/dem, the first
 # steps of four decks, and those of a fifth on two ranks. Test cases with the tag [long], of 1e6 steps or of
-# 1e5 spheres, are left out, so that it ends within some 20 minutes. FILTER in the environment is passed to the
+# 1e5 spheres, are left out, for they take very long there. FILTER in the environment is passed to the
 # test programs as Catch2's choice of tests instead: FILTER='explicit*', or FILTER='*' for all.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
