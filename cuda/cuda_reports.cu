@@ -105,7 +105,7 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
     if (leaver.rank == ranks_.rank()) particles.push_back(leaver.local_index);
   const bool remove = model_.space.leaving == Leaving::remove;
   const auto n = remove ? static_cast<std::size_t>(owned_) : 0;
-  // Memory first: where there is none, nothing has changed yet.
+  // The arrays come first: where there is no memory for them, nothing has changed yet.
   DeviceArray<Index> d_particles, iota(n), staying(n), row_length(ranks_.alone() ? 0 : n);
   DeviceArray<std::uint8_t> stays(n);
   d_particles.upload(particles, stream_);

@@ -17,17 +17,6 @@ namespace {
 
 cudaError_t chosen = cudaSuccess;  // what came of choose_device
 
-}  // namespace
-
-void choose_device(const Ranks& ranks) {
-  const int number = ranks.local_rank();
-  int devices = 0;
-  if (!ranks.alone() && cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0)
-    chosen = cudaSetDevice(number % devices);
-}
-
-namespace {
-
 int this_device() {
   int device = 0;
   require_cuda(cudaGetDevice(&device), "cudaGetDevice");
@@ -41,6 +30,13 @@ cudaDeviceProp this_properties() {
 }
 
 }  // namespace
+
+void choose_device(const Ranks& ranks) {
+  const int number = ranks.local_rank();
+  int devices = 0;
+  if (!ranks.alone() && cudaGetDeviceCount(&devices) == cudaSuccess && devices > 0)
+    chosen = cudaSetDevice(number % devices);
+}
 
 std::size_t multiprocessors() {
   int count = 0;

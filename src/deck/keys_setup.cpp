@@ -158,7 +158,7 @@ const TableKeys& parallel_keys() {
            .otherwise("\"auto\"")
            .about("How ghosts travel between GPUs: by an MPI library that takes device memory, by NCCL, or "
                   "through host memory. auto: the first of these that works here; another that does not work "
-                  "here ends the run.")},
+                  "here ends a run that would take GPUs on several ranks.")},
       ""};
   return keys;
 }

@@ -253,12 +253,14 @@ void check_speeds(const Model& model, Real step, Log& log) {
   const Real radii = model.particles.totals.most_radii_per_second * step;
   if (radii <= 1) return;
   const bool is_fixed = model.time.control == StepControl::fixed;
+  const std::string which =
+      fmt::format("{}{:.4g} s{}", model.integrator.substeps > 1 ? "step / substeps = " : "", step,
+                  is_fixed ? "" : ", the longest allowed,");
   // Rounded to two digits the advice must still be short enough.
-  log.warning(fmt::format(
-      "{}: in a step of {}{:.4g} s a particle goes {:.3g} times its radius with its speed at t = 0, and "
-      "may pass through others unnoticed; the step should be at most {:.2g} s",
-      is_fixed ? "time.step" : "time.max_step", model.integrator.substeps > 1 ? "step / substeps = " : "",
-      step, radii, 0.95 * step / radii));
+  log.warning(
+      fmt::format("{}: in a step of {} a particle goes {:.3g} times its radius with its speed at t = 0, and "
+                  "may pass through others unnoticed; the step should be at most {:.2g} s",
+                  is_fixed ? "time.step" : "time.max_step", which, radii, 0.95 * step / radii));
 }
 
 }  // namespace

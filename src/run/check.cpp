@@ -120,22 +120,23 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
   choose_device(ranks);
   const std::string trouble = device_trouble();
   if (ranks.any(!trouble.empty()))
-    return line + "; " + (trouble.empty() ? "another rank finds no GPU" : trouble) + "\n";
+    return line + "; " + (trouble.empty() ? "another rank cannot use its GPU" : trouble) + "\n";
   const std::vector<DeviceClaim> claims = ranks.gather_everywhere(std::vector{claim_device(model)});
-  DeviceLoad fullest;
-  for (int rank = 0; rank < ranks.size(); ++rank) {
+  const auto share = [&](int rank) {
     const DeviceLoad load = load_of_device(claims, rank);
-    const auto share = [](const DeviceLoad& of) {
-      return static_cast<Real>(of.needed) / static_cast<Real>(std::max<std::size_t>(of.free, 1));
-    };
-    if (rank == 0 || share(load) > share(fullest)) fullest = load;
-  }
-  const std::string together = fullest.ranks == 1
+    return static_cast<Real>(load.needed) / static_cast<Real>(std::max<std::size_t>(load.free, 1));
+  };
+  int fullest = 0;
+  for (int rank = 1; rank < ranks.size(); ++rank)
+    if (share(rank) > share(fullest)) fullest = rank;
+  const DeviceLoad load = load_of_device(claims, fullest);
+  const auto device_of = [&](int rank) { return claims[static_cast<std::size_t>(rank)].device; };
+  const std::string together = load.ranks == 1
                                    ? ""
                                    : fmt::format(", {} for the {} ranks that share one",
-                                                 megabytes(static_cast<Real>(fullest.needed)), fullest.ranks);
-  return fmt::format("{}{}; {} are free on {}\n", line, together, megabytes(static_cast<Real>(fullest.free)),
-                     device_name());
+                                                 megabytes(static_cast<Real>(load.needed)), load.ranks);
+  return fmt::format("{}{}; {} are free on {}\n", line, together, megabytes(static_cast<Real>(load.free)),
+                     device_of(fullest) == device_of(ranks.rank()) ? device_name() : "the fullest GPU");
 }
 
 }  // namespace

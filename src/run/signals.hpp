@@ -5,8 +5,8 @@
 
 namespace scree {
 
-// May be called again: libraries that are started later may put handlers of their own in the place of ours, as
-// some releases of NCCL and of what MPI is built on do.
+// To be called again when MPI has started: what it is built on may put handlers of its own in the place of
+// ours.
 void catch_signals();
 // The signal that has arrived on some rank, or 0. Collective.
 int signal_received(const Ranks& ranks);

@@ -132,7 +132,8 @@ CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& repo
       for (Index k = 0; k < kCoupledBatch; ++k) times.push_back(static_cast<Real>(taken++) * kSphereStep);
       if (options.plough && run.link.has_bodies() && times.back() > run.model.time.end)
         throw InputError(
-            "--plough: it has come through the bed; fewer --repeats, --seconds or more --particles");
+            "--plough: it has come through the bed; fewer --repeats, --seconds or --steps, or more "
+            "--particles");
       if (run.step.explicit_steps(run.bodies, times, kSphereStep) != times.size())
         throw SimulationError("a particle has left the bed");
       const std::vector<int> contacts = run.backend->pack_shapes().contacts;

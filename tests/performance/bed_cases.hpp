@@ -23,8 +23,8 @@ Real implicit_sphere_step(const Model& bed);
 // diameter below where it would lie on it; the particles in its way are taken out. A constant sideways force
 // on each sphere keeps it moving among the particles.
 void add_net(Model& bed);
-// The same row deep within the bed, drawn through it by its ends at a steady speed, some diameters in a
-// thousand steps. The bed's time ends where the plough comes near the wall.
+// The same row deep within the bed, drawn through it by its ends at a steady speed, a fifth of a
+// diameter in a thousand steps. The bed's time ends where the plough comes near the wall.
 void add_plough(Model& bed);
 
 // Frictionless discs, periodic in x, tiles in a row. tile: of settled_discs.
