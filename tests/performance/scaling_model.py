@@ -324,7 +324,7 @@ def plot(path, model, rows, runs, weak, totals):
         axis.set(xscale="log", yscale="log", xlabel="ranks", ylabel="steps per second",
                  title=f"{size:,.0f} particles {'per rank' if kind == 'weak' else 'in all'}")
         axis.grid(True, which="major", alpha=0.3)
-        axis.legend(fontsize=8, title="triangle: rank 0 is the limit; star: most steps/s", title_fontsize=7)
+    axes[0][0].legend(fontsize=8, title="triangle: rank 0 is the limit; star: most steps/s", title_fontsize=7)
     figure.tight_layout()
     figure.savefig(path, dpi=150)
 
