@@ -1,5 +1,7 @@
 #include "run/signals.hpp"
 
+#include <signal.h>  // POSIX: the signal mask
+
 #include <csignal>
 #include <initializer_list>
 
@@ -13,7 +15,13 @@ void remember(int signal) { received = signal; }
 }  // namespace
 
 void catch_signals() {
-  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) std::signal(signal, remember);
+  sigset_t caught;
+  sigemptyset(&caught);
+  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
+    std::signal(signal, remember);
+    sigaddset(&caught, signal);
+  }
+  pthread_sigmask(SIG_UNBLOCK, &caught, nullptr);
 }
 
 int signal_received(const Ranks& ranks) { return static_cast<int>(ranks.max(static_cast<Real>(received))); }

@@ -5,8 +5,8 @@
 
 namespace scree {
 
-// To be called again when MPI has started: what it is built on may put handlers of its own in the place of
-// ours.
+// Also where whoever started the program has blocked them. To be called again when MPI has started: what it
+// is built on may put handlers of its own in the place of ours.
 void catch_signals();
 // The signal that has arrived on some rank, or 0. Collective.
 int signal_received(const Ranks& ranks);

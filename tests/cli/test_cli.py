@@ -1,5 +1,6 @@
 """The command line: exit codes, messages, restart, signals. Usage: SCREE=path/to/scree python3 test_cli.py"""
 
+import itertools
 import os
 import pathlib
 import re
@@ -111,10 +112,10 @@ class CommandLineTest(unittest.TestCase):
                 compared = subprocess.run(["h5diff", *files], capture_output=True, text=True)
                 self.assertEqual(compared.returncode, 0, compared.stdout)
 
-    def start(self, output, *words):
+    def start(self, output, *words, launcher=()):
         """A run in the background, handed back once it has reported progress."""
         run = subprocess.Popen(
-            [SCREE, "run", str(self.deck), "--output", str(self.folder / output), *map(str, words)],
+            [*launcher, SCREE, "run", str(self.deck), "--output", str(self.folder / output), *map(str, words)],
             cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.addCleanup(run.stdout.close)
         self.addCleanup(run.kill)
@@ -358,9 +359,10 @@ class RestartTest(CommandLineTest):
     def test_a_signal_stops_the_run_and_a_restart_completes_it(self):
         longer = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
         self.run_deck(DONE, "whole", *longer, *self.AT_END)
-        for number in (signal.SIGTERM, signal.SIGUSR1):
-            with self.subTest(signal=number.name):
-                run = self.start("parts", *longer, *self.AT_END)
+        blocked = ("env", "--block-signal=TERM", "--block-signal=USR1")
+        for number, launcher in itertools.product((signal.SIGTERM, signal.SIGUSR1), ((), blocked)):
+            with self.subTest(signal=number.name, launcher=launcher):
+                run = self.start("parts", *longer, *self.AT_END, launcher=launcher)
                 run.send_signal(number)
                 text = run.stdout.read()
                 self.assertEqual(run.wait(LIMIT), STOPPED, text)

@@ -156,6 +156,11 @@ class FailureTest(RanksTest):
 class SignalTest(RanksTest):
     SETTINGS = [*EXPLICIT, "integrator.substeps=3", "time.end=40", "output.checkpoint_interval=0.02"]
 
+    @classmethod
+    def setUpClass(cls):
+        # Where whoever started the tests has blocked it, mpirun would pass none on.
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGUSR1})
+
     def start(self, ranks):
         """A run that would take long, once it has written a checkpoint."""
         run = subprocess.Popen(self.command(ranks, DAM[0], "out", self.SETTINGS), cwd=self.folder, env=ENVIRONMENT,
