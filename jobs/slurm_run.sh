@@ -77,6 +77,8 @@ fi
 export SRUN_CPUS_PER_TASK=${SLURM_CPUS_PER_TASK:-1}
 # A rank computes on one core: libraries must not start threads on those of other ranks.
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
+# mpirun may load OpenCL to look for devices, and some OpenCL libraries take SIGUSR1 for themselves.
+export HWLOC_COMPONENTS=${HWLOC_COMPONENTS--opencl}
 
 run='' warned=false ended=false
 # shellcheck disable=SC2317 # the traps call it

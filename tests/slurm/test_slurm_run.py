@@ -93,6 +93,13 @@ class SlurmRunTest(unittest.TestCase):
         self.assertIn("continues from", self.job(DONE, "--set", "time.end=0.02"))
         self.assertEqual(self.record()["measures"]["simulated_time"], 0.02)
 
+    def test_the_launcher_does_not_load_opencl_unless_told(self):
+        launcher = self.folder / "launcher"
+        launcher.write_text('#!/bin/sh\necho "hwloc: $HWLOC_COMPONENTS"\n')
+        launcher.chmod(0o755)
+        self.assertIn("hwloc: -opencl\n", self.job(DONE, SCREE_LAUNCHER=str(launcher)))
+        self.assertIn("hwloc: all\n", self.job(DONE, SCREE_LAUNCHER=str(launcher), HWLOC_COMPONENTS="all"))
+
     def test_elements_of_an_array(self):
         line = " ".join(map(str, (self.deck, *SETTINGS, "--set")))
         decks = self.folder / "decks.txt"
