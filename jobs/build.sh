@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, configures and builds.
 #
-#     jobs/build.sh [PRESET] [TARGET]      default: release, all
+#     jobs/build.sh [PRESET] [TARGET ...]      default: release, all
 #
 # PRESET: release; debug (sanitizers); cuda (for the GPU of this machine); cuda-portable (for GPUs of other machines).
 # The program is then build/PRESET/scree. nvcc is the one that the environment variable CUDACXX names, or the one on
@@ -9,13 +9,15 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-preset=${1:-release} target=${2:-all}
+preset=${1:-release}
+targets=("${@:2}")
+((${#targets[@]} > 0)) || targets=(all)
 case "$preset" in
   release | debug) ;;
   cuda | cuda-portable)
-    installed=$(find .venv/lib/python3*/site-packages/nvidia/cu*/bin -name nvcc 2>/dev/null | sort -V | tail -n 1)
-    if [[ -z "${CUDACXX:-}" && -n "$installed" ]] && ! command -v nvcc >/dev/null; then
-      export CUDACXX=$PWD/$installed
+    installed=(.venv/lib/python3*/site-packages/nvidia/cu*/bin/nvcc) # a pattern that fits nothing stays as it is
+    if [[ -z "${CUDACXX:-}" && -x "${installed[-1]}" ]] && ! command -v nvcc >/dev/null; then
+      export CUDACXX=$PWD/${installed[-1]}
     fi
     ;;
   *)
@@ -25,4 +27,4 @@ case "$preset" in
 esac
 jobs/setup.sh
 cmake --preset "$preset" >/dev/null
-cmake --build "build/$preset" --target "$target"
+cmake --build "build/$preset" --target "${targets[@]}"
