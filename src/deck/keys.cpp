@@ -39,8 +39,19 @@ Key& Key::required() {
   return *this;
 }
 
+Key& Key::required_for(std::vector<std::string> selector_values) {
+  required_kinds = std::move(selector_values);
+  return *this;
+}
+
 Key& Key::otherwise(const std::string& toml_text) {
   default_value = toml_text;
+  return *this;
+}
+
+Key& Key::otherwise_where(const std::string& key_path, const std::string& value,
+                          const std::string& toml_text) {
+  where_key = key_path, where_value = value, default_there = toml_text;
   return *this;
 }
 

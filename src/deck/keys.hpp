@@ -39,9 +39,12 @@ struct Key {
   std::size_t length = 0;            // number of entries of a list; 0: any
   std::vector<std::string> choices;  // of a text; empty: any
   bool is_required = false;
-  std::string default_value;       // TOML text, "zero" for a vector of zeros; empty: none
-  std::string default_note;        // what holds when the key is left out and default_value is empty
+  std::string default_value;  // TOML text, "zero" for a vector of zeros; empty: none
+  std::string default_note;   // what holds when the key is left out and default_value is empty
+  // Another default value where the deck gives the text `where_value` for the key at the path `where_key`.
+  std::string where_key, where_value, default_there;
   std::vector<std::string> kinds;  // values of the table's selector for which the key exists; empty: all
+  std::vector<std::string> required_kinds;  // those for which it must be given; is_required: for all
   std::string sentence;
   const TableKeys* table = nullptr;  // keys of a table, of tables, or of a quantity
 
@@ -51,7 +54,9 @@ struct Key {
   Key& entries(std::size_t count);
   Key& one_of(std::vector<std::string> texts);
   Key& required();
+  Key& required_for(std::vector<std::string> selector_values);
   Key& otherwise(const std::string& toml_text);
+  Key& otherwise_where(const std::string& key_path, const std::string& value, const std::string& toml_text);
   Key& left_out(const std::string& meaning);
   Key& only_for(std::vector<std::string> selector_values);
   Key& about(const std::string& text);

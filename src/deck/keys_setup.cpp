@@ -53,11 +53,18 @@ const TableKeys& time_keys() {
   static const TableKeys keys{
       "Simulated time and step control.",
       {real("end", "s").above(0).required().about("The simulation runs from 0 to this time."),
-       real("step", "s").above(0).required().about("Step size; the first one if control is \"adaptive\"."),
+       real("step", "s")
+           .above(0)
+           .required_for({"fixed"})
+           .left_out("1/20 of the shortest contact time or end / 1000, whichever is shorter")
+           .about("Step size; the first one if control is \"adaptive\"."),
        text("control")
            .one_of({"fixed", "adaptive"})
-           .otherwise("\"fixed\"")
-           .about("Fixed step, or steps that keep the estimated local error within tolerance."),
+           .otherwise("\"adaptive\"")
+           .otherwise_where("integrator.particles", "velocity-verlet", "\"fixed\"")
+           .about(
+               "Fixed step, or steps that keep the estimated local error within tolerance; velocity-verlet "
+               "has no error estimate."),
        real("min_step", "s")
            .above(0)
            .left_out("step / 1e3 if fixed; step / 1e6 if adaptive")
@@ -71,7 +78,8 @@ const TableKeys& time_keys() {
            .only_for({"adaptive"})
            .above(0)
            .otherwise("2e-8")
-           .about("Allowed local error of a position per step, over the particle's radius.")},
+           .about("Allowed local error of a position per step: a particle's over its radius, a body's over "
+                  "the length of the mechanism.")},
       "control"};
   return keys;
 }

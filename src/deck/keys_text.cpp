@@ -28,8 +28,10 @@ void wrap(std::string& out, const std::string& text, std::size_t indent) {
 
 std::string default_text(const Key& key) {
   if (key.is_required) return "required";
-  if (!key.default_value.empty()) return "default " + key.default_value;
-  return "left out: " + key.default_note;
+  if (key.default_value.empty()) return "left out: " + key.default_note;
+  const std::string text = "default " + key.default_value;
+  if (key.where_key.empty()) return text;
+  return fmt::format("{}, with {} = \"{}\" {}", text, key.where_key, key.where_value, key.default_there);
 }
 
 void describe_key(std::string& out, const Key& key, const std::string& selector) {
@@ -37,6 +39,8 @@ void describe_key(std::string& out, const Key& key, const std::string& selector)
   std::string facts = allowed_values(key, 0) + "; " + default_text(key);
   if (!key.kinds.empty())
     facts += fmt::format("; only with {} = \"{}\"", selector, fmt::join(key.kinds, "\", \""));
+  if (!key.required_kinds.empty())
+    facts += fmt::format("; required with {} = \"{}\"", selector, fmt::join(key.required_kinds, "\", \""));
   wrap(out, facts, 6);
   wrap(out, key.sentence, 6);
 }

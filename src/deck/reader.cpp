@@ -19,7 +19,8 @@ namespace {
 
 class Reader {
  public:
-  Reader(std::string deck_path, int dimension) : deck_path_(std::move(deck_path)), dimension_(dimension) {}
+  Reader(const toml::table& deck, std::string deck_path, int dimension)
+      : deck_(deck), deck_path_(std::move(deck_path)), dimension_(dimension) {}
 
   DeckTable read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
                        const std::string& place) const;
@@ -36,6 +37,8 @@ class Reader {
                  const DeckTable& table) const;
   void read_key(const toml::table& source, const Key& key, DeckTable& table, const std::string& place) const;
   void fill_default(const Key& key, DeckTable& table, const std::string& place) const;
+  const std::string& default_value(const Key& key) const;
+  [[noreturn]] void fail_missing(const Key& key, const DeckTable& table, const std::string& place) const;
   DeckValue read_value(const toml::node& node, const Context& context) const;
   std::vector<DeckTable> read_tables(const toml::node& node, const Context& context) const;
   DeckTable read_quantity(const toml::node& node, const Context& context) const;
@@ -49,9 +52,16 @@ class Reader {
   [[noreturn]] void fail(const toml::node& node, const Context& context,
                          const std::string& detail = "") const;
 
+  const toml::table& deck_;
   std::string deck_path_;
   int dimension_;
 };
+
+// Whether the table is of one of these kinds.
+bool is_of(const DeckTable& table, const std::vector<std::string>& kinds) {
+  return !kinds.empty() &&
+         std::find(kinds.begin(), kinds.end(), table.text(table.keys().selector)) != kinds.end();
+}
 
 std::string join_path(const std::string& table, const std::string& key) {
   return table.empty() ? key : table + "." + key;
@@ -84,28 +94,37 @@ void Reader::check_key(const toml::key& name, const toml::node& node, const Tabl
     throw InputError(
         fmt::format("{}: {} = {}: unknown key{}", at, path, shown(node), suggestion(key_name, names)));
   }
-  if (found->kinds.empty()) return;
-  const std::string& kind = table.text(keys.selector);
-  if (std::find(found->kinds.begin(), found->kinds.end(), kind) != found->kinds.end()) return;
+  if (found->kinds.empty() || is_of(table, found->kinds)) return;
   throw InputError(fmt::format("{}: {} = {}: not used with {} = \"{}\", only with \"{}\"", at, path,
-                               shown(node), keys.selector, kind, fmt::join(found->kinds, "\", \"")));
+                               shown(node), keys.selector, table.text(keys.selector),
+                               fmt::join(found->kinds, "\", \"")));
 }
 
 void Reader::read_key(const toml::table& source, const Key& key, DeckTable& table,
                       const std::string& place) const {
-  if (!key.kinds.empty()) {
-    const std::string& kind = table.text(table.keys().selector);
-    if (std::find(key.kinds.begin(), key.kinds.end(), kind) == key.kinds.end()) return;
-  }
+  if (!key.kinds.empty() && !is_of(table, key.kinds)) return;
   if (const toml::node* node = source.get(key.name)) {
     const Context context{key, join_path(table.path(), key.name), place_of(node->source(), place)};
     table.set(key.name, read_value(*node, context));
-  } else if (key.is_required) {
-    throw InputError(fmt::format("{}: {}: missing; it must be {}", place, join_path(table.path(), key.name),
-                                 allowed_values(key, dimension_)));
+  } else if (key.is_required || is_of(table, key.required_kinds)) {
+    fail_missing(key, table, place);
   } else {
     fill_default(key, table, place);
   }
+}
+
+void Reader::fail_missing(const Key& key, const DeckTable& table, const std::string& place) const {
+  const std::string& selector = table.keys().selector;
+  const std::string with =
+      key.is_required ? "" : fmt::format("with {} = \"{}\" ", selector, table.text(selector));
+  throw InputError(fmt::format("{}: {}: missing; {}it must be {}", place, join_path(table.path(), key.name),
+                               with, allowed_values(key, dimension_)));
+}
+
+const std::string& Reader::default_value(const Key& key) const {
+  const bool is_there =
+      !key.where_key.empty() && deck_.at_path(key.where_key).value_or(std::string()) == key.where_value;
+  return is_there ? key.default_there : key.default_value;
 }
 
 void Reader::fill_default(const Key& key, DeckTable& table, const std::string& place) const {
@@ -117,7 +136,7 @@ void Reader::fill_default(const Key& key, DeckTable& table, const std::string& p
   } else if (key.default_value == "zero") {
     table.set(key.name, {Vec3{}, place, "zero"});
   } else if (!key.default_value.empty()) {
-    const toml::table parsed = toml::parse("value = " + key.default_value, std::string_view("default"));
+    const toml::table parsed = toml::parse("value = " + default_value(key), std::string_view("default"));
     table.set(key.name, read_value(*parsed.get("value"), context));
   }
 }
@@ -265,7 +284,7 @@ void Reader::fail(const toml::node& node, const Context& context, const std::str
 DeckTable read_deck(const toml::table& source, const std::string& path) {
   const auto dimension = source["space"]["dimension"].value<std::int64_t>();
   const int known = dimension && *dimension == 2 ? 2 : 3;
-  return Reader(path, known).read_table(source, deck_keys(), "", path);
+  return Reader(source, path, known).read_table(source, deck_keys(), "", path);
 }
 
 std::string place_of(const toml::source_region& source, const std::string& otherwise) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/build_parts.hpp"
+#include "model/limits.hpp"
 #include "model/memory.hpp"
 
 namespace scree {
@@ -39,6 +40,14 @@ void build_boundaries(const DeckTable& table, Space& space) {
   }
 }
 
+// Short enough for any contact; from there on the step control goes by the error [s].
+Real first_step(const Model& model) {
+  constexpr Real kShareOfContact = 0.05, kShareOfRun = 1e-3;
+  const std::optional<PairLimit> shortest = shortest_contact(pair_limits(model));
+  const Real longest = kShareOfRun * model.time.end;
+  return shortest ? std::min(kShareOfContact * shortest->contact_time, longest) : longest;
+}
+
 // The plane of a side of the space.
 Wall side_wall(const Space& space, int side) {
   Wall wall{kSideNames[side], side % 2 == 0 ? space.min : space.max, {}, space.wall_material};
@@ -67,6 +76,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   naming_memory(model.particles.totals.count, share.size(), [&] {
     build_particles(root, model, names, share, log);
     build_contact(root, model, names);
+    build_steps(root, model);
     build_output(root, names, model);
     build_parallel(root, model);
     check_start_positions(root, model, share, log);
@@ -108,22 +118,9 @@ void build_time(const DeckTable& deck, Model& model) {
   const DeckTable& table = deck.table("time");
   TimeControl& time = model.time;
   time.end = table.real("end");
-  time.step = table.real("step");
   time.control = table.text("control") == "adaptive" ? StepControl::adaptive : StepControl::fixed;
   const bool adaptive = time.control == StepControl::adaptive;
-  time.min_step = table.has("min_step") ? table.real("min_step")
-                                        : time.step / (time.control == StepControl::fixed ? 1e3 : 1e6);
-  time.max_step = adaptive ? std::max(time.step, time.end / 100) : time.step;
-  if (table.has("max_step")) time.max_step = table.real("max_step");
   if (adaptive) time.tolerance = table.real("tolerance");
-  if (time.step > time.end) table.fail("step", fmt::format("must be at most time.end = {}", time.end));
-  if (time.end / time.step > kMostSteps)
-    table.fail("step",
-               fmt::format("must be at least time.end / {:g} = {:g}", kMostSteps, time.end / kMostSteps));
-  if (time.min_step > time.step)
-    table.fail("min_step", fmt::format("must be at most time.step = {}", time.step));
-  if (time.max_step < time.step)
-    table.fail("max_step", fmt::format("must be at least time.step = {}", time.step));
 
   const DeckTable& method = deck.table("integrator");
   Integrator& integrator = model.integrator;
@@ -147,6 +144,24 @@ void build_time(const DeckTable& deck, Model& model) {
     method.fail("particles",
                 "time.control = \"adaptive\" needs \"hht\": the explicit method has no error estimate");
   }
+}
+
+void build_steps(const DeckTable& deck, Model& model) {
+  const DeckTable& table = deck.table("time");
+  TimeControl& time = model.time;
+  const bool adaptive = time.control == StepControl::adaptive;
+  time.max_step = table.has("max_step") ? table.real("max_step") : time.end / 100;
+  time.step = table.has("step") ? table.real("step") : std::min(first_step(model), time.max_step);
+  time.min_step = table.has("min_step") ? table.real("min_step") : time.step / (adaptive ? 1e6 : 1e3);
+  if (!table.has("max_step")) time.max_step = adaptive ? std::max(time.step, time.max_step) : time.step;
+  if (time.step > time.end) table.fail("step", fmt::format("must be at most time.end = {}", time.end));
+  if (time.end / time.step > kMostSteps)
+    table.fail("step",
+               fmt::format("must be at least time.end / {:g} = {:g}", kMostSteps, time.end / kMostSteps));
+  if (time.min_step > time.step)
+    table.fail("min_step", fmt::format("must be at most time.step = {}", time.step));
+  if (time.max_step < time.step)
+    table.fail("max_step", fmt::format("must be at least time.step = {}", time.step));
 }
 
 template <class T>

@@ -11,7 +11,7 @@ namespace scree {
 
 void build_materials(const DeckTable& deck, Model& model, ModelNames& names);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
-void build_time(const DeckTable& deck, Model& model);                            // also the integrator
+void build_time(const DeckTable& deck, Model& model);  // control and end; also the integrator
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
@@ -19,6 +19,7 @@ void build_force_elements(const DeckTable& deck, Model& model, const ModelNames&
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share,
                      Log& log);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
+void build_steps(const DeckTable& deck, Model& model);  // after the contacts, from which the first may follow
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_parallel(const DeckTable& deck, Model& model);
 

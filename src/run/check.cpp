@@ -87,9 +87,10 @@ std::string time_lines(const Model& model) {
   const Integrator& integrator = model.integrator;
   const bool fixed = time.control == StepControl::fixed;
   std::string lines = fmt::format("time           0 to {} s, ", time.end);
-  lines += fixed ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, std::ceil(time.end / time.step))
-                 : fmt::format("adaptive steps from {:.4g} to {:.4g} s, tolerance {}\n", time.min_step,
-                               time.max_step, time.tolerance);
+  lines += fixed
+               ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, std::ceil(time.end / time.step))
+               : fmt::format("adaptive steps from {:.4g} to {:.4g} s, the first of {:.4g} s, tolerance {}\n",
+                             time.min_step, time.max_step, time.step, time.tolerance);
   const std::string particles = integrator.particles == ParticleIntegrator::hht
                                     ? "the same"
                                     : fmt::format("velocity-verlet, {} substep(s)", integrator.substeps);

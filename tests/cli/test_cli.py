@@ -31,6 +31,7 @@ leaving = "drift"
 [time]
 end = 0.4
 step = 1e-4
+control = "fixed"
 
 [[contact.pairs]]
 stiffness = 1e5

@@ -40,6 +40,7 @@ particles = "velocity-verlet"
 [time]
 end = 2e-3
 step = 1e-4
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e5
 [[particles]]

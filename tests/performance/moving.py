@@ -31,6 +31,7 @@ particles = "velocity-verlet"
 [time]
 end = {end}
 step = {step}
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e5
 damping = 2.0

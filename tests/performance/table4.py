@@ -67,7 +67,7 @@ def write_scaled_deck(path, particles):
         f'title = "Table 4 scaled: {nets} nets and {particles} particles"', f"gravity = {paper['gravity']}",
         "[space]", "dimension = 2", f"min = [{left - side}, {paper['space']['min'][1]}]",
         f"max = [{-left + side}, {max(3.0, low + rows * dy)}]", 'leaving = "drift"',
-        "[time]", f"end = {paper['time']['end']}", f"step = {paper['time']['step']}",
+        "[time]", f"end = {paper['time']['end']}", f"step = {paper['time']['step']}", 'control = "fixed"',
         "[integrator]", f"hht_alpha = {paper['integrator']['hht_alpha']}",
         "[[contact.pairs]]", f"stiffness = {law['stiffness']}", f"damping = {law['damping']}",
         f"tension = {str(law['tension']).lower()}",

@@ -45,6 +45,7 @@ z_min = "wall"
 [time]
 end = 1.0
 step = 1e-4
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e5
 [[bodies]]

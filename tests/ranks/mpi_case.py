@@ -43,6 +43,7 @@ y_max = "periodic"
 [time]
 end = 1.0
 step = 1e-3
+control = "fixed"
 
 [[contact.pairs]]
 stiffness = 1e5

@@ -24,6 +24,7 @@ max = [40.0, 151.0, 151.0]
 [time]
 end = 16.0
 step = 1e-4
+control = "fixed"
 
 [contact]
 skin = 1.37

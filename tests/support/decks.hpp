@@ -18,6 +18,7 @@ max = [1.0, 1.0]
 [time]
 end = 1.0
 step = 1e-3
+control = "fixed"
 )";
 
 // Runs `action` and returns the text of its InputError; "" where it throws none.

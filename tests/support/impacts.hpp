@@ -22,6 +22,7 @@ y_min = "wall"
 [time]
 end = 1.0
 step = 1e-5
+control = "fixed"
 [[contact.pairs]]
 stiffness = {}
 damping = {}

@@ -50,6 +50,26 @@ TEST_CASE("the resolved deck holds the defaults and loads to itself") {
   CHECK(again.root.tables("bodies")[0].tables("shapes")[1].vector("offset").x == 0.1);
 }
 
+TEST_CASE("the step control follows the particles' integrator where the deck does not say it") {
+  const std::string head = "[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\n[time]\nend = 1.0\n";
+  const auto resolved = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return parse_deck(text, "deck.toml", overrides).resolved_text();
+  };
+  const std::string verlet = "integrator.particles=velocity-verlet", step = "time.step=1e-3";
+  CHECK(contains(resolved(head), "control = \"adaptive\"\ntolerance = 2e-08\n"));
+  CHECK_FALSE(contains(resolved(head), "\nstep = "));
+  CHECK(contains(resolved(head, {step}), "step = 0.001\ncontrol = \"adaptive\"\n"));
+  CHECK(contains(resolved(head, {"integrator.particles=hht"}), "control = \"adaptive\""));
+  CHECK(contains(resolved(head, {verlet, step}), "control = \"fixed\""));
+  CHECK(contains(resolved(head + "[integrator]\nparticles = \"velocity-verlet\"\n", {step}),
+                 "control = \"fixed\""));
+  CHECK(contains(resolved(head, {verlet, step, "time.control=adaptive"}), "control = \"adaptive\""));
+  CHECK(deck_error(head, {verlet}) ==
+        "deck.toml:5:1: time.step: missing; with control = \"fixed\" it must be a number above 0 [s]");
+  const std::string again = resolved(head, {verlet, step});
+  CHECK(resolved(again) == again);
+}
+
 TEST_CASE("the fingerprint changes with the physics, not with output and end") {
   const std::string original = fingerprint({});
   CHECK(original.size() == 16);
@@ -99,6 +119,8 @@ TEST_CASE("the manual names every table and fits 110 columns") {
     CHECK(contains(manual, header));
   }
   CHECK(contains(manual, "a number above 0 [s]; required"));
+  CHECK(contains(manual, "default \"adaptive\", with integrator.particles = \"velocity-verlet\" \"fixed\""));
+  CHECK(contains(manual, "required with control = \"fixed\""));
   std::istringstream lines(manual);
   std::string line;
   while (std::getline(lines, line)) CHECK(line.size() <= 110);

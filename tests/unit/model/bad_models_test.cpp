@@ -32,13 +32,13 @@ std::string joint_with(const std::string& keys) { return "[[joints]]\nname = \"p
 TEST_CASE("unknown names of materials, bodies and joints") {
   const std::string materials = "[[materials]]\nname = \"glass\"\n[[materials]]\nname = \"steel\"\n";
   CHECK(model_error(kSmallDeck + materials + particles_at("[[0, 0]]") + "material = \"glas\"\n") ==
-        "deck.toml:18:12: particles.0.material = \"glas\": there is no material named \"glas\"; did you mean "
+        "deck.toml:19:12: particles.0.material = \"glas\": there is no material named \"glas\"; did you mean "
         "\"glass\"?");
   CHECK(contains(model_error(kSmallDeck + materials + particles_at("[[0, 0]]")),
                  "particles.0.material: missing; it must name a material, as the deck has more than one"));
   const std::string joint = joint_with("type = \"revolute\"\nbodies = [\"ground\", \"b\"]\n");
   CHECK(model_error(kSmallDeck + kBodies + joint) ==
-        "deck.toml:24:10: joints.pin.bodies = [\"ground\", \"b\"]: there is no body named \"b\"; did you "
+        "deck.toml:25:10: joints.pin.bodies = [\"ground\", \"b\"]: there is no body named \"b\"; did you "
         "mean \"a\"?");
   CHECK(contains(
       model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nbodies = [\"a\", \"row\"]\n")),
@@ -63,7 +63,7 @@ TEST_CASE("joints whose two sides do not meet") {
       kSmallDeck + kBodies +
       joint_with(
           "type = \"revolute\"\nbodies = [\"a\", \"row.0\"]\nlocal_points = [[0.0, 0.0], [0.0, -0.4]]\n"));
-  CHECK(contains(message, "deck.toml:25:16: joints.pin.local_points = [[0, 0], [0, -0.4]]"));
+  CHECK(contains(message, "deck.toml:26:16: joints.pin.local_points = [[0, 0], [0, -0.4]]"));
   CHECK(contains(message, "the two sides of joint \"pin\" do not meet"));
   CHECK(contains(message, "off by 0.1 m"));
   CHECK(

@@ -14,6 +14,7 @@ namespace {
 
 std::string deck_3d(const std::string& particles) {
   return "[space]\ndimension = 3\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[time]\nend = 1.0\nstep = 1e-4\n"
+         "control = \"fixed\"\n"
          "[[contact.pairs]]\nstiffness = 1e4\n" +
          particles;
 }

@@ -14,7 +14,7 @@ namespace scree {
 
 namespace {
 
-const std::string kDeck = kSmallDeck + R"(
+const std::string kTwoDiscs = R"(
 [[contact.pairs]]
 stiffness = 1e4
 [[particles]]
@@ -23,6 +23,7 @@ positions = [[0.0, 0.0], [0.5, 0.5]]
 radius = 0.05
 mass = 1.0
 )";
+const std::string kDeck = kSmallDeck + kTwoDiscs;
 
 std::string at(const std::string& positions) { return "particles.0.positions=" + positions; }
 
@@ -137,6 +138,19 @@ TEST_CASE("a step far above the contact time is a warning") {
                  "time.step: steps of 0.005 s are large for contacts of \"default\" and \"default\" that "
                  "last 0.02221 s"));
   CHECK(model_warnings(kDeck, {"time.step=5e-3", "time.control=adaptive"}).empty());
+}
+
+TEST_CASE("the first adaptive step is short against the run and the shortest contact") {
+  const std::string head = "[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\n[time]\nend = 50.0\n";
+  CHECK(model_of(head).time.step == Approx(50 * 1e-3));
+  const TimeControl time = model_of(head + kTwoDiscs).time;
+  CHECK(time.step == Approx(0.05 * std::numbers::pi * std::sqrt(0.5 / 1e4)));
+  CHECK(time.max_step == Approx(0.5));
+  CHECK(time.min_step == Approx(1e-6 * time.step));
+  CHECK(model_of(head + kTwoDiscs, {"time.end=1e-2"}).time.step == Approx(1e-5));
+  CHECK(model_of(head + kTwoDiscs, {"time.max_step=2e-4"}).time.step == Approx(2e-4));
+  CHECK(
+      contains(model_error(head + kTwoDiscs, {"time.min_step=1e-2"}), "must be at most time.step = 0.00111"));
 }
 
 TEST_CASE("a particle that goes farther than its radius in a step is a warning") {

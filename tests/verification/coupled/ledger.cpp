@@ -38,6 +38,7 @@ y_min = "wall"
 [time]
 end = 0.05
 step = 1e-5
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e4
 damping = 2.0

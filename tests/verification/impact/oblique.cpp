@@ -21,6 +21,7 @@ max = [1.0, 1.0]
 [time]
 end = 6e-3
 step = 2e-5
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e6
 damping = 50.0

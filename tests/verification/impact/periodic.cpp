@@ -25,6 +25,7 @@ y_max = "periodic"
 [time]
 end = 0.02
 step = 1e-5
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e5
 damping = 20.0

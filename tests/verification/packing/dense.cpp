@@ -31,6 +31,7 @@ z_max = "wall"
 [time]
 end = 1.0
 step = 1e-3
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e7
 damping = 10.0

@@ -26,6 +26,7 @@ y_min = "wall"
 [time]
 end = 0.2
 step = 1e-4
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e5
 damping = 10.0
@@ -69,6 +70,7 @@ leaving = "drift"
 [time]
 end = 4.0
 step = 1e-3
+control = "fixed"
 [[contact.pairs]]
 stiffness = 1e5
 damping = 10.0
@@ -84,6 +86,7 @@ y_max = "wall"
 [time]
 end = 3.0
 step = 1e-3
+control = "fixed"
 [contact]
 skin = 0.3
 [[contact.pairs]]
@@ -103,6 +106,7 @@ leaving = "remove"
 [time]
 end = 3.0
 step = 1e-3
+control = "fixed"
 [contact]
 skin = 0.3
 [[contact.pairs]]
