@@ -21,18 +21,14 @@ namespace {
   throw IoError(fmt::format("{}: cannot {}: {}", path, action, std::strerror(error)));
 }
 
-void sync_path(const std::string& path, int flags) {
-  const int file = open(path.c_str(), flags | O_CLOEXEC);
-  if (file < 0) fail(path, "open", errno);
-  const int error = fsync(file) == 0 ? 0 : errno;
-  close(file);
-  // Some file systems cannot sync a directory; its entries are then synced with the file.
-  if (error != 0 && !(error == EINVAL && (flags & O_DIRECTORY))) fail(path, "sync", error);
+// A new file, whatever stood there: a link is not followed.
+int create(const std::string& path) {
+  unlink(path.c_str());
+  return open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
-// Opens, writes, syncs and closes. Returns the system's error number, 0 if all went well.
-int write_and_sync(const std::string& path, int flags, const std::string& text) {
-  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
+// Writes, syncs and closes. Returns the system's error number, 0 if all went well.
+int write_and_sync(int file, const std::string& text) {
   if (file < 0) return errno;
   int error = 0;
   for (std::size_t done = 0; done < text.size() && error == 0;) {
@@ -54,7 +50,7 @@ int write_and_sync(const std::string& path, int flags, const std::string& text) 
 void copy_file(const std::string& from, const std::string& to) {
   const int in = open(from.c_str(), O_RDONLY | O_CLOEXEC);
   if (in < 0) fail(from, "open", errno);
-  const int out = open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int out = create(to);
   int error = out < 0 ? errno : 0;
   for (ssize_t copied = 1; error == 0 && copied != 0;) {
     copied = sendfile(out, in, nullptr, std::size_t{1} << 30);
@@ -80,17 +76,43 @@ bool reserve_file(const std::string& path) {
   return can;
 }
 
-void sync_file(const std::string& path) { sync_path(path, O_RDONLY); }
+void sync_file(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) fail(path, "open", errno);
+  const int error = fdatasync(file) == 0 ? 0 : errno;
+  close(file);
+  if (error != 0) fail(path, "sync", error);
+}
+
+void sync_folder_of(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  const std::string folder = parent.empty() ? "." : parent;
+  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) fail(folder, "open", errno);
+  const int error = fsync(file) == 0 ? 0 : errno;
+  close(file);
+  // Some file systems cannot sync a directory; its entries are then synced with the file.
+  if (error != 0 && error != EINVAL) fail(folder, "sync", error);
+}
 
 void replace_file(const std::string& from, const std::string& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0) fail(to, "replace", errno);
-  const std::string directory = std::filesystem::path(to).parent_path().string();
-  sync_path(directory.empty() ? "." : directory, O_RDONLY | O_DIRECTORY);
+  sync_folder_of(to);
+}
+
+bool exchange_files(const std::string& hidden, const std::string& path, const std::string& aside) {
+  if (renameat2(AT_FDCWD, hidden.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE) == 0) return true;
+  // Where the file system cannot exchange names: two names for the visible file, so that it outlives the
+  // rename. Where it has no hard links either, or no such file is there, nothing is left of it.
+  unlink(aside.c_str());
+  const bool kept = link(path.c_str(), aside.c_str()) == 0;
+  if (std::rename(hidden.c_str(), path.c_str()) != 0) fail(path, "replace", errno);
+  return kept && std::rename(aside.c_str(), hidden.c_str()) == 0;
 }
 
 void write_text_file(const std::string& path, const std::string& text) {
   const std::string beside = path + ".tmp";
-  if (const int error = write_and_sync(beside, O_CREAT | O_TRUNC, text)) {
+  if (const int error = write_and_sync(create(beside), text)) {
     std::remove(beside.c_str());
     fail(beside, "write", error);
   }
@@ -98,7 +120,8 @@ void write_text_file(const std::string& path, const std::string& text) {
 }
 
 void append_text_file(const std::string& path, const std::string& text) {
-  if (const int error = write_and_sync(path, O_APPEND, text)) fail(path, "write", error);
+  const int file = open(path.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC);
+  if (const int error = write_and_sync(file, text)) fail(path, "write", error);
 }
 
 }  // namespace scree

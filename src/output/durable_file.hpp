@@ -1,11 +1,12 @@
-// Files that survive a crash: synced to disk, written beside and renamed.
+// Files that survive a crash: synced to disk, written beside and renamed. What is created is a new file,
+// whatever had its name before: links are not followed.
 #pragma once
 
 #include <string>
 
 namespace scree {
 
-// Copies a file, over an old one where there is one. Throws IoError; a part may then have been copied.
+// Copies a file, in the place of an old one where there is one. Throws IoError; a part may then have been copied.
 void copy_file(const std::string& from, const std::string& to);
 
 // Waits until the file's content is on disk. Throws IoError.
@@ -15,9 +16,17 @@ void sync_file(const std::string& path);
 // disk. Throws IoError where there is not enough. Returns false where the file system cannot reserve.
 bool reserve_file(const std::string& path);
 
+// Waits until the names of the files in PATH's folder are on disk. Throws IoError.
+void sync_folder_of(const std::string& path);
+
 // Gives a synced file its final name at one instant, replacing what was there, and syncs the directory.
 // Throws IoError; `to` is then what it was before.
 void replace_file(const std::string& from, const std::string& to);
+
+// Gives the synced file HIDDEN the name PATH at one instant, and the file that had it, if any, the name
+// HIDDEN. Whether that one is there; some file systems need the name ASIDE for it meanwhile. Does not sync
+// the folder. Throws IoError.
+bool exchange_files(const std::string& hidden, const std::string& path, const std::string& aside);
 
 // Writes PATH.tmp, syncs it and renames it to PATH. Throws IoError; PATH is then what it was before.
 void write_text_file(const std::string& path, const std::string& text);

@@ -1,6 +1,7 @@
 #include "output/hdf5_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -89,7 +90,8 @@ Hdf5File::Hdf5File(const std::string& path, Hdf5Access access)
   Hdf5Id plist(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(plist, H5F_CLOSE_STRONG);
   if (access == Hdf5Access::create) {
-    file_ = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, plist);
+    unlink(path.c_str());  // a link is not followed
+    file_ = H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, plist);
   } else {
     file_ = H5Fopen(path.c_str(), writing_ ? H5F_ACC_RDWR : H5F_ACC_RDONLY, plist);
   }

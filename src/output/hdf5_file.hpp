@@ -14,7 +14,7 @@
 namespace scree {
 
 enum class Hdf5Access {
-  create,  // a new file; an old one of this name is overwritten
+  create,  // a new file; an old one of this name is removed, a link is not followed
   read,
   modify  // an existing file
 };
@@ -51,6 +51,8 @@ class Hdf5File {
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
   void close();  // hands everything to the operating system
+  const std::string& path() const { return path_; }
+  hid_t id() const { return file_; }  // the library's
 
   // ---- extensible datasets of shape [rows] (width 1) or [rows][width] ----
   template <class T>

@@ -78,8 +78,8 @@ SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collect
     H5Pset_dxpl_mpio(transfer_, H5FD_MPIO_COLLECTIVE);
   }
 #endif
-  ranks_.on_root([&] { reserved_ = reserve(path); });
-  ranks_.broadcast(reserved_);
+  ranks_.on_root([&] { reads_back_ = !reserve(path); });
+  ranks_.broadcast(reads_back_);
   ranks_.together([&] {
     if (!has_file()) return;
     file_ = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
@@ -87,8 +87,17 @@ SharedRows::SharedRows(const Ranks& ranks, const std::string& path, bool collect
   });
 }
 
+SharedRows::SharedRows(const Ranks& ranks, Hdf5File* open)
+    : ranks_(ranks),
+      path_(open != nullptr ? open->path() : ""),
+      collective_(false),
+      reads_back_(false),
+      file_(open != nullptr ? open->id() : H5I_INVALID_HID),
+      owns_file_(false),
+      transfer_(new_properties(H5P_DATASET_XFER)) {}
+
 SharedRows::~SharedRows() {
-  if (file_ >= 0) H5Fclose(file_);
+  if (owns_file_ && file_ >= 0) H5Fclose(file_);
 }
 
 void SharedRows::close() {
@@ -100,7 +109,7 @@ void SharedRows::close() {
   ranks_.together([&] {
     if (has_file() && H5Fclose(std::exchange(file_, H5I_INVALID_HID)) < 0) fail("close");
   });
-  if (!reserved_) ranks_.together([&] { read_back(); });
+  if (reads_back_) ranks_.together([&] { read_back(); });
 }
 
 void SharedRows::read_back() {
@@ -136,7 +145,7 @@ void SharedRows::put(const std::string& name, RowType type, RowPart rows, const 
   if (H5Dwrite(dataset, type.value, selected.memory, selected.file, transfer_, values) < 0 ||
       !dataset.close())
     fail("write dataset " + name);
-  if (!reserved_ && rows.count > 0)
+  if (reads_back_ && rows.count > 0)
     written_.push_back(
         {name, type, rows, hash_of(values, static_cast<std::size_t>(rows.count) * type.bytes())});
 }

@@ -3,8 +3,8 @@
 // 0. The files are the same.
 //
 // A full disk does not pass unseen, though an MPI library may take a write that was cut short for a whole
-// one: the rows' disk space is reserved before they are written. Where that cannot be, because they are
-// compressed or the file system does not reserve, they are read back.
+// one: where all ranks write, the rows' disk space is reserved before. Where that cannot be, because they
+// are compressed or the file system does not reserve, they are read back.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,9 @@ class SharedRows {
   // Opens an existing file. It has been closed by whoever made room for the rows (Hdf5File::resize_rows).
   // collective: only for tests; false works with a parallel library, too.
   SharedRows(const Ranks& ranks, const std::string& path, bool collective = kParallelHdf5);
+  // Through rank 0, which has the file open and closes it; elsewhere there is none. What the library writes
+  // for one process tells of a full disk itself.
+  SharedRows(const Ranks& ranks, Hdf5File* open);
   ~SharedRows();
   SharedRows(const SharedRows&) = delete;
   SharedRows& operator=(const SharedRows&) = delete;
@@ -79,9 +82,10 @@ class SharedRows {
   Ranks ranks_;
   std::string path_;
   bool collective_;
-  bool reserved_ = false;
+  bool reads_back_ = true;
   std::vector<Written> written_;
   hid_t file_ = H5I_INVALID_HID;
+  bool owns_file_ = true;
   Hdf5Id transfer_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "output/durable_file.hpp"
 
 namespace scree {
 
@@ -73,11 +74,25 @@ void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const 
     throw IoError(fmt::format("{}: holds {} snapshots where {} were written", bodies_->path(),
                               bodies_->snapshots(), snapshots_));
   });
-  particles_.append(particle_points(time, particles, ranks_));
-  ranks_.on_root([&] {
-    if (!bodies.position.empty()) bodies_->append(body_points(time, bodies));
-  });
+  const PointSnapshot points = particle_points(time, particles, ranks_), shapes = body_points(time, bodies);
+  const auto with_bodies = [&](const auto& action) {
+    ranks_.on_root([&] {
+      if (shapes.points > 0) action(*bodies_);
+    });
+  };
+  particles_.prepare(points);
+  with_bodies([&](VtkHdfSeries& series) { series.prepare(shapes); });
+  particles_.show();
+  with_bodies([&](VtkHdfSeries& series) { series.show(); });
+  ranks_.on_root([&] { sync_folder_of(particles_.path()); });
+  particles_.follow(points);
+  with_bodies([&](VtkHdfSeries& series) { series.follow(shapes); });
   ++snapshots_;
+}
+
+void SnapshotWriter::finish() {
+  particles_.finish();
+  ranks_.on_root([&] { bodies_->finish(); });
 }
 
 }  // namespace scree

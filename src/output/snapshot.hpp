@@ -36,15 +36,16 @@ struct BodySnapshot {
 
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
 // bodies.xdmf. The files are complete, closed and on disk after every append, and readable at every instant,
-// a kill in the middle of an append included. All ranks write the particles, rank 0 the bodies; the
-// constructor and append() are collective.
+// a kill in the middle of an append included; the .xdmf may lack the last sixth of the snapshots until
+// finish(). All ranks write the particles, rank 0 the bodies; all functions are collective.
 class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
   // cut off); 0 starts new files and removes old ones. Throws IoError where the files hold fewer.
   SnapshotWriter(const std::string& directory, const SeriesOptions& options);
-  // Throws IoError.
+  // Both throw IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies);
+  void finish();
   int snapshots() const { return snapshots_; }
 
  private:

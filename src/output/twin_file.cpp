@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "base/error.hpp"
 #include "output/durable_file.hpp"
@@ -42,36 +44,58 @@ void TwinFile::remove() {
   });
 }
 
+// Opened once where rank 0 writes all: for a collective write the file is closed in between.
 void TwinFile::change_spare(const Change& change, Hdf5Access access) {
+  const bool together = kParallelHdf5 && !ranks_.alone();
+  std::optional<Hdf5File> file;
   ranks_.on_root([&] {
-    Hdf5File file(spare_, access);
-    if (change.layout) change.layout(file);
-    file.close();
+    file.emplace(spare_, access);
+    if (change.layout) change.layout(*file);
+    if (together) file->close();
   });
-  if (!change.rows) return;
-  SharedRows rows(ranks_, spare_);
-  change.rows(rows);
-  rows.close();
-}
-
-void TwinFile::copy_to_spare() {
-  ranks_.on_root([&] { copy_file(path_, spare_); });
+  if (change.rows && together) {
+    SharedRows rows(ranks_, spare_);
+    change.rows(rows);
+    rows.close();
+  } else if (change.rows) {
+    SharedRows rows(ranks_, file ? &*file : nullptr);
+    change.rows(rows);
+  }
+  ranks_.on_root([&] {
+    if (!together) file->close();
+  });
 }
 
 void TwinFile::update(const Change& change) {
+  prepare(change);
+  show();
+  ranks_.on_root([&] { sync_folder_of(path_); });
+  follow(change);
+}
+
+void TwinFile::prepare(const Change& change) {
+  const bool ready = std::exchange(has_spare_, false);
   try {
     const bool grows = exists();
-    if (grows && !has_spare_) copy_to_spare();
+    if (grows && !ready) ranks_.on_root([&] { copy_file(path_, spare_); });
     change_spare(change, grows ? Hdf5Access::modify : Hdf5Access::create);
-    swap_in();
+    // Every rank's machine may hold some of the file that is not on disk yet.
+    ranks_.together([&] { sync_file(spare_); });
   } catch (...) {
     drop_spare();
     throw;
   }
-  if (has_spare_) catch_up(change);
 }
 
-void TwinFile::catch_up(const Change& change) {
+void TwinFile::show() {
+  bool kept = false;
+  ranks_.on_root([&] { kept = exchange_files(spare_, path_, old_); });
+  ranks_.broadcast(kept);
+  has_spare_ = kept;
+}
+
+void TwinFile::follow(const Change& change) {
+  if (!has_spare_) return;
   try {
     change_spare(change, Hdf5Access::modify);
   } catch (const IoError&) {
@@ -79,25 +103,6 @@ void TwinFile::catch_up(const Change& change) {
     // visible copy is complete, and the next update makes another. A full disk comes up again there.
     drop_spare();
   }
-}
-
-// Every rank's machine may hold some of the file that is not on disk yet.
-void TwinFile::swap_in() {
-  ranks_.together([&] { sync_file(spare_); });
-  bool kept = false;
-  ranks_.on_root([&] {
-    // Two names for the visible copy, so that it outlives the rename; without hard links it is copied next
-    // time.
-    std::error_code error;
-    fs::remove(old_, error);
-    fs::create_hard_link(path_, old_, error);
-    const bool linked = !error;
-    replace_file(spare_, path_);
-    if (linked) fs::rename(old_, spare_, error);
-    kept = linked && !error;
-  });
-  ranks_.broadcast(kept);
-  has_spare_ = kept;
 }
 
 }  // namespace scree

@@ -3,9 +3,11 @@
 // HDF5 updates a file's metadata in place, in many writes: a process that is killed in the middle of an
 // append leaves a file that readers refuse or, worse, one with wrong values (measured: 41 of 1,000 kills). So
 // the file exists twice while it grows. An append goes to the copy nobody sees, which is synced and then
-// takes the file's name in one rename; then the other copy is brought up to date the same way and waits. The
-// price is twice the writing and, while the writer lives, twice the disk space; the cost of an append does
-// not depend on the size of the file.
+// takes the file's name in one rename; when the names are on disk, too, the other copy is brought up to date
+// the same way and waits. It is not synced, because nobody needs it after a crash. So an append costs one
+// sync of the data and one of the folder, which files that grow together share. The price is twice the
+// writing and, while the writer lives, twice the disk space; the cost of an append does not depend on the
+// size of the file.
 #pragma once
 
 #include <functional>
@@ -40,16 +42,20 @@ class TwinFile {
   // same again. All of it or nothing becomes visible. Throws IoError.
   void update(const Change& change);
 
+  // The parts of an update, for files that change together: first all prepare(), which is what may fail for
+  // want of space, then all show(), then rank 0 syncs the folder, then all follow(). Without a show() nothing
+  // has happened.
+  void prepare(const Change& change);  // in the hidden copy, which is then on disk
+  void show();                         // the hidden copy becomes the visible one
+  void follow(const Change& change);   // in the other copy, now the hidden one
+
  private:
-  void copy_to_spare();
   void change_spare(const Change& change, Hdf5Access access);
-  void swap_in();
-  void catch_up(const Change& change);
   void drop_spare();
 
   Ranks ranks_;
   std::string path_, spare_, old_;
-  bool has_spare_ = false;  // spare_ has the same content as path_
+  bool has_spare_ = false;  // spare_ has the same content as path_, but for what follow() is about to do
 };
 
 }  // namespace scree

@@ -19,6 +19,7 @@ const std::string kRoot = "/VTKHDF/";
 const std::string kSteps = "/VTKHDF/Steps/";
 const std::string kPointData = "/VTKHDF/PointData/";
 constexpr std::int64_t kStepsPerChunk = 128;
+constexpr std::size_t kXdmfGrowth = 5;  // the .xdmf is written when it has grown by one in so many
 
 template <class T>
 void append_one(Hdf5File& file, const std::string& name, T value) {
@@ -234,12 +235,20 @@ void VtkHdfSeries::write_rows(SharedRows& file, const PointSnapshot& snapshot,
   for (const PointField& field : snapshot.fields) write_field(file, field, part);
 }
 
-void VtkHdfSeries::append(const PointSnapshot& snapshot) {
+TwinFile::Change VtkHdfSeries::change(const PointSnapshot& snapshot) const {
   const SnapshotPlace place = next_place(snapshot);
-  file_.update({[&](Hdf5File& file) { make_room(file, snapshot, place); },
-                [&](SharedRows& file) { write_rows(file, snapshot, place); }});
-  places_.push_back(place);
-  options_.ranks.on_root([&] { write_xdmf(snapshot); });
+  return {[this, &snapshot, place](Hdf5File& file) { make_room(file, snapshot, place); },
+          [this, &snapshot, place](SharedRows& file) { write_rows(file, snapshot, place); }};
+}
+
+void VtkHdfSeries::prepare(const PointSnapshot& snapshot) { file_.prepare(change(snapshot)); }
+
+void VtkHdfSeries::show() { file_.show(); }
+
+void VtkHdfSeries::follow(const PointSnapshot& snapshot) {
+  file_.follow(change(snapshot));
+  places_.push_back(next_place(snapshot));
+  options_.ranks.on_root([&] { add_xdmf(snapshot); });
 }
 
 void VtkHdfSeries::remove_xdmf() const {
@@ -248,12 +257,23 @@ void VtkHdfSeries::remove_xdmf() const {
   std::filesystem::remove(xdmf_path_, none_there);
 }
 
-void VtkHdfSeries::write_xdmf(const PointSnapshot& snapshot) {
-  const XdmfSeries series{name_, options_.title, name_ + ".vtkhdf", &snapshot.fields};
+void VtkHdfSeries::add_xdmf(const PointSnapshot& snapshot) {
+  const XdmfSeries series{name_, name_ + ".vtkhdf", &snapshot.fields};
   for (; xdmf_snapshots_ < places_.size(); ++xdmf_snapshots_) {
     xdmf_grids_ += xdmf_grid(series, places_[xdmf_snapshots_]);
   }
-  write_text_file(xdmf_path_, xdmf_document(series, xdmf_grids_));
+  if (xdmf_snapshots_ > xdmf_written_ + xdmf_written_ / kXdmfGrowth) write_xdmf();
+}
+
+void VtkHdfSeries::write_xdmf() {
+  write_text_file(xdmf_path_, xdmf_document(name_, options_.title, xdmf_grids_));
+  xdmf_written_ = xdmf_snapshots_;
+}
+
+void VtkHdfSeries::finish() {
+  options_.ranks.on_root([&] {
+    if (xdmf_written_ < xdmf_snapshots_) write_xdmf();
+  });
 }
 
 }  // namespace scree

@@ -4,6 +4,10 @@
 // snapshots' rows follow each other in each dataset; the group Steps says where those of one snapshot begin.
 // The vertices of a snapshot are one part; it is shared by the snapshots that follow with the same number of
 // points.
+//
+// The .xdmf names every snapshot in one text, which ends in closing tags: it is complete only as a whole. It
+// is written beside and renamed, not at each snapshot, but when there are a fifth more than it knows (and at
+// each of the first six), and by finish(): all its writing together is six times its last size at most.
 #pragma once
 
 #include <cstdint>
@@ -52,9 +56,14 @@ class VtkHdfSeries {
   // snapshots; otherwise starts anew. Throws IoError where the file has fewer.
   VtkHdfSeries(const std::string& directory, const std::string& name, const SeriesOptions& options);
 
-  // Adds a snapshot to the .vtkhdf, then rewrites the .xdmf. Throws IoError; the files then hold what they
-  // held.
-  void append(const PointSnapshot& snapshot);
+  // Adds a snapshot, in parts for series that grow together (TwinFile): all prepare() it, then all show() it,
+  // then rank 0 syncs the folder, then all follow(), which rewrites the .xdmf where it is time to. Throw
+  // IoError; before a show() the files then hold what they held.
+  void prepare(const PointSnapshot& snapshot);
+  void show();
+  void follow(const PointSnapshot& snapshot);
+  // Brings the .xdmf up to date. Throws IoError.
+  void finish();
   int snapshots() const { return static_cast<int>(places_.size()); }
   const std::string& path() const { return file_.path(); }
 
@@ -66,15 +75,17 @@ class VtkHdfSeries {
   bool starts_part(const SnapshotPlace& place) const;
   void make_room(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
   void write_rows(SharedRows& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
+  TwinFile::Change change(const PointSnapshot& snapshot) const;
   void remove_xdmf() const;
-  void write_xdmf(const PointSnapshot& snapshot);
+  void add_xdmf(const PointSnapshot& snapshot);
+  void write_xdmf();
 
   std::string name_, xdmf_path_;
   SeriesOptions options_;
   TwinFile file_;
   std::vector<SnapshotPlace> places_;
-  std::string xdmf_grids_;  // of the first xdmf_snapshots_ snapshots
-  std::size_t xdmf_snapshots_ = 0;
+  std::string xdmf_grids_;  // of the first xdmf_snapshots_ snapshots, of which the file has xdmf_written_
+  std::size_t xdmf_snapshots_ = 0, xdmf_written_ = 0;
 };
 
 }  // namespace scree

@@ -80,13 +80,13 @@ std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
   return text + "</Grid>\n";
 }
 
-std::string xdmf_document(const XdmfSeries& series, const std::string& grids) {
+std::string xdmf_document(const std::string& name, const std::string& title, const std::string& grids) {
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
       "<Information Name=\"title\" Value=\"{}\"/>\n"
       "<Grid Name=\"{}\" GridType=\"Collection\" "
       "CollectionType=\"Temporal\">\n{}</Grid>\n</Domain>\n</Xdmf>\n",
-      escaped(series.title), escaped(series.name), grids);
+      escaped(title), escaped(name), grids);
 }
 
 }  // namespace scree

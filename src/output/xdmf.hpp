@@ -10,7 +10,7 @@
 namespace scree {
 
 struct XdmfSeries {
-  std::string name, title;
+  std::string name;
   std::string data_file;  // the .vtkhdf's name, in the same directory
   const std::vector<PointField>* fields = nullptr;
 };
@@ -18,6 +18,6 @@ struct XdmfSeries {
 // One snapshot's <Grid>; empty for a snapshot without points, which these readers cannot open.
 std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place);
 // The whole document around the grids of all snapshots.
-std::string xdmf_document(const XdmfSeries& series, const std::string& grids);
+std::string xdmf_document(const std::string& name, const std::string& title, const std::string& grids);
 
 }  // namespace scree

@@ -225,7 +225,6 @@ void Recorder::write_pending() {
   snapshots_->append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
                       s.force, s.contacts});
-  link_.ranks().on_root([&] { history_->flush(); });
 }
 
 void Recorder::flush_history() {
@@ -235,6 +234,11 @@ void Recorder::flush_history() {
 void Recorder::flush() {
   write_pending();
   link_.ranks().on_root([&] { history_->flush(); });
+}
+
+void Recorder::finish() {
+  flush();
+  snapshots_->finish();
 }
 
 }  // namespace scree

@@ -32,6 +32,7 @@ class Recorder {
   // Brings all that was recorded to disk.
   void flush();
   void flush_history();  // rank 0's part of it alone, at any time
+  void finish();         // after the last record: flushes, and brings up to date what is written seldom
   std::int64_t snapshots_written() const { return snapshots_->snapshots(); }
 
  private:

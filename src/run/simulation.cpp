@@ -24,7 +24,7 @@ constexpr std::int64_t kGpuParticles = 2000;  // --backend auto: from so many on
 constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
 constexpr double kLogSeconds = 600;           // between those in a log, besides one per tenth of the run
 constexpr double kFlushSeconds =
-    5;  // between writes of the history, besides those with snapshots and checkpoints
+    5;  // between writes of the history, besides those with checkpoints
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
@@ -124,6 +124,7 @@ class Simulation {
     if (options.restart.empty()) {
       recorder_->history(state_, 0);
       recorder_->snapshot(state_);
+      ranks_.on_root([&] { recorder_->flush_history(); });
     }
   }
 
@@ -306,7 +307,7 @@ void Simulation::keep_last_good_state(StepLoop& loop) {
 }
 
 ExitCode Simulation::finish(const std::string& status, ExitCode code) {
-  recorder_->flush();
+  recorder_->finish();
   list_entries_ = ranks_.sum(backend_->list_entries());
   migrated_ = ranks_.sum(backend_->balance().migrated);
   ranks_.on_root([&] { write_record(status, code); });
