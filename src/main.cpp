@@ -18,6 +18,7 @@
 #include "model/build.hpp"
 #include "model/memory.hpp"
 #include "output/library_versions.hpp"
+#include "output/results_folder.hpp"
 #include "partition/ranks.hpp"
 #include "partition/shared_model.hpp"
 #include "run/check.hpp"
@@ -56,6 +57,7 @@ CommandLine split(int count, char** values) {
 
 struct Arguments {
   std::string deck, output, backend = "auto", restart;
+  bool overwrite = false;
   std::vector<std::string> overrides;
 };
 
@@ -72,9 +74,10 @@ std::string version_text() {
   return text + fmt::format("PETSc {}\n", petsc_version());
 }
 
-std::string output_directory(const Arguments& arguments, const Model& model) {
+std::string output_directory(const Arguments& arguments, const Deck& deck) {
   if (!arguments.output.empty()) return arguments.output;
-  if (!model.output.directory.empty()) return model.output.directory;
+  const std::string& directory = deck.root.table("output").text("directory");
+  if (!directory.empty()) return directory;
   return "results/" + std::filesystem::path(arguments.deck).stem().string();
 }
 
@@ -94,6 +97,8 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
   const Deck deck = load_deck(arguments.deck, arguments.overrides);
+  const std::string directory = output_directory(arguments, deck);
+  ranks.on_root([&] { ResultsFolder({directory, arguments.restart, arguments.overwrite}).check(); });
   const Model model = build_model(deck, log, RanksShare(ranks));
   if (const int signal = signal_received(ranks); signal != 0) {
     log.info(fmt::format("stopped by signal ({}) before the first step: there is no new checkpoint",
@@ -102,14 +107,9 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   }
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
-  RunOptions options{arguments.backend,
-                     output_directory(arguments, model),
-                     arguments.restart,
-                     arguments.deck,
-                     deck.resolved_text(),
-                     deck.fingerprint(),
-                     line.text,
-                     ranks};
+  RunOptions options{arguments.backend,    directory,          arguments.restart, arguments.deck,
+                     deck.resolved_text(), deck.fingerprint(), line.text,         ranks,
+                     arguments.overwrite};
   const ExitCode code = naming_deck(arguments.deck, [&] {
     return naming_memory(model.particles.totals.count, ranks.size(),
                          [&] { return run_simulation(model, options, log); });
@@ -168,6 +168,8 @@ ExitCode dispatch(const CommandLine& line) {
           "(default: auto)")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")->type_name("FILE");
+  run_command->add_flag("--overwrite", arguments.overwrite,
+                        "remove the results of an earlier run from the output folder (default: refuse)");
   run_command->footer(kExitCodes);
   CLI::App* check_command = app.add_subcommand("check", "build and check a deck's model; run nothing");
   declare_deck(*check_command, arguments);

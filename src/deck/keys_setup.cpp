@@ -197,7 +197,9 @@ const TableKeys& wall_keys() {
 const TableKeys& output_keys() {
   static const TableKeys keys{
       "What is written, and how often.",
-      {text("directory").otherwise("\"results\"").about("Folder of the results; --output goes before it."),
+      {text("directory")
+           .otherwise("\"\"")
+           .about("Folder of the results; empty: results/ and the deck's name. --output goes before it."),
        real("snapshot_interval", "s")
            .at_least(0)
            .otherwise("0.0")

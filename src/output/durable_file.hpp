@@ -6,7 +6,8 @@
 
 namespace scree {
 
-// Copies a file, in the place of an old one where there is one. Throws IoError; a part may then have been copied.
+// Copies a file, in the place of an old one where there is one. Throws IoError; a part may then have been
+// copied.
 void copy_file(const std::string& from, const std::string& to);
 
 // Waits until the file's content is on disk. Throws IoError.

@@ -8,9 +8,9 @@
 #include <chrono>
 #include <cstring>
 #include <ctime>
-#include <filesystem>
 
 #include "dem/device.hpp"
+#include "output/results_folder.hpp"
 #include "output/run_record.hpp"
 #include "partition/id_order.hpp"
 #include "run/step_loop.hpp"
@@ -23,8 +23,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::int64_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
 constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
 constexpr double kLogSeconds = 600;           // between those in a log, besides one per tenth of the run
-constexpr double kFlushSeconds =
-    5;  // between writes of the history, besides those with checkpoints
+constexpr double kFlushSeconds = 5;           // between writes of the history, besides those with checkpoints
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
@@ -35,13 +34,6 @@ double cpu_seconds() {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-void make_directory(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) throw IoError(fmt::format("output folder {}: {}", path, error.message()));
-  if (!std::filesystem::is_directory(path)) throw IoError(fmt::format("output folder {}: is a file", path));
 }
 
 const char* key_of(Transport transport) {
@@ -114,12 +106,14 @@ class Simulation {
         options_(options),
         ranks_(options.ranks),
         log_(log),
+        folder_({options.output_directory, options.restart, options.overwrite}),
         state_(options.restart.empty() ? State{} : read_state(options, model.particles.totals.count)),
         backend_(make_backend(model, ranks_, options.backend, log)),
         link_(model, ranks_),
         step_(model, *backend_, link_, timers_) {
-    ranks_.on_root([&] { make_directory(options.output_directory); });
+    ranks_.on_root([&] { folder_.claim(); });
     start_or_resume();
+    ranks_.on_root([&] { folder_.clear(); });
     recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
     if (options.restart.empty()) {
       recorder_->history(state_, 0);
@@ -149,6 +143,7 @@ class Simulation {
   const RunOptions& options_;
   Ranks ranks_;
   Log& log_;
+  ResultsFolder folder_;
   State state_;
   StageTimers timers_;
   std::unique_ptr<Backend> backend_;
@@ -187,11 +182,7 @@ void Simulation::start_or_resume() {
 // A restart in the checkpoint's own folder goes on with its files; in another folder new files begin.
 bool Simulation::continues_files() const {
   bool same = false;
-  ranks_.on_root([&] {
-    const std::filesystem::path folder = std::filesystem::path(options_.restart).parent_path();
-    same = std::filesystem::equivalent(folder.empty() ? "." : folder, options_.output_directory) &&
-           std::filesystem::exists(options_.output_directory + "/history.h5");
-  });
+  ranks_.on_root([&] { same = folder_.continues(); });
   ranks_.broadcast(same);
   return same;
 }

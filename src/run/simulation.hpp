@@ -16,6 +16,7 @@ struct RunOptions {
   std::string restart;  // checkpoint to continue from; empty: start at t = 0
   std::string deck_path, resolved_deck, fingerprint, command_line;  // for the run record and the checkpoint
   Ranks ranks;
+  bool overwrite = false;  // results of an earlier run in the output directory are removed
 };
 
 // Runs to the end and writes snapshots, history, checkpoints and the run record into the output directory.

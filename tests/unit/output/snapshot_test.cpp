@@ -92,9 +92,32 @@ TEST_CASE("a restarted run cuts off later snapshots and goes on") {
   SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 3});
   CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 4, 4});
   write_snapshots(writer, {4, 2}, 3);
+  writer.finish();
   CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 4, 4, 4, 2});
   CHECK(Hdf5File(scratch / "bodies.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points") == 15);
   CHECK(occurrences(file_text(scratch / "particles.xdmf"), "<Time") == 5);
+}
+
+TEST_CASE("the XDMF is complete at every snapshot, and written a few times only") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
+  const std::string path = scratch / "bodies.xdmf";
+  std::size_t written = 0;
+  std::filesystem::file_time_type last{};
+  for (int step = 0; step < 200; ++step) {
+    write_snapshots(writer, {3}, 1);
+    const std::string text = file_text(path);
+    const int known = occurrences(text, "<Time");
+    CHECK(text.find("</Xdmf>\n") == text.size() - 8);
+    CHECK(known <= writer.snapshots());
+    CHECK(6 * known >= 5 * writer.snapshots());
+    if (const auto time = std::filesystem::last_write_time(path); time != last)
+      last = time, written += text.size();
+  }
+  writer.finish();
+  CHECK(occurrences(file_text(path), "<Time") == 200);
+  CHECK(written < 6 * file_text(path).size());
+  CHECK(!std::filesystem::exists(path + ".tmp"));
 }
 
 TEST_CASE("files that do not fit the restarted run are refused") {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -109,6 +110,13 @@ struct Recording {
     return std::filesystem::exists(path) ? Hdf5File(path, Hdf5Access::read).rows("/step/time") : 0;
   }
 
+  int snapshots_in_xdmf() const {
+    std::ifstream file(folder.path() + "/particles.xdmf");
+    int count = 0;
+    for (std::string line; std::getline(file, line);) count += line.find("<Time ") != std::string::npos;
+    return count;
+  }
+
   Folder folder;
   const Model model = (petsc(), model_of(kDeck));
   State state;
@@ -151,7 +159,20 @@ TEST_CASE("a snapshot of a synchronous backend is on disk when it is taken") {
   run.recorder->snapshot(run.state);
   CHECK(run.state.snapshots == 1);
   CHECK(run.times() == std::vector<Real>{0});
-  CHECK(run.history_rows() == 1);
+}
+
+TEST_CASE("the history waits for its own flush, the .xdmf for the end at the latest") {
+  Recording<CpuBackend> run;
+  for (int k = 0; k < 9; ++k) run.recorder->history(run.state, 0), run.recorder->snapshot(run.state);
+  CHECK(run.times().size() == 9);
+  CHECK(run.history_rows() == 0);
+  run.recorder->flush_history();
+  CHECK(run.history_rows() == 9);
+  CHECK(run.snapshots_in_xdmf() < 9);
+  run.recorder->history(run.state, 0);
+  run.recorder->finish();
+  CHECK(run.history_rows() == 10);
+  CHECK(run.snapshots_in_xdmf() == 9);
 }
 
 TEST_CASE("a snapshot of an asynchronous backend is written while it computes") {
@@ -163,7 +184,6 @@ TEST_CASE("a snapshot of an asynchronous backend is written while it computes") 
   CHECK(run.times().empty());
   run.backend.idle();
   CHECK(run.times() == std::vector<Real>{0});
-  CHECK(run.history_rows() == 1);
   run.backend.idle();  // nothing is left to do
   CHECK(run.recorder->snapshots_written() == 1);
 }

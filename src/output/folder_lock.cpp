@@ -1,0 +1,126 @@
+#include "output/folder_lock.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/magic.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <iterator>
+
+#include "base/error.hpp"
+#include "output/lock_owner.hpp"
+
+namespace scree {
+
+namespace {
+
+// Asks for the lock (F_OFD_GETLK) or takes it (F_OFD_SETLK). It ends when the process has closed the file.
+LockState state_of(int file, int command) {
+  struct flock lock {};
+  lock.l_type = F_WRLCK, lock.l_whence = SEEK_SET;
+  if (fcntl(file, command, &lock) != 0)
+    return errno == EACCES || errno == EAGAIN ? LockState::held : LockState::unknown;
+  return command == F_OFD_GETLK && lock.l_type != F_UNLCK ? LockState::held : LockState::free;
+}
+
+bool is_on_own_disk(int file) {
+  constexpr long kZfs = 0x2fc12fc1, kOwn[] = {EXT4_SUPER_MAGIC,
+                                              XFS_SUPER_MAGIC,
+                                              BTRFS_SUPER_MAGIC,
+                                              TMPFS_MAGIC,
+                                              F2FS_SUPER_MAGIC,
+                                              OVERLAYFS_SUPER_MAGIC,
+                                              kZfs};
+  struct statfs system {};
+  return fstatfs(file, &system) == 0 &&
+         std::find(std::begin(kOwn), std::end(kOwn), system.f_type) != std::end(kOwn);
+}
+
+bool is_over(const LockOwner& owner, int file, LockState lock) {
+  return is_over(owner, LockOwner::this_process(), lock, is_on_own_disk(file));
+}
+
+bool is_named(int file, const std::string& path) {
+  struct stat open {
+  }, named{};
+  return fstat(file, &open) == 0 && stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
+         open.st_dev == named.st_dev;
+}
+
+// The system's error number, 0 if all went well.
+int write_owner(int file) {
+  const std::string text = LockOwner::this_process().text();
+  const auto size = static_cast<ssize_t>(text.size());
+  errno = ENOSPC;  // of a write that is cut short
+  if (pwrite(file, text.data(), text.size(), 0) != size || ftruncate(file, size) != 0) return errno;
+  return fsync(file) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::string& folder) : folder_(folder), path_(folder + "/scree.lock") {}
+
+FolderLock::~FolderLock() {
+  if (file_ < 0) return;
+  unlink(path_.c_str());
+  close(file_);
+}
+
+void FolderLock::refuse(const std::string& owner) const {
+  throw InputError(
+      fmt::format("output folder {}: another run writes into it{}{}; let it end, or choose another folder "
+                  "with --output (if "
+                  "that run is dead, remove {})",
+                  folder_, owner.empty() ? "" : ": ", owner, path_));
+}
+
+void FolderLock::fail(const char* action, int error) const {
+  throw IoError(fmt::format("{}: cannot {}: {}", path_, action, std::strerror(error)));
+}
+
+void FolderLock::check() const {
+  const int file = open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (file < 0) return;
+  const LockOwner owner = LockOwner::read(path_);
+  // A lock for writing can be asked for, though not taken, by who may only read.
+  const bool over = is_over(owner, file, state_of(file, F_OFD_GETLK));
+  close(file);
+  if (!over) refuse(owner.described());
+}
+
+void FolderLock::take() {
+  while (!try_to_take()) {
+  }
+}
+
+// Not where the owner has removed the file meanwhile: then another try makes a new one.
+bool FolderLock::try_to_take() {
+  int file = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  const bool made = file >= 0;
+  if (!made && errno == EEXIST) {
+    file = open(path_.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+    if (file < 0 && errno == ENOENT) return false;
+  }
+  if (file < 0) fail("open", errno);
+  const LockOwner owner = LockOwner::read(path_);
+  const LockState lock = state_of(file, F_OFD_SETLK);
+  const bool free = made ? lock != LockState::held : is_over(owner, file, lock);
+  const bool named = is_named(file, path_);
+  const int error = free && named ? write_owner(file) : 0;
+  if (free && named && error == 0) {
+    file_ = file;
+    return true;
+  }
+  if (error != 0) unlink(path_.c_str());
+  close(file);
+  if (error != 0) fail("write", error);
+  if (named) refuse(owner.described());
+  return false;
+}
+
+}  // namespace scree

@@ -1,0 +1,98 @@
+#include "output/results_folder.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "base/error.hpp"
+
+namespace scree {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// All that a run may write.
+constexpr const char* kNames[] = {
+    "history.h5",  "history.csv",   "particles.vtkhdf",  "particles.xdmf",       "bodies.vtkhdf",
+    "bodies.xdmf", "checkpoint.h5", "checkpoint_end.h5", "checkpoint_failed.h5", "run_record.json"};
+// Behind these names: what a run that was killed leaves beside them.
+constexpr const char* kBeside[] = {".tmp", ".spare", ".old"};
+
+void remove_file(const std::string& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) throw IoError(fmt::format("{}: cannot remove: {}", path, error.message()));
+}
+
+bool is_there(const std::string& path) { return fs::exists(fs::symlink_status(path)); }
+
+}  // namespace
+
+ResultsFolder::ResultsFolder(const ResultsOptions& options) : options_(options), lock_(options.folder) {}
+
+bool ResultsFolder::continues() const {
+  if (options_.restart.empty() || !fs::exists(options_.folder + "/history.h5")) return false;
+  const fs::path folder = fs::path(options_.restart).parent_path();
+  std::error_code none_such;
+  return fs::equivalent(folder.empty() ? "." : folder, options_.folder, none_such);
+}
+
+std::vector<std::string> ResultsFolder::results_of_others() const {
+  std::vector<std::string> found;
+  if (continues()) return found;
+  for (const char* name : kNames) {
+    const std::string path = options_.folder + "/" + name;
+    std::error_code none_such;
+    if (is_there(path) && (options_.restart.empty() || !fs::equivalent(path, options_.restart, none_such)))
+      found.push_back(name);
+  }
+  return found;
+}
+
+// The newest checkpoint is what a run would continue from.
+std::string ResultsFolder::way_out() const {
+  std::string newest;
+  for (const char* name : {"checkpoint.h5", "checkpoint_end.h5"}) {
+    const std::string path = options_.folder + "/" + name;
+    std::error_code error;
+    if (fs::exists(path, error) &&
+        (newest.empty() || fs::last_write_time(path, error) > fs::last_write_time(newest, error)))
+      newest = path;
+  }
+  return newest.empty() || !options_.restart.empty() ? "" : ", --restart " + newest + " continues them";
+}
+
+void ResultsFolder::check() const {
+  lock_.check();
+  check_results();
+}
+
+void ResultsFolder::check_results() const {
+  if (options_.overwrite) return;
+  const std::vector<std::string> found = results_of_others();
+  if (found.empty()) return;
+  throw InputError(fmt::format(
+      "output folder {}: holds results of an earlier run: {}; --overwrite removes them, --output DIR writes "
+      "elsewhere{}",
+      options_.folder, fmt::join(found, ", "), way_out()));
+}
+
+void ResultsFolder::claim() {
+  const std::string& folder = options_.folder;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(fmt::format("output folder {}: {}", folder, error.message()));
+  if (!fs::is_directory(folder)) throw IoError(fmt::format("output folder {}: is a file", folder));
+  lock_.take();
+  check_results();  // another run may have come and gone since
+}
+
+void ResultsFolder::clear() const {
+  for (const std::string& name : results_of_others()) remove_file(options_.folder + "/" + name);
+  for (const char* name : kNames)
+    for (const char* suffix : kBeside) remove_file(options_.folder + "/" + name + suffix);
+}
+
+}  // namespace scree
