@@ -27,7 +27,7 @@ jobs/build.sh release scree
 if is_run_done; then
   echo "$results is up to date"
 else
-  "$scree" run "$deck" --output "$results"
+  "$scree" run "$deck" --output "$results" --overwrite
 fi
 
 animation() { find "$results" -maxdepth 1 -name 'animation.*' | head -n 1; }

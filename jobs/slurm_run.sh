@@ -7,6 +7,9 @@
 # the deck has been edited since, or the words DECK [SCREE OPTIONS] are not those that it was done with, which
 # RESULTS/slurm_run.txt holds: Scree then goes on to a later time.end, or refuses another deck. The options --output and
 # --restart are this script's own.
+# A run that begins is refused by Scree where RESULTS holds results without a checkpoint, unless an earlier start of the
+# same job left them, or --overwrite is among the options. RESULTS/scree.lock, which keeps a second run out, is taken away
+# where SLURM knows that the job in it has ended: a node that failed may have left it on a file system of several.
 # On SIGUSR1, which the sbatch files ask SLURM for before the time limit, the run writes RESULTS/checkpoint.h5 and ends
 # with exit code 5; the job then goes back into the queue, at most SCREE_REQUEUES times. On SIGTERM (scancel, preemption)
 # the run does the same, but the job stays out of the queue unless SLURM puts it back.
@@ -71,6 +74,24 @@ if [[ -n "$checkpoint" ]]; then
   say "start $((restarts + 1)) on ${SLURM_JOB_NODELIST:-this node}: continues from $checkpoint"
 else
   say "start $((restarts + 1)) on ${SLURM_JOB_NODELIST:-this node}: begins"
+  # Its own results: it was killed before it wrote a checkpoint.
+  if ((restarts > 0)); then options=(--overwrite "${options[@]}"); fi
+fi
+
+# Whether SLURM has this job no longer, or has it waiting to be started again.
+has_ended() {
+  local state
+  state=$(squeue --noheader --jobs="$1" --format=%T 2>&1) || [[ "$state" == *"Invalid job id"* ]] || return 1
+  [[ -z "$state" || "$state" == PENDING || "$state" == *"Invalid job id"* ]]
+}
+
+lock=$results/scree.lock
+if [[ -e "$lock" ]] && command -v squeue >/dev/null; then
+  owner=$(sed -n 's/^job //p' "$lock")
+  if [[ -n "$owner" && "$owner" != "${SLURM_JOB_ID:-}" ]] && has_ended "$owner"; then
+    say "the run of job $owner in $results has ended without removing its lock"
+    rm -f "$lock"
+  fi
 fi
 
 # SLURM 22.05 and newer do not pass this on from sbatch to srun by themselves.

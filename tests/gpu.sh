@@ -85,13 +85,13 @@ if "$sanitize"; then
       settings=()
       for setting in "${words[@]:1}"; do settings+=(--set "$setting"); done
       run "$tool scree $deck" "${sanitizer[@]}" "$scree" run "input/${words[0]}.toml" --backend cuda \
-        "${settings[@]}" --output "$scratch/results"
+        "${settings[@]}" --output "$scratch/results" --overwrite
     done
     # Through host memory: what NCCL's own kernels do is not looked at.
     for method in hht velocity-verlet; do
       run "$tool scree dam_break, $method, 2 ranks" mpirun --oversubscribe -n 2 "${sanitizer[@]}" "$scree" run \
         tests/ranks/dam_break.toml --backend cuda --set parallel.transport=staged --set time.end=2e-3 \
-        --set "integrator.particles=$method" --output "$scratch/results"
+        --set "integrator.particles=$method" --output "$scratch/results" --overwrite
     done
   done
 fi

@@ -7,7 +7,7 @@
 //
 // The .xdmf names every snapshot in one text, which ends in closing tags: it is complete only as a whole. It
 // is written beside and renamed, not at each snapshot, but when there are a fifth more than it knows (and at
-// each of the first six), and by finish(): all its writing together is six times its last size at most.
+// each of the first five), and by finish(): all its writing together is six times its last size at most.
 #pragma once
 
 #include <cstdint>

@@ -36,8 +36,8 @@ class ProgressTest(CommandLineTest):
     def text_on_terminal(self, own):
         """What a run prints on a terminal: its own, or, as under mpirun, one that another process made for it."""
         ours, theirs = pty.openpty()
-        run = subprocess.Popen([SCREE, "run", str(self.deck), "--output", str(self.folder / "out")], env=ENVIRONMENT,
-                               stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True,
+        run = subprocess.Popen([SCREE, "run", str(self.deck), "--output", str(self.folder / "out"), "--overwrite"],
+                               env=ENVIRONMENT, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True,
                                preexec_fn=(lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0)) if own else None)
         self.addCleanup(run.kill)
         os.close(theirs)

@@ -94,7 +94,8 @@ class CommandLineTest(unittest.TestCase):
         return result
 
     def run_deck(self, code, output, *words):
-        return self.expect(code, "run", self.deck, "--output", self.folder / output, *words)
+        """Earlier results are overwritten."""
+        return self.expect(code, "run", self.deck, "--output", self.folder / output, "--overwrite", *words)
 
     def history(self, output):
         return (self.folder / output / "history.csv").read_text().splitlines()
@@ -114,9 +115,10 @@ class CommandLineTest(unittest.TestCase):
                 self.assertEqual(compared.returncode, 0, compared.stdout)
 
     def start(self, output, *words, launcher=()):
-        """A run in the background, handed back once it has reported progress."""
+        """A run in the background, handed back once it has reported progress. Earlier results are overwritten."""
         run = subprocess.Popen(
-            [*launcher, SCREE, "run", str(self.deck), "--output", str(self.folder / output), *map(str, words)],
+            [*launcher, SCREE, "run", str(self.deck), "--output", str(self.folder / output), "--overwrite",
+             *map(str, words)],
             cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.addCleanup(run.stdout.close)
         self.addCleanup(run.kill)
@@ -208,7 +210,7 @@ class DeckErrorTest(CommandLineTest):
 class RunTest(CommandLineTest):
     SHORT = ("--set", "time.end=0.02")
 
-    def test_a_run_writes_its_files_and_a_second_one_replaces_them(self):
+    def test_a_run_writes_its_files_and_one_that_may_replaces_them(self):
         for _ in range(2):
             result = self.run_deck(DONE, "out", *self.SHORT)
             self.assertIn("results in", result.stdout)

@@ -42,7 +42,7 @@ whole() {
   local name=$1
   shift
   profile "$name" 0 "${WHOLE:-300}" \
-    "$build/scree" run "$here/profile.toml" --backend cuda --output "$scratch/$name" "$@"
+    "$build/scree" run "$here/profile.toml" --backend cuda --output "$scratch/$name" --overwrite "$@"
 }
 
 bandwidth=$("$build/tests/performance/copy_bandwidth" | sed -n 's/.*written: \([0-9.]*\) GB\/s.*/\1/p')

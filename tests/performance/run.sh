@@ -15,7 +15,7 @@ net_900() {
   local name=$1 cpu=()
   shift
   for _ in 1 2 3; do
-    "$build/scree" run input/paper/table4.toml --set particles.block.count=900 --output "$results/run" "$@" \
+    "$build/scree" run input/paper/table4.toml --set particles.block.count=900 --output "$results/run" --overwrite "$@" \
       >"$results/log" 2>&1
     cpu+=("$(sed -n 's/.* s wall, \([0-9.]*\) s CPU.*/\1/p' "$results/log")")
   done

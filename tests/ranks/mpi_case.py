@@ -81,10 +81,10 @@ class RanksTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def command(self, ranks, deck, output, overrides, *words, backend=BACKEND, before=()):
-        """before: words in front of the program, such as env and a variable."""
+        """before: words in front of the program, such as env and a variable. Earlier results are overwritten."""
         settings = [word for override in overrides for word in ("--set", override)]
         return [MPIEXEC, "-n", str(ranks), *before, self.program, "run", str(deck), "--backend", backend, "--output",
-                str(self.folder / output), *settings, *map(str, words)]
+                str(self.folder / output), "--overwrite", *settings, *map(str, words)]
 
     def run_deck(self, code, ranks, deck, output, overrides=(), *words, **how):
         result = subprocess.run(self.command(ranks, deck, output, overrides, *words, **how), cwd=self.folder,

@@ -93,6 +93,33 @@ class SlurmRunTest(unittest.TestCase):
         self.assertIn("continues from", self.job(DONE, "--set", "time.end=0.02"))
         self.assertEqual(self.record()["measures"]["simulated_time"], 0.02)
 
+    def test_results_without_a_checkpoint_are_those_of_the_job_or_refused(self):
+        (self.folder / "out").mkdir()
+        (self.folder / "out/history.h5").write_text("of a run that was killed at once")
+        end = ("--set", "time.end=0.01")
+        self.assertIn("--overwrite", self.job(BAD_INPUT, *end))
+        self.assertIn("start 2 on this node: begins", self.job(DONE, *end, SLURM_RESTART_COUNT="1"))
+        (self.folder / "out/checkpoint_end.h5").unlink()
+        (self.folder / "out/run_record.json").unlink()
+        self.assertIn("start 1 on this node: begins", self.job(DONE, *end, "--overwrite"))
+
+    def test_the_lock_of_a_job_that_has_ended_is_taken_away(self):
+        lock = self.folder / "out/scree.lock"
+        lock.parent.mkdir()
+        # As squeue answers: for a job that waits, one that it does not know, one that runs, and where it cannot ask.
+        for code, text, taken in ((0, "PENDING", True), (1, "slurm_load_jobs error: Invalid job id specified", True),
+                                  (0, "", True), (0, "RUNNING", False), (0, "COMPLETING", False),
+                                  (1, "slurm_load_jobs error: Unable to contact slurm controller", False)):
+            with self.subTest(text=text):
+                squeue = self.folder / "squeue"
+                squeue.write_text(f'#!/bin/sh\n[ "$2" = --jobs=12 ] || exit 9\necho "{text}"\nexit {code}\n')
+                squeue.chmod(0o755)
+                lock.write_text("host elsewhere\nprocess 5\njob 12\n")
+                log = self.job(DONE, "--set", "time.end=0.001", "--overwrite", SCREE_LAUNCHER="true",
+                               PATH=f"{self.folder}:{os.environ['PATH']}")
+                self.assertEqual("has ended without removing its lock" in log, taken)
+                self.assertEqual(lock.exists(), not taken)
+
     def test_the_launcher_does_not_load_opencl_unless_told(self):
         launcher = self.folder / "launcher"
         launcher.write_text('#!/bin/sh\necho "hwloc: $HWLOC_COMPONENTS"\n')

@@ -17,7 +17,7 @@ trap 'rm -rf "$results"' EXIT
 run() {
   local backend=$1 folder=$2 deck=$3
   shift 3
-  "$scree" run "$decks/$deck.toml" --backend "$backend" --output "$results/$folder" --set output.history_csv=true "$@" \
+  "$scree" run "$decks/$deck.toml" --backend "$backend" --output "$results/$folder" --overwrite --set output.history_csv=true "$@" \
     >"$results/log" 2>&1 ||
     { tail -n 5 "$results/log"; exit 1; }
 }
