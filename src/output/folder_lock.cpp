@@ -111,6 +111,11 @@ bool FolderLock::try_to_take() {
   const LockState lock = state_of(file, F_OFD_SETLK);
   const bool free = made ? lock != LockState::held : is_over(owner, file, lock);
   const bool named = is_named(file, path_);
+  if (!made && free && named && lock != LockState::free) {  // the next try makes one that can be locked
+    unlink(path_.c_str());
+    close(file);
+    return false;
+  }
   const int error = free && named ? write_owner(file) : 0;
   if (free && named && error == 0) {
     file_ = file;

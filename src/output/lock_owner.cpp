@@ -91,10 +91,12 @@ std::string LockOwner::described() const {
 }
 
 bool is_over(const LockOwner& owner, const LockOwner& self, LockState lock, bool on_own_disk) {
-  if (lock == LockState::held) return false;
-  if (lock == LockState::free && (on_own_disk || owner.host.empty())) return true;
+  if (on_own_disk && lock != LockState::unknown) return lock == LockState::free;
+  // A server may keep the lock of a machine that has died.
   if (!owner.job.empty() && owner.job == self.job && owner.job_start != self.job_start) return true;
-  if (owner.host.empty() || owner.host != self.host) return false;
+  if (lock == LockState::held) return false;
+  if (owner.host.empty()) return lock == LockState::free;
+  if (owner.host != self.host) return false;
   return lock == LockState::free || owner.boot != self.boot || owner.process_start != start_of(owner.process);
 }
 

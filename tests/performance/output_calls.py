@@ -47,7 +47,7 @@ def run(scree, snapshots, particles, folder, traced):
     trace, out = folder / "trace", folder / "out"
     strace = ["strace", "-f", "-y", "-s", "0", "-o", str(trace), "-e", "trace=" + ",".join(NAMES)] if traced else []
     end = snapshots * STEP
-    command = [*strace, scree, "run", str(DECK), "--output", str(out), "--backend", "cpu", "--set", f"time.end={end}",
+    command = [*strace, scree, "run", str(DECK), "--output", str(out), "--backend", "cpu", "--set", "time.control=fixed", "--set", f"time.end={end}",
                "--set", f"particles.block.count={particles}", "--set", f"output.snapshot_interval={STEP}", "--set",
                f"output.history_interval={STEP}"]
     largest, done = [0], threading.Event()

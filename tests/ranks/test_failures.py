@@ -142,6 +142,14 @@ class FailureTest(RanksTest):
                     with h5py.File(self.folder / out / "particles.vtkhdf") as file:
                         self.assertGreater(file["VTKHDF/Steps"].attrs["NSteps"], 0)
 
+    def test_results_of_an_earlier_run_are_refused_once(self):
+        deck = self.write("deck.toml", LONELY)
+        self.run_deck(DONE, 2, deck, "out", ["time.end=0.01"])
+        command = [word for word in self.command(2, deck, "out", ["time.end=0.01"]) if word != "--overwrite"]
+        result = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(result.returncode, BAD_INPUT, result.stderr)
+        self.assert_one_message(result, str(self.folder / "out"), "history.h5", "--overwrite")
+
     def test_a_rank_without_a_gpu_is_reported_once(self):
         deck = self.write("deck.toml", LONELY)
         run = [SCREE, "run", str(deck), "--backend", "cuda"]

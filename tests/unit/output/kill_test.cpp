@@ -37,6 +37,16 @@ extern "C" ssize_t pwrite(int file, const void* data, std::size_t bytes, off_t a
   return -1;
 }
 
+// A file system that cannot exchange two names.
+static bool can_exchange = true;
+
+extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                         unsigned int flags) noexcept {
+  if (can_exchange) return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+  errno = EINVAL;
+  return -1;
+}
+
 namespace {
 
 // A counter that parent and child see.
@@ -126,6 +136,28 @@ TEST_CASE("a run killed at any moment leaves every snapshot readable, and goes o
   }
   CHECK(kept >= 60);
   CHECK(killed_within_append > 0);
+}
+
+TEST_CASE("where names cannot be exchanged, snapshots are as complete") {
+  ScratchDirectory scratch;
+  SharedCounter acknowledged;
+  std::mt19937 random(22);
+  for (int trial = 0; trial < 20; ++trial) {
+    CAPTURE(trial);
+    acknowledged.set(0);
+    const pid_t child = start_child([&] {
+      can_exchange = false;
+      SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
+      for (;; acknowledged.set(writer.snapshots()))
+        PredictableSnapshot(writer.snapshots(), 50, 2).append_to(writer);
+    });
+    while (acknowledged() < 2 && waitpid(child, nullptr, WNOHANG) == 0) usleep(100);
+    usleep(static_cast<useconds_t>(random() % 12000));
+    kill(child, SIGKILL);
+    REQUIRE(WIFSIGNALED(wait_for(child)));
+    CHECK(static_cast<int>(read_predictable_particles(scratch / "particles.vtkhdf").size()) >=
+          acknowledged());
+  }
 }
 
 TEST_CASE("a full disk is an error, and what was written stays") {

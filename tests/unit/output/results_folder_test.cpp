@@ -153,7 +153,8 @@ TEST_CASE("where the system's lock does not tell, the text does") {
     LockOwner now = self;
     owner.host = "another", owner.job = now.job = "17", now.job_start = "1";
     CHECK(is_over(owner, now, LockState::unknown, false));
-    CHECK(!is_over(owner, now, LockState::held, false));
+    CHECK(is_over(owner, now, LockState::held, false));  // by a server that does not know yet
+    CHECK(!is_over(owner, now, LockState::held, true));
     now.job_start = owner.job_start;
     CHECK(!is_over(owner, now, LockState::unknown, false));
     now.job = "18", now.job_start = "1";
