@@ -146,6 +146,10 @@ TEST_CASE("the first adaptive step is short against the run and the shortest con
   const TimeControl time = model_of(head + kTwoDiscs).time;
   CHECK(time.step == Approx(0.05 * std::numbers::pi * std::sqrt(0.5 / 1e4)));
   CHECK(time.max_step == Approx(0.5));
+  // Discs of radius 0.05 m that fall by 2 m from 5 m/s on: 0.5 x 0.05 / sqrt(5^2 + 2 x 10 x 2).
+  CHECK(model_of("gravity = [0.0, -10.0]\n" + head + kTwoDiscs, {"particles.0.velocity=[-3.0, 4.0]"})
+            .time.max_step == Approx(0.025 / std::sqrt(65.0)));
+  CHECK(model_of("gravity = [0.0, -10.0]\n" + head).time.max_step == Approx(0.5));
   CHECK(time.min_step == Approx(1e-6 * time.step));
   CHECK(model_of(head + kTwoDiscs, {"time.end=1e-2"}).time.step == Approx(1e-5));
   CHECK(model_of(head + kTwoDiscs, {"time.max_step=2e-4"}).time.step == Approx(2e-4));
