@@ -7,10 +7,12 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/catch.hpp"
 #include "support/impacts.hpp"
+#include "support/reference.hpp"
 #include "support/simulation_run.hpp"
 
 using namespace scree;
@@ -204,5 +206,24 @@ TEST_CASE("the table of impacts at any step", "[.][table]") {
       std::cout << fmt::format(" {:.2g} % ({:.0f}) |", 100 * adaptive.error, adaptive.steps);
     }
     std::cout << std::endl;
+  }
+}
+
+// The same table: errors of impacts add up.
+TEST_CASE("what an undamped gas gains in 1,000 steps of a third of the contact time", "[.][table]") {
+  for (const auto& [exponent, stiffness] : {std::pair{"1.0", "2.5e4"}, std::pair{"1.5", "1.1e6"}}) {
+    for (const std::string alpha : {"0.0", "-0.05"}) {
+      const Model model = input_model(
+          "examples/gas_periodic.toml",
+          {"integrator.particles=hht", "time.control=fixed", "time.step=4.792e-4", "time.end=0.4792",
+           "particles.gas.count=1000", "integrator.hht_alpha=" + alpha,
+           std::string("contact.pairs.0.exponent=") + exponent,
+           std::string("contact.pairs.0.stiffness=") + stiffness, "output.history_interval=0.04792"});
+      SimulationRun run(model);
+      const Real start = run.ledger().mechanical();
+      run.run();
+      std::cout << fmt::format("gas, n = {}, alpha = {}: {:+.2g} % of its energy\n", exponent, alpha,
+                               100 * (run.ledger().mechanical() / start - 1));
+    }
   }
 }
