@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
@@ -46,6 +47,20 @@ Real first_step(const Model& model) {
   const std::optional<PairLimit> shortest = shortest_contact(pair_limits(model));
   const Real longest = kShareOfRun * model.time.end;
   return shortest ? std::min(kShareOfContact * shortest->contact_time, longest) : longest;
+}
+
+// In a longer one a particle as fast as at t = 0 that then fell through the space would go farther than half
+// of the smallest radius, and might pass through others unnoticed: no error estimate says so [s].
+Real longest_step(const Model& model) {
+  constexpr Real kShareOfRadius = 0.5, kShareOfRun = 1e-2;
+  const ParticleTotals& particles = model.particles.totals;
+  const Real longest = kShareOfRun * model.time.end;
+  if (particles.count == 0) return longest;
+  const Vec3 extent = model.space.max - model.space.min, g = model.gravity;
+  const Real fall = std::abs(g.x) * extent.x + std::abs(g.y) * extent.y + std::abs(g.z) * extent.z;
+  const Real radii_per_second =
+      std::hypot(particles.most_radii_per_second, std::sqrt(2 * fall) / particles.smallest_radius);
+  return radii_per_second * longest > kShareOfRadius ? kShareOfRadius / radii_per_second : longest;
 }
 
 // The plane of a side of the space.
@@ -150,7 +165,7 @@ void build_steps(const DeckTable& deck, Model& model) {
   const DeckTable& table = deck.table("time");
   TimeControl& time = model.time;
   const bool adaptive = time.control == StepControl::adaptive;
-  time.max_step = table.has("max_step") ? table.real("max_step") : time.end / 100;
+  time.max_step = table.has("max_step") ? table.real("max_step") : longest_step(model);
   time.step = table.has("step") ? table.real("step") : std::min(first_step(model), time.max_step);
   time.min_step = table.has("min_step") ? table.real("min_step") : time.step / (adaptive ? 1e6 : 1e3);
   if (!table.has("max_step")) time.max_step = adaptive ? std::max(time.step, time.max_step) : time.step;

@@ -71,9 +71,10 @@ std::string limit_lines(const Model& model) {
                          names[static_cast<std::size_t>(limit.material[1])], law.normal_stiffness,
                          law.exponent == 1 ? "" : fmt::format("^{}", law.exponent), law.normal_damping,
                          law.tension ? "may pull" : "cut at zero");
-    lines += fmt::format("               shortest contact {:.4g} s{}, resolved at steps up to {:.2g} s\n",
-                         limit.contact_time, law.exponent == 1 ? "" : " (at 1 % overlap)",
-                         0.2 * limit.contact_time);
+    lines += fmt::format(
+        "               shortest contact {:.4g} s{}, rebounds within {:.0f} % at steps up to {:.2g} s\n",
+        limit.contact_time, law.exponent == 1 ? "" : " (at 1 % overlap)",
+        100 * resolved_error(model.integrator.particles), kResolvedShare * limit.contact_time);
     if (limit.explicit_step > 0) {
       lines += fmt::format("               velocity-verlet in dense contact: steps up to {:.4g} s\n",
                            limit.explicit_step);

@@ -160,7 +160,7 @@ class UsageTest(CommandLineTest):
 
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
-        for word in ("particles      6", "bodies         1", "degrees of freedom", "contact", "resolved at steps",
+        for word in ("particles      6", "bodies         1", "degrees of freedom", "contact", "rebounds within 2 % at steps",
                      "fixed step 0.0001 s (4000 steps)", "memory", "petsc"):
             self.assertIn(word, text)
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU \(estimate\); .+")
