@@ -111,7 +111,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
                      line.text,
                      ranks};
   const ExitCode code = naming_deck(arguments.deck, [&] {
-    return naming_memory(model.particles.totals.count, ranks.size(),
+    return naming_memory(size_of(model), ranks.size(),
                          [&] { return run_simulation(model, options, log); });
   });
   if (petsc)
@@ -135,8 +135,7 @@ ExitCode check(const Arguments& arguments) {
     });
   }
   naming_deck(arguments.deck, [&] {
-    naming_memory(model.particles.totals.count, ranks.size(),
-                  [&] { log.info(check_report(model, ranks) + constraints); });
+    naming_memory(size_of(model), ranks.size(), [&] { log.info(check_report(model, ranks) + constraints); });
   });
   return ExitCode::done;
 }
@@ -201,6 +200,8 @@ ExitCode guarded(const std::function<ExitCode()>& body) {
     return report(error.what(), ExitCode::io_failed);
   } catch (const std::filesystem::filesystem_error& error) {
     return report(error.what(), ExitCode::io_failed);
+  } catch (const std::bad_alloc&) {
+    return report("not enough memory: the deck is too large for this machine", ExitCode::bad_input);
   } catch (const std::exception& error) {
     return report(error.what(), ExitCode::simulation_failed);
   }

@@ -147,6 +147,7 @@ void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers bef
   const PackingBox box{table_.vector("min"), table_.vector("max"), model_.space.dimension, table_.real("gap"),
                        table_.integer("tries")};
   const std::vector<Real> radius = draw(table_.table("radius"), count_, {0, count_}, before_radii);
+  if (const std::string trouble = packing_trouble(box, radius); !trouble.empty()) table_.fail("count", trouble);
   const std::vector<Vec3> places = random_packing(box, radius, placed, random_);
   if (places.size() < radius.size())
     table_.fail("count",
@@ -234,10 +235,20 @@ IdRange part_of_group(IdRange range, GlobalId first, std::int64_t count) {
   return {within(range.first), within(range.last)};
 }
 
+// Those of random groups and all that stand before the last of them, which they keep clear of.
+std::int64_t places_found(const std::vector<Group>& groups) {
+  std::int64_t before = 0, places = 0;
+  for (const Group& group : groups) {
+    before += group.count();
+    if (group.is_random()) places = before;
+  }
+  return places;
+}
+
 }  // namespace
 
-void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share,
-                     Log& log) {
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
+                     const Share& share, Log& log) {
   // Counts of 10^9 a group are far from overflow, whatever number of groups a deck can have.
   std::vector<Group> groups;
   std::int64_t count = 0;
@@ -246,8 +257,9 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
       count += groups.emplace_back(table, names, model).count();
   });
   for (const Group& group : groups) group.warn_if_empty(log);
-  model.particles.totals.count = count;
+  model.particles.totals.count = size.particles = count;
   const IdRange own = share.part(count);
+  check_memory(size, bytes_to_build_particles(own.size(), places_found(groups)), "building the particles", share);
   model.particles.first_id = own.first;
   GlobalId first = 0;
   for (Group& group : groups) {

@@ -164,21 +164,19 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
   const ItemNames names(model);
   const std::vector<std::pair<int, int>> connected = connected_bodies(model);
   const Box box = box_around(items);
-  PointBins bins(box.min, box.max, reach, items.size());
-  for (const StartItem& item : items) bins.insert(item.position);
+  const SortedBins bins(PointCells(box.min, box.max, reach, items.size()), items);
   for (const Vec3 shift : image_shifts(model.space)) {
-    for (const StartItem& item : items) {
+    for (const StartItem& item : bins.items()) {
       const Vec3 p = item.position + shift;
       if (!is_within(box, p, reach)) continue;
-      bins.for_near(p, [&](int number) {
-        const StartItem& other = items[static_cast<std::size_t>(number)];
-        if (other.number >= item.number) return true;
-        const Real overlap = item.radius + other.radius - norm(p - other.position);
-        const Real ratio = overlap / std::min(item.radius, other.radius);
+      bins.for_near(p, [&](const StartItem& other) {
+        const Vec3 apart = p - other.position;
+        const Real touching = item.radius + other.radius;
+        if (other.number >= item.number || !(dot(apart, apart) < touching * touching)) return;
+        const Real ratio = (touching - norm(apart)) / std::min(item.radius, other.radius);
         if (ratio >= worst.ratio && ratio > 0 &&
             may_touch(model, connected, names.body(item.number), names.body(other.number)))
           worst.meet(ratio, other.number, item.number);
-        return true;
       });
     }
   }
