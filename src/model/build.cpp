@@ -69,6 +69,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   build_materials(root, model, names);
   build_space(root, names, model);
   build_time(root, model);
+  check_bodies_inside(root, model.space);
   ModelSize size = bodies_and_links(root);
   naming_memory(size, share.size(), [&] {
     check_memory(size, bytes_to_build_bodies(size, share.rank()), "building the bodies", share);
