@@ -111,8 +111,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
                      line.text,
                      ranks};
   const ExitCode code = naming_deck(arguments.deck, [&] {
-    return naming_memory(size_of(model), ranks.size(),
-                         [&] { return run_simulation(model, options, log); });
+    return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
   });
   if (petsc)
     for (const std::string& option : petsc->unused_options())
@@ -125,12 +124,14 @@ ExitCode check(const Arguments& arguments) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
   const Model model = build_model(load_deck(arguments.deck, arguments.overrides), log, RanksShare(ranks));
-  std::string constraints = "";
+  std::string constraints = "solver         none";
   if (!model.bodies.empty()) {
     naming_deck(arguments.deck, [&] {
       ranks.on_root([&] {
-        const PetscSession petsc("scree", {});
-        constraints = "solver         " + Multibody(model).solver_description();
+        naming_memory(size_of(model), ranks.size(), [&] {
+          const PetscSession petsc("scree", {});
+          constraints = "solver         " + Multibody(model).solver_description();
+        });
       });
     });
   }

@@ -35,11 +35,13 @@ struct GroupFiles {
 };
 
 // Of the groups from `path` up to the root of the hierarchy that is mounted at `mount`.
-void tighten_by_groups(MemoryBound& bound, const std::string& mount, std::string path, const GroupFiles& files) {
+void tighten_by_groups(MemoryBound& bound, const std::string& mount, std::string path,
+                       const GroupFiles& files) {
   for (;; path = path.substr(0, path.rfind('/'))) {
     if (path == "/") path.clear();
     const std::string folder = mount + path + "/";
-    const std::optional<Real> limit = number_in(folder + files.limit), usage = number_in(folder + files.usage);
+    const std::optional<Real> limit = number_in(folder + files.limit),
+                              usage = number_in(folder + files.usage);
     if (limit && usage && *limit < kNoLimit) {
       const Real cache = number_in(folder + "memory.stat", files.cache + " ").value_or(0);
       tighten(bound, *limit - std::max(*usage - cache, Real(0)), files.limit + " of the control group");

@@ -7,6 +7,7 @@
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
+#include "model/plausibility.hpp"
 
 namespace scree {
 
@@ -78,11 +79,13 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
     build_force_elements(root, model, names);
     build_particles(root, model, names, size, share, log);
     build_contact(root, model, names);
+    check_step_limits(root, model);
     build_steps(root, model);
     build_output(root, names, model);
     build_parallel(root, model);
     check_start_positions(root, model, share, log);
     check_steps(root, model, log);
+    for (const std::string& finding : implausible(root, model)) log.warning(finding);
   });
   return model;
 }

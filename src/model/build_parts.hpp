@@ -27,8 +27,8 @@ void build_parallel(const DeckTable& deck, Model& model);
 // A time function from a quantity of the deck.
 TimeFunction build_time_function(const DeckTable& table);
 
-// Whether the centres of the bodies' shapes lie in the space: an error. From the deck alone, before any body is
-// built.
+// Whether the centres of the bodies' shapes lie in the space: an error. From the deck alone, before any body
+// is built.
 void check_bodies_inside(const DeckTable& deck, const Space& space);
 // Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
 // for smaller overlaps.

@@ -28,13 +28,14 @@ bool fits(const PackingBox& box, Real radius) {
 // Below so many the walls of the box and chance decide, not the fraction.
 constexpr std::size_t kMany = 1000;
 
-// About how many of a group find no place. radius: from large to small [m]. scale: so many times their number.
-// The chance of a place is taken twice as large as it is, to be on the safe side.
+// About how many of a group find no place. radius: from large to small [m]. scale: so many times their
+// number. The chance of a place is taken twice as large as it is, to be on the safe side.
 Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, Real scale) {
   constexpr std::size_t kParts = 200;
   const Vec3 extent = box.max - box.min;
-  const Real volume = (extent.x + box.gap) * (extent.y + box.gap) *
-                      (box.dimension == 2 ? 1 : extent.z + box.gap);  // the gap keeps off neighbours, not walls
+  const Real volume =
+      (extent.x + box.gap) * (extent.y + box.gap) *
+      (box.dimension == 2 ? 1 : extent.z + box.gap);  // the gap keeps off neighbours, not walls
   PackingSums sums;
   Real failures = 0;
   for (std::size_t part = 0, i = 0; part < kParts; ++part) {
@@ -160,10 +161,11 @@ std::string packing_trouble(const PackingBox& box, std::vector<Real> radius) {
     bound = "random places fill at most about";
   }
   if (sums.fraction <= most) return "";
-  return fmt::format("the particles are {:.3g} of the {} of their box (min, max), and {} {:.2g} of it{}; a larger "
-                     "box, fewer or smaller particles are needed",
-                     sums.fraction, box.dimension == 2 ? "area" : "volume", bound, most,
-                     radius.size() < kMany ? "" : fmt::format(" in {} tries each", box.tries));
+  return fmt::format(
+      "the particles are {:.3g} of the {} of their box (min, max), and {} {:.2g} of it{}; a larger "
+      "box, fewer or smaller particles are needed",
+      sums.fraction, box.dimension == 2 ? "area" : "volume", bound, most,
+      radius.size() < kMany ? "" : fmt::format(" in {} tries each", box.tries));
 }
 
 std::vector<Real> draw(const DeckTable& table, std::int64_t count, IdRange part, RandomNumbers& random) {

@@ -14,7 +14,8 @@ namespace {
 // Measured as the growth of the peak memory of `scree check` from 10^5 to 10^6 of each [B]. Building a body
 // takes so much on every rank, its unknowns and those of a link on rank 0.
 constexpr Real kToBuildBody = 600, kToBuildUnknowns = 1400, kToBuildLink = 1600;
-// A particle and its entry in the search for overlaps; a place of a random group, with what it keeps clear of.
+// A particle and its entry in the search for overlaps; a place of a random group, with what it keeps clear
+// of.
 constexpr Real kToBuildParticle = 150, kToPlace = 130;
 
 Real gigabytes(Real bytes) { return bytes / 1e9; }
@@ -80,7 +81,7 @@ std::string memory_trouble(const ModelSize& size, int ranks, const std::string& 
   std::string of = counted(size.particles, "particle", "particles");
   if (size.bodies > 0) {
     const std::string bodies = counted(size.bodies, "body", "bodies");
-    of = size.particles > 0 ? of + " and " + bodies : bodies;
+    of = size.particles > 0 ? fmt::format("{} and {}", of, bodies) : bodies;
   }
   const std::string where =
       ranks == 1 ? "on one rank"

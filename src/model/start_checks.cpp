@@ -87,9 +87,9 @@ bool is_inside(const Space& space, Vec3 p) {
 
 [[noreturn]] void refuse_outside(const DeckTable& deck, const Space& space, const std::string& name, Vec3 p) {
   deck.table("space").fail(
-      "max", fmt::format("{} starts at ({}, {}, {}), outside the space from ({}, {}, {}) to ({}, {}, {})", name,
-                         p.x, p.y, p.z, space.min.x, space.min.y, space.min.z, space.max.x, space.max.y,
-                         space.max.z));
+      "max",
+      fmt::format("{} starts at ({}, {}, {}), outside the space from ({}, {}, {}) to ({}, {}, {})", name, p.x,
+                  p.y, p.z, space.min.x, space.min.y, space.min.z, space.max.x, space.max.y, space.max.z));
 }
 
 void check_particles_inside(const DeckTable& deck, const Model& model) {

@@ -30,8 +30,9 @@ struct PackingSums {
 inline Real saturated_fraction(int dimension) { return dimension == 2 ? 0.547074 : 0.384131; }
 inline Real densest_fraction(int dimension) { return dimension == 2 ? 0.9069 : 0.74048; }
 
-// Minus the logarithm of the chance that a sphere (disc) of radius r [m] finds room in a fluid of hard spheres
-// (discs) in equilibrium: scaled particle theory, Lebowitz, Helfand, Praestgaard, J. Chem. Phys. 43 (1965).
+// Minus the logarithm of the chance that a sphere (disc) of radius r [m] finds room in a fluid of hard
+// spheres (discs) in equilibrium: scaled particle theory, Lebowitz, Helfand, Praestgaard, J. Chem. Phys. 43
+// (1965).
 inline Real fluid_exclusion(int dimension, const PackingSums& n, Real r) {
   constexpr Real pi = std::numbers::pi_v<Real>;
   if (n.fraction >= 1) return std::numeric_limits<Real>::infinity();
@@ -48,8 +49,8 @@ inline Real fluid_exclusion(int dimension, const PackingSums& n, Real r) {
 
 // The chance of a random place among equal ones that were placed at random one after the other. The power of
 // the distance to saturation is that of the kinetics there, the denominators match the expansion for few of
-// them: discs by Schaaf, Talbot, J. Chem. Phys. 91 (1989); spheres with a cubic term fitted to a simulation of
-// 37,000 (within 25 % for fractions up to 0.325).
+// them: discs by Schaaf, Talbot, J. Chem. Phys. 91 (1989); spheres with a cubic term fitted to a simulation
+// of 37,000 (within 25 % for fractions up to 0.325).
 inline Real insertion_chance(int dimension, Real fraction) {
   const Real x = fraction / saturated_fraction(dimension);
   if (x >= 1) return 0;
@@ -65,8 +66,8 @@ inline Real insertion_chance(int dimension, const PackingSums& n, Real r) {
   for (int i = 0; i < 40; ++i) {
     const Real middle = (low + high) / 2;
     PackingSums equal;
-    equal.add(dimension, 1, middle / (dimension == 2 ? std::numbers::pi_v<Real>
-                                                     : Real(4) / 3 * std::numbers::pi_v<Real>));
+    equal.add(dimension, 1,
+              middle / (dimension == 2 ? std::numbers::pi_v<Real> : Real(4) / 3 * std::numbers::pi_v<Real>));
     (fluid_exclusion(dimension, equal, 1) < exclusion ? low : high) = middle;
   }
   return insertion_chance(dimension, high);
