@@ -149,15 +149,15 @@ std::string packing_trouble(const PackingBox& box, std::vector<Real> radius) {
   const Real volume = extent.x * extent.y * (box.dimension == 2 ? 1 : extent.z);
   for (const Real r : radius) sums.add(box.dimension, r, 1 / volume);
   const bool equal = !radius.empty() && radius.front() == radius.back();
-  Real most = equal ? densest_fraction(box.dimension) : 1;
+  const Real most_of_all = equal ? densest_fraction(box.dimension) : 1;
+  Real most = most_of_all;
   const char* bound = "no packing fills more than";
   if (radius.size() >= kMany && expected_failures(box, radius, 1) > kCertain) {
-    Real low = 0, high = 1;  // of the number of particles
-    for (int i = 0; i < 8; ++i) {
-      const Real middle = (low + high) / 2;
-      (expected_failures(box, radius, middle) > kCertain ? high : low) = middle;
+    most = 0;
+    for (Real high = std::min(sums.fraction, most_of_all); high - most > 1e-3;) {
+      const Real middle = (most + high) / 2;
+      (expected_failures(box, radius, middle / sums.fraction) > kCertain ? high : most) = middle;
     }
-    most = low * sums.fraction;
     bound = "random places fill at most about";
   }
   if (sums.fraction <= most) return "";

@@ -161,6 +161,9 @@ TEST_CASE("random groups that cannot find room are refused before a place is tri
       "and random places fill at most about 0.38 of it in 1000000000 tries each"));
   CHECK(contains(error("3000000", "{ kind = \"uniform\", min = 0.003, max = 0.006 }"),
                  "random places fill at most about 0."));
+  CHECK(contains(error("2000000", "0.02"),
+                 "the particles are 67 of the volume of their box (min, max), and random "
+                 "places fill at most about 0.38 of it"));
   CHECK(contains(error("8", "0.3"),
                  "the particles are 0.905 of the volume of their box (min, max), and no packing "
                  "fills more than 0.74 of it; a larger box"));
