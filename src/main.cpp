@@ -111,8 +111,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
                      deck.resolved_text(), deck.fingerprint(), line.text,         ranks,
                      arguments.overwrite};
   const ExitCode code = naming_deck(arguments.deck, [&] {
-    return naming_memory(model.particles.totals.count, ranks.size(),
-                         [&] { return run_simulation(model, options, log); });
+    return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
   });
   if (petsc)
     for (const std::string& option : petsc->unused_options())
@@ -125,18 +124,19 @@ ExitCode check(const Arguments& arguments) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
   const Model model = build_model(load_deck(arguments.deck, arguments.overrides), log, RanksShare(ranks));
-  std::string constraints = "";
+  std::string constraints = "solver         none";
   if (!model.bodies.empty()) {
     naming_deck(arguments.deck, [&] {
       ranks.on_root([&] {
-        const PetscSession petsc("scree", {});
-        constraints = "solver         " + Multibody(model).solver_description();
+        naming_memory(size_of(model), ranks.size(), [&] {
+          const PetscSession petsc("scree", {});
+          constraints = "solver         " + Multibody(model).solver_description();
+        });
       });
     });
   }
   naming_deck(arguments.deck, [&] {
-    naming_memory(model.particles.totals.count, ranks.size(),
-                  [&] { log.info(check_report(model, ranks) + constraints); });
+    naming_memory(size_of(model), ranks.size(), [&] { log.info(check_report(model, ranks) + constraints); });
   });
   return ExitCode::done;
 }
@@ -203,6 +203,8 @@ ExitCode guarded(const std::function<ExitCode()>& body) {
     return report(error.what(), ExitCode::io_failed);
   } catch (const std::filesystem::filesystem_error& error) {
     return report(error.what(), ExitCode::io_failed);
+  } catch (const std::bad_alloc&) {
+    return report("not enough memory: the deck is too large for this machine", ExitCode::bad_input);
   } catch (const std::exception& error) {
     return report(error.what(), ExitCode::simulation_failed);
   }

@@ -144,11 +144,12 @@ std::vector<Leaver> CoupledStep::check_inside() const {
   std::vector<Leaver> leavers = backend_.outside();
   for (const Leaver& l : leavers) {
     if (!l.lost && policy != Leaving::error) continue;
-    throw SimulationError(
-        fmt::format("stage accept: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}", l.global_id,
-                    l.position.x, l.position.y, l.position.z,
-                    l.lost ? "beyond a side that is a wall"
-                           : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
+    throw SimulationError(fmt::format(
+        "stage accept: particle {} is outside the space at ({:g}, {:g}, {:g}) m, {}", l.global_id,
+        l.position.x, l.position.y, l.position.z,
+        l.lost ? "beyond a side that is a wall: it overlapped the wall by more than its radius; the "
+                 "contact's stiffness is too low for this impact, or the step too long"
+               : "and space.leaving = \"error\" (allowed: error, remove, drift)"));
   }
   return leavers;
 }

@@ -84,7 +84,8 @@ Key make_key(const std::string& name, ValueType type, const std::string& unit = 
 
 std::string range_text(const Key& key) {
   if (std::isfinite(key.min) && std::isfinite(key.max))
-    return fmt::format(" from {} to {}", key.min, key.max);
+    return key.min_excluded ? fmt::format(" above {} and at most {}", key.min, key.max)
+                            : fmt::format(" from {} to {}", key.min, key.max);
   if (std::isfinite(key.min))
     return fmt::format("{}{}", key.min_excluded ? " above " : " of at least ", key.min);
   if (std::isfinite(key.max)) return fmt::format(" of at most {}", key.max);

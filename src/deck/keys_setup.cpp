@@ -77,6 +77,7 @@ const TableKeys& time_keys() {
            .about("Largest step."),
        real("tolerance", "")
            .only_for({"adaptive"})
+           .within(0, 1)
            .above(0)
            .otherwise("2e-8")
            .about("Allowed local error of a position per step: a particle's over its radius, a body's over "
@@ -112,8 +113,13 @@ const TableKeys& integrator_keys() {
            .otherwise("\"double\"")
            .about("GPU, velocity-verlet: mixed keeps state and sums at about double precision and computes "
                   "contact forces in single; the CPU computes in double either way."),
-       real("residual_tolerance", "").above(0).otherwise("1e-8").about("Of the iteration: scaled residual."),
+       real("residual_tolerance", "")
+           .within(0, 1)
+           .above(0)
+           .otherwise("1e-8")
+           .about("Of the iteration: scaled residual."),
        real("correction_tolerance", "")
+           .within(0, 1)
            .above(0)
            .otherwise("1e-8")
            .about("Of the iteration: correction of a position over the particle's radius."),

@@ -8,6 +8,7 @@
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
+#include "model/plausibility.hpp"
 
 namespace scree {
 
@@ -84,18 +85,22 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   build_materials(root, model, names);
   build_space(root, names, model);
   build_time(root, model);
-  build_bodies(root, model, names);
-  build_joints(root, model, names);
-  build_force_elements(root, model, names);
-  // The count is known before any particle is built.
-  naming_memory(model.particles.totals.count, share.size(), [&] {
-    build_particles(root, model, names, share, log);
+  check_bodies_inside(root, model.space);
+  ModelSize size = bodies_and_links(root);
+  naming_memory(size, share.size(), [&] {
+    check_memory(size, bytes_to_build_bodies(size, share.rank()), "building the bodies", share);
+    build_bodies(root, model, names);
+    build_joints(root, model, names);
+    build_force_elements(root, model, names);
+    build_particles(root, model, names, size, share, log);
     build_contact(root, model, names);
+    check_step_limits(root, model);
     build_steps(root, model);
     build_output(root, names, model);
     build_parallel(root, model);
     check_start_positions(root, model, share, log);
     check_steps(root, model, log);
+    for (const std::string& finding : implausible(root, model)) log.warning(finding);
   });
   return model;
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "model/build_parts.hpp"
+#include "model/plausibility.hpp"
 
 namespace scree {
 
@@ -11,12 +12,14 @@ Body body_of(const DeckTable& table, const ModelNames& names) {
   Body body;
   body.mass = table.real("mass");
   body.inertia = table.real("inertia");
+  for (const char* key : {"mass", "inertia"}) check_normal(table, key, table.real(key));
   body.position = table.vector("position");
   body.angle = table.real("angle");
   body.velocity = table.vector("velocity");
   body.angular_velocity = table.real("angular_velocity");
   if (body.velocity.z != 0) table.fail("velocity", "bodies move in the x-y plane; the z component must be 0");
   for (const DeckTable& shape : table.tables("shapes")) {
+    check_normal(shape, "radius", shape.real("radius"));
     body.shapes.push_back(
         {shape.vector("offset"), shape.real("radius"), find_material(names, shape, "material")});
   }

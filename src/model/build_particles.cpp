@@ -8,6 +8,7 @@
 #include "model/connections.hpp"
 #include "model/generators.hpp"
 #include "model/particle_file.hpp"
+#include "model/plausibility.hpp"
 #include "physics/particle_mass.hpp"
 
 namespace scree {
@@ -30,6 +31,7 @@ class Group {
 
   std::int64_t count() const { return count_; }
   bool is_random() const { return kind_ == "random"; }
+  void note_thickness(DiscThickness& discs) const;
   void warn_if_empty(Log& log) const;
   // Adds the particles of `part`, counted in the group. placed: what stands there already, for a random
   // group.
@@ -46,6 +48,9 @@ class Group {
   std::array<std::int64_t, 3> lattice_size() const;
   Vec3 lattice_origin() const;
   std::vector<Vec3> vectors_of(const std::string& prefix) const;
+  const char* mass_key() const {
+    return has_column("mass") ? "file" : table_.has("mass") ? "mass" : "radius";
+  }
   bool has_column(const std::string& name) const { return file_ && file_->has(name); }
 
   const DeckTable& table_;
@@ -80,6 +85,15 @@ void Group::warn_if_empty(Log& log) const {
   if (file_ && count_ == 0)
     log.warning(fmt::format("{}.file = \"{}\": the file has no rows; the group has no particles",
                             table_.path(), table_.text("file")));
+  if (kind_ == "list" && count_ == 0)
+    log.warning(fmt::format("{}.positions = []: the group has no particles", table_.path()));
+}
+
+void Group::note_thickness(DiscThickness& discs) const {
+  if (model_.space.dimension == 3 || count_ == 0 || has_column("mass") || table_.has("mass")) return;
+  const Real thickness = table_.real("thickness");
+  discs.smallest = discs.largest == 0 ? thickness : std::min(discs.smallest, thickness);
+  discs.largest = std::max(discs.largest, thickness);
 }
 
 void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<StartItem>& placed) {
@@ -88,6 +102,8 @@ void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<St
   if (!is_random()) place_regular();
   const RandomNumbers before_radii = random_;
   const std::vector<Real> radius = radii(), mass = masses(radius);
+  for (const Real r : radius) check_normal(table_, has_column("radius") ? "file" : "radius", r);
+  for (const Real m : mass) check_normal(table_, mass_key(), m);
   if (is_random()) place_random(placed, before_radii);
   const std::vector<Vec3> velocity = velocities();
   particles.position.insert(particles.position.end(), position_.begin(), position_.end());
@@ -147,6 +163,8 @@ void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers bef
   const PackingBox box{table_.vector("min"), table_.vector("max"), model_.space.dimension, table_.real("gap"),
                        table_.integer("tries")};
   const std::vector<Real> radius = draw(table_.table("radius"), count_, {0, count_}, before_radii);
+  if (const std::string trouble = packing_trouble(box, radius); !trouble.empty())
+    table_.fail("count", trouble);
   const std::vector<Vec3> places = random_packing(box, radius, placed, random_);
   if (places.size() < radius.size())
     table_.fail("count",
@@ -234,10 +252,20 @@ IdRange part_of_group(IdRange range, GlobalId first, std::int64_t count) {
   return {within(range.first), within(range.last)};
 }
 
+// Those of random groups and all that stand before the last of them, which they keep clear of.
+std::int64_t places_found(const std::vector<Group>& groups) {
+  std::int64_t before = 0, places = 0;
+  for (const Group& group : groups) {
+    before += group.count();
+    if (group.is_random()) places = before;
+  }
+  return places;
+}
+
 }  // namespace
 
-void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share,
-                     Log& log) {
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
+                     const Share& share, Log& log) {
   // Counts of 10^9 a group are far from overflow, whatever number of groups a deck can have.
   std::vector<Group> groups;
   std::int64_t count = 0;
@@ -245,9 +273,11 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
     for (const DeckTable& table : deck.tables("particles"))
       count += groups.emplace_back(table, names, model).count();
   });
-  for (const Group& group : groups) group.warn_if_empty(log);
-  model.particles.totals.count = count;
+  for (const Group& group : groups) group.warn_if_empty(log), group.note_thickness(model.disc_thickness);
+  model.particles.totals.count = size.particles = count;
   const IdRange own = share.part(count);
+  check_memory(size, bytes_to_build_particles(own.size(), places_found(groups)), "building the particles",
+               share);
   model.particles.first_id = own.first;
   GlobalId first = 0;
   for (Group& group : groups) {

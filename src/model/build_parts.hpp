@@ -4,6 +4,7 @@
 
 #include "base/log.hpp"
 #include "deck/deck.hpp"
+#include "model/memory.hpp"
 #include "model/model.hpp"
 #include "model/names.hpp"
 
@@ -15,9 +16,9 @@ void build_time(const DeckTable& deck, Model& model);  // control and end; also 
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
-// Warns of files without particles.
-void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, const Share& share,
-                     Log& log);
+// Warns of files without particles. size: of the bodies; gets the number of particles before any is built.
+void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
+                     const Share& share, Log& log);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_steps(const DeckTable& deck, Model& model);  // after the contacts, from which the first may follow
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
@@ -26,6 +27,9 @@ void build_parallel(const DeckTable& deck, Model& model);
 // A time function from a quantity of the deck.
 TimeFunction build_time_function(const DeckTable& table);
 
+// Whether the centres of the bodies' shapes lie in the space: an error. From the deck alone, before any body
+// is built.
+void check_bodies_inside(const DeckTable& deck, const Space& space);
 // Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
 // for smaller overlaps.
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);

@@ -9,11 +9,6 @@ namespace scree {
 
 namespace {
 
-Vec3 rotate(Vec3 v, Real angle) {
-  const Real c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
-}
-
 Connection named_pair(const DeckTable& table, const ModelNames& names) {
   Connection connection{table.text("name"), {}};
   const std::vector<std::string>& bodies = table.texts("bodies");
@@ -34,6 +29,11 @@ Connection named_pair(const DeckTable& table, const ModelNames& names) {
 }
 
 }  // namespace
+
+Vec3 rotate(Vec3 v, Real angle) {
+  const Real c = std::cos(angle), s = std::sin(angle);
+  return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
+}
 
 std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names) {
   if (table.has("bodies") + table.has("chain") + table.has("each") != 1) {

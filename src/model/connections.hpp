@@ -17,6 +17,9 @@ struct Connection {
   int body[2] = {kGround, kGround};
 };
 
+// About z [rad].
+Vec3 rotate(Vec3 v, Real angle);
+
 // From the keys bodies, chain or each. Throws InputError.
 std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names);
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "model/point_bins.hpp"
+#include "physics/random_packing.hpp"
 
 namespace scree {
 
@@ -20,6 +23,29 @@ Vec3 random_place(const PackingBox& box, Real radius, RandomNumbers& random) {
 bool fits(const PackingBox& box, Real radius) {
   const Vec3 extent = box.max - box.min;
   return extent.x >= 2 * radius && extent.y >= 2 * radius && (box.dimension == 2 || extent.z >= 2 * radius);
+}
+
+// Below so many the walls of the box and chance decide, not the fraction.
+constexpr std::size_t kMany = 1000;
+
+// About how many of a group find no place. radius: from large to small [m]. scale: so many times their
+// number. The chance of a place is taken twice as large as it is, to be on the safe side.
+Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, Real scale) {
+  constexpr std::size_t kParts = 200;
+  const Vec3 extent = box.max - box.min;
+  const Real volume =
+      (extent.x + box.gap) * (extent.y + box.gap) *
+      (box.dimension == 2 ? 1 : extent.z + box.gap);  // the gap keeps off neighbours, not walls
+  PackingSums sums;
+  Real failures = 0;
+  for (std::size_t part = 0, i = 0; part < kParts; ++part) {
+    const std::size_t end = (part + 1) * radius.size() / kParts;
+    const auto count = scale * static_cast<Real>(end - i);
+    for (; i < end; ++i) sums.add(box.dimension, radius[i] + box.gap / 2, scale / volume);
+    const Real chance = insertion_chance(box.dimension, sums, radius[i - 1] + box.gap / 2);
+    failures += count * std::exp(-2 * chance * static_cast<Real>(box.tries));
+  }
+  return failures;
 }
 
 void check_distribution(const DeckTable& table) {
@@ -93,9 +119,9 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
   const Real own = radius.empty() ? 0 : *std::max_element(radius.begin(), radius.end());
   Real largest = own;
   for (const StartItem& item : obstacles) largest = std::max(largest, item.radius);
-  PointBins bins(box.min, box.max, own + largest + box.gap, radius.size() + obstacles.size());
-  std::vector<StartItem> placed = obstacles;
-  for (const StartItem& item : obstacles) bins.insert(item.position);
+  const std::size_t expected = radius.size() + obstacles.size();
+  GrowingBins bins(PointCells(box.min, box.max, own + largest + box.gap, expected), expected);
+  for (const StartItem& item : obstacles) bins.insert(item.position, item.radius);
 
   std::vector<std::size_t> order(radius.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -106,18 +132,40 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
     const Real r = radius[order[n]];
     bool found = false;
     for (std::int64_t attempt = 0; attempt < box.tries && !found && fits(box, r); ++attempt) {
-      const Vec3 place = random_place(box, r, random);
-      found = bins.for_near(place, [&](int other) {
-        const StartItem& item = placed[static_cast<std::size_t>(other)];
-        return norm(place - item.position) >= r + item.radius + box.gap;
-      });
-      positions[order[n]] = place;
+      positions[order[n]] = random_place(box, r, random);
+      found = bins.is_clear(positions[order[n]], r, box.gap);
     }
     if (!found) return std::vector<Vec3>(n);
-    bins.insert(positions[order[n]]);
-    placed.push_back({positions[order[n]], r});
+    bins.insert(positions[order[n]], r);
   }
   return positions;
+}
+
+std::string packing_trouble(const PackingBox& box, std::vector<Real> radius) {
+  constexpr Real kCertain = 20;  // failures: chance would have to be kind as once in 10^8
+  const Vec3 extent = box.max - box.min;
+  std::sort(radius.begin(), radius.end(), std::greater<>());
+  PackingSums sums;
+  const Real volume = extent.x * extent.y * (box.dimension == 2 ? 1 : extent.z);
+  for (const Real r : radius) sums.add(box.dimension, r, 1 / volume);
+  const bool equal = !radius.empty() && radius.front() == radius.back();
+  const Real most_of_all = equal ? densest_fraction(box.dimension) : 1;
+  Real most = most_of_all;
+  const char* bound = "no packing fills more than";
+  if (radius.size() >= kMany && expected_failures(box, radius, 1) > kCertain) {
+    most = 0;
+    for (Real high = std::min(sums.fraction, most_of_all); high - most > 1e-3;) {
+      const Real middle = (most + high) / 2;
+      (expected_failures(box, radius, middle / sums.fraction) > kCertain ? high : most) = middle;
+    }
+    bound = "random places fill at most about";
+  }
+  if (sums.fraction <= most) return "";
+  return fmt::format(
+      "the particles are {:.3g} of the {} of their box (min, max), and {} {:.2g} of it{}; a larger "
+      "box, fewer or smaller particles are needed",
+      sums.fraction, box.dimension == 2 ? "area" : "volume", bound, most,
+      radius.size() < kMany ? "" : fmt::format(" in {} tries each", box.tries));
 }
 
 std::vector<Real> draw(const DeckTable& table, std::int64_t count, IdRange part, RandomNumbers& random) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -28,6 +29,10 @@ struct PackingBox {
 // the number placed, where a particle found no place.
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
                                  const std::vector<StartItem>& obstacles, RandomNumbers& random);
+
+// Why there cannot be room for all of them, before any place is tried; empty where there may be. Judges large
+// groups by the chance of a random place, small ones by their volume alone.
+std::string packing_trouble(const PackingBox& box, std::vector<Real> radius);
 
 // Entries [part.first, part.last) of `count` values of a distribution (a quantity of the deck): all of them
 // are drawn one after the other, as many as there are. Throws InputError on bounds or weights that make none.

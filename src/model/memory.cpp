@@ -2,17 +2,96 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
+#include "base/host_memory.hpp"
+#include "model/model.hpp"
+
 namespace scree {
 
-std::string memory_trouble(std::int64_t particles, int ranks) {
-  const Real all = kBytesPerParticle * static_cast<Real>(particles) / 1e9;
+namespace {
+
+// Measured as the growth of the peak memory of `scree check` from 10^5 to 10^6 of each [B]. Building a body
+// takes so much on every rank, its unknowns and those of a link on rank 0.
+constexpr Real kToBuildBody = 600, kToBuildUnknowns = 1400, kToBuildLink = 1600;
+// A particle and its entry in the search for overlaps; a place of a random group, with what it keeps clear
+// of.
+constexpr Real kToBuildParticle = 150, kToPlace = 130;
+
+Real gigabytes(Real bytes) { return bytes / 1e9; }
+
+}  // namespace
+
+std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+ModelSize bodies_and_links(const DeckTable& deck) {
+  ModelSize size;
+  std::map<std::string, std::int64_t> rows;
+  for (const DeckTable& table : deck.tables("bodies")) {
+    const std::int64_t count = table.has("count") ? table.integer("count") : 1;
+    rows[table.text("name")] = count;
+    size.bodies += count;
+  }
+  for (const char* key : {"joints", "spring_dampers", "torsional_spring_dampers"}) {
+    for (const DeckTable& table : deck.tables(key)) {
+      const char* row = table.has("chain") ? "chain" : "each";
+      size.links += table.has(row) ? rows[table.text(row)] : 1;
+    }
+  }
+  size.links += std::ssize(deck.tables("drivers")) + std::ssize(deck.tables("applied_forces"));
+  return size;
+}
+
+ModelSize size_of(const Model& model) {
+  return {model.particles.totals.count, std::ssize(model.bodies),
+          std::ssize(model.joints) + std::ssize(model.drivers) + std::ssize(model.spring_dampers) +
+              std::ssize(model.torsional_spring_dampers) + std::ssize(model.applied_forces)};
+}
+
+Real bytes_to_build_bodies(const ModelSize& size, int rank) {
+  const auto bodies = static_cast<Real>(size.bodies), links = static_cast<Real>(size.links);
+  return kToBuildBody * bodies + (rank == 0 ? kToBuildUnknowns * bodies + kToBuildLink * links : 0);
+}
+
+Real bytes_to_build_particles(std::int64_t own, std::int64_t placed) {
+  return kToBuildParticle * static_cast<Real>(own) + kToPlace * static_cast<Real>(placed);
+}
+
+void check_memory(const ModelSize& size, Real bytes, const std::string& task, const Share& share) {
+  const FreeMemory free = free_memory();
+  const Real together = share.sum_on_host(bytes);
+  share.together([&] {
+    const bool alone = bytes > free.process.bytes || together == bytes;
+    const MemoryBound& bound = bytes > free.process.bytes ? free.process : free.host;
+    const Real needed = alone ? bytes : together;
+    if (needed <= bound.bytes) return;
+    throw InputError(memory_trouble(
+        size, share.size(),
+        fmt::format("{} takes about {:.3g} GB{}, {:.3g} GB are free ({})", task, gigabytes(needed),
+                    alone ? "" : " for the ranks of a host", gigabytes(bound.bytes), bound.set_by)));
+  });
+}
+
+std::string memory_trouble(const ModelSize& size, int ranks, const std::string& finding) {
+  const Real particles = kBytesPerParticle * static_cast<Real>(size.particles);
+  // A body has three coordinates, a link two constraints at the most but for fixed joints.
+  const Real unknowns = kBytesPerUnknown * static_cast<Real>(3 * size.bodies + 2 * size.links);
+  std::string of = counted(size.particles, "particle", "particles");
+  if (size.bodies > 0) {
+    const std::string bodies = counted(size.bodies, "body", "bodies");
+    of = size.particles > 0 ? fmt::format("{} and {}", of, bodies) : bodies;
+  }
   const std::string where =
-      ranks == 1 ? "on one rank" : fmt::format("on {} ranks, {:.3g} GB on each", ranks, all / ranks);
-  return fmt::format(
-      "not enough memory: a run of {} particles takes about {:.3g} GB {}; start more ranks on more machines "
-      "(mpirun "
-      "-n), or take fewer particles",
-      particles, all, where);
+      ranks == 1 ? "on one rank"
+                 : fmt::format("on {} ranks, {:.3g} GB on {}", ranks, gigabytes(particles / ranks + unknowns),
+                               size.bodies > 0 ? "rank 0" : "each");
+  const char* advice = particles >= unknowns
+                           ? "start more ranks on more machines (mpirun -n), or take fewer particles"
+                           : "take fewer bodies, or a machine with more memory: rank 0 has them all";
+  return fmt::format("not enough memory: {}{}a run of {} takes about {:.3g} GB {}; {}", finding,
+                     finding.empty() ? "" : "; ", of, gigabytes(particles + unknowns), where, advice);
 }
 
 }  // namespace scree

@@ -7,24 +7,54 @@
 
 #include "base/error.hpp"
 #include "base/types.hpp"
+#include "deck/deck.hpp"
+#include "model/share.hpp"
 
 namespace scree {
+
+struct Model;
 
 // Estimate of what one particle of a run keeps in memory [B]: state, scratch and a list of some ten
 // neighbours.
 constexpr Real kBytesPerParticle = 600;
+// The same of one coordinate or constraint of the multibody side, on rank 0: a few vectors and the sparse
+// factors [B].
+constexpr Real kBytesPerUnknown = 1000;
 
-// How many particles there are, about what they take and what to do. particles: of all ranks.
-std::string memory_trouble(std::int64_t particles, int ranks);
+// What the memory of a model depends on. Links: joints, drivers and force elements.
+struct ModelSize {
+  std::int64_t particles = 0, bodies = 0, links = 0;
+};
 
-// Runs an action on behalf of a run of so many particles, whose number may become known on the way. Throws
-// InputError where it runs out of memory.
+// From the deck alone, before anything is built; without the particles, whose files may have to be looked
+// through.
+ModelSize bodies_and_links(const DeckTable& deck);
+ModelSize size_of(const Model& model);
+
+// "1 body", "3 bodies".
+std::string counted(std::int64_t count, const std::string& one, const std::string& many);
+
+// What building the model takes on the way and keeps [B], estimated: of the bodies on this rank, and of
+// particles. own: those of this rank; placed: those that a random group places or keeps clear of, which every
+// rank does for itself.
+Real bytes_to_build_bodies(const ModelSize& size, int rank);
+Real bytes_to_build_particles(std::int64_t own, std::int64_t placed);
+
+// Throws InputError, on all ranks, where one of them, or those of a host together, need more than is free
+// there. bytes: of this rank. task: "building the model". Collective.
+void check_memory(const ModelSize& size, Real bytes, const std::string& task, const Share& share);
+
+// What a model takes and what to do; finding: what is known of the trouble, may be empty.
+std::string memory_trouble(const ModelSize& size, int ranks, const std::string& finding = "");
+
+// Runs an action on behalf of a model of this size, which may become known on the way. Throws InputError
+// where it runs out of memory.
 template <class Action>
-auto naming_memory(const std::int64_t& particles, int ranks, const Action& action) {
+auto naming_memory(const ModelSize& size, int ranks, const Action& action) {
   try {
     return action();
   } catch (const std::bad_alloc&) {
-    throw InputError(memory_trouble(particles, ranks));
+    throw InputError(memory_trouble(size, ranks));
   }
 }
 

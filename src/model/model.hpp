@@ -93,6 +93,11 @@ struct Output {
   std::vector<GlobalId> history_particles;  // global ids
 };
 
+// Of the discs of a 2D model whose masses follow from densities; 0 where there are none.
+struct DiscThickness {
+  Real smallest = 0, largest = 0;  // [m]
+};
+
 // How ghosts travel between the GPUs of several ranks.
 enum class Transport { automatic, cuda_aware, nccl, staged };
 
@@ -109,6 +114,7 @@ struct Model {
   Contact contact;
   std::vector<Wall> walls;  // the deck's planes, then the sides of the space that are walls
   ParticleSet particles;    // start state; this rank's part
+  DiscThickness disc_thickness;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
   std::vector<Driver> drivers;

@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "physics/particle_mass.hpp"
+
 namespace scree {
 namespace {
 
@@ -24,12 +26,13 @@ Real smallest_of_all(const Share& share, Real value) {
 void count_particles(ParticleSet& particles, int materials, const Share& share) {
   ParticleTotals totals;
   const auto slots = static_cast<std::size_t>(materials);
-  Extremes radius, mass, radii_per_second;
+  Extremes radius, mass, density, radii_per_second;
   std::vector<std::int64_t> count(slots);
   std::vector<Extremes> radius_of(slots), mass_of(slots);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto material = static_cast<std::size_t>(particles.material[i]);
     radius.add(particles.radius[i]), mass.add(particles.mass[i]), ++count[material];
+    density.add(particles.mass[i] / sphere_mass(particles.radius[i], 1));
     radii_per_second.add(norm(particles.velocity[i]) / particles.radius[i]);
     radius_of[material].add(particles.radius[i]), mass_of[material].add(particles.mass[i]);
   }
@@ -38,6 +41,8 @@ void count_particles(ParticleSet& particles, int materials, const Share& share) 
   totals.largest_radius = share.max(radius.largest);
   totals.smallest_mass = smallest_of_all(share, mass.smallest);
   totals.largest_mass = share.max(mass.largest);
+  totals.smallest_density = smallest_of_all(share, density.smallest);
+  totals.largest_density = share.max(density.largest);
   totals.most_radii_per_second = share.max(radii_per_second.largest);
   for (std::size_t m = 0; m < slots; ++m)
     totals.materials.push_back({share.sum(count[m]), smallest_of_all(share, radius_of[m].smallest),

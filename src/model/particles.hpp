@@ -16,10 +16,11 @@ struct ParticleTotals {
     Real smallest_radius = 0, smallest_mass = 0;  // [m], [kg]
   };
   std::int64_t count = 0;
-  Real smallest_radius = 0, largest_radius = 0;  // [m]
-  Real smallest_mass = 0, largest_mass = 0;      // [kg]
-  Real most_radii_per_second = 0;                // speed over the particle's own radius [1/s]
-  std::vector<OfMaterial> materials;             // as many as Contact::material_names
+  Real smallest_radius = 0, largest_radius = 0;    // [m]
+  Real smallest_mass = 0, largest_mass = 0;        // [kg]
+  Real smallest_density = 0, largest_density = 0;  // of spheres with these radii and masses [kg/m^3]
+  Real most_radii_per_second = 0;                  // speed over the particle's own radius [1/s]
+  std::vector<OfMaterial> materials;               // as many as Contact::material_names
 };
 
 // Structure of arrays, one entry per particle of this rank. The global id is the deck's order, counted from

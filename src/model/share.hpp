@@ -35,6 +35,8 @@ class Share {
   virtual std::int64_t min(std::int64_t value) const { return value; }
   // Largest of values >= 0.
   virtual Real max(Real value) const { return value; }
+  // Of the ranks on this rank's host.
+  virtual Real sum_on_host(Real value) const { return value; }
   // The items of all ranks, on every rank.
   virtual std::vector<StartItem> everywhere(std::vector<StartItem> own) const { return own; }
   // Deals the items out, some of them to several ranks, so that any two that come within `reach` [m] of each

@@ -85,15 +85,19 @@ bool is_inside(const Space& space, Vec3 p) {
          (space.dimension == 2 || within(kZMin, p.z, space.min.z, space.max.z));
 }
 
-void check_inside(const DeckTable& deck, const Model& model, const std::vector<StartItem>& items) {
-  const Space& space = model.space;
-  for (const StartItem& item : items) {
-    const Vec3 p = item.position;
-    if (is_inside(space, p)) continue;
-    deck.table("space").fail(
-        "max", fmt::format("{} starts at ({}, {}, {}), outside the space from ({}, {}, {}) to ({}, {}, {})",
-                           ItemNames(model).name(item.number), p.x, p.y, p.z, space.min.x, space.min.y,
-                           space.min.z, space.max.x, space.max.y, space.max.z));
+[[noreturn]] void refuse_outside(const DeckTable& deck, const Space& space, const std::string& name, Vec3 p) {
+  deck.table("space").fail(
+      "max",
+      fmt::format("{} starts at ({}, {}, {}), outside the space from ({}, {}, {}) to ({}, {}, {})", name, p.x,
+                  p.y, p.z, space.min.x, space.min.y, space.min.z, space.max.x, space.max.y, space.max.z));
+}
+
+void check_particles_inside(const DeckTable& deck, const Model& model) {
+  for (std::size_t i = 0; i < model.particles.size(); ++i) {
+    const Vec3 p = model.particles.position[i];
+    if (!is_inside(model.space, p))
+      refuse_outside(deck, model.space,
+                     fmt::format("particle {}", model.particles.first_id + static_cast<GlobalId>(i)), p);
   }
 }
 
@@ -164,21 +168,19 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
   const ItemNames names(model);
   const std::vector<std::pair<int, int>> connected = connected_bodies(model);
   const Box box = box_around(items);
-  PointBins bins(box.min, box.max, reach, items.size());
-  for (const StartItem& item : items) bins.insert(item.position);
+  const SortedBins bins(PointCells(box.min, box.max, reach, items.size()), items);
   for (const Vec3 shift : image_shifts(model.space)) {
-    for (const StartItem& item : items) {
+    for (const StartItem& item : bins.items()) {
       const Vec3 p = item.position + shift;
       if (!is_within(box, p, reach)) continue;
-      bins.for_near(p, [&](int number) {
-        const StartItem& other = items[static_cast<std::size_t>(number)];
-        if (other.number >= item.number) return true;
-        const Real overlap = item.radius + other.radius - norm(p - other.position);
-        const Real ratio = overlap / std::min(item.radius, other.radius);
+      bins.for_near(p, [&](const StartItem& other) {
+        const Vec3 apart = p - other.position;
+        const Real touching = item.radius + other.radius;
+        if (other.number >= item.number || !(dot(apart, apart) < touching * touching)) return;
+        const Real ratio = (touching - norm(apart)) / std::min(item.radius, other.radius);
         if (ratio >= worst.ratio && ratio > 0 &&
             may_touch(model, connected, names.body(item.number), names.body(other.number)))
           worst.meet(ratio, other.number, item.number);
-        return true;
       });
     }
   }
@@ -265,11 +267,29 @@ void check_speeds(const Model& model, Real step, Log& log) {
 
 }  // namespace
 
+void check_bodies_inside(const DeckTable& deck, const Space& space) {
+  for (const DeckTable& table : deck.tables("bodies")) {
+    const bool row = table.has("count");
+    const std::int64_t count = row ? table.integer("count") : 1;
+    for (const DeckTable& shape : table.tables("shapes")) {
+      const Vec3 first = table.vector("position"), spacing = table.vector("spacing"),
+                 offset = rotate(shape.vector("offset"), table.real("angle"));
+      for (std::int64_t i = 0; i < count; ++i) {
+        const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
+        if (is_inside(space, p)) continue;
+        const std::string& name = table.text("name");
+        refuse_outside(deck, space,
+                       row ? fmt::format("body \"{}.{}\"", name, i) : fmt::format("body \"{}\"", name), p);
+      }
+    }
+  }
+}
+
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log) {
   // Round-off of exactly touching neighbours.
   constexpr Real kRoundOff = 1e-9;
+  share.together([&] { check_particles_inside(deck, model); });
   std::vector<StartItem> items = collect_items(model, share);
-  share.together([&] { check_inside(deck, model, items); });
   bring_into_periodic_box(model.space, items);
   WorstOverlap own;
   find_wall_overlaps(model, items, own);

@@ -110,6 +110,15 @@ int Ranks::local_rank() const {
   return local;
 }
 
+Real Ranks::sum_on_host(Real value) const {
+  if (alone()) return value;
+  MPI_Comm host;
+  MPI_Comm_split_type(communicator_of(communicator_), MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host);
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, host);
+  MPI_Comm_free(&host);
+  return value;
+}
+
 bool Ranks::mpi_takes_device_memory() {
 #if defined(MPIX_CUDA_AWARE_SUPPORT) && MPIX_CUDA_AWARE_SUPPORT
   return MPIX_Query_cuda_support() == 1;

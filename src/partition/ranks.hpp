@@ -29,6 +29,8 @@ class Ranks {
   bool alone() const { return size_ == 1; }
   // Number of this rank among those of its host. Collective.
   int local_rank() const;
+  // Sum over the ranks of this rank's host, rounded. Collective.
+  Real sum_on_host(Real value) const;
   // Whether the MPI library says that it reads and writes device memory.
   static bool mpi_takes_device_memory();
   int communicator() const { return communicator_; }  // Fortran handle; for the other parts of this room

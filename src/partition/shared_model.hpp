@@ -15,6 +15,7 @@ class RanksShare : public Share {
   std::int64_t sum(std::int64_t value) const override { return ranks_.sum(value); }
   std::int64_t min(std::int64_t value) const override { return ranks_.min(value); }
   Real max(Real value) const override { return ranks_.max(value); }
+  Real sum_on_host(Real value) const override { return ranks_.sum_on_host(value); }
   std::vector<StartItem> everywhere(std::vector<StartItem> own) const override {
     return ranks_.gather_everywhere(std::move(own));
   }

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <vector>
 
+#include "base/host_memory.hpp"
 #include "dem/device.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
@@ -13,9 +16,12 @@ namespace scree {
 
 namespace {
 
-// Estimate of what one coordinate or constraint of the multibody side keeps in memory: a few vectors and the
-// sparse factors.
-constexpr Real kBytesPerUnknown = 1000;
+// In files without compression, of a run of 300,000 particles and of one of 10,000 bodies: of a particle, of
+// a shape or body [B].
+constexpr Real kSnapshotParticle = 100, kSnapshotShape = 160, kCheckpointParticle = 162,
+               kCheckpointBody = 160;
+
+constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
 int constraint_count(const Model& model) {
   int count = static_cast<int>(model.drivers.size());
@@ -32,33 +38,75 @@ std::string range(Real smallest, Real largest, const char* unit) {
   return fmt::format("{:.6g} to {:.6g} {}", smallest, largest, unit);
 }
 
+std::string sides_line(const Space& space) {
+  constexpr std::array<const char*, 3> kKinds = {"open", "wall", "periodic"},
+                                       kLeaving = {"error", "remove", "drift"};
+  const auto kind = [&](int side) { return kKinds[static_cast<std::size_t>(space.boundary[side])]; };
+  std::string sides;
+  bool open = false;
+  for (int side = 0; side < 2 * space.dimension; ++side) {
+    sides +=
+        fmt::format("{}{} {}", side == 0 ? "" : ", ", kSideNames[static_cast<std::size_t>(side)], kind(side));
+    open = open || space.boundary[side] == Boundary::open;
+  }
+  return fmt::format("sides          {}{}\n", sides,
+                     open ? fmt::format("; a particle that leaves: \"{}\"",
+                                        kLeaving[static_cast<std::size_t>(space.leaving)])
+                          : "");
+}
+
+std::string gravity_line(Vec3 gravity) {
+  const Real size = norm(gravity);
+  if (size == 0) return "gravity        none\n";
+  const std::array<Real, 3> parts = {gravity.x, gravity.y, gravity.z};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::abs(parts[axis]) == size)
+      return fmt::format("gravity        {} m/s^2 along {}{}\n", size, parts[axis] < 0 ? '-' : '+',
+                         "xyz"[axis]);
+  return fmt::format("gravity        {:.6g} m/s^2 along ({:.4g}, {:.4g}, {:.4g})\n", size, gravity.x / size,
+                     gravity.y / size, gravity.z / size);
+}
+
 std::string space_lines(const Model& model, int ranks) {
   const Space& space = model.space;
   const auto corner = [&](Vec3 p) {
     return space.dimension == 2 ? fmt::format("({}, {})", p.x, p.y)
                                 : fmt::format("({}, {}, {})", p.x, p.y, p.z);
   };
-  std::string lines = fmt::format("space          {}D, {} to {} m, {} wall(s)\n", space.dimension,
-                                  corner(space.min), corner(space.max), model.walls.size());
+  std::string lines = fmt::format("space          {}D, {} to {} m, {}\n", space.dimension, corner(space.min),
+                                  corner(space.max), counted(std::ssize(model.walls), "wall", "walls"));
+  lines += sides_line(space) + gravity_line(model.gravity);
   const ParticleTotals& particles = model.particles.totals;
   if (particles.count == 0) return lines + "particles      none\n";
-  return lines + fmt::format("particles      {}{}, radius {}, mass {}\n", particles.count,
-                             ranks == 1 ? "" : fmt::format(" on {} ranks together", ranks),
-                             range(particles.smallest_radius, particles.largest_radius, "m"),
-                             range(particles.smallest_mass, particles.largest_mass, "kg"));
+  lines += fmt::format("particles      {}{}, radius {}, mass {}\n", particles.count,
+                       ranks == 1 ? "" : fmt::format(" on {} ranks together", ranks),
+                       range(particles.smallest_radius, particles.largest_radius, "m"),
+                       range(particles.smallest_mass, particles.largest_mass, "kg"));
+  if (model.disc_thickness.largest == 0) return lines;
+  return lines + fmt::format(
+                     "thickness      {}, of discs whose mass follows from a density; assumed: 1 m, where "
+                     "particles.thickness is left out\n",
+                     range(model.disc_thickness.smallest, model.disc_thickness.largest, "m"));
 }
 
 std::string multibody_lines(const Model& model) {
   if (model.bodies.empty()) return "bodies         none\n";
-  std::size_t shapes = 0;
-  for (const Body& body : model.bodies) shapes += body.shapes.size();
+  std::int64_t shapes = 0, bare = 0;
+  for (const Body& body : model.bodies) shapes += std::ssize(body.shapes), bare += body.shapes.empty();
   const int coordinates = 3 * static_cast<int>(model.bodies.size()), constraints = constraint_count(model);
-  return fmt::format("bodies         {} with {} shape(s), {} joint(s), {} driver(s), {} force element(s)\n",
-                     model.bodies.size(), shapes, model.joints.size(), model.drivers.size(),
-                     model.spring_dampers.size() + model.torsional_spring_dampers.size() +
-                         model.applied_forces.size()) +
-         fmt::format("unknowns       {} coordinates, {} constraints: {} degrees of freedom\n", coordinates,
-                     constraints, coordinates - constraints);
+  const std::int64_t elements = std::ssize(model.spring_dampers) +
+                                std::ssize(model.torsional_spring_dampers) + std::ssize(model.applied_forces);
+  std::string lines =
+      fmt::format("bodies         {} with {}, {}, {}, {}\n", model.bodies.size(),
+                  counted(shapes, "shape", "shapes"), counted(std::ssize(model.joints), "joint", "joints"),
+                  counted(std::ssize(model.drivers), "driver", "drivers"),
+                  counted(elements, "force element", "force elements"));
+  if (bare > 0 && !model.walls.empty())
+    lines += fmt::format("               {} no shapes: {} through walls and touch{} nothing\n",
+                         counted(bare, "body has", "bodies have"), bare == 1 ? "it passes" : "they pass",
+                         bare == 1 ? "es" : "");
+  return lines + fmt::format("unknowns       {} coordinates, {} constraints: {}\n", coordinates, constraints,
+                             counted(coordinates - constraints, "degree of freedom", "degrees of freedom"));
 }
 
 std::string limit_lines(const Model& model) {
@@ -88,18 +136,50 @@ std::string time_lines(const Model& model) {
   const Integrator& integrator = model.integrator;
   const bool fixed = time.control == StepControl::fixed;
   std::string lines = fmt::format("time           0 to {} s, ", time.end);
-  lines += fixed
-               ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, std::ceil(time.end / time.step))
-               : fmt::format("adaptive steps from {:.4g} to {:.4g} s, the first of {:.4g} s, tolerance {}\n",
-                             time.min_step, time.max_step, time.step, time.tolerance);
-  const std::string particles = integrator.particles == ParticleIntegrator::hht
-                                    ? "the same"
-                                    : fmt::format("velocity-verlet, {} substep(s)", integrator.substeps);
+  lines += fixed ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, std::ceil(time.end / time.step))
+                 : fmt::format(
+                       "adaptive steps from {:.4g} to {:.4g} s ({:.0f} at least), the first of {:.4g} s, "
+                       "tolerance {}\n",
+                       time.min_step, time.max_step, std::ceil(time.end / time.max_step), time.step,
+                       time.tolerance);
+  const std::string particles =
+      integrator.particles == ParticleIntegrator::hht
+          ? "the same"
+          : "velocity-verlet, " + counted(integrator.substeps, "substep", "substeps");
   return lines + fmt::format("integrator     bodies HHT with alpha = {}; particles {}\n",
                              integrator.hht_alpha, particles);
 }
 
-std::string megabytes(Real bytes) { return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0); }
+std::string megabytes(Real bytes) {
+  if (bytes < 1e5) return fmt::format("{:.{}f} kB", bytes / 1e3, bytes < 1e4 ? 1 : 0);
+  return fmt::format("{:.{}f} MB", bytes / 1e6, bytes < 1e7 ? 2 : 0);
+}
+
+// Of the start, every interval, and the end; an end that an interval meets counts once.
+Real outputs(Real end, Real interval) {
+  if (interval == 0) return 2;
+  const Real intervals = end / interval;
+  return 1 + std::ceil(intervals * (1 - 1e-9));
+}
+
+std::string output_lines(const Model& model) {
+  const auto particles = static_cast<Real>(model.particles.totals.count);
+  Real shapes = 0;
+  for (const Body& body : model.bodies) shapes += static_cast<Real>(body.shapes.size());
+  const Real snapshots = outputs(model.time.end, model.output.snapshot_interval),
+             size = kSnapshotParticle * particles + kSnapshotShape * shapes,
+             state =
+                 kCheckpointParticle * particles + kCheckpointBody * static_cast<Real>(model.bodies.size());
+  const Real interval = model.output.checkpoint_interval;
+  const std::string checkpoints = interval == 0
+                                      ? "one at the end"
+                                      : fmt::format("{:.0f} on the way and one at the end",
+                                                    std::ceil(model.time.end / interval * (1 - 1e-9)) - 1);
+  return fmt::format("snapshots      {:.0f} of about {}, {} together{}\n", snapshots, megabytes(size),
+                     megabytes(snapshots * size),
+                     model.output.compression > 0 ? ", before compression" : "") +
+         fmt::format("checkpoints    {}, about {} each\n", checkpoints, megabytes(state));
+}
 
 // Rank 0 has all unknowns, and its share of the particles.
 std::string memory_line(const Model& model, int ranks) {
@@ -109,13 +189,30 @@ std::string memory_line(const Model& model, int ranks) {
   const std::string most = ranks == 1 ? ""
                                       : fmt::format(" on all ranks together, {} on rank 0",
                                                     megabytes(particles / ranks + unknowns));
+  const FreeMemory free = free_memory();
+  const MemoryBound& bound = free.process.bytes < free.host.bytes ? free.process : free.host;
   return fmt::format(
-      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown)\n",
-      megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown);
+      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown); {} "
+      "are free here "
+      "({})\n",
+      megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown, megabytes(bound.bytes),
+      bound.set_by);
+}
+
+// The estimate counts neighbours and images where radii differ or sides are periodic: whether there is room
+// for that.
+bool can_estimate_device(const Model& model, const Ranks& ranks) {
+  constexpr Real kToEstimate = 300;  // measured [B]
+  const FreeMemory free = free_memory();
+  const Real bytes = kToEstimate * static_cast<Real>(model.particles.size()),
+             together = ranks.sum_on_host(bytes);
+  return !ranks.any(bytes > free.process.bytes || together > free.host.bytes);
 }
 
 // Of the GPU that is the fullest, where ranks share GPUs or hosts differ.
 std::string device_memory_line(const Model& model, const Ranks& ranks) {
+  if (!can_estimate_device(model, ranks))
+    return "device memory  too little memory is free here to estimate it\n";
   const std::string line =
       fmt::format("device memory  about {} {} (estimate)", megabytes(static_cast<Real>(device_memory(model))),
                   ranks.alone() ? "on the GPU" : "on the GPU of each rank");
@@ -146,7 +243,8 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
 std::string check_report(const Model& model, const Ranks& ranks) {
   const std::string title = model.title.empty() ? "" : "title          " + model.title + "\n";
   return title + space_lines(model, ranks.size()) + multibody_lines(model) + limit_lines(model) +
-         time_lines(model) + fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
+         time_lines(model) + output_lines(model) +
+         fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
          memory_line(model, ranks.size()) + device_memory_line(model, ranks);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "partition/id_order.hpp"
+#include "run/bodies_outside.hpp"
 
 namespace scree {
 namespace {
@@ -25,6 +26,7 @@ void step_columns(Columns& out) {
   add("rejected_newton", "1", "steps rejected for want of convergence so far");
   add("contacts", "1", "touching pairs, walls and body shapes included");
   add("left", "1", "particles that have left the space so far");
+  add("bodies_outside", "1", "bodies whose centre is outside the space");
 }
 
 void energy_columns(Columns& out) {
@@ -166,6 +168,7 @@ void Recorder::energy_row(State& state, std::vector<Real>& row) {
 
   row.push_back(static_cast<Real>(particles.contacts));
   row.push_back(static_cast<Real>(state.carried_out.left));
+  row.push_back(static_cast<Real>(bodies_outside(model_, state.bodies).count));
   for (const Real entry : ledger.entries()) row.push_back(entry);
   row.insert(row.end(), {ledger.mechanical(), ledger.accounted() - balance.start, balance.exchanged});
   append(row, particles.momentum);

@@ -10,9 +10,12 @@
 #include <ctime>
 
 #include "dem/device.hpp"
+#include "model/memory.hpp"
 #include "output/results_folder.hpp"
 #include "output/run_record.hpp"
 #include "partition/id_order.hpp"
+#include "partition/shared_model.hpp"
+#include "run/bodies_outside.hpp"
 #include "run/step_loop.hpp"
 
 namespace scree {
@@ -50,6 +53,10 @@ std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const 
 
 std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   log.info("backend cpu: " + why);
+  const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
+  check_memory(size_of(model),
+               kBytesPerParticle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns,
+               "running it on the CPU", RanksShare(ranks));
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   if (model.parallel.transport != Transport::automatic)
@@ -132,6 +139,7 @@ class Simulation {
   // Takes the state's particles away.
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
+  void watch_bodies(const State& state);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
   void keep_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
@@ -157,6 +165,7 @@ class Simulation {
   double loop_seconds_ = 0;
   Real start_time_ = 0;
   int tenths_reported_ = 0;
+  bool body_left_ = false;
   std::string state_hash_;
   std::int64_t list_entries_ = 0, migrated_ = 0;  // of all ranks
 };
@@ -206,6 +215,18 @@ void Simulation::checkpoint(State& state, const std::string& name) {
   state.particles = {};
 }
 
+// Warns once.
+void Simulation::watch_bodies(const State& state) {
+  if (body_left_) return;
+  const BodiesOutside outside = bodies_outside(model_, state.bodies);
+  body_left_ = outside.count > 0;
+  if (body_left_)
+    log_.warning(
+        fmt::format("body \"{}\" is outside the space at t = {:.6g} s: bodies that leave are counted, "
+                    "neither stopped nor removed",
+                    model_.bodies[outside.first].name, state.clock.time));
+}
+
 void Simulation::progress(const State& state, Real h) {
   const double since = std::chrono::duration<double>(Clock::now() - last_progress_).count();
   const Real share = (state.clock.time - start_time_) / (model_.time.end - start_time_);
@@ -235,13 +256,17 @@ ExitCode Simulation::run() {
 
 ExitCode Simulation::run_to_the_end() {
   ranks_.on_root([&] { write_record("running", ExitCode::done); });
-  log_.info(fmt::format("{} particles, {} bodies, backend {}, multibody solver {}",
-                        model_.particles.totals.count, model_.bodies.size(), backend_->description(),
+  log_.info(fmt::format("{}, {}, backend {}, multibody solver {}",
+                        counted(model_.particles.totals.count, "particle", "particles"),
+                        counted(std::ssize(model_.bodies), "body", "bodies"), backend_->description(),
                         link_.multibody() ? link_.multibody()->solver_description() : "none"));
   const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
-      [this](const State& s, Real h) { progress(s, h); });
+      [this](const State& s, Real h) {
+        watch_bodies(s);
+        progress(s, h);
+      });
   try {
     const Clock::time_point start = Clock::now();
     const LoopEnd end = loop.run();
@@ -335,6 +360,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"particles", model_.particles.totals.count},
                    {"bodies", static_cast<std::int64_t>(model_.bodies.size())},
                    {"left", state_.carried_out.left},
+                   {"bodies_outside", bodies_outside(model_, state_.bodies).count},
                    {"history_rows", state_.history_rows},
                    {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
   const BalanceState& b = state_.balance;
@@ -355,8 +381,11 @@ void Simulation::summarize() const {
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
       n.linear_iterations, backend_->list_builds()));
-  log_.info(fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} particles left the space",
-                        b.last.accounted() - b.start, b.exchanged, state_.carried_out.left));
+  const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
+  log_.info(fmt::format(
+      "energy balance error {:.2e} J of {:.4g} J exchanged; {} left the space{}",
+      b.last.accounted() - b.start, b.exchanged, counted(state_.carried_out.left, "particle", "particles"),
+      outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
   log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,
                         options_.output_directory));
 }

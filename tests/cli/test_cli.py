@@ -1,13 +1,16 @@
 """The command line: exit codes, messages, restart, signals. Usage: SCREE=path/to/scree python3 test_cli.py"""
 
 import itertools
+import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 SCREE = os.environ["SCREE"]
@@ -160,11 +163,25 @@ class UsageTest(CommandLineTest):
 
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
-        for word in ("particles      6", "bodies         1", "degrees of freedom", "contact", "rebounds within 2 % at steps",
+        for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; a particle "
+                     'that leaves: "drift"', "snapshots      2 of about 0.8 kB", "checkpoints    one at the end, about 1.1 kB",
+                     "particles      6", "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
+                     "degrees of freedom", "contact", "rebounds within 2 % at steps",
                      "fixed step 0.0001 s (4000 steps)", "memory", "petsc"):
             self.assertIn(word, text)
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU \(estimate\); .+")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["deck.toml"])
+
+    def test_check_says_what_a_deck_does_not(self):
+        bare = DECK.replace("shapes = [{ radius = 0.1 }]\n", "") + '[[walls]]\nname = "w"\npoint = [0.0, -0.9]\nnormal = [0.0, 1.0]\n'
+        deck = self.write("bare.toml", bare.replace("mass = 1.0\nvelocity", "density = 100.0\nvelocity"))
+        text = self.expect(DONE, "check", deck).stdout
+        self.assertIn("1 body has no shapes: it passes through walls and touches nothing\n", text)
+        self.assertIn("thickness      1 m, of discs whose mass follows from a density; assumed: 1 m", text)
+        nothing = self.write("nothing.toml", DECK[:DECK.index("[[contact")])
+        result = self.expect(DONE, "check", nothing)
+        self.assertIn("warning: the deck has no particles and no bodies", result.stderr)
+        self.assertIn("solver         none\n", result.stdout)
 
 
 class DeckErrorTest(CommandLineTest):
@@ -286,9 +303,33 @@ class RunTest(CommandLineTest):
         limited = ("bash", "-c", 'ulimit -v 4000000; exec "$@"', "bash")  # [KiB]
         for words in ("check", deck), ("run", deck, "--output", self.folder / "out"):
             message = self.expect(BAD_INPUT, *words, launcher=limited).stderr
-            self.assertIn("error: not enough memory: a run of 900000000 particles takes about 540 GB on one rank; "
-                          "start more ranks on more machines", message)
+            self.assertRegex(message, r"error: not enough memory: building the particles takes about 135 GB, "
+                                      r"[0-9.]+ GB are free \(.+\); a run of 900000000 particles and 1 body takes about 540 GB on one rank; "
+                                      r"start more ranks on more machines")
         self.assertFalse((self.folder / "out").exists())
+
+    def test_decks_that_cannot_be_built_are_refused_at_once(self):
+        row = '[[bodies]]\nname = "row"\ncount = {}\nspacing = [{}, 0.0]\nposition = [-0.3, 0.9]\nmass = 1.0\ninertia = 0.01\n' \
+              "shapes = [{{ radius = 1e-9 }}]\n"
+        group = '[[particles]]\nname = "many"\nkind = "random"\ncount = {}\nmin = [-0.3, -1.0]\nmax = [0.3, 0.9]\n' \
+                "radius = {}\nmass = 1.0\n"
+        cases = ((row.format(10000000, 1e-9), r"not enough memory: building the bodies takes about 20 GB, [0-9.]+ GB are "
+                  r"free \(ulimit -v, the address space\); a run of 10000001 bodies takes about 30 GB on one rank; take fewer bodies"),
+                 (row.format(6000000, 2e-7), r'body "row\.[0-9]+" starts at \(0\.35.+, outside the space'),
+                 (group.format(1000000000, 1e-6), "not enough memory: building the particles takes about 280 GB"),
+                 (group.format(1000000, 0.01), r"particles\.many\.count = 1000000: the particles are 276 of the area of their box "
+                  r"\(min, max\), and random places fill at most about 0\.5[0-9]* of it in 10000 tries each"))
+        for text, message in cases:
+            with self.subTest(message=message):
+                deck = self.write("many.toml", DECK.replace("x_min = \"periodic\"\nx_max = \"periodic\"\n", "") + text)
+                limit = () if SANITIZED else ("bash", "-c", 'ulimit -v 4000000; exec "$@"', "bash")  # [KiB]
+                if SANITIZED and "memory" in message:
+                    continue
+                begin = time.monotonic()
+                self.assertRegex(self.expect(BAD_INPUT, "check", deck, launcher=limit).stderr, message)
+                spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+                self.assertLess(spent.ru_maxrss, 1e6)  # [kB], of the largest child so far
+                self.assertLess(time.monotonic() - begin, 30)  # under a second on an idle machine
 
     def test_output_that_cannot_be_written(self):
         self.write("file", "not a folder")
@@ -328,6 +369,29 @@ class FailureTest(CommandLineTest):
                 message = self.failure("--set", "space.leaving=error", "--set", "particles.0.velocity=[0, 30]", *words)
                 self.assertRegex(message, r"stage accept: particle [45] is outside the space")
                 self.assertIn("space.leaving", message)
+
+    def test_a_particle_that_goes_through_a_wall(self):
+        soft = ("--set", "space.y_max=wall", "--set", "particles.0.velocity=[0, 30]", "--set", "contact.pairs.0.stiffness=100")
+        message = self.failure(*soft)
+        self.assertIn("beyond a side that is a wall: it overlapped the wall by more than its radius; the contact's stiffness "
+                      "is too low for this impact", message)
+        self.assertIn("warning: contact \"default\" on \"default\": the stiffness is too low for impacts at 3", message)
+
+    def test_a_body_that_leaves_is_counted(self):
+        free = DECK[:DECK.index("[[spring_dampers]]")] + DECK[DECK.index("[[particles]]"):]
+        deck = self.write("free.toml", free.replace("inertia", "velocity = [0.0, -30.0]\ninertia"))
+        result = self.expect(DONE, "run", deck, "--output", "out", "--set", "time.end=0.05", "--set", "time.step=5e-4")
+        warnings = re.findall(r'warning: body "pad" is outside the space at t = ([0-9.]+) s: bodies that leave are counted, '
+                              "neither stopped nor removed", result.stderr)
+        self.assertEqual(len(warnings), 1)
+        self.assertAlmostEqual(float(warnings[0]), 0.8 / 30, delta=1e-3)
+        self.assertRegex(result.stdout, "0 particles left the space, 1 body is outside\n")
+        self.assertEqual(json.loads((self.folder / "out" / "run_record.json").read_text())["counts"]["bodies_outside"], 1)
+        rows = [row.split(",") for row in self.history("out") if not row.startswith("#")]
+        column = next(i for i, name in enumerate(rows[0]) if "bodies_outside" in name)
+        counts = [float(row[column]) for row in rows[1:]]
+        self.assertEqual(sorted(set(counts)), [0, 1])
+        self.assertEqual(counts, sorted(counts))
 
     def test_the_smallest_step(self):
         message = self.failure("--set", "integrator.max_iterations=2")

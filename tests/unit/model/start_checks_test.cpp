@@ -158,21 +158,26 @@ TEST_CASE("the first adaptive step is short against the run and the shortest con
 }
 
 TEST_CASE("a particle that goes farther than its radius in a step is a warning") {
-  // Two discs of radius 0.05; the substeps count.
+  // Two discs of radius 0.05; the substeps count. An impact at such a speed is another warning.
+  const auto step_warnings = [](const std::vector<std::string>& overrides) {
+    std::vector<std::string> warnings = model_warnings(kDeck, overrides);
+    std::erase_if(warnings, [](const std::string& text) { return !text.starts_with("time."); });
+    return warnings;
+  };
   const std::string verlet = "integrator.particles=velocity-verlet",
                     fast = "particles.0.velocity=[-15.0, 20.0]";
-  CHECK(model_warnings(kDeck, {fast, "time.step=1.9e-3"}).empty());
-  CHECK(model_warnings(kDeck, {fast, verlet, "integrator.substeps=2", "time.step=3.9e-3"}).empty());
+  CHECK(step_warnings({fast, "time.step=1.9e-3"}).empty());
+  CHECK(step_warnings({fast, verlet, "integrator.substeps=2", "time.step=3.9e-3"}).empty());
   const std::string rest =
       "0.0025 s a particle goes 1.25 times its radius with its speed at t = 0, and may pass through others "
       "unnoticed; the step should be at most 0.0019 s";
   const std::string soft = "contact.pairs.0.stiffness=1e3";  // steps of 2.5 ms are short for its contacts
-  CHECK(model_warnings(kDeck, {fast, soft, "time.step=2.5e-3"}) ==
+  CHECK(step_warnings({fast, soft, "time.step=2.5e-3"}) ==
         std::vector<std::string>{"time.step: in a step of " + rest});
-  CHECK(model_warnings(kDeck, {fast, soft, verlet, "integrator.substeps=2", "time.step=5e-3"}) ==
+  CHECK(step_warnings({fast, soft, verlet, "integrator.substeps=2", "time.step=5e-3"}) ==
         std::vector<std::string>{"time.step: in a step of step / substeps = " + rest});
   const std::vector<std::string> adaptive =
-      model_warnings(kDeck, {fast, "time.control=adaptive", "time.max_step=0.01"});
+      step_warnings({fast, "time.control=adaptive", "time.max_step=0.01"});
   REQUIRE(adaptive.size() == 1);
   CHECK(contains(adaptive[0],
                  "time.max_step: in a step of 0.01 s, the longest allowed, a particle goes 5 times"));

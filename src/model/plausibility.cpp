@@ -1,0 +1,300 @@
+#include "model/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "model/limits.hpp"
+#include "physics/plausible.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kMostSizes = 1e5;                  // largest over smallest radius
+constexpr Real kMostSteps = 1e9;                  // of a run
+constexpr Real kLightest = 1, kHeaviest = 25000;  // densities: aerogel, osmium [kg/m^3]
+constexpr Real kMostGyration = 2;                 // radius of gyration over a body's extent
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+std::array<Real, 3> components(Vec3 v) { return {v.x, v.y, v.z}; }
+
+std::string and_more(std::size_t count) { return count > 1 ? fmt::format(" and {} more", count - 1) : ""; }
+
+std::string pair_name(const Model& model, const PairLimit& limit) {
+  const std::vector<std::string>& names = model.contact.material_names;
+  return fmt::format("\"{}\" on \"{}\"", names[static_cast<std::size_t>(limit.material[0])],
+                     names[static_cast<std::size_t>(limit.material[1])]);
+}
+
+const KelvinVoigt& law_of(const Model& model, const PairLimit& limit) {
+  return model.contact.law(limit.material[0], limit.material[1]);
+}
+
+// Mass of the relative motion of the lightest pair [kg].
+Real lightest_mass(const PairLimit& limit) {
+  const Real inverse_frequency = limit.contact_time / std::numbers::pi_v<Real>;
+  return limit.stiffness * inverse_frequency * inverse_frequency;
+}
+
+// How far something can fall within the space [m].
+Real height(const Model& model) {
+  const std::array<Real, 3> gravity = components(model.gravity),
+                            extent = components(model.space.max - model.space.min);
+  const Real size = norm(model.gravity);
+  Real along = 0;
+  for (std::size_t axis = 0; axis < 3 && size > 0; ++axis)
+    along += std::abs(gravity[axis]) / size * extent[axis];
+  return along;
+}
+
+// Of the space across gravity, the base on which particles come to rest: area, or in 2D length.
+Real base_size(const Model& model) {
+  const Vec3 extent = model.space.max - model.space.min;
+  const Real volume = extent.x * extent.y * (model.space.dimension == 2 ? 1 : extent.z);
+  return volume / height(model);
+}
+
+std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
+  if (!deck.tables("particles").empty()) return "";  // a group without particles says so itself
+  if (model.bodies.empty())
+    return "the deck has no particles and no bodies: nothing will move; was the file cut off?";
+  std::string only;
+  if (model.integrator.particles == ParticleIntegrator::velocity_verlet)
+    only = "integrator.particles = \"velocity-verlet\"";
+  const std::vector<MaterialUse> uses = material_uses(model);
+  for (int a = 0; a < model.contact.materials(); ++a)
+    for (int b = a; b < model.contact.materials(); ++b)
+      if (model.contact.law(a, b).normal_stiffness > 0 && !can_meet(model, uses, a, b))
+        only = fmt::format("contact.pairs has a law for \"{}\" on \"{}\", which nothing here can use",
+                           model.contact.material_names[static_cast<std::size_t>(a)],
+                           model.contact.material_names[static_cast<std::size_t>(b)]);
+  return only.empty() ? "" : "the deck has no particles, and yet " + only + "; was the file cut off?";
+}
+
+std::string gravity_along_z(const Model& model) {
+  if (model.bodies.empty() || model.gravity.z == 0) return "";
+  return fmt::format(
+      "gravity has {} m/s^2 along z: bodies move in the x-y plane only and do not feel it; particles do",
+      model.gravity.z);
+}
+
+std::string larger_than_space(const Model& model) {
+  const std::array<Real, 3> extent = components(model.space.max - model.space.min);
+  const auto axes = static_cast<std::size_t>(model.space.dimension);
+  const std::size_t narrow = static_cast<std::size_t>(
+      std::min_element(extent.begin(), extent.begin() + static_cast<std::ptrdiff_t>(axes)) - extent.begin());
+  const auto finding = [&](const std::string& what, Real radius) {
+    return fmt::format("{} of radius {:.4g} m {} larger than the space, {:.4g} m long in {}", what, radius,
+                       what.ends_with("more") ? "are" : "is", extent[narrow], kAxes[narrow]);
+  };
+  const Real particle = model.particles.totals.largest_radius;
+  if (2 * particle > extent[narrow]) return finding("a particle", particle);
+  const Body* first = nullptr;
+  Real radius = 0;
+  std::size_t count = 0;
+  for (const Body& body : model.bodies)
+    for (const Shape& shape : body.shapes)
+      if (2 * shape.radius > extent[narrow] && ++count == 1) first = &body, radius = shape.radius;
+  return count == 0 ? ""
+                    : finding(fmt::format("a shape of body \"{}\"{}", first->name, and_more(count)), radius);
+}
+
+// How far the shapes of each body, and the points that something acts on, reach from its centre [m].
+std::vector<Real> body_extents(const Model& model) {
+  std::vector<Real> extents(model.bodies.size());
+  const auto reach = [&](int body, Vec3 point, Real radius) {
+    if (body == kGround) return;
+    Real& extent = extents[static_cast<std::size_t>(body)];
+    extent = std::max(extent, norm(point) + radius);
+  };
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const Shape& shape : model.bodies[b].shapes) reach(static_cast<int>(b), shape.offset, shape.radius);
+  for (int side = 0; side < 2; ++side) {
+    for (const Joint& joint : model.joints) reach(joint.body[side], joint.point[side], 0);
+    for (const SpringDamper& spring : model.spring_dampers) reach(spring.body[side], spring.point[side], 0);
+  }
+  for (const AppliedForce& force : model.applied_forces) reach(force.body, force.point, 0);
+  return extents;
+}
+
+std::string gyration_beyond_extent(const Model& model) {
+  const std::vector<Real> extents = body_extents(model);
+  std::size_t first = 0, count = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const bool far =
+        extents[b] > 0 && radius_of_gyration(body.inertia, body.mass) > kMostGyration * extents[b];
+    if (far && ++count == 1) first = b;
+  }
+  if (count == 0) return "";
+  const Body& body = model.bodies[first];
+  return fmt::format(
+      "body \"{}\"{}: inertia {:.4g} kg m^2 and mass {:.4g} kg make a radius of gyration of {:.4g} m, while "
+      "its "
+      "shapes and joints reach {:.4g} m from its centre",
+      body.name, and_more(count), body.inertia, body.mass, radius_of_gyration(body.inertia, body.mass),
+      extents[first]);
+}
+
+std::string overdamped(const Model& model, const PairLimit& limit) {
+  const Real mass = lightest_mass(limit), damping = law_of(model, limit).normal_damping,
+             ratio = damping_ratio(damping, limit.stiffness, mass);
+  if (ratio <= 1) return "";
+  return fmt::format(
+      "contact {}: a damping of {:.4g} N s/m is {:.3g} times the critical one of its lightest pair, {:.3g} N "
+      "s/m: "
+      "nothing rebounds",
+      pair_name(model, limit), damping, ratio, damping / ratio);
+}
+
+// Particles of the smallest kind, spread over the whole base: no column is lower than the mean.
+std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
+  const ParticleTotals& totals = model.particles.totals;
+  if (totals.count == 0 || height(model) == 0) return "";
+  const std::vector<MaterialUse> uses = material_uses(model);
+  const auto particles = [&](int side) {
+    return uses[static_cast<std::size_t>(limit.material[side])].particles;
+  };
+  if (particles(0) + particles(1) == 0) return "";
+  const Real diameter = 2 * totals.smallest_radius;
+  const Real per_layer = std::max(base_size(model) / std::pow(diameter, model.space.dimension - 1), Real(1));
+  const Real stack = std::clamp(static_cast<Real>(totals.count) / per_layer, Real(1),
+                                std::max(height(model) / diameter, Real(1)));
+  const Real weight = stack * totals.smallest_mass * norm(model.gravity),
+             overlap = resting_overlap(law_of(model, limit), weight);
+  if (overlap <= totals.smallest_radius) return "";
+  return fmt::format(
+      "contact {}: too soft for the weight on it: {:.3g} particles on top of each other weigh {:.3g} N, an "
+      "overlap "
+      "of {:.3g} m at a radius of {:.3g} m",
+      pair_name(model, limit), stack, weight, overlap, totals.smallest_radius);
+}
+
+// With the speeds at t = 0, and a fall through the space where there is something to fall on.
+std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
+  const std::vector<MaterialUse> uses = material_uses(model);
+  const MaterialUse &a = uses[static_cast<std::size_t>(limit.material[0])],
+                    &b = uses[static_cast<std::size_t>(limit.material[1])];
+  Real radius = std::numeric_limits<Real>::infinity(), speed = 0;
+  for (const MaterialUse& use : {a, b})
+    if (use.smallest_radius > 0) radius = std::min(radius, use.smallest_radius);
+  if (a.particles + b.particles > 0)
+    speed = model.particles.totals.most_radii_per_second * model.particles.totals.smallest_radius;
+  if (a.shapes + b.shapes > 0)
+    for (const Body& body : model.bodies) speed = std::max(speed, norm(body.velocity));
+  const bool floor = a.walls + b.walls + a.shapes + b.shapes > 0;
+  if (floor && a.particles + b.particles > 0)
+    speed = std::hypot(speed, fall_speed(norm(model.gravity), height(model)));
+  const Real overlap = impact_overlap(law_of(model, limit), lightest_mass(limit), speed);
+  if (overlap <= radius) return "";
+  return fmt::format(
+      "contact {}: the stiffness is too low for impacts at {:.3g} m/s (speeds at t = 0, and a fall through "
+      "the "
+      "space): an overlap of {:.3g} m at a radius of {:.3g} m, and things pass through each other",
+      pair_name(model, limit), speed, overlap, radius);
+}
+
+std::string many_sizes(const Model& model) {
+  const ParticleTotals& totals = model.particles.totals;
+  Real smallest = totals.count > 0 ? totals.smallest_radius : std::numeric_limits<Real>::infinity(),
+       largest = totals.largest_radius;
+  for (const Body& body : model.bodies)
+    for (const Shape& shape : body.shapes)
+      smallest = std::min(smallest, shape.radius), largest = std::max(largest, shape.radius);
+  if (!(largest >= kMostSizes * smallest)) return "";
+  return fmt::format(
+      "radii from {:.3g} to {:.3g} m: the cells of the pair search are as wide as the largest, and the many "
+      "small "
+      "ones in a cell are compared one by one",
+      smallest, largest);
+}
+
+// Values of a distribution that it may take.
+std::vector<Real> values_of(const DeckTable& distribution) {
+  const std::string& kind = distribution.text("kind");
+  if (kind == "constant") return {distribution.real("value")};
+  if (kind == "table") return distribution.reals("values");
+  return {distribution.real("min"), distribution.real("max")};
+}
+
+std::string odd_density(const DeckTable& deck) {
+  const auto finding = [](const DeckTable& table, Real density) -> std::string {
+    if (density >= kLightest && density <= kHeaviest) return "";
+    return fmt::format("{}.density: no material has {:.4g} kg/m^3 (water 1000, osmium 22600)", table.path(),
+                       density);
+  };
+  for (const DeckTable& table : deck.tables("materials"))
+    if (table.has("density"))
+      if (const std::string text = finding(table, table.real("density")); !text.empty()) return text;
+  for (const DeckTable& table : deck.tables("particles"))
+    if (table.has("density"))
+      for (const Real density : values_of(table.table("density")))
+        if (const std::string text = finding(table, density); !text.empty()) return text;
+  return "";
+}
+
+// Of spheres whose mass is given; a disc may be of any thickness.
+std::string odd_mass(const DeckTable& deck, const Model& model) {
+  const ParticleTotals& totals = model.particles.totals;
+  if (model.space.dimension == 2 || totals.count == 0 || !odd_density(deck).empty()) return "";
+  const Real lightest = totals.smallest_density, heaviest = totals.largest_density;
+  if (lightest >= kLightest && heaviest <= kHeaviest) return "";
+  return fmt::format(
+      "particles: their masses and radii make a density of {:.4g} kg/m^3, which no material has (water 1000, "
+      "osmium "
+      "22600)",
+      lightest < kLightest ? lightest : heaviest);
+}
+
+std::string many_steps(const Model& model) {
+  const TimeControl& time = model.time;
+  const bool fixed = time.control == StepControl::fixed;
+  const Real steps = time.end / (fixed ? time.step : time.max_step) * model.integrator.substeps;
+  if (steps <= kMostSteps) return "";
+  return fmt::format("time.end / {} = {:.3g} steps{}{}: more than 10^9 take weeks however small the model is",
+                     fixed ? "time.step" : "time.max_step", steps,
+                     model.integrator.substeps > 1 ? " with their substeps" : "", fixed ? "" : " at least");
+}
+
+}  // namespace
+
+void check_normal(const DeckTable& table, const std::string& key, Real value) {
+  constexpr Real kSmallest = std::numeric_limits<Real>::min();
+  if (!(value >= kSmallest))
+    table.fail(key, fmt::format("{:.3g} is too small; must be at least {:.3g}", value, kSmallest));
+}
+
+std::vector<std::string> implausible(const DeckTable& deck, const Model& model) {
+  std::vector<std::string> findings = {nothing_to_simulate(deck, model),
+                                       gravity_along_z(model),
+                                       larger_than_space(model),
+                                       gyration_beyond_extent(model),
+                                       many_sizes(model),
+                                       odd_density(deck),
+                                       odd_mass(deck, model),
+                                       many_steps(model)};
+  for (const PairLimit& limit : pair_limits(model))
+    for (const auto& finding : {overdamped, overlap_at_rest, overlap_at_impact})
+      findings.push_back(finding(model, limit));
+  std::erase(findings, "");
+  return findings;
+}
+
+void check_step_limits(const DeckTable& deck, const Model& model) {
+  for (const PairLimit& limit : pair_limits(model)) {
+    const bool usable = std::isnormal(limit.contact_time) && std::isfinite(limit.explicit_step);
+    if (usable) continue;
+    deck.table("contact").fail(
+        "pairs",
+        fmt::format("contact {}: stiffness and masses make contacts of {:.3g} s and velocity-verlet steps "
+                    "of {:.3g} s; both must be finite and above 0",
+                    pair_name(model, limit), limit.contact_time, limit.explicit_step));
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,20 @@
+// Warnings of models that can be computed but can hardly be meant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deck/deck.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// What seems wrong with the whole model, one text for each finding. Costs no pass over the particles.
+std::vector<std::string> implausible(const DeckTable& deck, const Model& model);
+
+// Refuses contacts whose duration or step limit is 0 or infinite. Throws InputError.
+void check_step_limits(const DeckTable& deck, const Model& model);
+// Refuses a positive value that is smaller than any normal number: products with it lose their digits.
+void check_normal(const DeckTable& table, const std::string& key, Real value);
+
+}  // namespace scree
