@@ -140,6 +140,10 @@ def draw_run(directory, frames, view, with_vtk):
         fail("--view is for runs in the plane")
     with_vtk = with_vtk and not run.model.planar and vtk_renders()
     last = len(run.particles) - 1
+    unseen = int((~run.motion(last).known).sum())
+    if unseen:
+        print(f"{counted(unseen, 'body', 'bodies')} without shapes and not in output.history_bodies: not drawn",
+              file=sys.stderr)
     path = pathlib.Path(directory) / "final.png"
     save_picture(make_picture(run, [last], view, with_vtk), last, path)
     yield path

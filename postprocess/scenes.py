@@ -24,7 +24,12 @@ LINES = {
     "distance": ("#202020", 2.0, True),
 }
 # Joints: marker, its fill.
-JOINTS = {"revolute": ("o", "white"), "translational": ("s", "white"), "fixed": ("s", "#202020"), "torsional": ("o", "none")}
+JOINTS = {
+    "revolute": ("o", "white"),
+    "translational": ("s", "white"),
+    "fixed": ("s", "#202020"),
+    "torsional": ("o", "none"),
+}
 
 
 def bounds(series, snapshots, strays):
