@@ -23,6 +23,7 @@ max = [1.0, 1.0]
 y_min = "wall"
 [time]
 step = 1e-4
+control = "fixed"
 end = )" +
          end + "\n[[contact.pairs]]\nstiffness = 1e6\ndamping = 2000.0\n";
 }
