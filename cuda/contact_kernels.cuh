@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -13,6 +14,7 @@
 #include "device.cuh"
 #include "device_list.cuh"
 #include "for_each.cuh"
+#include "sums.cuh"
 
 namespace scree {
 
@@ -157,6 +159,9 @@ class DeviceContactKernels {
                       ShapeContact* out) const = 0;
   virtual void shapes(Device device, const DeviceViews& in, const ShapePlaces& places, Index n,
                       ShapeContact* out) const = 0;
+  // Queues the sums over the first n items of WallContactItem; share: as exact_sums() wants it.
+  virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
+                         ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
   // One explicit step, closed and the next opened; does nothing once the control says stop.
   virtual void verlet_advance(Device device, const VerletRequest& request) const = 0;

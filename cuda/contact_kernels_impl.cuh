@@ -212,6 +212,10 @@ class ContactKernelsOf : public DeviceContactKernels {
               ShapeContact* out) const override {
     for_each(device, n, ShapeContactItem<Elastic, Laws, SlicedRows>{in, places, laws_, out});
   }
+  void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
+                 ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const override {
+    exact_sums(device, n, WallContactItem<Elastic, Laws, SlicedRows>{in, laws_, choice}, sums, share);
+  }
   void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const override {
     for_each(device, n,
              ContactEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, out.energy, out.contacts, out.pairs});

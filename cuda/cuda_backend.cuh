@@ -70,6 +70,8 @@ class CudaBackend : public Backend {
   void start_pack() override;
   ParticlePack pack_particles() override;
   ShapePack pack_shapes() override;
+  std::vector<ContactSum> body_contacts() override;
+  std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
   bool computes_asynchronously() const override { return true; }
   bool is_mixed() const override { return mixed_; }
 
@@ -80,6 +82,7 @@ class CudaBackend : public Backend {
     Real displacement, largest;
     ExactSums<1> slope;
     ExactSums<kLedgerTerms> ledger;
+    ExactSums<kWallTerms> wall;
     VerletControl control;
     long long worst_id;
     Index index;

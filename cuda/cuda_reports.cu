@@ -194,4 +194,20 @@ ShapePack CudaBackend::pack_shapes() {
   return side_.pack(layout_, ranks_);
 }
 
+std::vector<ContactSum> CudaBackend::body_contacts() {
+  find_shape_contacts();
+  return side_.body_contacts(layout_, ranks_);
+}
+
+std::vector<ContactSum> CudaBackend::wall_contacts(std::span<const int> walls) {
+  std::vector<ContactSum> contacts;
+  for (const int wall : walls) {
+    kernels_->wall_sums(device(), views(), owned_ + shape_items(),
+                        {wall, owned_, model_.space.min, subdomain_.period()}, result(&Results::wall),
+                        [&](Real* largest) { halo_.max(device(), largest, kWallTerms); });
+    contacts.push_back(make_wall_contact(totals(fetch(&Results::wall)).data()));
+  }
+  return contacts;
+}
+
 }  // namespace scree

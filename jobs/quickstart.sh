@@ -7,7 +7,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 deck=input/paper/net_400.toml
 results=results/net_400
 scree=build/release/scree
-python=.venv/bin/python
 
 # Whether the file is there and none of the others is newer.
 is_fresh() {
@@ -32,12 +31,10 @@ fi
 
 animation() { find "$results" -maxdepth 1 -name 'animation.*' | head -n 1; }
 
+# The animation is what is drawn last.
 if ! is_fresh "$(animation)" "$results/run_record.json" postprocess/*.py; then
-  echo "drawing the final state and an animation"
-  "$python" postprocess/render.py "$results"
-fi
-if ! is_fresh "$results/history.png" "$results/run_record.json" postprocess/*.py; then
-  "$python" postprocess/plot_history.py "$results"
+  echo "drawing the energies, the final state and an animation"
+  postprocess/draw "$results"
 fi
 
 cat <<END

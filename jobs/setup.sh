@@ -2,7 +2,9 @@
 # Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
 #
 #     jobs/setup.sh [--paraview] [--slurm] [--cuda]
+#     jobs/setup.sh --pictures
 #
+# --pictures installs what postprocess/draw needs and no more.
 # --paraview adds Debian's ParaView, for the reader test that opens the .xdmf files in it.
 # --slurm adds SLURM, for the test that starts one on this machine and submits the sbatch files to it. Its services are
 # not configured and do not run by themselves.
@@ -15,7 +17,9 @@ packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libpetsc-real-dev libeigen3-dev
   libtomlplusplus-dev libcli11-dev libfmt-dev catch2
-  python3 python3-venv ffmpeg     # pictures, animations and reader tests
+)
+picture_packages=( # animations and reader tests, too
+  python3 python3-venv ffmpeg
   libegl1 libgl1 libxrender1      # what PyPI's vtk draws with, off screen
 )
 paraview_packages=(paraview xvfb xauth python3-h5py)
@@ -64,13 +68,15 @@ install_nvcc() {
   echo "${cuda_packages[*]}" >.venv/installed_cuda.txt
 }
 
+packages+=("${picture_packages[@]}")
 with_cuda=false
 for argument in "$@"; do
   case "$argument" in
     --paraview) packages+=("${paraview_packages[@]}") ;;
     --slurm) packages+=("${slurm_packages[@]}") ;;
     --cuda) with_cuda=true ;;
-    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda" ;;
+    --pictures) packages=("${picture_packages[@]}") ;;
+    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda, --pictures" ;;
   esac
 done
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then

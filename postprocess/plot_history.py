@@ -1,14 +1,7 @@
-#!/usr/bin/env python3
-"""Plots a run's energies and their balance over time.
+"""A run's energies and their balance over time, and other columns of its history."""
 
-    python3 postprocess/plot_history.py RESULT_DIR [--columns GROUP/NAME ...]
-
-Writes RESULT_DIR/history.png. --columns adds a panel per unit with other columns of the history; --list names
-them all.
-"""
-
-import argparse
 import itertools
+import textwrap
 import pathlib
 
 import matplotlib
@@ -31,14 +24,24 @@ def style(panel, label):
     panel.margins(x=0.01)
 
 
+def label_of(name):
+    return name.split("/", 1)[-1].replace("_", " ") if name.startswith("energy/") else name
+
+
 def plot_columns(panel, columns, names):
-    """One line per column, all of one unit."""
+    """One line per column, all of one unit. Those that are zero throughout get a word instead."""
     time = columns["step/time"][0]
+    zero = [name for name in names if not np.any(columns[name][0])]
+    if zero:
+        words = textwrap.fill("zero throughout: " + ", ".join(label_of(name) for name in zero), 130)
+        panel.set_title(words, fontsize=10, loc="left", color="#505050")
+    shown = [name for name in names if name not in zero]
     styles = itertools.product(["-", "--", ":", "-."], COLORS)
-    for name, (dash, color) in zip(names, styles):
-        label = name.split("/", 1)[-1].replace("_", " ") if name.startswith("energy/") else name
+    for name, (dash, color) in zip(shown, itertools.cycle(styles)):
+        label = label_of(name)
         panel.plot(time, columns[name][0], dash, color=color, linewidth=1.6, label=label)
-    panel.legend(fontsize=11, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
+    if shown:
+        panel.legend(fontsize=11, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
 
 
 def plot_balance(panel, columns, name):
@@ -61,29 +64,19 @@ def chosen_columns(columns, names):
     return panels
 
 
-def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("result_directory", type=pathlib.Path)
-    parser.add_argument("--columns", nargs="+", default=[], metavar="GROUP/NAME")
-    parser.add_argument(
-        "--list", action="store_true", help="print the columns with unit and description, plot nothing"
-    )
-    arguments = parser.parse_args()
-    columns = read_history(arguments.result_directory)
-    if arguments.list:
-        for name, (_, unit, description) in columns.items():
-            print(f"{name} [{unit}]: {description}")
-        return
-    if "step/time" not in columns:
-        fail(f"{arguments.result_directory}: the history has no column step/time")
+def list_columns(directory):
+    for name, (_, unit, description) in read_history(directory).items():
+        print(f"{name} [{unit}]: {description}")
+
+
+def history_figure(columns, extra):
+    """extra: names of columns beside the energies."""
     energies = [name for name in columns if name.startswith("energy/") and "balance" not in name]
     balances = [name for name in columns if name.startswith("energy/") and "balance" in name]
-    others = chosen_columns(columns, arguments.columns)
+    others = chosen_columns(columns, extra)
     heights = [4.5] * bool(energies) + [2.2] * len(balances) + [3.0] * len(others)
     if not heights:
-        fail(f"{arguments.result_directory}: the history has no energies; name others with --columns")
+        fail("the history has no energies; name others with --columns")
     figure, panels = plt.subplots(
         len(heights),
         1,
@@ -108,10 +101,16 @@ def main():
         plot_columns(panel, columns, names)
         style(panel, f"[{unit}]")
     figure.axes[-1].set_xlabel("time [s]", fontsize=13)
-    path = arguments.result_directory / "history.png"
+    return figure
+
+
+def plot_run(directory, extra):
+    """Writes the plot; returns its path."""
+    columns = read_history(directory)
+    if "step/time" not in columns:
+        fail(f"{directory}: the history has no column step/time")
+    figure = history_figure(columns, extra)
+    path = pathlib.Path(directory) / "history.png"
     figure.savefig(path)
-    print(path)
-
-
-if __name__ == "__main__":
-    main()
+    plt.close(figure)
+    return path

@@ -1,13 +1,5 @@
-#!/usr/bin/env python3
-"""Draws the final state of a run and an animation of it, without a display.
+"""The final state of a run and an animation of it, without a display."""
 
-    python3 postprocess/render.py RESULT_DIR
-
-Writes RESULT_DIR/final.png and RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg). Particles are drawn
-to scale and coloured by their speed, bodies in orange: discs in 2D, lit spheres in 3D.
-"""
-
-import argparse
 import pathlib
 import subprocess
 import sys
@@ -20,7 +12,8 @@ import matplotlib.animation
 import matplotlib.pyplot as plt
 import numpy as np
 
-from results import fail, open_series
+from model import read_model
+from results import fail, open_series, read_history
 from scenes import DiscScene, SphereScene
 
 COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
@@ -43,14 +36,20 @@ def chosen_frames(count, limit):
     return np.unique(np.linspace(0, count - 1, min(count, limit)).round().astype(int))
 
 
-def is_planar(particles, bodies):
-    return all(
-        np.ptp(series.rows(i, "Points")[:, 2]) == 0
-        for series in (particles, bodies)
-        if series
-        for i in (0, len(series) - 1)
-        if len(series.rows(i, "Points"))
-    )
+class Run:
+    """What a run left in its folder."""
+
+    def __init__(self, directory):
+        self.model = read_model(directory)
+        self.particles = open_series(directory, "particles")
+        if self.particles is None:
+            fail(f"{directory}: no particles.vtkhdf there")
+        self.bodies = open_series(directory, "bodies")
+        bare = any(len(offsets) == 0 for offsets in self.model.offsets)
+        self.history = read_history(directory) if bare else {}
+
+    def motion(self, snapshot):
+        return self.model.motion(self.particles.times[snapshot], self.bodies, snapshot, self.history)
 
 
 def speed_limit(particles, snapshots):
@@ -68,27 +67,46 @@ def speed_limit(particles, snapshots):
 class Picture:
     """One figure whose scene changes from snapshot to snapshot."""
 
-    def __init__(self, scene, particles, limit):
-        self.scene, self.particles = scene, particles
+    def __init__(self, scene, run, snapshots):
+        self.scene, self.run = scene, run
         width, height = scene.size()
         self.figure, axes = plt.subplots(figsize=(width + 1.6, height + 1.1), dpi=120, layout="constrained")
-        scene.set_up(axes, COLOR_MAP, limit)
-        bar = self.figure.colorbar(scene.colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
-        bar.set_label("particle speed [m/s]", fontsize=13)
-        bar.ax.tick_params(labelsize=11)
+        scene.set_up(axes, COLOR_MAP, speed_limit(run.particles, snapshots))
+        self.bar = None
+        if any(len(run.particles.rows(snapshot, "radius")) for snapshot in snapshots):
+            self.bar = self.figure.colorbar(scene.colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
+            self.bar.set_label("particle speed [m/s]", fontsize=13)
+            self.bar.ax.tick_params(labelsize=11)
         self.title = axes.set_title(" ", fontsize=14, loc="left")
         axes.tick_params(labelsize=11)
 
+    def caption(self, snapshot):
+        parts = [f"t = {self.run.particles.times[snapshot]:.4g} s"]
+        bodies = len(self.run.model.names)
+        if self.bar:
+            parts.append(counted(len(self.run.particles.rows(snapshot, "radius")), "particle", "particles"))
+        if bodies:
+            parts.append(counted(bodies, "body", "bodies") + " (orange)")
+        return f"{self.run.model.title}\n{', '.join(parts)}"
+
     def draw(self, snapshot):
         self.scene.draw(snapshot)
-        count = len(self.particles.rows(snapshot, "radius"))
-        text = f"t = {self.particles.times[snapshot]:.4g} s, {count:,} particles"
-        if self.scene.bodies:
-            text += f", {len(np.unique(self.scene.bodies.rows(snapshot, 'body'))):,} bodies (orange)"
-        self.title.set_text(f"{self.particles.title}\n{text}")
+        self.title.set_text(self.caption(snapshot))
         if self.figure.get_layout_engine() is not None:
             self.figure.canvas.draw()
             self.figure.set_layout_engine("none")  # laid out once, so that frames are quick and nothing jumps
+
+
+def counted(count, one, many):
+    return f"{count:,} {one if count == 1 else many}"
+
+
+def make_picture(run, snapshots, view=None, with_vtk=False):
+    if run.model.planar:
+        scene = DiscScene(run, snapshots, view)
+    else:
+        scene = SphereScene(run, snapshots, with_vtk)
+    return Picture(scene, run, snapshots)
 
 
 def save_picture(picture, snapshot, path):
@@ -115,44 +133,20 @@ def save_animation(picture, snapshots, directory):
     return path
 
 
-def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("result_directory", type=pathlib.Path)
-    parser.add_argument("--frames", type=int, default=200, help="largest number of frames (default 200)")
-    parser.add_argument(
-        "--view",
-        type=float,
-        nargs=4,
-        metavar=("XMIN", "XMAX", "YMIN", "YMAX"),
-        help="part of the plane to show, 2D only [m]; default: all but stray particles",
-    )
-    parser.add_argument("--no-animation", action="store_true")
-    parser.add_argument("--no-vtk", action="store_true", help="draw spheres without VTK, as shaded discs")
-    arguments = parser.parse_args()
-    directory = arguments.result_directory
-    particles = open_series(directory, "particles")
-    if particles is None:
-        fail(f"{directory}: no particles.vtkhdf there")
-    bodies = open_series(directory, "bodies")
-    planar = is_planar(particles, bodies)
-    use_vtk = not planar and not arguments.no_vtk and vtk_renders()
-
-    def picture(snapshots):
-        if planar:
-            scene = DiscScene(particles, bodies, snapshots, arguments.view)
-        else:
-            scene = SphereScene(particles, bodies, snapshots, use_vtk)
-        return Picture(scene, particles, speed_limit(particles, snapshots))
-
-    last = len(particles) - 1
-    save_picture(picture([last]), last, directory / "final.png")
-    print(directory / "final.png")
-    frames = chosen_frames(len(particles), arguments.frames)
-    if not arguments.no_animation and len(frames) > 1:
-        print(save_animation(picture(frames), frames, directory))
-
-
-if __name__ == "__main__":
-    main()
+def draw_run(directory, frames, view, with_vtk):
+    """Writes the final state and, with more than one frame, the animation; yields their paths."""
+    run = Run(directory)
+    if view and not run.model.planar:
+        fail("--view is for runs in the plane")
+    with_vtk = with_vtk and not run.model.planar and vtk_renders()
+    last = len(run.particles) - 1
+    unseen = int((~run.motion(last).known).sum())
+    if unseen:
+        print(f"{counted(unseen, 'body', 'bodies')} without shapes and not in output.history_bodies: not drawn",
+              file=sys.stderr)
+    path = pathlib.Path(directory) / "final.png"
+    save_picture(make_picture(run, [last], view, with_vtk), last, path)
+    yield path
+    chosen = chosen_frames(len(run.particles), frames)
+    if len(chosen) > 1:
+        yield save_animation(make_picture(run, chosen, view, with_vtk), chosen, pathlib.Path(directory))

@@ -16,9 +16,23 @@ if sys.platform == "linux" and not os.environ.get("DISPLAY"):
     )  # else it looks for a display and warns
 
 
+def polylines(lines):
+    """VTK's form of lines [n][points][3]."""
+    count, length = lines.shape[:2]
+    points = vtk.vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(lines.reshape(-1, 3)), deep=True))
+    cells = vtk.vtkCellArray()
+    for i in range(count):
+        cells.InsertNextCell(length, range(i * length, (i + 1) * length))
+    data = vtk.vtkPolyData()
+    data.SetPoints(points)
+    data.SetLines(cells)
+    return data
+
+
 class SphereRenderer:
-    def __init__(self, pixels, center, axes_of_picture, half_height, box):
-        """pixels: width, height; axes_of_picture: right, up, towards the eye; box: outline's corners [m]."""
+    def __init__(self, pixels, center, axes_of_picture, half_height, extent):
+        """pixels: width, height; axes_of_picture: right, up, towards the eye; extent: of the scene [m]."""
         self._data = vtk.vtkPolyData()
         ball = vtk.vtkSphereSource()
         ball.SetRadius(1.0)
@@ -39,29 +53,57 @@ class SphereRenderer:
         actor.GetProperty().SetSpecular(0.15)
         actor.GetProperty().SetSpecularPower(30)
 
-        renderer = vtk.vtkRenderer()
+        self._renderer = renderer = vtk.vtkRenderer()
         renderer.SetBackground(1, 1, 1)
         renderer.AddActor(actor)
-        renderer.AddActor(self._outline(box))
-        self._aim(renderer, center, axes_of_picture, half_height, np.ptp(box, axis=0).max())
+        self._lines = {}
+        self._aim(renderer, center, axes_of_picture, half_height, extent)
         self._window = vtk.vtkRenderWindow()
         self._window.SetOffScreenRendering(1)
         self._window.SetMultiSamples(0)
         self._window.SetSize(int(pixels[0]), int(pixels[1]))
         self._window.AddRenderer(renderer)
 
-    @staticmethod
-    def _outline(box):
-        source = vtk.vtkOutlineSource()
-        low, high = box.min(axis=0), box.max(axis=0)
-        source.SetBounds(low[0], high[0], low[1], high[1], low[2], high[2])
+    def _add(self, source, color):
+        """An actor without light, of what a VTK algorithm or data set gives."""
         mapper = vtk.vtkPolyDataMapper()
-        mapper.SetInputConnection(source.GetOutputPort())
+        if isinstance(source, vtk.vtkPolyData):
+            mapper.SetInputData(source)
+        else:
+            mapper.SetInputConnection(source.GetOutputPort())
+        mapper.ScalarVisibilityOff()
         actor = vtk.vtkActor()
         actor.SetMapper(mapper)
-        actor.GetProperty().SetColor(0.6, 0.6, 0.6)
+        actor.GetProperty().SetColor(*color)
         actor.GetProperty().LightingOff()
+        self._renderer.AddActor(actor)
         return actor
+
+    def add_box(self, low, high):
+        source = vtk.vtkOutlineSource()
+        source.SetBounds(low[0], high[0], low[1], high[1], low[2], high[2])
+        self._add(source, (0.6, 0.6, 0.6))
+
+    def add_face(self, polygon, color, opacity):
+        """A plane polygon [n][3]."""
+        data = polylines(polygon[None])
+        data.SetPolys(data.GetLines())
+        data.SetLines(None)
+        self._add(data, color).GetProperty().SetOpacity(opacity)
+
+    def set_lines(self, style, lines, color, radius):
+        """Lines [n][points][3] as tubes, in place of those of the same style."""
+        if style in self._lines:
+            self._renderer.RemoveActor(self._lines.pop(style))
+        if len(lines) == 0:
+            return
+        tube = vtk.vtkTubeFilter()
+        tube.SetInputData(polylines(lines))
+        tube.SetRadius(radius)
+        tube.SetNumberOfSides(10)
+        tube.CappingOn()
+        self._lines[style] = self._add(tube, color)
+        self._lines[style].GetProperty().LightingOn()
 
     @staticmethod
     def _aim(renderer, center, axes_of_picture, half_height, extent):
@@ -98,7 +140,6 @@ class SphereRenderer:
 
 
 if __name__ == "__main__":
-    corners = np.array([[-1.0, -1, -1], [1, 1, 1]])
-    sphere = SphereRenderer((64, 64), np.zeros(3), np.eye(3), 1.0, corners)
+    sphere = SphereRenderer((64, 64), np.zeros(3), np.eye(3), 1.0, 2.0)
     drawn = sphere.image(np.zeros((1, 3)), np.full(1, 0.5), np.array([[0.0, 0.0, 1.0]]))
     sys.exit(0 if drawn[32, 32, 2] > drawn[32, 32, 0] else 1)  # blue in the middle

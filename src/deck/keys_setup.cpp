@@ -225,6 +225,15 @@ const TableKeys& output_keys() {
            .about("Of snapshots and checkpoints: 0, none; 1 to 9, deflate from fast to small."),
        boolean("history_csv").otherwise("false").about("Whether the history is also written as CSV."),
        texts("history_bodies").otherwise("[]").about("Bodies, or rows of bodies, whose motion is recorded."),
+       texts("history_contacts")
+           .otherwise("[]")
+           .about(
+               "Bodies, rows of bodies, walls and sides that are walls (\"x_min\") on which the contact "
+               "force is "
+               "recorded, with its torque and the number of contacts. Torques are about a body's centre, a "
+               "wall's "
+               "point (a side's: space.min or space.max), and for a row, whose bodies are summed, about the "
+               "origin."),
        integer("history_reactions")
            .at_least(0)
            .otherwise("100")

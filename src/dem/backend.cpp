@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "dem/ledger_items.hpp"
+#include "dem/wall_items.hpp"
 
 namespace scree {
 
@@ -16,6 +17,11 @@ ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes) {
   out.angular_momentum = {sums[kAngularMomentum], sums[kAngularMomentum + 1], sums[kAngularMomentum + 2]};
   out.contacts = std::llround(sums[kPairs] + shapes.pairs());
   return out;
+}
+
+ContactSum make_wall_contact(const Real* sums) {
+  const auto vector = [&](int first) { return Vec3{sums[first], sums[first + 1], sums[first + 2]}; };
+  return {vector(kWallForce), vector(kWallTorque), std::llround(sums[kWallContacts])};
 }
 
 }  // namespace scree

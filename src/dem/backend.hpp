@@ -44,6 +44,9 @@ struct ParticleLedger {
 // From the sums of LedgerItem over the particles, indexed by LedgerTerm, and the shapes' shares.
 ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes);
 
+// From the sums of WallContactItem over what touches a wall, indexed by WallTerm.
+ContactSum make_wall_contact(const Real* sums);
+
 // A particle outside the space.
 struct Leaver {
   GlobalId global_id;
@@ -144,6 +147,10 @@ class Backend {
   virtual void start_pack() = 0;
   virtual ParticlePack pack_particles() = 0;
   virtual ShapePack pack_shapes() = 0;  // complete on rank 0
+  // What touches each body, and each of these walls (indices into Model::walls), where all are now; the
+  // bodies' on rank 0.
+  virtual std::vector<ContactSum> body_contacts() = 0;
+  virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
 
   // Whether steps go on while the host does something else.
   virtual bool computes_asynchronously() const { return false; }

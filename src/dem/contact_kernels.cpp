@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/for_each.hpp"
+#include "base/reproducible_sum.hpp"
 
 namespace scree {
 namespace {
@@ -40,6 +41,10 @@ class CpuContactKernels : public ContactKernels {
   void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
               ShapeContact* out) const override {
     for_each(Serial{}, n, ShapeContactItem<Elastic, Laws, PackedRows>{in, places, laws_, out});
+  }
+  void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
+                 Real (&sums)[kWallTerms]) const override {
+    reproducible_sums(n, WallContactItem<Elastic, Laws, PackedRows>{in, laws_, choice}, sums, ranks);
   }
   void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
     for_each(Serial{}, n,

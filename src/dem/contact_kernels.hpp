@@ -7,7 +7,9 @@
 #include "dem/contact_items.hpp"
 #include "dem/shape_items.hpp"
 #include "dem/step_items.hpp"
+#include "dem/wall_items.hpp"
 #include "model/model.hpp"
+#include "partition/ranks.hpp"
 
 namespace scree {
 
@@ -35,6 +37,9 @@ class ContactKernels {
                       ShapeContact* out) const = 0;
   virtual void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
                       ShapeContact* out) const = 0;
+  // Of the first n items of WallContactItem, over all ranks.
+  virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
+                         const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
 };
 

@@ -97,4 +97,20 @@ ShapePack CpuBackend::pack_shapes() {
   return side_.pack(layout_, ranks_);
 }
 
+std::vector<ContactSum> CpuBackend::body_contacts() {
+  find_shape_contacts(views());
+  return side_.body_contacts(layout_, ranks_);
+}
+
+std::vector<ContactSum> CpuBackend::wall_contacts(std::span<const int> walls) {
+  std::vector<ContactSum> contacts;
+  for (const int wall : walls) {
+    Real sums[kWallTerms];
+    kernels_->wall_sums(views(), layout_.owned + layout_.items - layout_.first_shape,
+                        {wall, layout_.owned, model_.space.min, subdomain_.period()}, ranks_, sums);
+    contacts.push_back(make_wall_contact(sums));
+  }
+  return contacts;
+}
+
 }  // namespace scree

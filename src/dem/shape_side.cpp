@@ -105,6 +105,19 @@ void ShapeSide::reduce(const ItemLayout& layout, const Ranks& ranks, std::vector
   });
 }
 
+std::vector<ContactSum> ShapeSide::body_contacts(const ItemLayout& layout, const Ranks& ranks) const {
+  std::vector<BodyWrench> wrench(motion_.size());
+  std::vector<ContactSum> sums(motion_.size());
+  for_each_touched(layout, ranks, [&](Index s, const ShapeForces& f) {
+    const ShapeItem& shape = shapes_.items()[s];
+    add_point_force(wrench[shape.body], f.end.value(), arm_of(shape));
+    sums[shape.body].contacts += f.contacts;
+  });
+  for (std::size_t b = 0; b < sums.size(); ++b)
+    sums[b].force = wrench[b].force, sums[b].torque = wrench[b].torque;
+  return sums;
+}
+
 void ShapeSide::take_contacts(ContactSpan span, std::span<const ShapeContact> found) {
   for (std::size_t s = 0; s < found.size(); ++s) store(span, found[s], contacts_[s]);
 }

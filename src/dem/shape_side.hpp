@@ -21,6 +21,13 @@ struct ShapeLosses {
   Real loss_power = 0;    // at t_n [W]
 };
 
+// What touches a body or a wall, and what it does to it.
+struct ContactSum {
+  Vec3 force;   // [N]
+  Vec3 torque;  // about the body's centre or the wall's point [N m]
+  std::int64_t contacts = 0;
+};
+
 struct ShapePack {
   std::vector<int> body;
   std::vector<Real> radius;
@@ -61,6 +68,8 @@ class ShapeSide {
   // Shapes' share of the contacts' elastic energy [J] and of their number.
   Real elastic_energy() const;
   Real pairs() const;
+  // Per body, from contacts() at an instant. Collective; on rank 0, zero elsewhere.
+  std::vector<ContactSum> body_contacts(const ItemLayout& layout, const Ranks& ranks) const;
   // Collective; complete on rank 0.
   ShapePack pack(const ItemLayout& layout, const Ranks& ranks) const;
 

@@ -231,6 +231,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
     }
     add_once(output.history_particles, id);
   }
+  build_history_contacts(table, names, model);
 }
 
 }  // namespace scree

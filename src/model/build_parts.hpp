@@ -22,6 +22,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_steps(const DeckTable& deck, Model& model);  // after the contacts, from which the first may follow
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
+void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output
 void build_parallel(const DeckTable& deck, Model& model);
 
 // A time function from a quantity of the deck.

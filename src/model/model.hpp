@@ -81,6 +81,14 @@ struct Integrator {
   int max_iterations = 50;                // of the Newton-like loop
 };
 
+// What a history records the contacts of.
+struct ContactTarget {
+  std::string name;
+  std::vector<int> bodies;  // indices into Model::bodies: one, or those of a row
+  bool row = false;
+  int wall = -1;  // index into Model::walls, or -1
+};
+
 struct Output {
   std::string directory;
   Real snapshot_interval = 0;    // [s]; 0: none but the first and last state
@@ -91,6 +99,7 @@ struct Output {
   std::int64_t history_reactions = 100;  // joints and drivers, the first so many
   std::vector<int> history_bodies;       // indices into Model::bodies
   std::vector<GlobalId> history_particles;  // global ids
+  std::vector<ContactTarget> history_contacts;
 };
 
 // Of the discs of a 2D model whose masses follow from densities; 0 where there are none.

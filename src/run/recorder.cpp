@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "partition/id_order.hpp"
 #include "run/bodies_outside.hpp"
+#include "run/contact_columns.hpp"
 
 namespace scree {
 namespace {
@@ -72,6 +73,7 @@ Columns history_columns(const Model& model, const std::vector<Reaction>& reactio
     out.push_back({group, "fy", "N", "reaction on the joint's second body at its joint point"});
     out.push_back({group, "torque", "N m", "reaction torque on the joint's second body"});
   }
+  add_contact_columns(model, out);
   for (const int body : model.output.history_bodies)
     motion_columns(out, "bodies/" + model.bodies[body].name, true);
   for (const GlobalId id : model.output.history_particles)
@@ -146,6 +148,8 @@ void Recorder::history(State& state, Real h) {
                         real(n.rejected_error),
                         real(n.rejected_newton)};
   energy_row(state, row);
+  reaction_row(state, row);
+  add_contact_values(model_, link_, state, backend_, row);
   body_row(state, row);
   particle_row(row);
   if (history_) history_->append(row);
@@ -175,11 +179,13 @@ void Recorder::energy_row(State& state, std::vector<Real>& row) {
   append(row, particles.angular_momentum);
 }
 
-void Recorder::body_row(const State& state, std::vector<Real>& row) const {
-  if (link_.multibody() == nullptr) return;
+void Recorder::reaction_row(const State& state, std::vector<Real>& row) const {
   for (const Reaction& reaction : reactions_of(model_, link_, state))
     row.insert(row.end(), {reaction.force.x, reaction.force.y, reaction.torque});
-  if (model_.output.history_bodies.empty()) return;
+}
+
+void Recorder::body_row(const State& state, std::vector<Real>& row) const {
+  if (link_.multibody() == nullptr || model_.output.history_bodies.empty()) return;
   const std::vector<BodyMotion> motion = link_.multibody()->motion(state.bodies);
   for (const int body : model_.output.history_bodies) {
     append(row, motion[body].position);

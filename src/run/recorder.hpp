@@ -45,6 +45,7 @@ class Recorder {
 
   bool writes_late() const;
   void energy_row(State& state, std::vector<Real>& row);
+  void reaction_row(const State& state, std::vector<Real>& row) const;
   void body_row(const State& state, std::vector<Real>& row) const;
   void particle_row(std::vector<Real>& row);
 

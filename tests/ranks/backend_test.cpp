@@ -94,6 +94,15 @@ bool same(const std::vector<BodyWrench>& a, const std::vector<BodyWrench>& b) {
   return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(BodyWrench)) == 0;
 }
 
+bool same(const std::vector<ContactSum>& a, const std::vector<ContactSum>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(ContactSum)) == 0);
+}
+
+bool touched(const std::vector<ContactSum>& sums) {
+  return std::any_of(sums.begin(), sums.end(), [](const ContactSum& s) { return s.contacts > 0; });
+}
+
 bool same(const ContactWrenches& a, const ContactWrenches& b) {
   const auto equal = [](const WrenchStiffness& p, const WrenchStiffness& q) {
     return p.body == q.body && p.stiffness == q.stiffness && p.damping == q.damping;
@@ -170,6 +179,14 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
         if (world.is_root()) CHECK(same(end_a, end_b));
       }
       CHECK(world.sum(many.backend->balance().halo.owned) == kParticles);
+      const std::vector<int> walls = c.walls ? std::vector{1, 0} : std::vector<int>{};
+      const std::vector<ContactSum> walls_a = one.backend->wall_contacts(walls),
+                                    walls_b = many.backend->wall_contacts(walls),
+                                    bodies_a = one.backend->body_contacts(),
+                                    bodies_b = many.backend->body_contacts();
+      CHECK(same(walls_a, walls_b));
+      CHECK(touched(walls_a) == c.walls);
+      if (world.is_root()) CHECK((same(bodies_a, bodies_b) && touched(bodies_a) == c.bodies));
       const ParticleLedger p = one.backend->ledger(0), q = many.backend->ledger(0);
       if (!world.is_root()) continue;
       CHECK((p.kinetic == q.kinetic && p.gravitational == q.gravitational));

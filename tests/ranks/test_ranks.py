@@ -6,7 +6,8 @@ import unittest
 from mpi_case import DAM, DONE, EXPLICIT, IMPLICIT, INPUT, RanksTest, h5py
 
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
-NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05"]
+NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
+       'output.history_contacts=["net", "net.9"]']
 # The three cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
@@ -60,12 +61,13 @@ class SameBitsTest(RanksTest):
         for name, ((deck, *overrides), _) in MAIN_CASES.items():
             with self.subTest(case=name):
                 end = next(float(word.removeprefix("time.end=")) for word in overrides if "time.end=" in word)
-                settings = [*overrides, f"output.checkpoint_interval={end / 2}"]
+                settings = [*overrides, f"output.checkpoint_interval={end / 2}", "output.history_csv=true"]
                 whole, parts = f"whole {name}", f"parts {name}"
                 self.run_deck(DONE, 1, deck, whole, settings)
                 self.run_deck(DONE, 3, deck, parts, [*settings, f"time.end={end / 2}"])
                 self.run_deck(DONE, 2, deck, parts, settings, "--restart", self.folder / parts / "checkpoint.h5")
                 self.assertEqual(self.hash(parts), self.hash(whole))
+                self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
                 counts = self.record(parts)["counts"]
                 self.assertGreaterEqual(counts["steps"], 1000)
                 self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "coupling/ledger.hpp"
+#include "run/contact_columns.hpp"
 #include "run/state.hpp"
 #include "support/backends.hpp"
 #include "support/petsc_run.hpp"
@@ -71,6 +72,12 @@ class SimulationRun {
   Ledger ledger() {
     return make_ledger(particle_ledger(), state_.carried_out, link_.multibody(), state_.bodies,
                        clock_.time());
+  }
+  // What a history row holds of the contacts that the model records.
+  std::vector<Real> contact_values() {
+    std::vector<Real> values;
+    add_contact_values(model_, link_, state_, *backend_, values);
+    return values;
   }
   // Of the samples so far: what the ledger fails to account for, and what has changed its place [J].
   Real balance_error() const { return state_.balance.last.accounted() - state_.balance.start; }

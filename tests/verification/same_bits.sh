@@ -60,16 +60,17 @@ continued() {
   done
 }
 
+net=(--set "output.history_contacts=['net','net.9']")
 explicit=(--set integrator.particles=velocity-verlet --set integrator.substeps=10)
 
 same paper/net --set time.end=1
 same paper/valley --set time.end=1 --set time.step=1e-3
 same paper/valley --set time.end=0.8 --set time.step=1e-4
 same paper/net_9 --set time.end=0.5 --set time.step=1e-4
-same paper/net_400 --set time.end=0.7 --set time.step=5e-4
-same paper/net_400 --set time.end=0.7 --set time.step=1e-4 "${explicit[@]}"
+same paper/net_400 --set time.end=0.7 --set time.step=5e-4 "${net[@]}"
+same paper/net_400 --set time.end=0.7 --set time.step=1e-4 "${explicit[@]}" "${net[@]}"
 # Implicit and explicit, with bodies and without; particles touch at half time.
 continued paper/net_400 0.5 0.5625 --set time.step=1e-3
 continued paper/net_400 0.5 0.5625 --set time.step=1e-4 "${explicit[@]}"
-continued examples/heap_900 0.0625 0.125
+continued examples/heap_900 0.0625 0.125 --set "output.history_contacts=['x_min','y_min']"
 continued examples/gas_periodic 0.03125 0.0625

@@ -3,6 +3,7 @@
 // bits. pow() is not: other exponents agree to round-off.
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "dem/device.hpp"
 #include "support/catch.hpp"
@@ -73,6 +74,27 @@ void check_wrenches(Pair& pair, Real tolerance) {
   }
 }
 
+// What touches the walls and the bodies where all are now.
+void check_contacts(Pair& pair, Real tolerance) {
+  std::vector<int> all(pair.model.walls.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<ContactSum> sums[2];
+  for (int k = 0; k < 2; ++k) {
+    Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
+    sums[k] = backend.wall_contacts(all);
+    for (const ContactSum& body : backend.body_contacts()) sums[k].push_back(body);
+  }
+  REQUIRE(sums[0].size() == sums[1].size());
+  std::int64_t contacts = 0;
+  for (std::size_t i = 0; i < sums[0].size(); ++i) {
+    CHECK(difference(sums[0][i].force, sums[1][i].force) <= tolerance);
+    CHECK(difference(sums[0][i].torque, sums[1][i].torque) <= tolerance);
+    CHECK(sums[0][i].contacts == sums[1][i].contacts);
+    contacts += sums[0][i].contacts;
+  }
+  CHECK((contacts > 0) == !sums[0].empty());
+}
+
 }  // namespace
 
 TEST_CASE("forces, lists and sums at the start are the same on both backends") {
@@ -89,6 +111,7 @@ TEST_CASE("forces, lists and sums at the start are the same on both backends") {
     CHECK(std::abs(a.contact_elastic - b.contact_elastic) <= allowed(c) * a.contact_elastic);
     CHECK(difference(a.angular_momentum, b.angular_momentum) == 0);
     check_wrenches(pair, allowed(c));
+    check_contacts(pair, allowed(c));
   }
 }
 
@@ -152,6 +175,7 @@ TEST_CASE("explicit steps are the same on both backends") {
       CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= (c.exponent == 1 ? 0 : 1e-7));
       pair.both([](Backend& backend) { backend.shape_contacts(); });
       check_wrenches(pair, c.exponent == 1 ? 0 : 1e-7);
+      if (c.exponent == 1) check_contacts(pair, 0);
     }
 }
 

@@ -53,6 +53,27 @@ TEST_CASE("unknown names of materials, bodies and joints") {
   CHECK(contains(model_error(kSmallDeck + "[output]\nhistory_particles = [0]\n"), "there is no particle 0"));
 }
 
+TEST_CASE("names of what a history records the contacts of") {
+  const std::string walls = "[[walls]]\nname = \"floor\"\npoint = [0, 0]\nnormal = [0, 1]\n" + kPair;
+  const auto recording = [&](const std::string& names) {
+    return kSmallDeck + kBodies + walls + "[output]\nhistory_contacts = [" + names + "]\n";
+  };
+  const Model model = model_of(recording("\"row\", \"row.2\", \"floor\", \"x_max\""), {"space.x_max=wall"});
+  const std::vector<ContactTarget>& targets = model.output.history_contacts;
+  REQUIRE(targets.size() == 4);
+  CHECK((targets[0].row && targets[0].bodies == std::vector<int>{1, 2, 3}));
+  CHECK((!targets[1].row && targets[1].bodies == std::vector<int>{3} && targets[1].wall == -1));
+  CHECK(model.walls[static_cast<std::size_t>(targets[2].wall)].name == "floor");
+  CHECK(model.walls[static_cast<std::size_t>(targets[3].wall)].name == "x_max");
+  CHECK(contains(model_error(recording("\"flor\"")),
+                 "there is no body, row of bodies, wall or side that is a wall named \"flor\"; did you mean "
+                 "\"floor\"?"));
+  CHECK(contains(model_error(recording("\"y_min\"")),
+                 "the side y_min is no wall; space.y_min = \"wall\" makes it one"));
+  CHECK(contains(model_error(recording("\"a\""), {"walls.0.name=a"}),
+                 "\"a\" is the name of 2 bodies, rows and walls; it must be that of one"));
+}
+
 TEST_CASE("names that a row repeats") {
   const std::string clash = "[[bodies]]\nname = \"row.1\"\nmass = 1\ninertia = 1\nposition = [0, 0]\n";
   CHECK(contains(model_error(kSmallDeck + kBodies + clash), "the name \"row.1\" is repeated"));

@@ -1,0 +1,110 @@
+"""Bars, springs and joints of a model's bodies as lines and points, for any scene."""
+
+import numpy as np
+
+from model import GROUND, JOINT_KINDS, turned
+
+COILS = 6  # of a spring
+SHORT = 4  # springs shorter than so many units are straight lines
+MOST_POINTS = 2000  # of a body for which bars are looked for
+
+
+def shortest_tree(points):
+    """Pairs of indices that connect all points by the shortest lines (Prim)."""
+    count = len(points)
+    distance, nearest = np.full(count, np.inf), np.zeros(count, dtype=int)
+    waiting = np.ones(count, dtype=bool)
+    last, pairs = 0, []
+    for _ in range(count - 1):
+        waiting[last] = False
+        to_last = np.linalg.norm(points - points[last], axis=1)
+        closer = to_last < distance
+        distance[closer], nearest[closer] = to_last[closer], last
+        last = int(np.argmin(np.where(waiting, distance, np.inf)))
+        pairs.append((nearest[last], last))
+    return pairs
+
+
+def zigzags(ends, width):
+    """Springs between ends [n][2][3] as lines [n][points][3] that swing in the x-y plane where they can."""
+    along = ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(along, axis=1)[:, None]
+    across = np.stack([-along[:, 1], along[:, 0], np.zeros(len(along))], axis=1)
+    size = np.linalg.norm(across, axis=1)[:, None]
+    across = np.where(size > 0, across / np.maximum(size, 1e-300), [1.0, 0.0, 0.0])
+    swing = np.where(length > SHORT * width, width, 0.0)
+    share = np.concatenate([[0, 0.15], np.linspace(0.2, 0.8, 2 * COILS), [0.85, 1]])
+    side = np.array([0, 0, *[1, -1] * COILS, 0, 0])
+    return (
+        ends[:, None, 0]
+        + share[None, :, None] * along[:, None]
+        + side[None, :, None] * (swing * across)[:, None]
+    )
+
+
+class Mechanism:
+    """motion(snapshot): where the bodies are; unit: length of small things in the picture [m]."""
+
+    def __init__(self, model, motion, unit):
+        self.model, self.motion, self.unit = model, motion, unit
+        self._bars = self._find_bars()
+
+    def _find_bars(self):
+        """(body, two points on it), of the shortest lines that connect a body's shapes and joints; its centre
+        where it has no shapes."""
+        points = [list(offsets) or [np.zeros(3)] for offsets in self.model.offsets]
+        for pairs, local, _ in self.model.connections.values():
+            for pair, ends in zip(pairs, local):
+                for body, point in zip(pair, ends):
+                    if body != GROUND:
+                        points[body].append(point)
+        known, owner, lines = {}, [], []
+        for body, own in enumerate(points):
+            own = np.unique(np.array(own).reshape(-1, 3), axis=0)
+            if not 1 < len(own) <= MOST_POINTS:
+                continue
+            key = own.tobytes()  # bodies of a row are alike
+            if key not in known:
+                known[key] = [own[[i, j]] for i, j in shortest_tree(own)]
+            owner += [body] * len(known[key])
+            lines += known[key]
+        return np.array(owner, dtype=int), np.array(lines).reshape(-1, 2, 3)
+
+    def _ends(self, motion, kind):
+        """Ends of the connections of a kind whose bodies are known, the second where its image is nearest; and
+        their bodies and axes."""
+        if kind not in self.model.connections:
+            return np.empty((0, 2, 3)), np.empty((0, 2), dtype=int), np.empty((0, 3))
+        pairs, local, axes = self.model.connections[kind]
+        known = motion.known[pairs].all(axis=1)
+        pairs, local, axes = pairs[known], local[known], axes[known]
+        ends = motion.places(pairs, local)
+        period = self.model.period
+        apart = ends[:, 1] - ends[:, 0]
+        ends[:, 1] -= period * np.round(apart / np.where(period > 0, period, np.inf))
+        return ends, pairs, turned(axes, motion.angles[pairs[:, 0]])
+
+    def draw(self, snapshot):
+        """({style: lines [n][points][3]}, {joint's kind: points [n][3]}); "held" are points on the ground."""
+        motion = self.motion(snapshot)
+        owner, local = self._bars
+        shown = motion.known[owner]
+        bars = motion.places(owner[shown][:, None], local[shown])
+        lines = {"bar": bars, "spring": zigzags(self._ends(motion, "spring")[0], self.unit)}
+        points, held = {}, []
+        for kind in (*JOINT_KINDS, "torsional", "spring"):
+            ends, pairs, axes = self._ends(motion, kind)
+            held.append(ends[pairs == GROUND] if kind != "torsional" else np.empty((0, 3)))
+            if kind == "distance":
+                lines["distance"] = ends
+            elif kind == "translational":
+                slid = np.sum((ends[:, 1] - ends[:, 0]) * axes, axis=1)
+                reach = np.stack([np.minimum(slid, 0), np.maximum(slid, 0)], axis=1)
+                reach += 12 * self.unit * np.array([-1, 1])
+                lines["guide"] = ends[:, :1] + reach[:, :, None] * axes[:, None]
+            points[kind] = ends[:, 1]
+            if kind == "torsional":  # at the centre of a body
+                points[kind] = np.where(pairs[:, 1:] == GROUND, ends[:, 0], ends[:, 1])
+        points["distance"] = points["spring"] = np.empty((0, 3))
+        points["held"] = np.concatenate(held)
+        return lines, points

@@ -1,0 +1,180 @@
+"""What a run's resolved deck says of the space, the walls and the bodies, and where those are in a snapshot."""
+
+import json
+import pathlib
+import tomllib
+
+import numpy as np
+
+from results import fail
+
+GROUND = -1  # indexes the last row of a motion, which is the ground's
+SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
+JOINT_KINDS = ("revolute", "translational", "fixed", "distance")
+SPRING_TABLES = {"spring_dampers": "spring", "torsional_spring_dampers": "torsional"}
+
+
+def in_space(vector):
+    """A vector of the deck, which has two components in 2D."""
+    return np.array([*vector, 0.0][:3], dtype=float)
+
+
+def turned(vectors, angles):
+    """Vectors in the frames of bodies, in the global one."""
+    c, s = np.cos(angles), np.sin(angles)
+    x, y, z = np.moveaxis(np.asarray(vectors, dtype=float), -1, 0)
+    return np.stack([c * x - s * y, s * x + c * y, z + 0 * c], axis=-1)
+
+
+class Motion:
+    """Of all bodies and, last, the ground. known: whether the results tell where the body is."""
+
+    def __init__(self, centers, angles, known):
+        self.centers, self.angles, self.known = centers, angles, known
+
+    def places(self, bodies, local):
+        """Points fixed to bodies, in the global frame [m]."""
+        return self.centers[bodies] + turned(local, self.angles[bodies])
+
+
+class Connections:
+    """Joints, springs and dampers of one kind: their two bodies and the points on them, in the bodies' frames."""
+
+    def __init__(self):
+        self.bodies, self.points, self.axes = [], [], []
+
+    def add(self, bodies, points, axis):
+        self.bodies.append(bodies)
+        self.points.append(points)
+        self.axes.append(axis)
+
+    def arrays(self):
+        count = len(self.bodies)
+        return (
+            np.array(self.bodies, dtype=int).reshape(count, 2),
+            np.array(self.points, dtype=float).reshape(count, 2, 3),
+            np.array(self.axes, dtype=float).reshape(count, 3),
+        )
+
+
+class Model:
+    def __init__(self, deck):
+        self.title, space = deck["title"], deck["space"]
+        self.planar = space["dimension"] == 2
+        self.low, self.high = in_space(space["min"]), in_space(space["max"])
+        self.gravity = in_space(deck["gravity"])
+        self.boundaries = {side: space[side] for side in SIDES[: 4 if self.planar else 6]}
+        self.walls = [(in_space(wall["point"]), in_space(wall["normal"])) for wall in deck.get("walls", [])]
+        self._read_bodies(deck.get("bodies", []))
+        self._read_connections(deck)
+
+    def _read_bodies(self, tables):
+        self.names, self.offsets, self.rows = [], [], {}
+        centers, angles = [], []
+        for table in tables:
+            offsets = np.array([in_space(s["offset"]) for s in table.get("shapes", [])]).reshape(-1, 3)
+            for i in range(table.get("count", 1)):
+                self.rows.setdefault(table["name"], []).append(len(self.names))
+                self.names.append(f"{table['name']}.{i}" if "count" in table else table["name"])
+                self.offsets.append(offsets)
+                centers.append(in_space(table["position"]) + i * in_space(table["spacing"]))
+                angles.append(table["angle"])
+        count = len(self.names)
+        self.start = Motion(
+            np.array([*centers, np.zeros(3)]), np.array([*angles, 0.0]), np.ones(count + 1, dtype=bool)
+        )
+        self._index = {name: i for i, name in enumerate(self.names)} | {"ground": GROUND}
+
+    def _pairs(self, table):
+        if "chain" in table:
+            row = self.rows[table["chain"]]
+            return list(zip(row, row[1:]))
+        if "each" in table:
+            return [(GROUND, body) for body in self.rows[table["each"]]]
+        return [tuple(self._index[name] for name in table["bodies"])]
+
+    def _local(self, body, point):
+        return turned(point - self.start.centers[body], -self.start.angles[body])
+
+    def _points(self, table, pair, common):
+        """The deck's points of a connection, in the bodies' frames. common: one point for both sides."""
+        if "local_points" in table:
+            return [in_space(p) for p in table["local_points"]]
+        if "points" in table:
+            return [self._local(body, in_space(p)) for body, p in zip(pair, table["points"])]
+        if not common:
+            return [np.zeros(3), np.zeros(3)]
+        moving = [self.start.centers[body] for body in pair if body != GROUND]
+        point = in_space(table["point"]) if "point" in table else np.mean(moving, axis=0)
+        return [self._local(body, point) for body in pair]
+
+    def _read_connections(self, deck):
+        self.connections = {}
+
+        def add(kind, table, common):
+            axis = in_space(table.get("axis", [1.0, 0.0]))
+            for pair in self._pairs(table):
+                local_axis = turned(axis, -self.start.angles[pair[0]])
+                self.connections.setdefault(kind, Connections()).add(
+                    pair, self._points(table, pair, common), local_axis / np.linalg.norm(axis)
+                )
+
+        for table in deck.get("joints", []):
+            add(table["type"], table, common=table["type"] != "distance")
+        for key, kind in SPRING_TABLES.items():
+            for table in deck.get(key, []):
+                add(kind, table, common=False)
+        self.connections = {kind: found.arrays() for kind, found in self.connections.items()}
+
+    @property
+    def up(self):
+        """Unit vector against gravity; z, or y in the plane, without it."""
+        strength = np.linalg.norm(self.gravity)
+        if strength > 0:
+            return -self.gravity / strength
+        return np.array([0.0, 1.0, 0.0]) if self.planar else np.array([0.0, 0.0, 1.0])
+
+    @property
+    def period(self):
+        """[m]; 0 along axes that are not periodic."""
+        periodic = [self.boundaries.get(side) == "periodic" for side in SIDES[::2]]
+        return np.where(periodic, self.high - self.low, 0.0)
+
+    def side_walls(self):
+        """The sides that are walls, as (point, normal into the space)."""
+        found = []
+        for i, side in enumerate(SIDES):
+            if self.boundaries.get(side) == "wall":
+                normal = np.zeros(3)
+                normal[i // 2] = 1 - 2 * (i % 2)
+                found.append((self.high if i % 2 else self.low, normal))
+        return found
+
+    def motion(self, time, bodies, snapshot, history):
+        """Where the bodies are in the snapshot of that time [s]: from their shapes, or where they have none, from
+        the history's columns ({name: (values, ...)}). bodies: the shapes' Series, or None."""
+        motion = Motion(self.start.centers.copy(), self.start.angles.copy(), np.zeros_like(self.start.known))
+        motion.known[GROUND] = True
+        if bodies is not None:
+            index, first = np.unique(bodies.rows(snapshot, "body"), return_index=True)
+            motion.angles[index] = bodies.rows(snapshot, "angle")[first]
+            offsets = np.array([self.offsets[body][0] for body in index]).reshape(-1, 3)
+            points = bodies.rows(snapshot, "Points")[first]
+            motion.centers[index] = points - turned(offsets, motion.angles[index])
+            motion.known[index] = True
+        for body in np.flatnonzero(~motion.known):
+            columns = [f"bodies/{self.names[body]}/{name}" for name in ("x", "y", "z", "angle")]
+            if all(name in history for name in columns):
+                values = [np.interp(time, history["step/time"][0], history[name][0]) for name in columns]
+                motion.centers[body], motion.angles[body] = values[:3], values[3]
+                motion.known[body] = True
+        return motion
+
+
+def read_model(directory):
+    path = pathlib.Path(directory) / "run_record.json"
+    try:
+        deck = json.loads(path.read_text())["run"]["resolved_deck"]
+    except (OSError, ValueError, KeyError) as error:
+        fail(f"{path}: cannot read the run's deck there: {error}")
+    return Model(tomllib.loads(deck))

@@ -1,0 +1,61 @@
+// What the history records the contacts of.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "deck/suggestion.hpp"
+#include "model/build_parts.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr const char* kKey = "history_contacts";
+
+std::vector<int> walls_named(const Model& model, const std::string& name) {
+  std::vector<int> walls;
+  for (std::size_t w = 0; w < model.walls.size(); ++w)
+    if (model.walls[w].name == name) walls.push_back(static_cast<int>(w));
+  return walls;
+}
+
+[[noreturn]] void fail_unknown(const DeckTable& table, const ModelNames& names, const Model& model,
+                               const std::string& name) {
+  if (name.size() == 5 && std::string("xyz").find(name[0]) != std::string::npos &&
+      (name.substr(1) == "_min" || name.substr(1) == "_max"))
+    table.fail(kKey, fmt::format("the side {0} is no wall; space.{0} = \"wall\" makes it one", name));
+  std::vector<std::string> known;
+  for (const auto& [row, bodies] : names.rows) known.push_back(row);
+  for (const Wall& wall : model.walls) known.push_back(wall.name);
+  table.fail(kKey, fmt::format("there is no body, row of bodies, wall or side that is a wall named \"{}\"{}",
+                               name, suggestion(name, known)));
+}
+
+ContactTarget target_of(const DeckTable& table, const ModelNames& names, const Model& model,
+                        const std::string& name) {
+  const auto body = names.bodies.find(name);
+  const auto row = names.rows.find(name);
+  const bool moves = body != names.bodies.end() || row != names.rows.end();
+  const std::vector<int> walls = walls_named(model, name);
+  const std::size_t meanings = walls.size() + (moves ? 1 : 0);
+  if (meanings == 0) fail_unknown(table, names, model, name);
+  if (meanings > 1)
+    table.fail(kKey, fmt::format("\"{}\" is the name of {} bodies, rows and walls; it must be that of one",
+                                 name, meanings));
+  if (!moves) return {name, {}, false, walls.front()};
+  if (body != names.bodies.end()) return {name, {body->second}, false, -1};
+  return {name, row->second, true, -1};
+}
+
+}  // namespace
+
+void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model) {
+  std::vector<ContactTarget>& targets = model.output.history_contacts;
+  for (const std::string& name : table.texts(kKey)) {
+    const bool repeated =
+        std::any_of(targets.begin(), targets.end(), [&](const ContactTarget& t) { return t.name == name; });
+    if (!repeated) targets.push_back(target_of(table, names, model, name));
+  }
+}
+
+}  // namespace scree

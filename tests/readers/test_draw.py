@@ -1,0 +1,243 @@
+"""Pictures and plots of three runs: a 2D one with particles and bodies, a 3D one without bodies, and one without
+particles.
+
+    python3 tests/readers/test_draw.py NET_400 BOX_OF_SPHERES SLIDER_CRANK
+
+takes the folders of their results. Needs postprocess/requirements.txt."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import matplotlib.image
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "postprocess"))
+
+from mechanism import SHORT, Mechanism, shortest_tree, zigzags
+from model import GROUND, Model
+from plot_history import history_figure
+from render import Run, make_picture
+from results import read_history
+from scenes import BODY_COLOR, DiscScene, SphereScene, picture_axes
+from walls import cut, rectangle, section, solids
+
+NET, BOX, CRANK = (pathlib.Path(path).resolve() for path in sys.argv[1:4])
+ORANGE = matplotlib.colors.to_rgb(BODY_COLOR)
+
+
+def draw(*words, folder="/", root=ROOT):
+    """The program, started in that folder."""
+    program = os.path.relpath(root / "postprocess" / "draw", folder)
+    return subprocess.run([program, *map(str, words)], cwd=folder, capture_output=True, text=True)
+
+
+def pixels(path):
+    return matplotlib.image.imread(path)[..., :3]
+
+
+def share_of(image, color):
+    return (np.abs(image - color).max(axis=2) < 0.02).mean()
+
+
+def area(polygon):
+    """Of a plane polygon in space."""
+    spokes = polygon[1:] - polygon[0]
+    return np.linalg.norm(np.cross(spokes[:-1], spokes[1:]).sum(axis=0)) / 2
+
+
+def deck(**changes):
+    empty = {side: "open" for side in ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")}
+    space = {"dimension": 2, "min": [-1.0, -1.0], "max": [1.0, 2.0], **empty}
+    return {"title": "", "gravity": [0.0, -9.8], "space": space, **changes}
+
+
+class ProgramTest(unittest.TestCase):
+    """By the name that README gives, from another folder."""
+
+    def check(self, results, bodies):
+        for name in ("final.png", "history.png", "animation.mp4", "animation.gif"):
+            (results / name).unlink(missing_ok=True)
+        run = draw(results, "--frames", 3)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertIn(str(results / "final.png"), run.stdout)
+        animation = [path for path in results.glob("animation.*") if path.suffix in (".mp4", ".gif")]
+        self.assertEqual(len(animation), 1)
+        self.assertGreater(animation[0].stat().st_size, 5000)
+        final, history = pixels(results / "final.png"), pixels(results / "history.png")
+        for image in (final, history):
+            self.assertGreater(min(image.shape[:2]), 500)
+            self.assertLess(max(image.shape[:2]), 2000)
+            self.assertGreater(len(np.unique(np.round(32 * image).reshape(-1, 3), axis=0)), 50)
+        self.assertEqual(share_of(final, ORANGE) > 1e-3, bodies)
+
+    def test_a_run_in_the_plane(self):
+        self.check(NET, bodies=True)
+
+    def test_a_run_in_space(self):
+        self.check(BOX, bodies=False)
+
+    def test_a_run_without_particles(self):
+        self.check(CRANK, bodies=True)
+
+    def test_columns_of_the_history(self):
+        listed = draw(NET, "--list")
+        self.assertIn("contacts/net/fy [N]: contact force on the row's bodies", listed.stdout)
+        plotted = draw(NET, "--only", "history", "--columns", "contacts/net/fx", "contacts/net/contacts")
+        self.assertEqual((plotted.returncode, plotted.stdout.strip()), (0, str(NET / "history.png")))
+        self.assertIn("no column contacts/nte", draw(NET, "--only", "history", "--columns", "contacts/nte").stderr)
+
+    def test_what_cannot_be_drawn_is_named(self):
+        with tempfile.TemporaryDirectory() as empty:
+            for folder in (empty, f"{empty}/missing"):
+                run = draw(folder)
+                self.assertEqual(run.returncode, 1)
+                self.assertTrue(run.stderr.startswith("error: "), run.stderr)
+                self.assertNotIn("Traceback", run.stderr)
+
+    def test_a_fresh_clone_is_set_up_first(self):
+        with tempfile.TemporaryDirectory() as folder:
+            clone = pathlib.Path(folder) / "a clone"
+            shutil.copytree(ROOT / "postprocess", clone / "postprocess")
+            (clone / "jobs").mkdir()
+            setup = clone / "jobs" / "setup.sh"  # in place of the one that installs
+            setup.write_text(f'#!/bin/sh\necho "$@" >>"{folder}/calls"\nln -s "{ROOT}/.venv" "{clone}/.venv"\n')
+            setup.chmod(0o755)
+            link = pathlib.Path(folder) / "draw"
+            link.symlink_to(clone / "postprocess" / "draw")
+            for _ in range(2):
+                run = subprocess.run([link, NET, "--list"], capture_output=True, text=True)
+                self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertEqual(pathlib.Path(folder, "calls").read_text(), "--pictures\n")
+
+
+class PictureTest(unittest.TestCase):
+    def test_the_colour_bar_is_that_of_particles(self):
+        for results, particles in ((NET, True), (BOX, True), (CRANK, False)):
+            run = Run(results)
+            picture = make_picture(run, [len(run.particles) - 1])
+            self.assertEqual(picture.bar is not None, particles)
+            self.assertEqual(len(picture.figure.axes), 1 + particles)
+            self.assertEqual("particle" in picture.caption(0), particles)
+        self.assertTrue(picture.caption(0).endswith("t = 0 s, 3 bodies (orange)"))
+
+    def test_gravity_points_down(self):
+        for up in np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0], [0.6, 0, -0.8]], dtype=float):
+            axes = picture_axes(up)
+            np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
+            self.assertAlmostEqual(np.linalg.det(axes), 1)
+            self.assertAlmostEqual(axes[0] @ up, 0)
+            self.assertGreater(axes[1] @ up, 0.5)
+            self.assertGreater(axes[2] @ up, 0.2)  # from above
+        space = {**deck()["space"], "dimension": 3, "min": [0, 0, 0], "max": [1, 1, 1]}
+        np.testing.assert_array_equal(Model(deck(gravity=[9.8, 0, 0], space=space)).up, [-1, 0, 0])
+        np.testing.assert_array_equal(Model(deck(gravity=[0, 0, 0], space=space)).up, [0, 0, 1])
+
+    def test_the_box_is_the_space(self):
+        run = Run(BOX)
+        scene = SphereScene(run, [len(run.particles) - 1], use_vtk=False)
+        self.assertLess(run.particles.rows(len(run.particles) - 1, "Points")[:, 2].min(), 0.1)
+        np.testing.assert_array_equal(scene.box, [[0, 0, 0], [0.2, 0.2, 0.4]])
+        self.assertEqual(len(scene.faces()), 3)  # six sides are walls; those in front would hide the particles
+        width = np.ptp(scene.project(np.array([[0, 0.2, 0.2], [0.2, 0, 0.2]]))[:, 0])
+        self.assertLess(width, 2 * scene.half[0])
+
+    def test_all_of_a_swing_is_in_view(self):
+        run = Run(CRANK)
+        x_min, x_max, y_min, y_max = DiscScene(run, [len(run.particles) - 1], None).view
+        self.assertLess(x_min, -0.2)
+        self.assertGreater(x_max, 0.86)
+        self.assertTrue(y_min < -0.2 and y_max > 0.2)
+
+
+class MechanismTest(unittest.TestCase):
+    def test_joints_meet_in_every_snapshot(self):
+        run = Run(CRANK)
+        self.assertEqual({kind: len(found[0]) for kind, found in run.model.connections.items()},
+                         {"revolute": 3, "translational": 1})
+        mechanism = Mechanism(run.model, run.motion, 0.01)
+        for snapshot in range(len(run.particles)):
+            motion = run.motion(snapshot)
+            self.assertTrue(motion.known.all())
+            pairs, local, _ = run.model.connections["revolute"]
+            ends = motion.places(pairs, local)
+            np.testing.assert_allclose(ends[:, 0], ends[:, 1], atol=1e-8)
+            lines, points = mechanism.draw(snapshot)
+            np.testing.assert_allclose(points["revolute"], ends[:, 0], atol=1e-8)
+            self.assertEqual(lines["bar"].shape, (3, 2, 3))  # the crank, and the rod from pin to pin by its centre
+            np.testing.assert_allclose(np.linalg.norm(np.diff(lines["bar"], axis=1), axis=2).sum(), 0.8)
+            self.assertEqual(len(points["held"]), 2)
+
+    def test_springs_end_on_their_bodies(self):
+        run = Run(NET)
+        lines, points = Mechanism(run.model, run.motion, 1e-3).draw(len(run.particles) - 1)
+        centers = run.motion(len(run.particles) - 1).centers
+        self.assertEqual(len(lines["spring"]), 19)
+        np.testing.assert_allclose(lines["spring"][:, 0], centers[:19])
+        np.testing.assert_allclose(lines["spring"][:, -1], centers[1:20])
+        np.testing.assert_allclose(points["held"][:, :2], [[-0.95, -0.6], [0.95, -0.6]])
+
+    def test_a_spring_swings_unless_it_is_short(self):
+        ends = np.array([[[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, SHORT * 0.05, 0]]], dtype=float)
+        long, short = zigzags(ends, 0.05)
+        self.assertAlmostEqual(np.abs(long[:, 0]).max(), 0.05)
+        self.assertAlmostEqual(np.abs(short[:, 0]).max(), 0)
+        np.testing.assert_array_equal(long[[0, -1]], ends[0])
+
+    def test_bars_are_the_shortest(self):
+        points = np.array([[0, 0, 0], [3, 0, 0], [1, 0, 0], [2, 0, 0]], dtype=float)
+        self.assertEqual({frozenset(map(int, pair)) for pair in shortest_tree(points)},
+                         {frozenset(pair) for pair in ((0, 2), (2, 3), (3, 1))})
+
+    def test_a_body_without_shapes_is_where_the_history_says(self):
+        bodies = [{"name": "rod", "position": [1.0, 0.0], "angle": 0.0, "spacing": [0.0, 0.0]}]
+        joints = [{"name": "pin", "type": "revolute", "bodies": ["ground", "rod"], "point": [0.0, 0.0]}]
+        model = Model(deck(bodies=bodies, joints=joints))
+        self.assertFalse(model.motion(0.5, None, 0, {}).known[0])
+        values = {"step/time": [0, 1], "bodies/rod/x": [1, 0], "bodies/rod/y": [0, 1], "bodies/rod/z": [0, 0],
+                  "bodies/rod/angle": [0, 1]}
+        motion = model.motion(0.5, None, 0, {name: (column,) for name, column in values.items()})
+        self.assertTrue(motion.known.all())
+        np.testing.assert_allclose(motion.centers[[0, GROUND]], [[0.5, 0.5, 0], [0, 0, 0]])
+        np.testing.assert_allclose(motion.angles[0], 0.5)
+
+
+class WallTest(unittest.TestCase):
+    def test_a_plane_cuts_a_box(self):
+        low, high = np.zeros(3), np.ones(3)
+        hexagon = section(low, high, np.full(3, 0.5), np.array([1.0, 1.0, 1.0]))
+        self.assertEqual(len(hexagon), 6)
+        self.assertAlmostEqual(area(hexagon), 3 * np.sqrt(3) / 4)
+        self.assertAlmostEqual(area(section(low, high, np.array([0.3, 9, 9]), np.array([-2.0, 0, 0]))), 1)
+        self.assertEqual(len(section(low, high, np.array([2.0, 0, 0]), np.array([1.0, 0, 0]))), 0)
+
+    def test_what_is_behind_a_wall_is_solid(self):
+        walls = [{"name": "slope", "point": [0.0, 0.0], "normal": [1.0, 1.0]}]
+        space = {**deck()["space"], "x_max": "wall"}
+        found = solids(Model(deck(walls=walls, space=space)), np.array([-2.0, -2.0]), np.array([2.0, 3.0]))
+        (side, (point, normal)), (slope, _) = found
+        np.testing.assert_array_equal((side[:, 0].min(), side[:, 0].max()), (1, 2))
+        self.assertAlmostEqual(area(np.pad(side, ((0, 0), (0, 1)))), 5)
+        np.testing.assert_array_equal((point[0], normal[0]), (1, -1))
+        self.assertAlmostEqual(area(np.pad(slope, ((0, 0), (0, 1)))), 2)  # half of the square below it, in the space
+        self.assertEqual(len(cut(rectangle([0, 0], [1, 1]), np.array([2.0, 0]), np.array([1.0, 0]))), 0)
+
+
+class HistoryTest(unittest.TestCase):
+    def test_columns_that_stay_zero_are_no_lines(self):
+        figure = history_figure(read_history(CRANK), ["reactions/bearing/fx"])
+        panel = figure.axes[0]
+        labels = [text.get_text() for text in panel.get_legend().get_texts()]
+        self.assertEqual(len(labels), len(panel.lines))
+        self.assertIn("kinetic", labels)
+        self.assertNotIn("elastic contacts", labels)
+        self.assertIn("elastic contacts", panel.get_title(loc="left"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
