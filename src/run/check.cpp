@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/printable.hpp"
 #include "dem/device.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
@@ -143,7 +144,7 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
 }  // namespace
 
 std::string check_report(const Model& model, const Ranks& ranks) {
-  const std::string title = model.title.empty() ? "" : "title          " + model.title + "\n";
+  const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
   return title + space_lines(model, ranks.size()) + multibody_lines(model) + limit_lines(model) +
          time_lines(model) + fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
          memory_line(model, ranks.size()) + device_memory_line(model, ranks);
