@@ -1,5 +1,6 @@
 """Makes the cases: mutated decks, particle files and --set words, and damaged checkpoints."""
 
+import dataclasses
 import pathlib
 import random
 import re
@@ -29,20 +30,47 @@ def particle_files():
     return files
 
 
+@dataclasses.dataclass
+class Key:
+    """As `scree keys` declares it. table: "" for the top of the deck. facts: what it takes."""
+    table: str
+    is_list: bool
+    name: str
+    facts: str = ""
+
+
 def declared_keys(manual):
-    """[(table, key)] of `scree keys`; the table is "" for the top of the deck."""
-    keys, table = [], ""
+    keys, table, is_list = [], "", False
     for line in manual.splitlines():
-        if header := re.match(r"\[+([\w.]+)\]+", line):
-            table = header.group(1)
+        if header := re.match(r"(\[+)([\w.]+)\]+", line):
+            table, is_list = header.group(2), len(header.group(1)) == 2
         elif re.match(r"\S", line):
-            table = None if "(" in line and "top" not in line else ""
+            table, is_list = None if "(" in line and "top" not in line else "", False
         elif (key := re.match(r"  (\w+)$", line)) and table is not None:
-            keys.append((table, key.group(1)))
+            keys.append(Key(table, is_list, key.group(1)))
+        elif keys and not keys[-1].facts:
+            keys[-1].facts = line.strip().split(";")[0]
     return keys
 
 
-def random_value(rng):
+def plausible_value(key, rng):
+    """One that the key's declaration may allow."""
+    if key.facts.startswith("one of"):
+        return rng.choice(re.findall(r'"[^"]*"', key.facts) or ['""'])
+    number = rng.choice(["0.0", "1e-9", "1e-6", "1e-4", "1e-3", "0.02", "0.1", "1.0", "-0.3", "10.0", "1e3", "1e6"])
+    name = rng.choice(["arm", "cord", "cord.1", "wheel", "hinge", "steel", "rubber", "chain", "paddle", "x_min", "ground"])
+    for start, value in (("true or false", rng.choice(["true", "false"])), ("an integer", rng.choice("0123579") + "0"[:rng.choice([0, 0, 1])]),
+                         ("a number", number), ("2 or 3 numbers", rng.choice([f"[{number}, 0.1]", f"[0.1, {number}, 0.0]"])),
+                         ("a list of texts", f'["{name}"]'), ("a list of 2 texts", f'["{name}", "ground"]'),
+                         ("a list of integers", "[0, 3]"), ("a list", f"[{number}, 0.5]")):
+        if key.facts.startswith(start):
+            return value
+    return f'"{name}"'
+
+
+def some_value(key, rng):
+    if rng.random() < 0.5:
+        return plausible_value(key, rng)
     if rng.random() < 0.25:
         return f'"{rng.choice(mutations.TEXTS)}"'
     return rng.choice(mutations.NUMBERS + mutations.OTHERS)
@@ -74,15 +102,15 @@ class Maker:
         """A key of the manual with some value, in a table of the deck."""
         text, files = self.base(rng)
         for _ in range(rng.choice([1, 1, 2, 3])):
-            table, key = rng.choice(self.keys)
-            line = f"{key} = {random_value(rng)}\n"
+            key = rng.choice(self.keys)
+            table, line = key.table, f"{key.name} = {some_value(key, rng)}\n"
             header = re.search(rf"^\[+{re.escape(table)}\]+.*\n", text, re.MULTILINE) if table else None
             if header is None:
                 text = line + text if not table else f"{text}\n[{rng.choice([table, f'[{table}]'])}]\n{line}"
                 continue
             end = text.find("\n[", header.end())
             body = text[header.end():end if end >= 0 else len(text)]
-            body = re.sub(rf"^{key} *=.*\n", "", body, flags=re.MULTILINE)
+            body = re.sub(rf"^{key.name} *=.*\n", "", body, flags=re.MULTILINE)
             text = text[:header.end()] + line + body + (text[end:] if end >= 0 else "")
         return Case(("declared_key",), {"deck.toml": text.encode(errors="surrogatepass"), **files})
 
@@ -94,9 +122,9 @@ class Maker:
         return Case(("set_word",), {"deck.toml": text.encode(), **files}, words)
 
     def word(self, rng):
-        table, key = rng.choice(self.keys)
-        path = f"{table}.{rng.choice(['0.', '', '1.', 'arm.', '99.', '-1.'])}{key}" if table else key
-        word = f"{path}={random_value(rng)}"
+        key = rng.choice(self.keys)
+        element = rng.choice(["0.", "0.", "1.", "arm.", "99.", "-1.", ""]) if key.is_list else ""
+        word = (f"{key.table}.{element}" if key.table else "") + f"{key.name}={some_value(key, rng)}"
         choice = rng.random()
         if choice < 0.1:
             word = word.replace("=", " = ", 1)

@@ -98,7 +98,7 @@ def has_place(message, case):
         if re.search(re.escape(name) + r":\d+", message):
             return True  # a line
         key = re.search(re.escape(name) + r": (?:[^:=]*\.)?(\w+)(: | = )", message)
-        if key and key.group(1).encode() not in case.files[name]:
+        if key and (key.group(1).encode() not in case.files[name] or ": missing" in message):
             return True  # a key that stands nowhere
         if re.search(re.escape(name) + r": [^:]*'.+'", message):
             return True  # a body or joint by its name
