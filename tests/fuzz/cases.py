@@ -76,9 +76,12 @@ def some_value(key, rng):
     return rng.choice(mutations.NUMBERS + mutations.OTHERS)
 
 
+KINDS = ("deck", "declared_key", "words", "particles", "checkpoint")
+
+
 class Maker:
-    def __init__(self, seed, manual):
-        self.seed = seed
+    def __init__(self, seed, manual, kinds):
+        self.seed, self.kinds = seed, kinds
         self.keys = declared_keys(manual)
         self.decks = [(path, path.read_text()) for path in OWN * 3 + INPUT]
         self.files = particle_files()
@@ -86,8 +89,7 @@ class Maker:
 
     def make(self, number):
         rng = random.Random(f"{self.seed} {number}")
-        kinds = [self.deck, self.deck, self.declared_key, self.words, self.particles]
-        return rng.choice(kinds + ([self.checkpoint] if self.checkpoints else []))(rng)
+        return getattr(self, rng.choice(self.kinds))(rng)
 
     def base(self, rng):
         path, text = rng.choice(self.decks)
@@ -101,13 +103,15 @@ class Maker:
     def declared_key(self, rng):
         """A key of the manual with some value, in a table of the deck."""
         text, files = self.base(rng)
+        there = [key for key in self.keys if not key.table or f"[{key.table}]" in text]
         for _ in range(rng.choice([1, 1, 2, 3])):
-            key = rng.choice(self.keys)
+            key = rng.choice(there if rng.random() < 0.9 else self.keys)
             table, line = key.table, f"{key.name} = {some_value(key, rng)}\n"
-            header = re.search(rf"^\[+{re.escape(table)}\]+.*\n", text, re.MULTILINE) if table else None
-            if header is None:
+            headers = list(re.finditer(rf"^\[+{re.escape(table)}\]+.*\n", text, re.MULTILINE)) if table else []
+            if not headers:
                 text = line + text if not table else f"{text}\n[{rng.choice([table, f'[{table}]'])}]\n{line}"
                 continue
+            header = rng.choice(headers)
             end = text.find("\n[", header.end())
             body = text[header.end():end if end >= 0 else len(text)]
             body = re.sub(rf"^{key.name} *=.*\n", "", body, flags=re.MULTILINE)

@@ -35,6 +35,7 @@ def parse_arguments():
     parser.add_argument("--count", type=int, help="number of cases, in place of --seconds")
     parser.add_argument("--only", type=int, help="number of the one case that is made")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the cases with findings")
+    parser.add_argument("--kinds", nargs="+", choices=cases.KINDS, default=cases.KINDS, help="of cases (default: all)")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--memory", type=float, default=4, help="address space of the program [GB] (default: 4)")
     return parser.parse_args()
@@ -92,7 +93,7 @@ def main():
     program = judge.Program(scree, int(arguments.memory * 2**30))
     manual = subprocess.run([str(scree), "keys"], env=program.environment, capture_output=True, text=True,
                             check=True).stdout
-    maker, tally = cases.Maker(arguments.seed, manual), Tally()
+    maker, tally = cases.Maker(arguments.seed, manual, arguments.kinds), Tally()
 
     with tempfile.TemporaryDirectory(prefix="scree_fuzz_", ignore_cleanup_errors=True) as temporary:
         root = pathlib.Path(temporary)
