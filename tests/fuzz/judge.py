@@ -127,7 +127,7 @@ def message_troubles(ended, case):
         troubles.append(("bad message", f"{len(errors)} error lines with code {ended.code}"))
     elif ended.code in (BAD_INPUT, IO_FAILED) and not has_place(errors[0], case):
         troubles.append(("no place", errors[0][:300]))
-    elif ended.code == FAILED and not re.search(r"at t = \S+ s: (stage \w+|mbs_\w+, rank \d+): .*\w", errors[0]):
+    elif ended.code == FAILED and not re.search(r"^error: (the .* at t = \S+ s: )?(stage \w+|mbs_\w+, rank \d+): .*\w", errors[0]):
         troubles.append(("no place", errors[0][:300]))
     return troubles
 
