@@ -149,6 +149,14 @@ void declare_deck(CLI::App& command, Arguments& arguments) {
       ->take_all();
 }
 
+// A deck in the place of a command is what people try first.
+std::string usage_message(const CommandLine& line, const std::string& problem) {
+  const std::string first = line.words.empty() ? "" : line.words.front();
+  if (first.ends_with(".toml") || std::filesystem::is_regular_file(first))
+    return fmt::format("{0}: not a command; did you mean \"scree run {0}\"?", first);
+  return problem + "; scree --help and scree run --help list commands and options";
+}
+
 ExitCode dispatch(const CommandLine& line) {
   CLI::App app("Scree: collisions between a constrained multibody system and very many particles", "scree");
   app.footer(kExitCodes);
@@ -179,9 +187,9 @@ ExitCode dispatch(const CommandLine& line) {
     std::vector<std::string> reversed(line.words.rbegin(), line.words.rend());
     app.parse(reversed);
   } catch (const CLI::ParseError& error) {
-    const bool asked = error.get_exit_code() == 0;
+    if (error.get_exit_code() != 0) throw InputError(usage_message(line, error.what()));
     if (mpi_value(MPI_Comm_rank) == 0) app.exit(error);
-    return asked ? ExitCode::done : ExitCode::bad_input;
+    return ExitCode::done;
   }
   if (*run_command) return run(arguments, line);
   if (*check_command) return check(arguments);
@@ -192,7 +200,7 @@ ExitCode dispatch(const CommandLine& line) {
 ExitCode guarded(const std::function<ExitCode()>& body) {
   const auto report = [](const char* what, ExitCode code) {
     Ranks::world().meet(what, static_cast<int>(code));
-    if (mpi_value(MPI_Comm_rank) == 0) std::cerr << "error: " << what << '\n';
+    if (mpi_value(MPI_Comm_rank) == 0) std::cerr << message_line("error", what);
     return code;
   };
   try {

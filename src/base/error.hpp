@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/printable.hpp"
+
 namespace scree {
 
 // Exit codes of the program; listed in --help and in the README.
@@ -18,7 +20,8 @@ enum class ExitCode : int {
 // The user's: bad usage or deck, or a deck that is too large for the machine. The message names file, line,
 // key, value and what is allowed.
 struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  // The message may quote anything.
+  explicit InputError(const std::string& message) : std::runtime_error(printable(message)) {}
 };
 
 // Ours, or a simulation that cannot go on. The message names stage, rank and global id or joint.

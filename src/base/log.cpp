@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "base/printable.hpp"
+
 namespace scree {
 
 namespace {
@@ -11,6 +13,8 @@ namespace {
 // Whether standard output is the terminal that this process runs on. mpirun gives its ranks another one, and
 // copies what they write there, perhaps into the log of a batch job.
 bool on_own_terminal() { return tcgetpgrp(STDOUT_FILENO) == getpgrp(); }
+
+constexpr std::size_t kLongest = 1200;  // of a warning or an error [B]
 
 }  // namespace
 
@@ -30,7 +34,11 @@ void Log::complain(const char* kind, const std::string& message) {
   if (quiet_) return;
   end_progress_line();
   std::fflush(stdout);
-  std::fprintf(stderr, "%s: %s\n", kind, message.c_str());
+  std::fputs(message_line(kind, message).c_str(), stderr);
+}
+
+std::string message_line(const std::string& kind, const std::string& message) {
+  return kind + ": " + shortened(printable(message), kLongest) + "\n";
 }
 
 void Log::warning(const std::string& message) {

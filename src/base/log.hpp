@@ -6,6 +6,9 @@
 
 namespace scree {
 
+// "error: no such file\n": one printable line of bounded length, whatever the message holds.
+std::string message_line(const std::string& kind, const std::string& message);
+
 class Log {
  public:
   // quiet: nothing goes to the terminal (ranks other than 0, tests).

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "deck/nesting.hpp"
 #include "deck/overrides.hpp"
 #include "deck/reader.hpp"
 
@@ -30,6 +31,8 @@ void DeckTable::fail(const std::string& key, const std::string& problem) const {
 }
 
 Deck parse_deck(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  if (const int line = line_of_deep_key(text); line > 0)
+    throw InputError(fmt::format("{}:{}: a key of more than {} parts", path, line, kMostKeyParts));
   try {
     toml::table source = toml::parse(text, std::string_view(path));
     for (const std::string& override_text : overrides) apply_override(source, override_text);

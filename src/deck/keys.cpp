@@ -103,6 +103,7 @@ Key boolean(const std::string& name) { return make_key(name, ValueType::boolean)
 Key integer(const std::string& name) { return make_key(name, ValueType::integer); }
 Key real(const std::string& name, const std::string& unit) { return make_key(name, ValueType::real, unit); }
 Key text(const std::string& name) { return make_key(name, ValueType::text); }
+Key name_key() { return make_key("name", ValueType::name); }
 Key file(const std::string& name) { return make_key(name, ValueType::file); }
 Key vector(const std::string& name, const std::string& unit) {
   return make_key(name, ValueType::vector, unit);
@@ -135,6 +136,10 @@ std::string allowed_values(const Key& key, int dimension) {
       return "a number" + range_text(key) + unit;
     case ValueType::text:
       return key.choices.empty() ? "a text" : fmt::format("one of \"{}\"", fmt::join(key.choices, "\", \""));
+    case ValueType::name:
+      return fmt::format(
+          "a name of 1 to {} bytes, without \"/\" and control characters, and not \".\" or \"..\"",
+          kLongestName);
     case ValueType::file:
       return "the path of a file, relative to the deck's folder";
     case ValueType::vector:

@@ -14,6 +14,7 @@ enum class ValueType {
   integer,
   real,
   text,
+  name,      // text that others refer to, and that results are called by
   file,      // path, relative to the deck's folder
   vector,    // as many numbers as space.dimension
   reals,     // list of numbers
@@ -27,6 +28,10 @@ enum class ValueType {
 };
 
 struct TableKeys;
+
+constexpr std::size_t kLongestName = 200;  // [B]
+// The unit of a key within a quantity's table: that of the quantity.
+inline const std::string kQuantityUnit = "the quantity's unit";
 
 // One key. The functions below start a declaration, the members complete it:
 //   real("step", "s").above(0).required().about("Step size.")
@@ -72,6 +77,7 @@ Key boolean(const std::string& name);
 Key integer(const std::string& name);
 Key real(const std::string& name, const std::string& unit);
 Key text(const std::string& name);
+Key name_key();  // "name"
 Key file(const std::string& name);
 Key vector(const std::string& name, const std::string& unit);
 Key reals(const std::string& name, const std::string& unit);

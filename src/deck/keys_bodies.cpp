@@ -20,7 +20,7 @@ std::vector<Key> connection_keys() {
 
 TableKeys with_connection(const std::string& sentence, std::vector<Key> own,
                           const std::string& selector = "") {
-  std::vector<Key> keys{text("name").required().about("Name for references, messages and results.")};
+  std::vector<Key> keys{name_key().required().about("Name for references, messages and results.")};
   for (const Key& key : connection_keys()) keys.push_back(key);
   for (const Key& key : own) keys.push_back(key);
   return {sentence, keys, selector};
@@ -44,7 +44,7 @@ const TableKeys& body_keys() {
       ""};
   static const TableKeys keys{
       "Rigid bodies that move in the x-y plane, one or a row of equal ones.",
-      {text("name").required().about("Name; the bodies of a row are NAME.0, NAME.1, ..."),
+      {name_key().required().about("Name; the bodies of a row are NAME.0, NAME.1, ..."),
        integer("count").within(1, 10000000).left_out("a single body").about("Number of bodies of a row."),
        vector("spacing", "m").otherwise("zero").about("From each body of a row to the next."),
        real("mass", "kg").above(0).required().about("Mass."),
@@ -98,7 +98,7 @@ const TableKeys& joint_keys() {
 const TableKeys& driver_keys() {
   static const TableKeys keys{
       "Prescribed motion of a joint.",
-      {text("name").required().about("Name for messages and results."),
+      {name_key().required().about("Name for messages and results."),
        text("joint").required().about("The joint that is driven: revolute, translational or distance."),
        quantity("motion", "rad or m", time_function_keys())
            .required()
@@ -141,7 +141,7 @@ const TableKeys& torsional_spring_damper_keys() {
 const TableKeys& applied_force_keys() {
   static const TableKeys keys{
       "Forces and torques on a body as functions of time.",
-      {text("name").required().about("Name for messages."),
+      {name_key().required().about("Name for messages."),
        text("body").required().about("The body that they act on."),
        vector("point", "m")
            .left_out("the body's centre")
@@ -170,16 +170,13 @@ const TableKeys& time_function_keys() {
                "Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
                "phase). "
                "Table: drivers follow the natural cubic spline through the points, forces straight lines."),
-       real("value", "unit of the function").only_for(started).otherwise("0.0").about("Constant part."),
-       real("rate", "unit/s").only_for({"ramp"}).required().about("Slope."),
-       real("amplitude", "unit of the function").only_for({"sine"}).required().about("Amplitude."),
+       real("value", kQuantityUnit).only_for(started).otherwise("0.0").about("Constant part."),
+       real("rate", kQuantityUnit + "/s").only_for({"ramp"}).required().about("Slope."),
+       real("amplitude", kQuantityUnit).only_for({"sine"}).required().about("Amplitude."),
        real("frequency", "Hz").only_for({"sine"}).above(0).required().about("Frequency."),
        real("phase", "rad").only_for({"sine"}).otherwise("0.0").about("Phase."),
        reals("times", "s").only_for({"table"}).required().about("Instants, increasing, two at least."),
-       reals("values", "unit of the function")
-           .only_for({"table"})
-           .required()
-           .about("Value at each instant.")},
+       reals("values", kQuantityUnit).only_for({"table"}).required().about("Value at each instant.")},
       "kind"};
   return keys;
 }

@@ -7,7 +7,7 @@ const TableKeys& particle_keys() {
   static const std::vector<std::string> spaced = {"row", "lattice"};
   static const TableKeys keys{
       "Groups of particles; their numbers count on from group to group in the deck's order.",
-      {text("name").left_out("none").about("Name for messages and for --set particles.NAME.key=value."),
+      {name_key().left_out("none").about("Name for messages and for --set particles.NAME.key=value."),
        text("kind")
            .one_of({"list", "row", "lattice", "random", "file"})
            .required()
@@ -87,32 +87,16 @@ const TableKeys& distribution_keys() {
            .about(
                "Constant: value. Uniform: between min and max. Normal: mean and sd, drawn again outside min "
                "and max. Table: one of values, with probabilities in proportion to weights."),
-       real("value", "unit of the quantity").only_for({"constant"}).above(0).required().about("Value."),
-       real("mean", "unit of the quantity")
-           .only_for({"normal"})
-           .above(0)
-           .required()
-           .about("Mean before the cut."),
-       real("sd", "unit of the quantity")
+       real("value", kQuantityUnit).only_for({"constant"}).above(0).required().about("Value."),
+       real("mean", kQuantityUnit).only_for({"normal"}).above(0).required().about("Mean before the cut."),
+       real("sd", kQuantityUnit)
            .only_for({"normal"})
            .above(0)
            .required()
            .about("Standard deviation before the cut."),
-       real("min", "unit of the quantity")
-           .only_for({"uniform", "normal"})
-           .above(0)
-           .required()
-           .about("Smallest."),
-       real("max", "unit of the quantity")
-           .only_for({"uniform", "normal"})
-           .above(0)
-           .required()
-           .about("Largest."),
-       reals("values", "unit of the quantity")
-           .only_for({"table"})
-           .above(0)
-           .required()
-           .about("Possible values."),
+       real("min", kQuantityUnit).only_for({"uniform", "normal"}).above(0).required().about("Smallest."),
+       real("max", kQuantityUnit).only_for({"uniform", "normal"}).above(0).required().about("Largest."),
+       reals("values", kQuantityUnit).only_for({"table"}).above(0).required().about("Possible values."),
        reals("weights", "").only_for({"table"}).above(0).left_out("equal").about("Weight of each value.")},
       "kind"};
   return keys;

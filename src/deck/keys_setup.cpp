@@ -181,7 +181,7 @@ const TableKeys& parallel_keys() {
 const TableKeys& material_keys() {
   static const TableKeys keys{
       "Materials. Without any, there is one that is named \"default\".",
-      {text("name").required().about("Name that bodies, particles, walls and contact pairs refer to."),
+      {name_key().required().about("Name that bodies, particles, walls and contact pairs refer to."),
        real("density", "kg/m^3")
            .above(0)
            .left_out("none")
@@ -193,7 +193,7 @@ const TableKeys& material_keys() {
 const TableKeys& wall_keys() {
   static const TableKeys keys{
       "Plane walls inside the space, solid behind the plane.",
-      {text("name").required().about("Name for messages."),
+      {name_key().required().about("Name for messages."),
        vector("point", "m").required().about("Any point of the plane."),
        vector("normal", "").required().about("Direction into the free side, of any length but 0."),
        text("material").left_out("the only material").about("Material of the wall.")},

@@ -12,6 +12,16 @@ namespace {
 
 constexpr std::size_t kWidth = 110;
 
+// README.md says the same; tests/cli/test_words.py compares them.
+constexpr const char* kLeftOut =
+    "What the model leaves out today. Particles do not rotate, and contact forces act along the "
+    "normal alone: no friction, no rolling resistance, no cohesion. All that touches is a disc (2D), "
+    "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
+    "meshes. Bodies are rigid, and in 3D too they and their joints are planar: they move along x and "
+    "y and turn about z, and forces along z do nothing to them. Joints have no play, no stops and no "
+    "friction. All particles are there at the start: none flow in, bond or break. There is no fluid, "
+    "no heat, and particles that do not touch do not act on each other.";
+
 // Appends the words of `text` in lines of kWidth, each line indented.
 void wrap(std::string& out, const std::string& text, std::size_t indent) {
   std::istringstream words(text);
@@ -74,6 +84,8 @@ std::string keys_text() {
        "number of "
        "times. Each key: what it takes [unit]; default; meaning. SI units; angles in radians.",
        0);
+  out += "\n";
+  wrap(out, kLeftOut, 0);
   out += "\n";
   describe_table(out, deck_keys(), "(top of the deck)");
   describe_below(out, deck_keys(), "");

@@ -6,25 +6,39 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
+#include "deck/nesting.hpp"
 #include "deck/suggestion.hpp"
 
 namespace scree {
 
 namespace {
 
-std::vector<std::string> split_path(const std::string& path) {
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string> split_path(const std::string& path, const std::string& place) {
   std::vector<std::string> parts;
   std::size_t start = 0;
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', start)) {
-    parts.push_back(path.substr(start, dot - start));
+    parts.push_back(trimmed(path.substr(start, dot - start)));
     start = dot + 1;
   }
-  parts.push_back(path.substr(start));
+  parts.push_back(trimmed(path.substr(start)));
+  if (parts.size() > kMostKeyParts)
+    throw InputError(fmt::format("{}: a key of more than {} parts", place, kMostKeyParts));
+  for (const std::string& part : parts)
+    if (part.empty()) throw InputError(place + ": must have the form key.path=value");
   return parts;
 }
 
 // A table { value = ... } whose nodes name the override as their source.
 toml::table parse_value(const std::string& text, const std::string& place) {
+  if (line_of_deep_key(text) > 0)
+    throw InputError(fmt::format("{}: a key of more than {} parts", place, kMostKeyParts));
   try {
     return toml::parse("value = " + text, std::string_view(place));
   } catch (const toml::parse_error& error) {
@@ -56,12 +70,12 @@ toml::table& element(toml::array& list, const std::string& id, const std::string
 }  // namespace
 
 void apply_override(toml::table& deck, const std::string& override_text) {
-  const std::string place = "--set " + override_text;
+  constexpr std::size_t kLongest = 200;  // [B]
+  const std::string place = "--set " + shortened(override_text, kLongest);
   const std::size_t equals = override_text.find('=');
-  if (equals == std::string::npos || equals == 0)
-    throw InputError(place + ": must have the form key.path=value");
-  const std::vector<std::string> path = split_path(override_text.substr(0, equals));
-  toml::table parsed = parse_value(override_text.substr(equals + 1), place);
+  if (equals == std::string::npos) throw InputError(place + ": must have the form key.path=value");
+  const std::vector<std::string> path = split_path(override_text.substr(0, equals), place);
+  toml::table parsed = parse_value(trimmed(override_text.substr(equals + 1)), place);
   if (parsed.size() != 1) throw InputError(place + ": must be one value");
   toml::table* table = &deck;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "deck/suggestion.hpp"
 
 namespace scree {
@@ -22,33 +23,38 @@ class Reader {
   Reader(const toml::table& deck, std::string deck_path, int dimension)
       : deck_(deck), deck_path_(std::move(deck_path)), dimension_(dimension) {}
 
+  // quantity_unit: where the table stands for a quantity.
   DeckTable read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
-                       const std::string& place) const;
+                       const std::string& place, const std::string& quantity_unit = "") const;
 
  private:
   // What a value is being read for.
   struct Context {
     const Key& key;
-    std::string path;   // of the key
-    std::string place;  // of the value
+    std::string path;                // of the key
+    std::string place;               // of the value
+    std::string quantity_unit = "";  // of the quantity whose table has the key
   };
 
   void check_key(const toml::key& key, const toml::node& node, const TableKeys& keys,
                  const DeckTable& table) const;
-  void read_key(const toml::table& source, const Key& key, DeckTable& table, const std::string& place) const;
-  void fill_default(const Key& key, DeckTable& table, const std::string& place) const;
+  void read_key(const toml::table& source, const Key& key, DeckTable& table,
+                const std::string& quantity_unit) const;
+  void fill_default(const Context& context, DeckTable& table) const;
   const std::string& default_value(const Key& key) const;
-  [[noreturn]] void fail_missing(const Key& key, const DeckTable& table, const std::string& place) const;
+  [[noreturn]] void fail_missing(const Context& context, const DeckTable& table) const;
   DeckValue read_value(const toml::node& node, const Context& context) const;
   std::vector<DeckTable> read_tables(const toml::node& node, const Context& context) const;
   DeckTable read_quantity(const toml::node& node, const Context& context) const;
   Real number(const toml::node& node, const toml::node& whole, const Context& context) const;
   std::int64_t integer(const toml::node& node, const toml::node& whole, const Context& context) const;
   std::string text(const toml::node& node, const Context& context) const;
+  std::string file(const std::string& value, const toml::node& node, const Context& context) const;
   Vec3 vector(const toml::node& node, const toml::node& whole, const Context& context) const;
   const toml::array& list(const toml::node& node, const Context& context) const;
   template <class T, class ReadEntry>
   std::vector<T> entries(const toml::node& node, const Context& context, const ReadEntry& read_entry) const;
+  std::string allowed(const Context& context) const;
   [[noreturn]] void fail(const toml::node& node, const Context& context,
                          const std::string& detail = "") const;
 
@@ -63,19 +69,25 @@ bool is_of(const DeckTable& table, const std::vector<std::string>& kinds) {
          std::find(kinds.begin(), kinds.end(), table.text(table.keys().selector)) != kinds.end();
 }
 
+// What others refer to, and what results are called by: a part of a path in HDF5.
+bool is_name(const std::string& text) {
+  return !text.empty() && text.size() <= kLongestName && text != "." && text != ".." &&
+         text.find('/') == std::string::npos && printable(text) == text;
+}
+
 std::string join_path(const std::string& table, const std::string& key) {
   return table.empty() ? key : table + "." + key;
 }
 
 DeckTable Reader::read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
-                             const std::string& place) const {
+                             const std::string& place, const std::string& quantity_unit) const {
   DeckTable table(keys, path, place);
   for (const Key& key : keys.keys) {
-    if (key.name == keys.selector) read_key(source, key, table, place);
+    if (key.name == keys.selector) read_key(source, key, table, quantity_unit);
   }
   for (const auto& [name, node] : source) check_key(name, node, keys, table);
   for (const Key& key : keys.keys) {
-    if (key.name != keys.selector) read_key(source, key, table, place);
+    if (key.name != keys.selector) read_key(source, key, table, quantity_unit);
   }
   return table;
 }
@@ -101,24 +113,25 @@ void Reader::check_key(const toml::key& name, const toml::node& node, const Tabl
 }
 
 void Reader::read_key(const toml::table& source, const Key& key, DeckTable& table,
-                      const std::string& place) const {
+                      const std::string& quantity_unit) const {
   if (!key.kinds.empty() && !is_of(table, key.kinds)) return;
+  Context context{key, join_path(table.path(), key.name), table.place(), quantity_unit};
   if (const toml::node* node = source.get(key.name)) {
-    const Context context{key, join_path(table.path(), key.name), place_of(node->source(), place)};
+    context.place = place_of(node->source(), table.place());
     table.set(key.name, read_value(*node, context));
   } else if (key.is_required || is_of(table, key.required_kinds)) {
-    fail_missing(key, table, place);
+    fail_missing(context, table);
   } else {
-    fill_default(key, table, place);
+    fill_default(context, table);
   }
 }
 
-void Reader::fail_missing(const Key& key, const DeckTable& table, const std::string& place) const {
+void Reader::fail_missing(const Context& context, const DeckTable& table) const {
   const std::string& selector = table.keys().selector;
   const std::string with =
-      key.is_required ? "" : fmt::format("with {} = \"{}\" ", selector, table.text(selector));
-  throw InputError(fmt::format("{}: {}: missing; {}it must be {}", place, join_path(table.path(), key.name),
-                               with, allowed_values(key, dimension_)));
+      context.key.is_required ? "" : fmt::format("with {} = \"{}\" ", selector, table.text(selector));
+  throw InputError(
+      fmt::format("{}: {}: missing; {}it must be {}", context.place, context.path, with, allowed(context)));
 }
 
 const std::string& Reader::default_value(const Key& key) const {
@@ -127,8 +140,9 @@ const std::string& Reader::default_value(const Key& key) const {
   return is_there ? key.default_there : key.default_value;
 }
 
-void Reader::fill_default(const Key& key, DeckTable& table, const std::string& place) const {
-  const Context context{key, join_path(table.path(), key.name), place};
+void Reader::fill_default(const Context& context, DeckTable& table) const {
+  const Key& key = context.key;
+  const std::string& place = context.place;
   if (key.type == ValueType::tables) {
     table.set(key.name, {std::vector<DeckTable>{}, place, "[]"});
   } else if (key.type == ValueType::table) {
@@ -155,6 +169,7 @@ DeckValue Reader::read_value(const toml::node& node, const Context& context) con
       value.data = number(node, node, context);
       break;
     case ValueType::text:
+    case ValueType::name:
     case ValueType::file:
       value.data = text(node, context);
       break;
@@ -210,12 +225,13 @@ std::vector<DeckTable> Reader::read_tables(const toml::node& node, const Context
 }
 
 DeckTable Reader::read_quantity(const toml::node& node, const Context& context) const {
-  if (node.is_table()) return read_table(*node.as_table(), *context.key.table, context.path, context.place);
+  const Key& key = context.key;
+  if (node.is_table()) return read_table(*node.as_table(), *key.table, context.path, context.place, key.unit);
   number(node, node, context);
   toml::table constant;
   constant.insert("kind", "constant");
   constant.insert("value", node);
-  return read_table(constant, *context.key.table, context.path, context.place);
+  return read_table(constant, *key.table, context.path, context.place, key.unit);
 }
 
 Real Reader::number(const toml::node& node, const toml::node& whole, const Context& context) const {
@@ -240,10 +256,19 @@ std::string Reader::text(const toml::node& node, const Context& context) const {
   const std::vector<std::string>& choices = context.key.choices;
   if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end())
     fail(node, context);
-  if (context.key.type != ValueType::file) return value;
+  if (value.find('\0') != std::string::npos) fail(node, context, " without the character \\u0000");
+  if (context.key.type == ValueType::name && !is_name(value)) fail(node, context);
+  return context.key.type == ValueType::file ? file(value, node, context) : value;
+}
+
+std::string Reader::file(const std::string& value, const toml::node& node, const Context& context) const {
   const std::filesystem::path folder = std::filesystem::absolute(deck_path_).parent_path();
   const std::string path = (folder / value).lexically_normal().string();
-  if (!std::ifstream(path)) fail(node, context, fmt::format("; {} cannot be read", path));
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) fail(node, context, fmt::format("; {} is a folder", path));
+  // It is read more than once: no pipe or device.
+  if (!std::filesystem::is_regular_file(path, error) || !std::ifstream(path))
+    fail(node, context, fmt::format("; {} cannot be read", path));
   return path;
 }
 
@@ -270,13 +295,22 @@ std::vector<T> Reader::entries(const toml::node& node, const Context& context,
   return values;
 }
 
-void Reader::fail(const toml::node& node, const Context& context, const std::string& detail) const {
-  const std::string allowed = allowed_values(context.key, dimension_);
-  if (context.place.starts_with("--set ")) {
-    throw InputError(fmt::format("{}: {} must be {}{}", context.place, context.path, allowed, detail));
+std::string Reader::allowed(const Context& context) const {
+  Key key = context.key;
+  if (key.unit.starts_with(kQuantityUnit)) {
+    const bool several = context.quantity_unit.find(' ') != std::string::npos && key.unit != kQuantityUnit;
+    key.unit = (several ? "(" + context.quantity_unit + ")" : context.quantity_unit) +
+               key.unit.substr(kQuantityUnit.size());
   }
-  throw InputError(
-      fmt::format("{}: {} = {}: must be {}{}", context.place, context.path, shown(node), allowed, detail));
+  return allowed_values(key, dimension_);
+}
+
+void Reader::fail(const toml::node& node, const Context& context, const std::string& detail) const {
+  if (context.place.starts_with("--set "))
+    throw InputError(
+        fmt::format("{}: {} must be {}{}", context.place, context.path, allowed(context), detail));
+  throw InputError(fmt::format("{}: {} = {}: must be {}{}", context.place, context.path, shown(node),
+                               allowed(context), detail));
 }
 
 }  // namespace

@@ -121,6 +121,10 @@ void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
                   : leaving == "drift" ? Leaving::drift
                                        : Leaving::error;
   for (const DeckTable& entry : deck.tables("walls")) {
+    const auto side = std::find(kSideNames.begin(), kSideNames.end(), entry.text("name"));
+    if (side != kSideNames.end() &&
+        space.boundary[static_cast<std::size_t>(side - kSideNames.begin())] == Boundary::wall)
+      entry.fail("name", "is the name of a side of the space that is a wall; choose another one");
     const Vec3 normal = entry.vector("normal");
     if (norm(normal) == 0) entry.fail("normal", "must not be 0");
     model.walls.push_back({entry.text("name"), entry.vector("point"), (1 / norm(normal)) * normal,
@@ -184,11 +188,6 @@ void build_steps(const DeckTable& deck, Model& model) {
     table.fail("max_step", fmt::format("must be at least time.step = {}", time.step));
 }
 
-template <class T>
-void add_once(std::vector<T>& list, T value) {
-  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-}
-
 void build_parallel(const DeckTable& deck, Model& model) {
   const DeckTable& table = deck.table("parallel");
   model.parallel.imbalance = table.real("imbalance");
@@ -220,7 +219,9 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
     const std::vector<int> bodies = single != names.bodies.end()
                                         ? std::vector{single->second}
                                         : find_row(names, name, table, "history_bodies");
-    for (const int body : bodies) add_once(output.history_bodies, body);
+    for (const int body : bodies)
+      add_once(output.history_bodies, body, table, "history_bodies",
+               fmt::format("body \"{}\"", model.bodies[static_cast<std::size_t>(body)].name));
   }
   const std::int64_t count = model.particles.totals.count;
   for (const std::int64_t id : table.integers("history_particles")) {
@@ -229,7 +230,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
           "history_particles",
           fmt::format("there is no particle {}; the deck has {} particles, counted from 0", id, count));
     }
-    add_once(output.history_particles, id);
+    add_once(output.history_particles, id, table, "history_particles", fmt::format("particle {}", id));
   }
   build_history_contacts(table, names, model);
 }

@@ -1,6 +1,9 @@
 // Bodies and rows of bodies.
 #include <fmt/format.h>
 
+#include <set>
+#include <tuple>
+
 #include "model/build_parts.hpp"
 #include "model/plausibility.hpp"
 
@@ -18,10 +21,15 @@ Body body_of(const DeckTable& table, const ModelNames& names) {
   body.velocity = table.vector("velocity");
   body.angular_velocity = table.real("angular_velocity");
   if (body.velocity.z != 0) table.fail("velocity", "bodies move in the x-y plane; the z component must be 0");
+  std::set<std::tuple<Real, Real, Real, Real>> circles;
   for (const DeckTable& shape : table.tables("shapes")) {
-    check_normal(shape, "radius", shape.real("radius"));
-    body.shapes.push_back(
-        {shape.vector("offset"), shape.real("radius"), find_material(names, shape, "material")});
+    const Vec3 offset = shape.vector("offset");
+    const Real radius = shape.real("radius");
+    check_normal(shape, "radius", radius);
+    if (!circles.insert({offset.x, offset.y, offset.z, radius}).second)
+      shape.fail("radius",
+                 "the body has a shape of this offset and radius already; each must be another one");
+    body.shapes.push_back({offset, radius, find_material(names, shape, "material")});
   }
   return body;
 }

@@ -144,7 +144,9 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
       model.joints.push_back(build_joint(table, model, connection));
     }
   }
+  NameMap taken = names.joints;  // the reactions of drivers and joints stand side by side in the history
   for (const DeckTable& table : deck.tables("drivers")) {
+    add_name(taken, table.text("name"), 0, table);
     const int joint = find_name(names.joints, table, "joint", "joint");
     if (model.joints[static_cast<std::size_t>(joint)].kind == JointKind::fixed) {
       table.fail("joint", "a fixed joint cannot be driven; it must be revolute, translational or distance");

@@ -15,12 +15,24 @@ std::vector<std::string> names_of(const Map& map) {
   return names;
 }
 
+// "; "net" has net.0 to net.19" where the name is that of a row, or of one element too many; else "".
+std::string elements_of_row(const NameMap& names, const std::string& name) {
+  const auto has = [&](const std::string& row) { return names.contains(row + ".0"); };
+  const std::string row = has(name) ? name : name.substr(0, name.rfind('.'));
+  if (!has(row)) return "";
+  int last = 0;
+  while (names.contains(fmt::format("{}.{}", row, last + 1))) ++last;
+  return fmt::format("; \"{0}\" has {0}.0 to {0}.{1}", row, last);
+}
+
 }  // namespace
 
 int find_name(const NameMap& names, const std::string& name, const DeckTable& table, const std::string& key,
               const std::string& what) {
   const auto found = names.find(name);
   if (found != names.end()) return found->second;
+  const std::string row = elements_of_row(names, name);
+  if (!row.empty()) table.fail(key, fmt::format("there is no {} named \"{}\"{}", what, name, row));
   table.fail(key,
              fmt::format("there is no {} named \"{}\"{}", what, name, suggestion(name, names_of(names))));
 }

@@ -1,6 +1,7 @@
 // Names of the deck's parts, resolved to indices of the model while it is built.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,6 +30,14 @@ const std::vector<int>& find_row(const ModelNames& names, const std::string& nam
                                  const std::string& key);
 // Material that `table.key` names; where the key is left out, the only material. Throws InputError.
 int find_material(const ModelNames& names, const DeckTable& table, const std::string& key);
+// Adds one entry of the list `table.key`, the name or number `shown`. Throws InputError where it is there.
+template <class T>
+void add_once(std::vector<T>& list, T value, const DeckTable& table, const std::string& key,
+              const std::string& shown) {
+  if (std::find(list.begin(), list.end(), value) != list.end())
+    table.fail(key, shown + " is repeated; every entry must be another one");
+  list.push_back(value);
+}
 // Adds a name. Throws InputError where it exists already.
 void add_name(NameMap& names, const std::string& name, int index, const DeckTable& table);
 

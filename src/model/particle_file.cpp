@@ -33,12 +33,21 @@ std::vector<std::string> split_line(const std::string& line) {
   return cells;
 }
 
-Real parse_cell(const std::string& cell, const std::string& column, const std::string& place) {
+bool is_positive(const std::string& column) { return column == "radius" || column == "mass"; }
+
+// What is wrong with a value, or "".
+std::string value_trouble(const std::string& column, Real value) {
+  if (std::isfinite(value) && (!is_positive(column) || value > 0)) return "";
+  return fmt::format("must be a {}finite number", is_positive(column) ? "positive, " : "");
+}
+
+// Throws InputError without the place.
+Real parse_cell(const std::string& cell, const std::string& column) {
   Real value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) {
-    throw InputError(fmt::format("{}: column {} = {}: must be a number", place, column, cell));
-  }
+  const bool is_number = error == std::errc() && end == cell.data() + cell.size();
+  const std::string trouble = is_number ? value_trouble(column, value) : "must be a number";
+  if (!trouble.empty()) throw InputError(fmt::format("column {} = {}: {}", column, cell, trouble));
   return value;
 }
 
@@ -66,6 +75,8 @@ class CsvTable {
   bool next(std::vector<std::string>& cells) {
     for (std::string line; std::getline(file_, line);) {
       ++number_;
+      constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets begin with it
+      if (number_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
       cells = split_line(line);
       if (!cells.front().starts_with("#") && !(cells.size() == 1 && cells.front().empty())) return true;
     }
@@ -101,8 +112,12 @@ ParticleColumns read_csv(const std::string& path, const std::vector<std::string>
   table.next(cells);
   for (std::int64_t row = 0; row < rows.last && table.next(cells); ++row) {
     if (row < rows.first) continue;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      columns[header[i]].push_back(parse_cell(cells[i], header[i], table.place()));
+    try {
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        columns[header[i]].push_back(parse_cell(cells[i], header[i]));
+    } catch (const InputError& error) {
+      throw InputError(table.place() + ": " + error.what());
+    }
   }
   return columns;
 }
@@ -205,12 +220,11 @@ void check_names(const std::vector<std::string>& names, int dimension, const std
 // first: row of the first value.
 void check_values(const ParticleColumns& columns, std::int64_t first, const std::string& path) {
   for (const auto& [name, values] : columns) {
-    const bool positive = name == "radius" || name == "mass";
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (std::isfinite(values[i]) && (!positive || values[i] > 0)) continue;
-      throw InputError(fmt::format("{}: particle {}: {} = {}: must be a {}finite number", path,
-                                   first + static_cast<std::int64_t>(i), name, values[i],
-                                   positive ? "positive, " : ""));
+      const std::string trouble = value_trouble(name, values[i]);
+      if (trouble.empty()) continue;
+      throw InputError(fmt::format("{}: dataset {}, row {} = {}: {}", path, name,
+                                   first + static_cast<std::int64_t>(i), values[i], trouble));
     }
   }
 }
@@ -240,7 +254,8 @@ bool ParticleFile::has(const std::string& column) const {
 }
 
 ParticleColumns ParticleFile::read(IdRange rows) const {
-  const ParticleColumns columns = hdf5_ ? read_hdf5(path_, columns_, rows) : read_csv(path_, columns_, rows);
+  if (!hdf5_) return read_csv(path_, columns_, rows);
+  const ParticleColumns columns = read_hdf5(path_, columns_, rows);
   check_values(columns, rows.first, path_);
   return columns;
 }

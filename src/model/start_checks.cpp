@@ -78,8 +78,11 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
 }
 
 bool is_inside(const Space& space, Vec3 p) {
+  // Farther away its place in the periodic space would be lost to round-off.
+  constexpr Real kMostPeriods = 1e6;
   const auto within = [&](Side side, Real x, Real min, Real max) {
-    return space.boundary[side] == Boundary::periodic || (x >= min && x <= max);
+    const Real beyond = space.boundary[side] == Boundary::periodic ? kMostPeriods * (max - min) : 0;
+    return x >= min - beyond && x <= max + beyond;
   };
   return within(kXMin, p.x, space.min.x, space.max.x) && within(kYMin, p.y, space.min.y, space.max.y) &&
          (space.dimension == 2 || within(kZMin, p.z, space.min.z, space.max.z));
@@ -101,7 +104,7 @@ void check_particles_inside(const DeckTable& deck, const Model& model) {
   }
 }
 
-// As a run does it: a particle may start any number of periods outside the space.
+// As a run does it: a particle may start many periods outside the space.
 void bring_into_periodic_box(const Space& space, std::vector<StartItem>& items) {
   const auto axis = [&](int side, Real min, Real max, Real Vec3::*along) {
     if (space.boundary[side] != Boundary::periodic) return;

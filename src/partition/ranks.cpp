@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "partition/entry_type.hpp"
 
 namespace scree {
@@ -254,7 +255,7 @@ void Ranks::meet(const char* message, int exit_code) const {
 }
 
 void Ranks::end_job(const char* message, int exit_code) const {
-  std::fprintf(stderr, "error: rank %d: %s\n", rank_, message);
+  std::fputs(message_line("error: rank " + std::to_string(rank_), message).c_str(), stderr);
   std::fflush(nullptr);
   MPI_Abort(communicator_of(communicator_), exit_code);
   std::abort();  // not reached

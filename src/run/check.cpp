@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/host_memory.hpp"
+#include "base/printable.hpp"
 #include "dem/device.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
@@ -241,7 +242,7 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
 }  // namespace
 
 std::string check_report(const Model& model, const Ranks& ranks) {
-  const std::string title = model.title.empty() ? "" : "title          " + model.title + "\n";
+  const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
   return title + space_lines(model, ranks.size()) + multibody_lines(model) + limit_lines(model) +
          time_lines(model) + output_lines(model) +
          fmt::format("search         skin {:.4g} m\n", model.contact.skin) +

@@ -1,4 +1,8 @@
 // Every kind of wrong deck has one message that names place, key, value and what is allowed.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "support/catch.hpp"
 #include "support/decks.hpp"
 
@@ -15,6 +19,11 @@ std::string with_line(int line, const std::string& replacement) {
     rest.erase(0, end);
   }
   return result;
+}
+
+// "deck.toml:12:" for a line counted from the end of the small deck, the first one after it being 1.
+std::string line_after(std::ptrdiff_t line) {
+  return fmt::format("deck.toml:{}:", std::count(kSmallDeck.begin(), kSmallDeck.end(), '\n') + line);
 }
 
 }  // namespace
@@ -128,6 +137,81 @@ TEST_CASE("a file that cannot be read") {
   CHECK(contains(message, "deck.toml:12:8: particles.0.file = \"absent.csv\": must be the path of a file"));
   CHECK(contains(message, "absent.csv cannot be read"));
   CHECK_THROWS_AS(load_deck("no/such/deck.toml", {}), IoError);
+}
+
+TEST_CASE("names are parts of paths in the results") {
+  const auto error = [](const std::string& name) {
+    return deck_error(kSmallDeck + "[[materials]]\nname = " + name + "\n");
+  };
+  const std::string allowed =
+      "must be a name of 1 to 200 bytes, without \"/\" and control characters, and not \".\" or \"..\"";
+  for (const std::string name : {"\"\"", "\".\"", "\"..\"", "\"/\"", "\"a/b\"", "\"a\\nb\"", "\"\\u001b\"",
+                                 "\"\\u0000\"", "\"\\u0085\"", "\"\\u202e\""}) {
+    const std::string message = error(name);
+    CHECK(contains(message, line_after(2) + "8: materials."));
+    CHECK((contains(message, allowed) || contains(message, "without the character \\u0000")));
+  }
+  CHECK(contains(error("\"" + std::string(201, 'x') + "\""), allowed));
+  for (const std::string name : {"\"a b\"", "\"a.b\"", "\"\u00e4\"", "\"...\"", "\"-1\""})
+    CHECK(error(name).empty());
+  CHECK(error("\"" + std::string(200, 'x') + "\"").empty());
+}
+
+TEST_CASE("every table that has a name checks it") {
+  const std::string bad = "name = \"a/b\"\n", mass = "mass = 1\ninertia = 1\nposition = [0, 0]\n",
+                    pair = "bodies = [\"ground\", \"b\"]\n";
+  for (const std::string& table : std::vector<std::string>{
+           "[[bodies]]\n" + mass, "[[walls]]\npoint = [0, 0]\nnormal = [1, 0]\n",
+           "[[joints]]\ntype = \"fixed\"\n" + pair, "[[drivers]]\njoint = \"j\"\nmotion = 0\n",
+           "[[spring_dampers]]\n" + pair, "[[torsional_spring_dampers]]\n" + pair,
+           "[[applied_forces]]\nbody = \"b\"\n", "[[particles]]\nkind = \"list\"\npositions = []\n"}) {
+    CHECK(contains(deck_error(kSmallDeck + table + bad), ".name = \"a/b\": must be a name"));
+  }
+}
+
+TEST_CASE("keys nested too deep are refused before they are parsed") {
+  const auto nested = [](int parts) {
+    std::string key = "a";
+    for (int i = 1; i < parts; ++i) key += ".a";
+    return key;
+  };
+  const std::string refused = "a key of more than 16 parts";
+  CHECK(contains(deck_error(kSmallDeck + nested(30000) + " = 1\n"), line_after(1) + " " + refused));
+  CHECK(contains(deck_error(kSmallDeck + "[" + nested(17) + "]\n"), refused));
+  CHECK(contains(deck_error(kSmallDeck + "x = { \"b\" . " + nested(30000) + " = 1 }\n"), refused));
+  CHECK(contains(deck_error(kSmallDeck, {nested(30000) + "=1"}), refused));
+  CHECK(contains(deck_error(kSmallDeck, {"time={ " + nested(30000) + " = 1 }"}), refused));
+  CHECK(contains(deck_error(kSmallDeck + nested(16) + " = 1\n"), "unknown key"));
+  // As deep as both limits let it be: toml++ has its own for values.
+  std::string open, close;
+  for (int i = 0; i < 250; ++i) open += "{ " + nested(16) + " = ", close += " }";
+  CHECK(contains(deck_error(kSmallDeck + "x = " + open + "1" + close + "\n"), "unknown key"));
+  for (int i = 0; i < 250; ++i) open += "{ a = ", close += " }";
+  CHECK(contains(deck_error(kSmallDeck + "x = " + open + "1" + close + "\n"), "not TOML"));
+}
+
+TEST_CASE("dots in texts, comments and numbers are no keys") {
+  const std::string dots = "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a";
+  for (const std::string& text :
+       std::vector<std::string>{"\"" + dots + "\"", "'" + dots + "'", "\"\"\"\n\\\"" + dots + "\"\"\"",
+                                "\"\"\"\"" + dots + "\"\"\"", "'''" + dots + "'''", "\"\" # " + dots})
+    CHECK(deck_error("title = " + text + "\n" + kSmallDeck).empty());
+  std::string numbers = "1.0";
+  for (int i = 0; i < 30; ++i) numbers += ", 1.0";
+  CHECK(contains(deck_error(kSmallDeck + "x = [" + numbers + "]\n"), "unknown key"));
+}
+
+TEST_CASE("values within a quantity are told in the quantity's unit") {
+  const std::string particles = kSmallDeck + "[[particles]]\nkind = \"list\"\npositions = []\n";
+  CHECK(contains(deck_error(particles + "radius = -1\n"),
+                 "particles.0.radius.value = -1: must be a number above 0 [m]"));
+  CHECK(contains(deck_error(particles + "density = { kind = \"uniform\", min = 0, max = 1 }\n"),
+                 "density.min = 0: must be a number above 0 [kg/m^3]"));
+  const std::string driver = kSmallDeck + "[[drivers]]\nname = \"d\"\njoint = \"j\"\n";
+  CHECK(contains(deck_error(driver + "motion = { kind = \"ramp\", rate = \"x\" }\n"),
+                 "must be a number [(rad or m)/s]"));
+  CHECK(contains(deck_error(driver + "motion = { kind = \"sine\", frequency = 1 }\n"),
+                 "motion.amplitude: missing; it must be a number [rad or m]"));
 }
 
 }  // namespace scree

@@ -37,6 +37,13 @@ TEST_CASE("a bare word is a text") {
         "velocity-verlet");
 }
 
+TEST_CASE("blanks around keys and values do not matter") {
+  CHECK(load({"time.step = 1e-5"}).table("time").real("step") == 1e-5);
+  CHECK(load({" time . step=\t1e-5 "}).table("time").real("step") == 1e-5);
+  CHECK(load({"time.control = adaptive "}).table("time").text("control") == "adaptive");
+  CHECK(load({"particles. block .count = 5"}).tables("particles")[0].integer("count") == 5);
+}
+
 TEST_CASE("elements go by name or by number") {
   CHECK(load({"particles.block.count=5"}).tables("particles")[0].integer("count") == 5);
   CHECK(load({"particles.0.count=6"}).tables("particles")[0].integer("count") == 6);
@@ -58,9 +65,18 @@ TEST_CASE("errors name the override in place of a line") {
                  "--set particles.blok.count=1: no element is named \"blok\"; did you mean \"block\"?"));
   CHECK(contains(deck_error(kDeck, {"particles.1.count=1"}), "there are 1 elements, counted from 0"));
   CHECK(contains(deck_error(kDeck, {"time.step"}), "--set time.step: must have the form key.path=value"));
+  for (const std::string path : {"", " ", ".", "time.", ".step", "time..step"})
+    CHECK(deck_error(kDeck, {path + "=1"}) == "--set " + path + "=1: must have the form key.path=value");
   CHECK(contains(deck_error(kDeck, {"time.step.x=1"}), "step has no keys of its own"));
   CHECK(contains(deck_error(kDeck, {"space.min=[1,"}), "--set space.min=[1,: not a TOML value"));
-  CHECK(contains(deck_error(kDeck, {"time.step=1\nend=2"}), "--set time.step=1\nend=2: must be one value"));
+  CHECK(contains(deck_error(kDeck, {"time.step=1\nend=2"}), "--set time.step=1\\nend=2: must be one value"));
+}
+
+TEST_CASE("an override of any length has a short message") {
+  const std::string message = deck_error(kDeck, {"time.step=" + std::string(100000, 'x')});
+  CHECK(message.size() < 500);
+  CHECK(contains(message, "--set time.step=xxx"));
+  CHECK(contains(message, "time.step must be a number above 0 [s]"));
 }
 
 }  // namespace scree

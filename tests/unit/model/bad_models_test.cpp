@@ -74,6 +74,53 @@ TEST_CASE("names of what a history records the contacts of") {
                  "\"a\" is the name of 2 bodies, rows and walls; it must be that of one"));
 }
 
+TEST_CASE("a row's bodies are told where one is not there") {
+  const auto error = [](const std::string& body) {
+    return model_error(kSmallDeck + kBodies +
+                       joint_with("type = \"fixed\"\nbodies = [\"ground\", \"" + body + "\"]\n"));
+  };
+  for (const std::string body : {"row.3", "row.-1", "row.x", "row."})
+    CHECK(contains(error(body), "there is no body named \"" + body + "\"; \"row\" has row.0 to row.2"));
+  CHECK(contains(error("rwo.1"), "did you mean \"row.1\"?"));
+}
+
+TEST_CASE("entries of the history's lists stand there once") {
+  const auto error = [](const std::string& entries) {
+    return model_error(kSmallDeck + kPair + kBodies + particles_at("[[0.5, 0], [-0.5, 0]]") + "[output]\n" +
+                       entries);
+  };
+  CHECK(contains(error("history_bodies = [\"a\", \"row\", \"a\"]\n"),
+                 "body \"a\" is repeated; every entry must"));
+  CHECK(contains(error("history_bodies = [\"row\", \"row.1\"]\n"), "body \"row.1\" is repeated"));
+  CHECK(contains(error("history_particles = [1, 0, 1]\n"),
+                 "history_particles = [1, 0, 1]: particle 1 is repeated"));
+  CHECK(error("history_bodies = [\"row.1\", \"a\"]\nhistory_particles = [1, 0]\n").empty());
+}
+
+TEST_CASE("a shape that a body has twice") {
+  const auto error = [](const std::string& shapes) {
+    return model_error(kSmallDeck +
+                       "[[bodies]]\nname = \"b\"\nmass = 1\ninertia = 1\nposition = [0, 0]\nshapes = [" +
+                       shapes + "]\n[[contact.pairs]]\nstiffness = 0\n");
+  };
+  const std::string shape = "{ radius = 0.1, offset = [0.2, 0.0] }";
+  CHECK(contains(error(shape + ", { radius = 0.1 }, " + shape),
+                 "bodies.b.shapes.2.radius = 0.1: the body has a shape of this offset and radius already"));
+  CHECK(error(shape + ", { radius = 0.1 }, { radius = 0.2 }").empty());
+}
+
+TEST_CASE("names that joints and drivers, or walls and sides, share") {
+  const std::string joint = joint_with("type = \"revolute\"\nbodies = [\"ground\", \"a\"]\n");
+  const std::string driver = "[[drivers]]\njoint = \"pin\"\nmotion = 0.0\nname = ";
+  CHECK(contains(model_error(kSmallDeck + kBodies + joint + driver + "\"pin\"\n"),
+                 "the name \"pin\" is repeated"));
+  CHECK(model_error(kSmallDeck + kBodies + joint + driver + "\"d\"\n").empty());
+  const std::string wall = kSmallDeck + "[[walls]]\nname = \"x_min\"\npoint = [0, 0]\nnormal = [1, 0]\n";
+  CHECK(
+      contains(model_error(wall, {"space.x_min=wall"}), "is the name of a side of the space that is a wall"));
+  CHECK(model_error(wall).empty());
+}
+
 TEST_CASE("names that a row repeats") {
   const std::string clash = "[[bodies]]\nname = \"row.1\"\nmass = 1\ninertia = 1\nposition = [0, 0]\n";
   CHECK(contains(model_error(kSmallDeck + kBodies + clash), "the name \"row.1\" is repeated"));

@@ -77,6 +77,32 @@ TEST_CASE("particles from HDF5") {
   CHECK_THROWS_AS(read_particle_file(folder.write("text.h5", "no HDF5"), 2), IoError);
 }
 
+TEST_CASE("a byte order mark and ends of lines of other systems") {
+  const Folder folder;
+  const ParticleColumns columns =
+      read_particle_file(folder.write("p.csv", "\xef\xbb\xbfx,y\r\n0.1,0.2\r\n"), 2);
+  CHECK(columns.at("x") == std::vector<Real>{0.1});
+  CHECK(columns.at("y") == std::vector<Real>{0.2});
+}
+
+TEST_CASE("what is no file") {
+  const Folder folder;
+  const auto error = [&](const std::string& path) {
+    return model_error(kSmallDeck + "[[particles]]\nkind = \"file\"\nmass = 1.0\nfile = \"" + path + "\"\n");
+  };
+  CHECK(contains(error(folder.file("")), "is a folder"));
+  CHECK(contains(error(folder.file("absent.csv")), "absent.csv cannot be read"));
+  CHECK(contains(error("/dev/zero"), "/dev/zero cannot be read"));
+}
+
+TEST_CASE("wrong values in HDF5 files name dataset and row") {
+  const Folder folder;
+  const std::string path = folder.file("p.h5");
+  write_hdf5(path, {{"x", {0.1, 0.5}}, {"y", {0.2, 0.5}}, {"mass", {1, -1}}});
+  CHECK(contains(input_error([&] { read_particle_file(path, 2); }),
+                 "p.h5: dataset mass, row 1 = -1: must be a positive, finite number"));
+}
+
 TEST_CASE("a file without rows is a warning") {
   const Folder folder;
   const std::string csv = folder.write("p.csv", "x,y\n# none yet\n"), hdf5 = folder.file("p.h5");
@@ -106,8 +132,8 @@ TEST_CASE("wrong files name file, line, column and value") {
   CHECK(contains(error("x\n1\n"), "column y is missing"));
   CHECK(contains(error("x,y,vx\n1,2,3\n"), "column vy is missing"));
   CHECK(contains(error("x,y\n1,2\n", 3), "column z is missing"));
-  CHECK(
-      contains(error("x,y,radius\n1,2,-1\n"), "particle 0: radius = -1: must be a positive, finite number"));
+  CHECK(contains(error("x,y,radius\n\n1,2,-1\n"),
+                 "bad.csv:3: column radius = -1: must be a positive, finite number"));
   CHECK(contains(error("x,y\n1,nan\n"), "y = nan: must be a finite number"));
   CHECK(contains(error(""), "column x is missing"));
 }

@@ -205,4 +205,17 @@ TEST_CASE("exponents other than 1 are estimated at an overlap of 1 % of the radi
   CHECK(contains(warnings[0], "unstable"));
 }
 
+TEST_CASE("a particle may start periods outside a periodic space, but not where its place is lost") {
+  const std::string deck = kSmallDeck +
+                           "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"list\"\n" +
+                           "radius = 0.05\nmass = 1.0\npositions = [[0, 0]]\n";
+  const auto error = [&](const std::string& x) {
+    return model_error(
+        deck, {"space.x_min=periodic", "space.x_max=periodic", "particles.0.positions=[[" + x + ", 0]]"});
+  };
+  CHECK(error("1e5").empty());
+  CHECK(contains(error("1e9"), "particle 0 starts at (1000000000, 0, 0), outside the space"));
+  CHECK(contains(error("-1e300"), "particle 0 starts at (-1e+300, 0, 0), outside the space"));
+}
+
 }  // namespace scree
