@@ -1,14 +1,18 @@
 #include "mbs/multibody.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "base/error.hpp"
 #include "mbs/energy_ledger.hpp"
 #include "mbs/hht_method.hpp"
 #include "mbs/newton_solver.hpp"
 #include "mbs/planar_system.hpp"
 #include "mbs/start_checks.hpp"
+#include "mbs/start_velocities.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {
@@ -44,7 +48,10 @@ struct Multibody::Impl {
         newton(system, method),
         motion(model.bodies.size()) {
     for (const Body& body : model.bodies) plane.push_back(body.position.z);
+    settle_velocities(model);
   }
+
+  void settle_velocities(const Model& model);
 
   void update_motion() {
     for (std::size_t b = 0; b < motion.size(); ++b) {
@@ -53,7 +60,8 @@ struct Multibody::Impl {
   }
 
   PlanarSystem system;
-  MultibodyState start;  // q, q' of the model
+  MultibodyState start;  // q of the model, and its q' or those nearest to them that are consistent
+  std::string start_change;
   HhtMethod method;
   NewtonSolver newton;
   std::vector<Real> plane;  // z of each body [m]
@@ -61,6 +69,21 @@ struct Multibody::Impl {
   MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;       // of the open step's start [s]
 };
+
+void Multibody::Impl::settle_velocities(const Model& model) {
+  if (system.constraints() == 0) return;
+  const std::vector<Real> given = start.velocity;
+  const std::string trouble = velocity_trouble(system, method.constraint_rate(start, 0), given);
+  if (trouble.empty() && !model.consistent_velocities) return;
+  newton.solve_velocity(start, 0);
+  if (model.consistent_velocities) {
+    start_change = largest_change(system, given, start.velocity);
+    return;
+  }
+  const std::string keys = keys_to_set(system, given, start.velocity, model.space.dimension);
+  throw InputError(fmt::format("{}; set {}{}velocities = \"consistent\" at the top of the deck", trouble,
+                               keys, keys.empty() ? "" : ", or "));
+}
 
 Multibody::Multibody(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
 Multibody::~Multibody() = default;
@@ -151,6 +174,7 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
 
 int Multibody::coordinates() const { return impl_->system.coordinates(); }
 int Multibody::constraints() const { return impl_->system.constraints(); }
+const std::string& Multibody::start_change() const { return impl_->start_change; }
 std::string Multibody::solver_description() const { return impl_->newton.description(); }
 
 }  // namespace scree

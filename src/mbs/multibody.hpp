@@ -49,8 +49,8 @@ class Multibody {
   explicit Multibody(const Model& model);
   ~Multibody();
 
-  // Consistent start: q, q' of the model; q'' and lambda from the acceleration-level system with these
-  // wrenches.
+  // Consistent start: q of the model and its q', changed where the model says so; q'' and lambda from the
+  // acceleration-level system with these wrenches.
   MultibodyState initial_state(const std::vector<BodyWrench>& wrench);
 
   // Opens a step from `state` at time t of length h: Newmark prediction with q''_{n+1} = q''_n.
@@ -73,6 +73,10 @@ class Multibody {
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
+
+  // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular
+  // velocity of body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.
+  const std::string& start_change() const;
 
   int coordinates() const;
   int constraints() const;

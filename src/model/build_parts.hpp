@@ -23,8 +23,9 @@ void build_steps(const DeckTable& deck, Model& model);  // after the contacts, f
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_parallel(const DeckTable& deck, Model& model);
 
-// A time function from a quantity of the deck.
-TimeFunction build_time_function(const DeckTable& table);
+// A time function from a quantity of the deck: of a driver, or a force or torque.
+TimeFunction build_motion(const DeckTable& table);
+TimeFunction build_force(const DeckTable& table);
 
 // Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
 // for smaller overlaps.
