@@ -111,6 +111,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   } catch (const SimulationError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
     undo_step(bodies);
+    link_.check_reactions();
     ++counts_.rejected_newton;
     return {Verdict::not_converged, 0, error.what()};
   }

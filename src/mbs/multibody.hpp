@@ -62,8 +62,13 @@ class Multibody {
   Real error() const;
   // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:
   // contact wrenches at the end of the step, where they differ from those that the step was corrected with
-  // because contacts opened or closed within it; the next step starts from them.
+  // because contacts opened or closed within it; the next step starts from them. Throws SimulationError, with
+  // `state` as it was, where the reactions oscillate beyond repair (see ReactionWatch).
   void accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench);
+
+  // After a step that failed: throws SimulationError where the reactions oscillate, as shorter steps do not
+  // help then.
+  void check_reactions() const;
 
   // One entry per body, at the current iterate of the open step.
   const std::vector<BodyMotion>& motion() const;
