@@ -130,7 +130,10 @@ ExitCode check(const Arguments& arguments) {
       ranks.on_root([&] {
         naming_memory(size_of(model), ranks.size(), [&] {
           const PetscSession petsc("scree", {});
-          constraints = "solver         " + Multibody(model).solver_description();
+          const Multibody multibody(model);
+          const std::string& change = multibody.start_change();
+          constraints = "solver         " + multibody.solver_description();
+          if (!change.empty()) constraints += "\nvelocities     made consistent; largest change: " + change;
         });
       });
     });

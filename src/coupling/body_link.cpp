@@ -40,6 +40,10 @@ void BodyLink::accept(MultibodyState& bodies) {
   bodies.wrench = end_wrench_;
 }
 
+void BodyLink::check_reactions() {
+  if (has_bodies()) ranks_.on_root([&] { multibody_->check_reactions(); });
+}
+
 void BodyLink::broadcast(Backend& backend) {
   ranks_.broadcast(std::span<BodyMotion>(motion_));
   backend.place_bodies(motion_);

@@ -28,6 +28,7 @@ class BodyLink {
   IterationNorms correct();             // with the step's wrench; the norms on every rank
   Real error() const;                   // on every rank
   void accept(MultibodyState& bodies);  // with end_wrench()
+  void check_reactions();
 
   // Rank 0 -> all: motion at the current iterate of the open step, handed to the backend's shapes.
   void broadcast_motion(Backend& backend);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "model/limits.hpp"
 
 namespace scree {
 namespace {
@@ -36,7 +37,11 @@ struct CoupledStep::Iteration {
 };
 
 CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, StageTimers& timers)
-    : model_(model), backend_(backend), link_(link), timers_(timers) {
+    : model_(model),
+      backend_(backend),
+      link_(link),
+      timers_(timers),
+      something_touches_(model.particles.totals.count > 0 || !pair_limits(model).empty()) {
   largest_radius_ = model.particles.totals.largest_radius;
   for (const Body& body : model.bodies)
     for (const Shape& shape : body.shapes) largest_radius_ = std::max(largest_radius_, shape.radius);
@@ -77,11 +82,16 @@ void CoupledStep::undo_step(const MultibodyState& bodies) {
 // Whether the neighbour list sees every pair that the iterate can bring to touch. If not, the step is undone
 // and the list built with a skin that covers it: the step is then repeated with the same h, so that what the
 // list happens to cover never changes the result.
-bool CoupledStep::covered(const MultibodyState& bodies) {
-  if (backend_.list_displacement() <= 1) return true;
-  const Real moved = backend_.step_displacement();
+bool CoupledStep::covered(const MultibodyState& bodies, int builds) {
+  if (!something_touches_ || backend_.list_displacement() <= 1) return true;
+  const Real moved = backend_.step_displacement(), widest = kMostSkin * largest_radius_;
+  if (builds == kMostListBuilds)
+    throw SimulationError(fmt::format(
+        "stage neighbors: the step moves a particle or a shape of a body by {:.3g} m, farther than "
+        "contacts are looked for: by half of {:.3g} m",
+        moved, std::max(model_.contact.skin, widest)));
   undo_step(bodies);
-  rebuild_list(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, kMostSkin * largest_radius_)));
+  rebuild_list(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, widest)));
   return false;
 }
 
@@ -94,12 +104,10 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
       // Attempts that the list does not cover leave no trace, in the counts neither.
       counts_.newton_iterations = before.newton_iterations,
       counts_.linear_iterations = before.linear_iterations;
-      if (builds > kMostListBuilds)
-        throw SimulationError("stage neighbors: no skin covers the step's motion");
       open_step(bodies, t, h);
-      if (!covered(bodies)) continue;
+      if (!covered(bodies, builds)) continue;
       iterate();
-      done = covered(bodies);
+      done = covered(bodies, builds);
     }
     for (const Leaver& l : backend_.outside())
       if (l.lost) check_inside();  // through a wall: a shorter step may not
@@ -111,6 +119,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   } catch (const SimulationError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
     undo_step(bodies);
+    link_.check_reactions();
     ++counts_.rejected_newton;
     return {Verdict::not_converged, 0, error.what()};
   }

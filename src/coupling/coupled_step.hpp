@@ -55,7 +55,7 @@ class CoupledStep {
   struct Iteration;
   void open_step(const MultibodyState& bodies, Real t, Real h);
   void undo_step(const MultibodyState& bodies);
-  bool covered(const MultibodyState& bodies);
+  bool covered(const MultibodyState& bodies, int builds);
   void iterate();
   bool iterate_once(Iteration& last);
   std::string trouble_of(const Iteration& last) const;
@@ -66,7 +66,8 @@ class CoupledStep {
   Backend& backend_;
   BodyLink& link_;
   StageTimers& timers_;
-  Real largest_radius_ = 0;  // of particles and shapes [m]
+  const bool something_touches_;  // without, nothing is looked for
+  Real largest_radius_ = 0;       // of particles and shapes [m]
   StepCounts counts_;
   std::vector<BodyWrench> wrench_sum_;  // over the substeps of an explicit step
 };

@@ -160,23 +160,47 @@ const TableKeys& applied_force_keys() {
 }
 
 const TableKeys& time_function_keys() {
-  static const std::vector<std::string> started = {"constant", "ramp", "sine"};
+  static const std::vector<std::string> started = {"constant", "ramp", "sine", "step"};
   static const TableKeys keys{
       "A function of time: a number, or a table such as { kind = \"ramp\", rate = 2.0 }.",
       {text("kind")
-           .one_of({"constant", "ramp", "sine", "table"})
+           .one_of({"constant", "ramp", "sine", "step", "table"})
            .required()
-           .about(
-               "Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
-               "phase). "
-               "Table: drivers follow the natural cubic spline through the points, forces straight lines."),
-       real("value", kQuantityUnit).only_for(started).otherwise("0.0").about("Constant part."),
+           .about("Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
+                  "phase). Step: value up to start, end_value from end on, and between them value + "
+                  "(end_value - "
+                  "value) (10 s^3 - 15 s^4 + 6 s^5), s = (t - start) / (end - start), of class C2. Table: a "
+                  "curve "
+                  "through the points."),
+       real("value", kQuantityUnit)
+           .only_for(started)
+           .otherwise("0.0")
+           .about("Constant part; of a step, the value before it."),
+       real("end_value", kQuantityUnit).only_for({"step"}).required().about("Value after the step."),
+       real("start", "s").only_for({"step"}).required().about("When the step begins."),
+       real("end", "s").only_for({"step"}).required().about("When it is done, after start."),
        real("rate", kQuantityUnit + "/s").only_for({"ramp"}).required().about("Slope."),
        real("amplitude", kQuantityUnit).only_for({"sine"}).required().about("Amplitude."),
        real("frequency", "Hz").only_for({"sine"}).above(0).required().about("Frequency."),
        real("phase", "rad").only_for({"sine"}).otherwise("0.0").about("Phase."),
        reals("times", "s").only_for({"table"}).required().about("Instants, increasing, two at least."),
-       reals("values", kQuantityUnit).only_for({"table"}).required().about("Value at each instant.")},
+       reals("values", kQuantityUnit).only_for({"table"}).required().about("Value at each instant."),
+       text("interpolation")
+           .only_for({"table"})
+           .one_of({"natural", "clamped", "monotone", "linear"})
+           .left_out("\"natural\" for the motion of a driver, \"linear\" for forces and torques")
+           .about(
+               "Natural: the cubic spline of class C2 whose second derivative is 0 at both ends; it "
+               "overshoots where the slope jumps, so that a motion does not hold. Clamped: the cubic spline "
+               "of class C2 with end_rates at both ends; it overshoots as well. Monotone: of class C2, made "
+               "of quintics; between two points it never leaves the range of their values, and depends on "
+               "no others but the next on either side: for motions that hold and then move. Linear: "
+               "straight lines; for forces and torques only, as the velocity of a motion would jump."),
+       reals("end_rates", kQuantityUnit + "/s")
+           .only_for({"table"})
+           .entries(2)
+           .left_out("0 at both ends")
+           .about("Rates at the first and the last instant, with interpolation = \"clamped\".")},
       "kind"};
   return keys;
 }

@@ -20,6 +20,14 @@ const TableKeys& deck_keys() {
       {text("title").otherwise("\"\"").about("Name of the case, written into the results."),
        table("space", space_keys()).required(),
        vector("gravity", "m/s^2").otherwise("zero").about("Acceleration of gravity."),
+       text("velocities")
+           .one_of({"given", "consistent"})
+           .otherwise("\"given\"")
+           .about(
+               "Of the bodies at t = 0. Given: as the bodies' keys say; the run is refused where a joint or "
+               "driver contradicts them, and told which keys to set to what. Consistent: changed so that "
+               "they agree with all joints and drivers, by as little as possible in the kinetic energy of "
+               "the change."),
        table("time", time_keys()).required(), table("integrator", integrator_keys()),
        table("contact", contact_keys()), table("output", output_keys()), table("parallel", parallel_keys()),
        tables("materials", material_keys()), tables("walls", wall_keys()), tables("bodies", body_keys()),

@@ -31,8 +31,7 @@ class SpringDamperElement final : public ForceElement {
         stiffness_(element.stiffness),
         damping_(element.damping),
         free_length_(element.free_length),
-        actuator_(element.actuator, fmt::format("spring-damper '{}'", element.name), end,
-                  Interpolation::linear) {
+        actuator_(element.actuator, fmt::format("spring-damper '{}'", element.name), end) {
     for (std::size_t k = 0; k < 6; ++k) {
       if (index_[k] < 0) continue;
       active_.push_back(k);
@@ -171,9 +170,9 @@ class AppliedForceElement final : public ForceElement {
       : body_(element.body),
         point_(planar(element.point)),
         follows_body_(element.follows_body),
-        fx_(element.fx, owner(element), end, Interpolation::linear),
-        fy_(element.fy, owner(element), end, Interpolation::linear),
-        torque_(element.torque, owner(element), end, Interpolation::linear) {}
+        fx_(element.fx, owner(element), end),
+        fy_(element.fy, owner(element), end),
+        torque_(element.torque, owner(element), end) {}
 
   Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) override {
     const Vec2 f = force_at(motion, t);

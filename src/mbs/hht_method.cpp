@@ -108,6 +108,23 @@ void HhtMethod::acceleration_system(const MultibodyState& state, Real t, std::sp
   std::copy(acceleration_rhs.begin(), acceleration_rhs.end(), rhs.begin() + system_.coordinates());
 }
 
+void HhtMethod::velocity_system(const MultibodyState& state, Real t, std::span<Real> values,
+                                std::span<Real> rhs) {
+  system_.evaluate({t, state.position, state.velocity}, terms_);
+  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  const std::vector<Real> rate = constraint_rate(state, t);
+  std::fill(rhs.begin(), rhs.end(), 0);
+  for (std::size_t j = 0; j < rate.size(); ++j) rhs[state.velocity.size() + j] = -rate[j];
+}
+
+std::vector<Real> HhtMethod::constraint_rate(const MultibodyState& state, Real t) const {
+  std::vector<Real> rate(count(system_.constraints()));
+  system_.velocity_rhs({t, state.position, state.velocity}, rate);
+  for (Real& r : rate) r = -r;
+  terms_.constraint_jacobian.multiply(1, state.velocity, rate);
+  return rate;
+}
+
 bool HhtMethod::change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs) {
   system_.evaluate({end_time(), state.position, state.velocity}, terms_);
   if (terms_.applied_force == state.applied) return false;

@@ -48,6 +48,15 @@ class HhtMethod {
   // Sets q'', lambda from its solution, and the forces that go with them.
   void set_acceleration(std::span<const Real> solution, MultibodyState& state) const;
 
+  // Velocity-level system at the state's q, q' and at time t:
+  //   [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, velocity_rhs - Phi_q q').
+  // q' + d satisfies the constraints, and no smaller d in the norm of M does.
+  void velocity_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
+
+  // Phi_q q' - velocity_rhs, the rate of Phi, of a state at time t. The Jacobian is that of the last
+  // evaluation, which was at this state.
+  std::vector<Real> constraint_rate(const MultibodyState& state, Real t) const;
+
   // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
   // change dQ changes the reactions too,
   //   [M, Phi_q^T; Phi_q, 0] (d, d_lambda) = (dQ, 0),  q'' += (1 + alpha) d,  lambda += d_lambda.

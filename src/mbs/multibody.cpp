@@ -1,19 +1,30 @@
 #include "mbs/multibody.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "base/error.hpp"
 #include "mbs/energy_ledger.hpp"
 #include "mbs/hht_method.hpp"
 #include "mbs/newton_solver.hpp"
 #include "mbs/planar_system.hpp"
+#include "mbs/reaction_watch.hpp"
 #include "mbs/start_checks.hpp"
+#include "mbs/start_velocities.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {
 
 namespace {
+
+// Alternating part of the reactions over the largest mean part: where the run ends because shorter steps do
+// not help, and where it ends in any case.
+constexpr Real kOscillation = 10, kRuin = 1000;
+// The bodies' error, over the tolerance, from which they decide on the step's length.
+constexpr Real kGoverns = 0.3;
 
 MultibodyState start_of(const Model& model) {
   MultibodyState state;
@@ -42,9 +53,16 @@ struct Multibody::Impl {
         start(checked_start(model, system)),
         method(system, model.integrator.hht_alpha, start.position, start.velocity),
         newton(system, method),
+        watch(system.coordinate_scale(), system.constraint_scale()),
+        time_control(model.time),
         motion(model.bodies.size()) {
     for (const Body& body : model.bodies) plane.push_back(body.position.z);
+    settle_velocities(model);
   }
+
+  void settle_velocities(const Model& model);
+  void watch_reactions(const MultibodyState& state, Real error);
+  [[noreturn]] void fail_for_oscillation() const;
 
   void update_motion() {
     for (std::size_t b = 0; b < motion.size(); ++b) {
@@ -53,14 +71,32 @@ struct Multibody::Impl {
   }
 
   PlanarSystem system;
-  MultibodyState start;  // q, q' of the model
+  MultibodyState start;  // q of the model, and its q' or those nearest to them that are consistent
+  std::string start_change;
   HhtMethod method;
   NewtonSolver newton;
+  ReactionWatch watch;
+  TimeControl time_control;
   std::vector<Real> plane;  // z of each body [m]
   std::vector<BodyMotion> motion;
   MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;       // of the open step's start [s]
 };
+
+void Multibody::Impl::settle_velocities(const Model& model) {
+  if (system.constraints() == 0) return;
+  const std::vector<Real> given = start.velocity;
+  const std::string trouble = velocity_trouble(system, method.constraint_rate(start, 0), given);
+  if (trouble.empty() && !model.consistent_velocities) return;
+  newton.solve_velocity(start, 0);
+  if (model.consistent_velocities) {
+    start_change = largest_change(system, given, start.velocity);
+    return;
+  }
+  const std::string keys = keys_to_set(system, given, start.velocity, model.space.dimension);
+  throw InputError(fmt::format("{}; set {}{}velocities = \"consistent\" at the top of the deck", trouble,
+                               keys, keys.empty() ? "" : ", or "));
+}
 
 Multibody::Multibody(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
 Multibody::~Multibody() = default;
@@ -106,12 +142,39 @@ Real Multibody::error() const {
 void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench) {
   Impl& impl = *impl_;
   impl.method.close(impl.end);
+  impl.watch_reactions(state, error());
   book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
   if (!impl.system.has_forces_of(end_wrench)) {
     impl.system.set_forces(end_wrench);
     impl.newton.change_end_forces(impl.end);
   }
   std::swap(state, impl.end);
+}
+
+void Multibody::check_reactions() const {
+  if (impl_->watch.oscillates() && impl_->watch.share() >= kOscillation) impl_->fail_for_oscillation();
+}
+
+// Adaptive steps that the oscillation governs become shorter and shorter: nothing is gained by them.
+void Multibody::Impl::watch_reactions(const MultibodyState& state, Real error) {
+  if (system.constraints() == 0) return;
+  watch.observe(state, end, method.constraint_rate(end, method.end_time()));
+  if (!watch.oscillates()) return;
+  const bool governs =
+      time_control.control == StepControl::adaptive && error >= kGoverns * time_control.tolerance;
+  if (watch.share() >= (governs ? kOscillation : kRuin)) fail_for_oscillation();
+}
+
+void Multibody::Impl::fail_for_oscillation() const {
+  const Real alpha = method.coefficients().hht_alpha;
+  throw SimulationError(
+      fmt::format("stage accept: the reactions of joints and drivers change sign at every step and have "
+                  "grown to {:.0f} times "
+                  "their mean: an oscillation of the method, which integrator.hht_alpha = {:g} damps {}; set "
+                  "it {}below zero, "
+                  "e.g. -0.05",
+                  watch.share(), alpha == 0 ? 0 : alpha, alpha == 0 ? "not at all" : "too little",
+                  alpha == 0 ? "" : "further "));
 }
 
 const std::vector<BodyMotion>& Multibody::motion() const { return impl_->motion; }
@@ -151,6 +214,7 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
 
 int Multibody::coordinates() const { return impl_->system.coordinates(); }
 int Multibody::constraints() const { return impl_->system.constraints(); }
+const std::string& Multibody::start_change() const { return impl_->start_change; }
 std::string Multibody::solver_description() const { return impl_->newton.description(); }
 
 }  // namespace scree

@@ -49,8 +49,8 @@ class Multibody {
   explicit Multibody(const Model& model);
   ~Multibody();
 
-  // Consistent start: q, q' of the model; q'' and lambda from the acceleration-level system with these
-  // wrenches.
+  // Consistent start: q of the model and its q', changed where the model says so; q'' and lambda from the
+  // acceleration-level system with these wrenches.
   MultibodyState initial_state(const std::vector<BodyWrench>& wrench);
 
   // Opens a step from `state` at time t of length h: Newmark prediction with q''_{n+1} = q''_n.
@@ -62,8 +62,13 @@ class Multibody {
   Real error() const;
   // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:
   // contact wrenches at the end of the step, where they differ from those that the step was corrected with
-  // because contacts opened or closed within it; the next step starts from them.
+  // because contacts opened or closed within it; the next step starts from them. Throws SimulationError, with
+  // `state` as it was, where the reactions oscillate beyond repair (see ReactionWatch).
   void accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench);
+
+  // After a step that failed: throws SimulationError where the reactions oscillate, as shorter steps do not
+  // help then.
+  void check_reactions() const;
 
   // One entry per body, at the current iterate of the open step.
   const std::vector<BodyMotion>& motion() const;
@@ -73,6 +78,10 @@ class Multibody {
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
+
+  // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular
+  // velocity of body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.
+  const std::string& start_change() const;
 
   int coordinates() const;
   int constraints() const;

@@ -88,6 +88,13 @@ void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {
   method_.set_acceleration(acceleration_solver_.solution(), state);
 }
 
+void NewtonSolver::solve_velocity(MultibodyState& state, Real t) {
+  method_.velocity_system(state, t, acceleration_matrix_, acceleration_solver_.rhs());
+  solve_acceleration_level();
+  const std::span<const Real> change = acceleration_solver_.solution();
+  for (std::size_t i = 0; i < state.velocity.size(); ++i) state.velocity[i] += change[i];
+}
+
 void NewtonSolver::change_end_forces(MultibodyState& state) {
   if (!method_.change_system(state, acceleration_matrix_, acceleration_solver_.rhs())) return;
   solve_acceleration_level();

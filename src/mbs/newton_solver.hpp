@@ -22,6 +22,10 @@ class NewtonSolver {
   // does.
   void solve_acceleration(MultibodyState& state, Real t);
 
+  // Changes q' by as little as the constraints at time t demand, in the norm of M. Throws SimulationError as
+  // iterate() does.
+  void solve_velocity(MultibodyState& state, Real t);
+
   // Applied forces at the end of a closed step, as the system now has them, where they differ from the
   // step's. Throws SimulationError as iterate() does.
   void change_end_forces(MultibodyState& state);

@@ -116,7 +116,7 @@ void PlanarSystem::add_joint(const Joint& joint, bool driven) {
 
 void PlanarSystem::add_driver(const Driver& driver, const Joint& joint, Real end) {
   const std::string title = fmt::format("driver '{}'", driver.name);
-  const ScalarFunction motion(driver.motion, title, end, Interpolation::spline);
+  const ScalarFunction motion(driver.motion, title, end);
   std::vector<std::unique_ptr<Constraint>> parts;
   switch (joint.kind) {
     case JointKind::revolute:

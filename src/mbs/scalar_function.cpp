@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/error.hpp"
 
 namespace scree {
 
-ScalarFunction::ScalarFunction(const TimeFunction& function, const std::string& owner, Real end,
-                               Interpolation interpolation)
-    : function_(function), second_derivatives_(function.times.size(), 0) {
+ScalarFunction::ScalarFunction(const TimeFunction& function, const std::string& owner, Real end)
+    : function_(function), rates_(function.times.size(), 0), second_derivatives_(function.times.size(), 0) {
   if (function.kind != TimeFunction::Kind::table) return;
   check_table(owner, end);
-  if (interpolation == Interpolation::spline) find_second_derivatives();
+  if (function.interpolation == Interpolation::linear) return;
+  function.interpolation == Interpolation::monotone ? find_monotone() : find_spline();
 }
 
 void ScalarFunction::check_table(const std::string& owner, Real end) const {
@@ -37,14 +38,25 @@ void ScalarFunction::check_table(const std::string& owner, Real end) const {
   }
 }
 
+Real ScalarFunction::slope(std::size_t i) const {
+  return (function_.values[i + 1] - function_.values[i]) / (function_.times[i + 1] - function_.times[i]);
+}
+
 // Continuity of f' at the inner points, with d_i = t_{i+1} - t_i:
 //   d_{i-1} m_{i-1} + 2 (d_{i-1} + d_i) m_i + d_i m_{i+1} = 6 (s_i - s_{i-1}),  s_i = (f_{i+1} - f_i)/d_i,
-// and m = 0 at both ends; the tridiagonal system is diagonally dominant and needs no pivoting.
-void ScalarFunction::find_second_derivatives() {
+// and at the ends m = 0 (natural), or with the given rates r (clamped)
+//   2 d_0 m_0 + d_0 m_1 = 6 (s_0 - r_0),  d_{n-2} m_{n-2} + 2 d_{n-2} m_{n-1} = 6 (r_1 - s_{n-2});
+// the tridiagonal system is diagonally dominant and needs no pivoting.
+void ScalarFunction::find_spline() {
   const std::vector<Real>&t = function_.times, &f = function_.values;
   const std::size_t n = t.size();
+  const bool clamped = function_.interpolation == Interpolation::clamped;
   std::vector<Real> upper(n, 0);
   std::vector<Real>& m = second_derivatives_;
+  if (clamped) {
+    upper[0] = Real(0.5);
+    m[0] = 3 * (slope(0) - function_.end_rates[0]) / (t[1] - t[0]);
+  }
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const Real left = t[i] - t[i - 1], right = t[i + 1] - t[i];
     const Real rhs = 6 * ((f[i + 1] - f[i]) / right - (f[i] - f[i - 1]) / left);
@@ -52,17 +64,76 @@ void ScalarFunction::find_second_derivatives() {
     upper[i] = right / pivot;
     m[i] = (rhs - left * m[i - 1]) / pivot;
   }
-  for (std::size_t i = n - 1; i-- > 1;) m[i] -= upper[i] * m[i + 1];
+  if (clamped) {
+    const Real last = t[n - 1] - t[n - 2];
+    m[n - 1] = (6 * (function_.end_rates[1] - slope(n - 2)) / last - m[n - 2]) / (2 - upper[n - 2]);
+  }
+  for (std::size_t i = n - 1; i-- > (clamped ? 0 : 1);) m[i] -= upper[i] * m[i + 1];
+}
+
+// Rate and second derivative at each point are those of the parabola through it and its two neighbours (at
+// the ends, the nearest three points), as far as they keep f' of one sign on the two segments beside it. In
+// Bernstein's form on a segment of length d and slope s the coefficients of f' are
+//   d0,  d0 + d m0/4,  5 s - 2 (d0 + d1) + d (m1 - m0)/4,  d1 - d m1/4,  d1;
+// all of them have the sign of s where at each end, apart from the sign of s, |rate| <= 1.25 |s| and m lies
+// within monotone_bend()'s limits: half of the third coefficient belongs to each end.
+void ScalarFunction::find_monotone() {
+  const std::vector<Real>& t = function_.times;
+  const std::size_t n = t.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t middle = n < 3 ? 0 : std::clamp<std::size_t>(i, 1, n - 2);
+    Real rate = slope(0), bend = 0;
+    if (n > 2) {
+      const Real left = slope(middle - 1), right = slope(middle), all = t[middle + 1] - t[middle - 1];
+      bend = 2 * (right - left) / all;
+      rate = left + bend / 2 * (t[middle] - t[middle - 1]) + bend * (t[i] - t[middle]);
+    }
+    rates_[i] = monotone_rate(i, rate);
+    second_derivatives_[i] = monotone_bend(i, bend);
+  }
+}
+
+// 0 where the segments beside the point differ in sign, or one of them is level.
+Real ScalarFunction::monotone_rate(std::size_t point, Real parabola) const {
+  constexpr Real kSteepest = 1.25;
+  const std::size_t last = function_.times.size() - 2;
+  const Real left = slope(point == 0 ? 0 : point - 1), right = slope(std::min(point, last));
+  if (left > 0 && right > 0) return std::clamp<Real>(parabola, 0, kSteepest * std::min(left, right));
+  if (left < 0 && right < 0) return std::clamp<Real>(parabola, kSteepest * std::max(left, right), 0);
+  return 0;
+}
+
+// With r = rate: as the left end of a segment that rises, -4 r/d <= m <= (10 s - 8 r)/d; as its right end the
+// same with the other sign; on a segment that falls, both with the other sign.
+Real ScalarFunction::monotone_bend(std::size_t point, Real parabola) const {
+  Real low = -std::numeric_limits<Real>::infinity(), high = -low;  // 0 lies between them but for round-off
+  for (std::size_t segment = point == 0 ? 0 : point - 1; segment < std::min(point + 1, rates_.size() - 1);
+       ++segment) {
+    const Real length = function_.times[segment + 1] - function_.times[segment], s = slope(segment);
+    const Real side = segment == point ? 1 : -1;
+    const Real first = -4 * side * rates_[point] / length;
+    const Real second = side * (10 * s - 8 * rates_[point]) / length;
+    low = std::max(low, std::min(first, second));
+    high = std::min(high, std::max(first, second));
+  }
+  return std::clamp(parabola, std::min<Real>(low, 0), std::max<Real>(high, 0));
+}
+
+TimeValue ScalarFunction::segment_value(std::size_t i, Real t) const {
+  const std::vector<Real>&times = function_.times, &values = function_.values;
+  const std::vector<Real>& bends = second_derivatives_;
+  if (function_.interpolation == Interpolation::monotone)
+    return quintic_function(
+        {times[i], times[i + 1], values[i], values[i + 1], rates_[i], rates_[i + 1], bends[i], bends[i + 1]},
+        t);
+  return spline_function({times[i], times[i + 1], values[i], values[i + 1], bends[i], bends[i + 1]}, t);
 }
 
 TimeValue ScalarFunction::table_value(Real t) const {
   const std::vector<Real>& times = function_.times;
   const Real inside = std::clamp(t, times.front(), times.back());
   const auto after = std::upper_bound(times.begin() + 1, times.end() - 1, inside);
-  const std::size_t i = static_cast<std::size_t>(after - times.begin()) - 1;
-  const TimeValue at = spline_function({times[i], times[i + 1], function_.values[i], function_.values[i + 1],
-                                        second_derivatives_[i], second_derivatives_[i + 1]},
-                                       inside);
+  const TimeValue at = segment_value(static_cast<std::size_t>(after - times.begin()) - 1, inside);
   return {at.value + at.rate * (t - inside), at.rate, at.acceleration};
 }
 
@@ -72,6 +143,8 @@ TimeValue ScalarFunction::moving_value(Real t) const {
       return ramp_function(function_.value, function_.rate, t);
     case TimeFunction::Kind::sine:
       return sine_function(function_.value, function_.amplitude, function_.frequency, function_.phase, t);
+    case TimeFunction::Kind::step:
+      return step_function(function_.value, function_.end_value, function_.start, function_.end, t);
     case TimeFunction::Kind::constant:
     case TimeFunction::Kind::table:
       break;

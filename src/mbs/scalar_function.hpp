@@ -9,18 +9,12 @@
 
 namespace scree {
 
-// How a table is read between its points. Drivers need the natural cubic spline: twice continuously
-// differentiable, second derivative zero at both ends; it may overshoot between points where the slope jumps.
-// Forces are linear.
-enum class Interpolation { spline, linear };
-
 class ScalarFunction {
  public:
   // owner: what the function belongs to, e.g. "driver 'crank'"; end: of the simulated time [s]. Throws
   // InputError naming the owner where a table has fewer than two points, unequal columns, times that do not
   // increase, or does not cover [0, end].
-  ScalarFunction(const TimeFunction& function, const std::string& owner, Real end,
-                 Interpolation interpolation = Interpolation::spline);
+  ScalarFunction(const TimeFunction& function, const std::string& owner, Real end);
   // The constant `value`.
   explicit ScalarFunction(Real value) { function_.value = value; }
 
@@ -32,12 +26,18 @@ class ScalarFunction {
 
  private:
   void check_table(const std::string& owner, Real end) const;
-  void find_second_derivatives();
+  void find_spline();
+  void find_monotone();
+  Real slope(std::size_t segment) const;
+  Real monotone_rate(std::size_t point, Real parabola) const;
+  Real monotone_bend(std::size_t point, Real parabola) const;
   TimeValue moving_value(Real t) const;
   TimeValue table_value(Real t) const;
+  TimeValue segment_value(std::size_t segment, Real t) const;
 
   TimeFunction function_;
-  std::vector<Real> second_derivatives_;  // at the table's times; 0 where it is read linearly
+  // At the table's times: rates (monotone), second derivatives (0 where it is read linearly).
+  std::vector<Real> rates_, second_derivatives_;
 };
 
 }  // namespace scree

@@ -31,10 +31,10 @@ std::string list_names(const std::vector<std::string>& names) {
   return text;
 }
 
-// A group's gap [m, rad], or its rate with per = "/s", as the length of its length rows and of its angle
-// rows.
-void check_rows(const PlanarSystem& system, const ConstraintGroup& group, const std::vector<Real>& gap,
-                Real limit, const char* what, const char* per) {
+// Of a group's gap [m, rad], or its rate with per = "/s": what is wrong with the length of its length rows or
+// of its angle rows, or nothing.
+std::string row_trouble(const PlanarSystem& system, const ConstraintGroup& group,
+                        const std::vector<Real>& gap, Real limit, const char* what, const char* per) {
   for (const bool angle : {false, true}) {
     Real square = 0, scale = 1;
     for (int row = group.first_row; row < group.end_row; ++row) {
@@ -44,9 +44,10 @@ void check_rows(const PlanarSystem& system, const ConstraintGroup& group, const 
     }
     const Real size = std::sqrt(square);
     if (size <= limit * scale) continue;
-    throw InputError(fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what, size,
-                                 angle ? "rad" : "m", per, limit * scale));
+    return fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what, size, angle ? "rad" : "m",
+                       per, limit * scale);
   }
+  return "";
 }
 
 // The direction of a spring-damper or a distance is not defined where its points coincide.
@@ -85,29 +86,33 @@ void check_redundancy(const PlanarSystem& system, const SparseTerm& jacobian) {
 
 void check_start(const Model& model, PlanarSystem& system, const std::vector<Real>& position,
                  const std::vector<Real>& velocity) {
-  const SystemInstant start{0, position, velocity};
   PlanarMotion motion(static_cast<int>(model.bodies.size()));
   motion.set(position, velocity);
   check_directions(model, motion);
   SystemTerms terms;
   terms.applied_force.assign(at(system.coordinates()), 0);
   terms.constraint.assign(at(system.constraints()), 0);
-  system.evaluate(start, terms);
-  std::vector<Real> gap_rate(at(system.constraints()), 0);
-  system.velocity_rhs(start, gap_rate);
-  for (Real& rate : gap_rate) rate = -rate;
-  terms.constraint_jacobian.multiply(1, velocity, gap_rate);
+  system.evaluate({0, position, velocity}, terms);
+  for (const ConstraintGroup& group : system.groups()) {
+    const std::string trouble = row_trouble(system, group, terms.constraint, kPositionGap,
+                                            "its two sides do not meet at t = 0, they miss by", "");
+    if (!trouble.empty()) throw InputError(trouble);
+  }
+  check_redundancy(system, terms.constraint_jacobian);
+}
+
+std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>& gap_rate,
+                             const std::vector<Real>& velocity) {
   Real fastest = 0;
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     fastest = std::max(fastest, std::abs(velocity[i]) / system.coordinate_scale()[i]);
   }
   for (const ConstraintGroup& group : system.groups()) {
-    check_rows(system, group, terms.constraint, kPositionGap,
-               "its two sides do not meet at t = 0, they miss by", "");
-    check_rows(system, group, gap_rate, kVelocityGap * (1 + fastest),
-               "the velocities at t = 0 contradict it by", "/s");
+    const std::string trouble = row_trouble(system, group, gap_rate, kVelocityGap * (1 + fastest),
+                                            "the velocities at t = 0 contradict it by", "/s");
+    if (!trouble.empty()) return trouble;
   }
-  check_redundancy(system, terms.constraint_jacobian);
+  return "";
 }
 
 std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& pattern,

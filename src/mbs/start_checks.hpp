@@ -11,12 +11,17 @@
 
 namespace scree {
 
-// Position gaps up to 1e-10 of the length scale (1e-10 rad), and velocity gaps up to 1e-8 of the largest
-// velocity plus one length scale (1 rad) per second, are taken as round-off. position, velocity:
+// Position gaps up to 1e-10 of the length scale (1e-10 rad) are taken as round-off. position, velocity:
 // [coordinates]. Throws InputError naming the joint or driver, its gap and what is allowed, or the joints and
 // drivers that are redundant together, or the element whose two points coincide.
 void check_start(const Model& model, PlanarSystem& system, const std::vector<Real>& position,
                  const std::vector<Real>& velocity);
+
+// The joint or driver that the start velocities contradict, and by how much; empty where they contradict
+// none. gap_rate: Phi_q q' + Phi_t at the start; up to 1e-8 of the largest velocity plus one length scale (1
+// rad) per second is taken as round-off.
+std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>& gap_rate,
+                             const std::vector<Real>& velocity);
 
 // For messages: why a saddle-point matrix could not be solved, with the joints, drivers and bodies that take
 // part, e.g. "is singular: body 'link' (id 3)".

@@ -1,6 +1,7 @@
 // The multibody side of the model: planar rigid bodies, joints, drivers and force elements.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Shape {
 // Moves in its plane z = position.z; turns about z.
 struct Body {
   std::string name;
+  bool in_row = false;        // one of a row, whose bodies share their keys
   Real mass = 0;              // [kg]
   Real inertia = 0;           // about the centre of mass, z axis [kg m^2]
   Vec3 position;              // of the centre of mass at t = 0 [m]
@@ -48,15 +50,27 @@ struct Joint {
   Real angle_offset = 0;  // fixed, translational: angle of body[1] minus angle of body[0] at t = 0 [rad]
 };
 
+// How a table is read between its points.
+enum class Interpolation {
+  natural,   // cubic spline, class C2; second derivative 0 at both ends
+  clamped,   // cubic spline, class C2; the given rates at both ends
+  monotone,  // quintic, class C2; rises, falls and stands still only where the points do, and is local
+  linear     // class C0: its rate jumps, so no motion can follow it
+};
+
 // A scalar function of time with two continuous derivatives where a driver needs them.
 struct TimeFunction {
-  enum class Kind { constant, ramp, sine, table } kind = Kind::constant;
-  Real value = 0;                   // constant, and the start of ramp and sine
+  enum class Kind { constant, ramp, sine, step, table } kind = Kind::constant;
+  Real value = 0;                   // constant, and the start of ramp, sine and step
   Real rate = 0;                    // ramp: value + rate t [1/s]
   Real amplitude = 0;               // sine: value + amplitude sin(2 pi frequency t + phase)
   Real frequency = 0;               // [Hz]
   Real phase = 0;                   // [rad]
+  Real end_value = 0;               // step: value up to start, end_value from end on
+  Real start = 0, end = 0;          // step [s]
   std::vector<Real> times, values;  // table
+  Interpolation interpolation = Interpolation::natural;
+  std::array<Real, 2> end_rates{};  // clamped [1/s]
 };
 
 // Prescribes a joint coordinate: the relative angle of a revolute joint [rad], the displacement along the

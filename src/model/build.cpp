@@ -82,6 +82,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   ModelNames names;
   model.title = root.text("title");
   model.gravity = root.vector("gravity");
+  model.consistent_velocities = root.text("velocities") == "consistent";
   build_materials(root, model, names);
   build_space(root, names, model);
   build_time(root, model);

@@ -48,6 +48,7 @@ void build_bodies(const DeckTable& deck, Model& model, ModelNames& names) {
       table.fail("spacing", "a single body has no spacing; give count for a row");
     for (std::int64_t i = 0; i < count; ++i) {
       Body body = first;
+      body.in_row = row;
       body.name = row ? fmt::format("{}.{}", name, i) : name;
       body.position += static_cast<Real>(i) * spacing;
       const int index = static_cast<int>(model.bodies.size());

@@ -22,7 +22,7 @@ void build_spring_dampers(const DeckTable& table, Model& model, const ModelNames
     element.stiffness = table.real("stiffness");
     element.damping = table.real("damping");
     element.free_length = table.has("free_length") ? table.real("free_length") : length;
-    element.actuator = build_time_function(table.table("actuator"));
+    element.actuator = build_force(table.table("actuator"));
     model.spring_dampers.push_back(std::move(element));
   }
 }
@@ -50,9 +50,9 @@ AppliedForce build_applied_force(const DeckTable& table, const Model& model, con
     table.fail("local_point", "not used together with point");
   if (table.has("point")) force.point = to_body_point(model, force.body, table.vector("point"));
   if (table.has("local_point")) force.point = table.vector("local_point");
-  force.fx = build_time_function(table.table("fx"));
-  force.fy = build_time_function(table.table("fy"));
-  force.torque = build_time_function(table.table("torque"));
+  force.fx = build_force(table.table("fx"));
+  force.fy = build_force(table.table("fy"));
+  force.torque = build_force(table.table("torque"));
   force.follows_body = table.boolean("follows_body");
   return force;
 }

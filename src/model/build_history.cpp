@@ -54,7 +54,8 @@ void build_history_contacts(const DeckTable& table, const ModelNames& names, Mod
   for (const std::string& name : table.texts(kKey)) {
     const bool repeated =
         std::any_of(targets.begin(), targets.end(), [&](const ContactTarget& t) { return t.name == name; });
-    if (!repeated) targets.push_back(target_of(table, names, model, name));
+    if (repeated) table.fail(kKey, fmt::format("\"{}\" is repeated; every entry must be another one", name));
+    targets.push_back(target_of(table, names, model, name));
   }
 }
 

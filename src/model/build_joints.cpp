@@ -100,42 +100,7 @@ Joint build_joint(const DeckTable& table, const Model& model, const Connection& 
   return joint;
 }
 
-void check_table_function(const DeckTable& table) {
-  const std::vector<Real>&times = table.reals("times"), &values = table.reals("values");
-  if (times.size() < 2) table.fail("times", "must have two entries at least");
-  if (times.size() != values.size())
-    table.fail("values", fmt::format("must have {} entries, as times", times.size()));
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    if (!(times[i] > times[i - 1])) {
-      table.fail("times", fmt::format("must increase; entry {} is {} after {}", i, times[i], times[i - 1]));
-    }
-  }
-}
-
 }  // namespace
-
-TimeFunction build_time_function(const DeckTable& table) {
-  TimeFunction function;
-  const std::string& kind = table.text("kind");
-  if (kind == "table") {
-    check_table_function(table);
-    function.kind = TimeFunction::Kind::table;
-    function.times = table.reals("times");
-    function.values = table.reals("values");
-    return function;
-  }
-  function.value = table.real("value");
-  if (kind == "ramp") {
-    function.kind = TimeFunction::Kind::ramp;
-    function.rate = table.real("rate");
-  } else if (kind == "sine") {
-    function.kind = TimeFunction::Kind::sine;
-    function.amplitude = table.real("amplitude");
-    function.frequency = table.real("frequency");
-    function.phase = table.real("phase");
-  }
-  return function;
-}
 
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
   for (const DeckTable& table : deck.tables("joints")) {
@@ -151,7 +116,7 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
     if (model.joints[static_cast<std::size_t>(joint)].kind == JointKind::fixed) {
       table.fail("joint", "a fixed joint cannot be driven; it must be revolute, translational or distance");
     }
-    model.drivers.push_back({table.text("name"), joint, build_time_function(table.table("motion"))});
+    model.drivers.push_back({table.text("name"), joint, build_motion(table.table("motion"))});
   }
 }
 

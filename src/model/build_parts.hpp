@@ -25,8 +25,9 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output
 void build_parallel(const DeckTable& deck, Model& model);
 
-// A time function from a quantity of the deck.
-TimeFunction build_time_function(const DeckTable& table);
+// A time function from a quantity of the deck: of a driver, or a force or torque.
+TimeFunction build_motion(const DeckTable& table);
+TimeFunction build_force(const DeckTable& table);
 
 // Whether the centres of the bodies' shapes lie in the space: an error. From the deck alone, before any body
 // is built.

@@ -134,6 +134,7 @@ struct Model {
   Integrator integrator;
   Output output;
   Parallel parallel;
+  bool consistent_velocities = false;  // the bodies' at t = 0 are changed to agree with joints and drivers
 };
 
 }  // namespace scree

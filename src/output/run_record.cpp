@@ -50,6 +50,7 @@ toml::table run_table(const RunRecord& record) {
                      {"ended", record.ended},
                      {"backend", record.backend},
                      {"solver", record.solver},
+                     {"start_change", record.start_change},
                      {"restarted_from", record.restarted_from},
                      {"state_hash", record.state_hash},
                      {"ranks", record.ranks}};

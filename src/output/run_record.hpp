@@ -18,6 +18,7 @@ struct RunRecord {
   int exit_code = 0;
   std::string started, ended;  // ISO 8601, UTC
   std::string backend, solver;
+  std::string start_change;  // velocities = "consistent": the largest change at t = 0
   std::string restarted_from;
   std::string state_hash;  // of the state in the last checkpoint; empty before the first
   int ranks = 1;

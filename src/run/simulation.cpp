@@ -134,6 +134,7 @@ class Simulation {
  private:
   ExitCode run_to_the_end();
   void start_or_resume();
+  std::string start_change() const;
   bool continues_files() const;
   std::vector<ParticleRecord> in_id_order(std::vector<ParticleRecord> records) const;
   // Takes the state's particles away.
@@ -175,6 +176,8 @@ void Simulation::start_or_resume() {
     state_.clock = StepClock(model_).state();
     backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
+    if (!start_change().empty())
+      log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
   } else {
     backend_->load(in_id_order(std::move(state_.particles)), state_.shapes);
     state_.particles = {};
@@ -186,6 +189,11 @@ void Simulation::start_or_resume() {
     step_.resume(state_.bodies);
   }
   start_time_ = state_.clock.time;
+}
+
+// Of the bodies' velocities, on rank 0.
+std::string Simulation::start_change() const {
+  return link_.multibody() && options_.restart.empty() ? link_.multibody()->start_change() : "";
 }
 
 // A restart in the checkpoint's own folder goes on with its files; in another folder new files begin.
@@ -339,6 +347,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.started = started_, record.ended = utc_now();
   record.backend = backend_->description();
   record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
+  record.start_change = start_change();
   record.restarted_from = options_.restart;
   record.state_hash = state_hash_;
   record.ranks = ranks_.size();

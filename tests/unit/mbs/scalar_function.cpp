@@ -1,6 +1,10 @@
 #include "mbs/scalar_function.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
+#include <random>
 #include <string>
 
 #include "base/error.hpp"
@@ -25,6 +29,20 @@ std::string refusal(const TimeFunction& function, Real end) {
     return error.what();
   }
   return "";
+}
+
+TimeFunction monotone_table(std::vector<Real> times, std::vector<Real> values) {
+  TimeFunction function = table(std::move(times), std::move(values));
+  function.interpolation = Interpolation::monotone;
+  return function;
+}
+
+// Rate and acceleration do not jump.
+void check_smooth(const ScalarFunction& f, std::initializer_list<Real> points) {
+  for (const Real t : points) {
+    CHECK(f(t - 1e-9).rate == Approx(f(t + 1e-9).rate));
+    CHECK(f(t - 1e-9).acceleration == Approx(f(t + 1e-9).acceleration).epsilon(1e-6));
+  }
 }
 
 // The function's rate and acceleration against differences of its value and rate.
@@ -59,10 +77,7 @@ TEST_CASE("a table is interpolated by the natural cubic spline") {
   const Real times[] = {0, 0.5, 0.8, 2}, values[] = {1, -1, 3, 2};
   for (int i = 0; i < 4; ++i) CHECK(f(times[i]).value == Approx(values[i]));
   for (const Real t : {0.2, 0.6, 0.79, 1.4}) check_derivatives(f, t);
-  for (const Real t : {0.5, 0.8}) {
-    CHECK(f(t - 1e-9).rate == Approx(f(t + 1e-9).rate));
-    CHECK(f(t - 1e-9).acceleration == Approx(f(t + 1e-9).acceleration).epsilon(1e-6));
-  }
+  check_smooth(f, {0.5, 0.8});
   CHECK(f(0).acceleration == Approx(0).margin(1e-12));
   CHECK(f(2).acceleration == Approx(0).margin(1e-12));
   CHECK(f(2 + 1e-9).value == Approx(2 + 1e-9 * f(2).rate));
@@ -70,6 +85,138 @@ TEST_CASE("a table is interpolated by the natural cubic spline") {
   const ScalarFunction line(table({0, 1, 3}, {0, 2, 6}), "f", 3);
   CHECK(line(2.2).value == Approx(4.4));
   CHECK(line(2.2).acceleration == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("a clamped spline has the given rates at its ends and is twice continuously differentiable") {
+  TimeFunction function = table({0, 0.5, 0.8, 2}, {1, -1, 3, 2});
+  function.interpolation = Interpolation::clamped;
+  for (const std::array<Real, 2> rates : {std::array<Real, 2>{0, 0}, {-3, 0.5}}) {
+    function.end_rates = rates;
+    const ScalarFunction f(function, "f", 2);
+    CHECK(f(0).rate == Approx(rates[0]).margin(1e-13));
+    CHECK(f(2).rate == Approx(rates[1]).margin(1e-13));
+    for (std::size_t i = 0; i < 4; ++i) CHECK(f(function.times[i]).value == Approx(function.values[i]));
+    for (const Real t : {0.2, 0.6, 0.79, 1.4}) check_derivatives(f, t);
+    check_smooth(f, {0.5, 0.8});
+  }
+  // Two points: the cubic of Hermite.
+  TimeFunction two = table({0, 1}, {0, 1});
+  two.interpolation = Interpolation::clamped;
+  CHECK(ScalarFunction(two, "f", 1)(0.25).value == Approx(0.25 * 0.25 * (3 - 2 * 0.25)));
+}
+
+TEST_CASE("a motion that holds and then moves: monotone holds, the splines do not") {
+  const std::vector<Real> times{0, 0.5, 0.8, 1.5}, values{0, 0, 1.5, 1.5};
+  const ScalarFunction natural(table(times, values), "f", 1.5);
+  CHECK(natural(0).rate == Approx(-1.85).epsilon(2e-3));
+  const ScalarFunction f(monotone_table(times, values), "f", 1.5);
+  for (int i = 0; i <= 500; ++i) {
+    for (const Real t : {1e-3 * i, 0.8 + 1.4e-3 * i}) {
+      CAPTURE(t);
+      CHECK(f(t).value == (t <= 0.5 ? 0 : 1.5));
+      CHECK(f(t).rate == 0);
+      CHECK(f(t).acceleration == 0);
+    }
+  }
+  // In between it is the smooth step.
+  for (const Real t : {0.55, 0.6, 0.7}) {
+    CHECK(f(t).value == Approx(step_function(0, 1.5, 0.5, 0.8, t).value));
+    CHECK(f(t).acceleration == Approx(step_function(0, 1.5, 0.5, 0.8, t).acceleration).margin(1e-10));
+    check_derivatives(f, t);
+  }
+}
+
+TEST_CASE("monotone tables never overshoot, are twice continuously differentiable, and are local") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<Real> uniform(0, 1);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Real> times{0}, values{0};
+    for (int i = 1; i < 12; ++i) {
+      times.push_back(times.back() + std::pow(10, -2 * uniform(random)));
+      const Real rise = std::pow(10, -3 * uniform(random));
+      values.push_back(values.back() + (uniform(random) < 0.2 ? 0 : uniform(random) < 0.3 ? -rise : rise));
+    }
+    const ScalarFunction f(monotone_table(times, values), "f", times.back());
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+      const Real low = std::min(values[i], values[i + 1]), high = std::max(values[i], values[i + 1]);
+      const Real sign = values[i + 1] < values[i] ? -1 : 1;
+      for (int k = 0; k <= 200; ++k) {
+        const Real t = times[i] + (times[i + 1] - times[i]) * k / 200;
+        const TimeValue at = f(t);
+        const Real slope = (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
+        CAPTURE(trial, i, k);
+        REQUIRE(at.value >= low - 1e-14);
+        REQUIRE(at.value <= high + 1e-14);
+        if (k < 200) REQUIRE(sign * at.rate >= -1e-13 * (1 + std::abs(slope)));
+      }
+      const Real nearly = 1e-9 * (times[i + 1] - times[i]);
+      const TimeValue before = f(times[i + 1] - nearly), after = f(times[i + 1]);
+      const Real steep = 1 + std::abs(values[i + 1] - values[i]) / (times[i + 1] - times[i]);
+      CHECK(before.rate == Approx(after.rate).margin(1e-6 * steep));
+      CHECK(before.acceleration ==
+            Approx(after.acceleration).margin(1e-6 * steep / (times[i + 1] - times[i])));
+    }
+    // What follows the next point does not matter.
+    std::vector<Real> changed = values;
+    changed[8] += 3;
+    changed.pop_back();
+    std::vector<Real> fewer(times.begin(), times.end() - 1);
+    const ScalarFunction g(monotone_table(fewer, changed), "f", fewer.back());
+    for (int k = 0; k < 100; ++k) {
+      const Real t = times[6] * k / 100;
+      REQUIRE(f(t).value == g(t).value);
+      REQUIRE(f(t).acceleration == g(t).acceleration);
+    }
+  }
+}
+
+TEST_CASE("tables of smooth data: the error's order") {
+  // Of sin t on [0, 1.2], where it rises: the largest error in the middle of the segments.
+  const auto error = [](Interpolation interpolation, int segments) {
+    std::vector<Real> times, values;
+    for (int i = 0; i <= segments; ++i) {
+      times.push_back(1.2 * i / segments);
+      values.push_back(std::sin(times.back()));
+    }
+    TimeFunction function = table(times, values);
+    function.interpolation = interpolation;
+    function.end_rates = {1, std::cos(1.2)};
+    const ScalarFunction f(function, "f", 1.2);
+    Real largest = 0;
+    for (int i = 0; i < segments; ++i) {
+      const Real t = 1.2 * (i + 0.37) / segments;
+      largest = std::max(largest, std::abs(f(t).value - std::sin(t)));
+    }
+    return largest;
+  };
+  const auto order = [&](Interpolation interpolation) {
+    return std::log2(error(interpolation, 40) / error(interpolation, 80));
+  };
+  CHECK(order(Interpolation::linear) == Approx(2).margin(0.05));
+  CHECK(order(Interpolation::natural) == Approx(2).margin(0.1));  // the second derivative at 1.2 is not 0
+  CHECK(order(Interpolation::clamped) == Approx(4).margin(0.1));
+  CHECK(order(Interpolation::monotone) == Approx(3).margin(0.1));
+}
+
+TEST_CASE("a linear table is made of straight lines, and a step holds before and after") {
+  TimeFunction function = table({0, 1, 3}, {0, 2, -1});
+  function.interpolation = Interpolation::linear;
+  const ScalarFunction f(function, "f", 3);
+  CHECK(f(0.5).value == Approx(1));
+  CHECK(f(2).value == Approx(0.5));
+  CHECK(f(2).rate == Approx(-1.5));
+  CHECK(f(2).acceleration == 0);
+  TimeFunction step;
+  step.kind = TimeFunction::Kind::step;
+  step.value = 1;
+  step.end_value = 4;
+  step.start = 0.25;
+  step.end = 0.75;
+  const ScalarFunction g(step, "g", 1);
+  CHECK(g(0.25).value == 1);
+  CHECK(g(0.5).value == Approx(2.5));
+  CHECK(g(0.75).value == 4);
+  for (const Real t : {0.3, 0.5, 0.6}) check_derivatives(g, t);
 }
 
 TEST_CASE("tables that cannot be used are refused by the owner's name") {

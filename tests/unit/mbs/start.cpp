@@ -40,6 +40,13 @@ Model hanging_disc() {
   return model;
 }
 
+TimeFunction ramp(Real rate) {
+  TimeFunction function;
+  function.kind = TimeFunction::Kind::ramp;
+  function.rate = rate;
+  return function;
+}
+
 // Ground - one - two - ground: a closed chain of two discs on three pins.
 Model closed_chain() {
   Model model = empty_model();
@@ -82,6 +89,68 @@ TEST_CASE("start velocities that contradict a joint or driver are refused") {
   CHECK(refusal(model) == "nothing was refused");
   model.drivers[0].motion.value = -0.1;
   CHECK(contains(refusal(model), "0.1 rad"));
+}
+
+TEST_CASE("the refusal of start velocities says which keys to set to what, with all digits") {
+  Model model = hanging_disc();
+  model.space.dimension = 2;
+  model.drivers.push_back({"motor", 0, ramp(1.85)});
+  CHECK(contains(refusal(model),
+                 "driver 'motor': the velocities at t = 0 contradict it by 1.85 rad/s, allowed is 1e-08; set "
+                 "bodies.bob.velocity = [0.0, 0.92500000000000004], bodies.bob.angular_velocity = "
+                 "1.8500000000000001, or velocities = \"consistent\" at the top of the deck"));
+  // What it says is what passes.
+  model.bodies[0].velocity = {0, 0.92500000000000004, 0};
+  CHECK(contains(refusal(model), "set bodies.bob.angular_velocity = 1.8500000000000001, or"));
+  model.bodies[0].angular_velocity = 1.8500000000000001;
+  CHECK(refusal(model) == "nothing was refused");
+  model.bodies[0].velocity.x = 0.3;
+  CHECK(contains(refusal(model), "set bodies.bob.velocity = [0.0, 0.92500000000000004], or"));
+  model.space.dimension = 3;
+  CHECK(contains(refusal(model), "bodies.bob.velocity = [0.0, 0.92500000000000004, 0.0], or"));
+  model.bodies[0].in_row = true;  // its keys are those of the whole row
+  CHECK(contains(refusal(model),
+                 "; set velocities = \"consistent\" at the top of the deck"));
+}
+
+TEST_CASE("consistent start velocities change the given ones least in the norm of M") {
+  // The pivot at (-0.5, 0) in the disc's frame leaves the motion (0, 1/2, 1) w: with the masses (1, 1, J) the
+  // nearest to (u, v, s) has w = (v/2 + J s)/(1/4 + J).
+  Model model = hanging_disc();
+  model.consistent_velocities = true;
+  model.bodies[0].velocity = {3, 0.4, 0};
+  model.bodies[0].angular_velocity = -2;
+  petsc();
+  Multibody swinging(model);
+  const Real w = (0.2 - 2 * 0.005) / (0.25 + 0.005);
+  MultibodyState state = swinging.initial_state(std::vector<BodyWrench>(1));
+  CHECK(state.velocity[0] == Approx(0).margin(1e-15));
+  CHECK(state.velocity[1] == Approx(w / 2));
+  CHECK(state.velocity[2] == Approx(w));
+  CHECK(state.acceleration[0] == Approx(-w * w / 2));  // of the new velocity
+  CHECK(contains(swinging.start_change(), "x component of the velocity of body 'bob' (id 0) from 3.0 to "));
+  // A driver leaves no choice; bodies that nothing holds keep what they have.
+  model.drivers.push_back({"motor", 0, ramp(1.85)});
+  model.bodies.push_back(paper_disc("free", 3, 0));
+  model.bodies[1].velocity = {0.1, -0.2, 0};
+  Multibody driven(model);
+  state = driven.initial_state(std::vector<BodyWrench>(2));
+  CHECK(state.velocity[1] == Approx(0.925));
+  CHECK(state.velocity[2] == Approx(1.85));
+  CHECK(state.velocity[3] == 0.1);
+  CHECK(state.velocity[4] == -0.2);
+  CHECK(driven.energies(state, 0).kinetic == Approx((0.925 * 0.925 + 0.005 * 1.85 * 1.85 + 0.01 + 0.04) / 2));
+  // Velocities that agree stay what they are.
+  model.bodies[0].velocity = {0, 0.925, 0};
+  model.bodies[0].angular_velocity = 1.85;
+  Multibody same(model);
+  state = same.initial_state(std::vector<BodyWrench>(2));
+  CHECK(state.velocity[1] == 0.925);
+  CHECK(state.velocity[2] == 1.85);
+  CHECK(same.start_change().empty());
+  // Redundant constraints are refused as ever.
+  model.drivers.push_back({"second", 0, ramp(1.85)});
+  CHECK(contains(refusal(model), "driver 'motor', driver 'second'"));
 }
 
 TEST_CASE("elements that make no sense are refused by name") {

@@ -176,6 +176,29 @@ TEST_CASE("tables of time functions must increase") {
       contains(model_error(kSmallDeck + kBodies + force + "[0], values = [0] }\n"), "two entries at least"));
 }
 
+TEST_CASE(
+    "motions without a jump of velocity, end rates of clamped tables, and steps that end after they begin") {
+  const auto driver = [&](const std::string& motion) {
+    return model_error(kSmallDeck + kBodies +
+                       joint_with("type = \"revolute\"\nbodies = [\"ground\", \"a\"]\n") +
+                       "[[drivers]]\nname = \"d\"\njoint = \"pin\"\nmotion = { " + motion + " }\n");
+  };
+  const std::string points = "kind = \"table\", times = [0, 1], values = [0, 1]";
+  CHECK(driver(points + ", interpolation = \"monotone\"").empty());
+  CHECK(
+      contains(driver(points + ", interpolation = \"linear\""),
+               "drivers.d.motion.interpolation = \"linear\": the velocity of a motion must not jump; allowed "
+               "for a driver: natural, clamped, monotone"));
+  CHECK(contains(driver(points + ", end_rates = [0, 1]"),
+                 "drivers.d.motion.end_rates = [0, 1]: used only with interpolation = \"clamped\""));
+  CHECK(contains(driver(points + ", interpolation = \"clamped\", end_rates = [0]"), "a list of 2 numbers"));
+  CHECK(contains(driver(points + ", interpolation = \"smooth\""), "\"natural\", \"clamped\", \"monotone\""));
+  CHECK(contains(driver("kind = \"step\", end_value = 1, start = 0.5, end = 0.5"),
+                 "drivers.d.motion.end = 0.5: must be above start = 0.5"));
+  CHECK(contains(driver("kind = \"step\", end_value = 1, start = 0.5"), "drivers.d.motion.end"));
+  CHECK(contains(model_error(kSmallDeck + "velocities = \"found\"\n"), "velocities"));
+}
+
 TEST_CASE("the space") {
   CHECK(model_error(kSmallDeck, {"space.max=[1, -1]"}) ==
         "--set space.max=[1, -1]: must be larger than space.min in every component");

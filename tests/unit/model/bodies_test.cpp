@@ -118,6 +118,58 @@ follows_body = true
   CHECK(force.follows_body);
 }
 
+TEST_CASE("how tables are read, steps, and velocities that agree") {
+  const Model model = model_of("velocities = \"consistent\"\n" + kSmallDeck + R"(
+[[bodies]]
+name = "a"
+position = [0.0, 0.0]
+mass = 1.0
+inertia = 0.1
+[[bodies]]
+name = "row"
+count = 2
+position = [0.0, 0.5]
+spacing = [0.1, 0.0]
+mass = 1.0
+inertia = 0.1
+[[joints]]
+name = "pin"
+type = "revolute"
+bodies = ["ground", "a"]
+[[drivers]]
+name = "natural"
+joint = "pin"
+motion = { kind = "table", times = [0.0, 1.0], values = [0.0, 4.0] }
+[[drivers]]
+name = "clamped"
+joint = "pin"
+motion = { kind = "table", times = [0.0, 1.0], values = [0.0, 4.0], interpolation = "clamped", end_rates = [1, 2] }
+[[drivers]]
+name = "step"
+joint = "pin"
+motion = { kind = "step", value = 1.0, end_value = 2.0, start = 0.25, end = 0.5 }
+[[applied_forces]]
+name = "push"
+body = "a"
+fx = { kind = "table", times = [0.0, 1.0], values = [0.0, 4.0] }
+fy = { kind = "table", times = [0.0, 1.0], values = [0.0, 4.0], interpolation = "monotone" }
+)");
+  CHECK(model.consistent_velocities);
+  CHECK(!model.bodies[0].in_row);
+  CHECK(model.bodies[2].in_row);
+  CHECK(model.drivers[0].motion.interpolation == Interpolation::natural);
+  CHECK(model.drivers[1].motion.interpolation == Interpolation::clamped);
+  CHECK(model.drivers[1].motion.end_rates == std::array<Real, 2>{1, 2});
+  const TimeFunction& step = model.drivers[2].motion;
+  CHECK(step.kind == TimeFunction::Kind::step);
+  CHECK(step.value == 1);
+  CHECK(step.end_value == 2);
+  CHECK(step.start == 0.25);
+  CHECK(step.end == 0.5);
+  CHECK(model.applied_forces[0].fx.interpolation == Interpolation::linear);
+  CHECK(model.applied_forces[0].fy.interpolation == Interpolation::monotone);
+}
+
 TEST_CASE("materials, pairs and walls") {
   const Model model = model_of(kSmallDeck + R"(
 [[materials]]

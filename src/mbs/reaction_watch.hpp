@@ -1,0 +1,40 @@
+// Recognises the oscillation of reactions that HHT with hht_alpha at or near 0 does not damp.
+#pragma once
+
+#include <vector>
+
+#include "mbs/multibody.hpp"
+
+namespace scree {
+
+// At hht_alpha = 0 a velocity gap e of the constraints changes its sign at every step and stays; Newmark's
+// rule then adds 4 e/h to the accelerations' alternating part at every step, and so to that of the reactions
+// R = Phi_q^T lambda: it grows without bound, at shorter steps the faster. Watched are, step by step,
+//   the alternating part  A = |R_1 - R_0| / 2,   the mean part  S = |R_1 + R_0| / 2,
+// each the largest over the coordinates, times their scales [J]. A step alternates where the changes of R and
+// the velocity gap both point against those of the step before, and where the applied forces, which may be
+// those of stiff springs or contacts, changed by less than the reactions.
+class ReactionWatch {
+ public:
+  // coordinate_scale, constraint_scale: as of the MechanicalSystem; both must outlive the watch.
+  ReactionWatch(const std::vector<Real>& coordinate_scale, const std::vector<Real>& constraint_scale);
+
+  // A step that closed from `start` to `end`; gap: Phi_q q' - velocity_rhs at its end.
+  void observe(const MultibodyState& start, const MultibodyState& end, const std::vector<Real>& gap);
+
+  // The last 50 steps and more alternate, and A has grown tenfold since they do.
+  bool oscillates() const;
+  // A over the largest S seen.
+  Real share() const { return mean_ > 0 ? alternating_ / mean_ : 0; }
+
+ private:
+  bool alternates(const std::vector<Real>& change, Real applied_change, const std::vector<Real>& gap) const;
+
+  const std::vector<Real>&coordinate_scale_, &constraint_scale_;
+  std::vector<Real> change_, gap_;   // of the last step, scaled
+  Real alternating_ = 0, mean_ = 0;  // A of the last step, largest S [J]
+  Real first_ = 0;                   // A of the first of the steps that alternate [J]
+  int steps_ = 0;                    // that alternate, in sequence
+};
+
+}  // namespace scree

@@ -1,0 +1,86 @@
+// Functions of time: of drivers, actuators and applied forces.
+#include <fmt/format.h>
+
+#include "model/build_parts.hpp"
+
+namespace scree {
+
+namespace {
+
+void check_points(const DeckTable& table) {
+  const std::vector<Real>&times = table.reals("times"), &values = table.reals("values");
+  if (times.size() < 2) table.fail("times", "must have two entries at least");
+  if (times.size() != values.size())
+    table.fail("values", fmt::format("must have {} entries, as times", times.size()));
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!(times[i] > times[i - 1])) {
+      table.fail("times", fmt::format("must increase; entry {} is {} after {}", i, times[i], times[i - 1]));
+    }
+  }
+}
+
+Interpolation interpolation_of(const DeckTable& table, Interpolation otherwise) {
+  if (!table.has("interpolation")) return otherwise;
+  const std::string& text = table.text("interpolation");
+  if (text == "natural") return Interpolation::natural;
+  if (text == "clamped") return Interpolation::clamped;
+  return text == "monotone" ? Interpolation::monotone : Interpolation::linear;
+}
+
+void build_table(const DeckTable& table, Interpolation otherwise, TimeFunction& function) {
+  check_points(table);
+  function.kind = TimeFunction::Kind::table;
+  function.times = table.reals("times");
+  function.values = table.reals("values");
+  function.interpolation = interpolation_of(table, otherwise);
+  if (!table.has("end_rates")) return;
+  if (function.interpolation != Interpolation::clamped)
+    table.fail("end_rates", "used only with interpolation = \"clamped\"");
+  for (std::size_t i = 0; i < 2; ++i) function.end_rates[i] = table.reals("end_rates")[i];
+}
+
+void build_step(const DeckTable& table, TimeFunction& function) {
+  function.kind = TimeFunction::Kind::step;
+  function.end_value = table.real("end_value");
+  function.start = table.real("start");
+  function.end = table.real("end");
+  if (!(function.end > function.start))
+    table.fail("end", fmt::format("must be above start = {}", function.start));
+}
+
+// otherwise: how a table is read that does not say it.
+TimeFunction build_function(const DeckTable& table, Interpolation otherwise) {
+  TimeFunction function;
+  const std::string& kind = table.text("kind");
+  if (kind == "table") {
+    build_table(table, otherwise, function);
+    return function;
+  }
+  function.value = table.real("value");
+  if (kind == "ramp") {
+    function.kind = TimeFunction::Kind::ramp;
+    function.rate = table.real("rate");
+  } else if (kind == "sine") {
+    function.kind = TimeFunction::Kind::sine;
+    function.amplitude = table.real("amplitude");
+    function.frequency = table.real("frequency");
+    function.phase = table.real("phase");
+  } else if (kind == "step") {
+    build_step(table, function);
+  }
+  return function;
+}
+
+}  // namespace
+
+TimeFunction build_motion(const DeckTable& table) {
+  const TimeFunction function = build_function(table, Interpolation::natural);
+  if (function.kind == TimeFunction::Kind::table && function.interpolation == Interpolation::linear)
+    table.fail("interpolation",
+               "the velocity of a motion must not jump; allowed for a driver: natural, clamped, monotone");
+  return function;
+}
+
+TimeFunction build_force(const DeckTable& table) { return build_function(table, Interpolation::linear); }
+
+}  // namespace scree
