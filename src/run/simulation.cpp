@@ -13,6 +13,7 @@
 #include "dem/device.hpp"
 #include "output/run_record.hpp"
 #include "partition/id_order.hpp"
+#include "run/balance.hpp"
 #include "run/step_loop.hpp"
 
 namespace scree {
@@ -309,8 +310,8 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   recorder_->flush();
   list_entries_ = ranks_.sum(backend_->list_entries());
   migrated_ = ranks_.sum(backend_->balance().migrated);
+  summarize();  // what it warns of goes into the record
   ranks_.on_root([&] { write_record(status, code); });
-  summarize();
   return code;
 }
 
@@ -347,8 +348,9 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
   const BalanceState& b = state_.balance;
   record.measures = {{"simulated_time", state_.clock.time},
-                     {"balance_error", b.last.accounted() - b.start},
+                     {"balance_error", balance_error(b)},
                      {"energy_exchanged", b.exchanged},
+                     {"energy_taken_by_integrator", b.last.dissipated_integrator},
                      {"imbalance", balance.imbalance},
                      {"largest_imbalance", balance.largest}};
   record.warnings = log_.warnings();
@@ -364,9 +366,10 @@ void Simulation::summarize() const {
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
       n.linear_iterations, backend_->list_builds()));
   log_.info(fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} particles left the space",
-                        b.last.accounted() - b.start, b.exchanged, state_.carried_out.left));
+                        balance_error(b), b.exchanged, state_.carried_out.left));
   log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,
                         options_.output_directory));
+  if (const std::string warning = balance_warning(b, model_); !warning.empty()) log_.warning(warning);
 }
 
 }  // namespace
