@@ -142,7 +142,7 @@ void CudaBackend::initial_forces() {
   for_each(device(), owned_,
            StartAccelerationItem{now_.force.data(), now_.velocity.data(), now_.acceleration.data()});
   find_shape_contacts();
-  if (verlet_step(model_) > 0)
+  if (is_verlet(model_))
     side_.book_losses(0);
   else
     now_.loss_power.zero(stream_);

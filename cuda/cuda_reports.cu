@@ -135,11 +135,12 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
 
 // Before the leavers are wrapped and marked.
 void CudaBackend::take_contacts_out() {
-  const Real h = verlet_step(model_);
+  const bool verlet = is_verlet(model_);
   const Vec4* seen = (level_ == Level::finished ? other_ : now_).velocity.data();  // by the law
   kernels_->departures(device(), views(now_.position.data(), seen), model_.gravity, subdomain_.box(), owned_,
-                       {now_.force.data(), now_.acceleration.data(), now_.loss_power.data(),
-                        now_.integrator_loss.data(), now_.drifting.data(), h > 0 ? hht_coefficients(0) : hht_, h});
+                       {now_.force.data(), now_.acceleration.data(), verlet ? now_.loss_power.data() : nullptr,
+                        now_.integrator_loss.data(), now_.drifting.data(), verlet ? hht_coefficients(0) : hht_,
+                        verlet_step(model_)});
 }
 
 ParticleLedger CudaBackend::ledger(Real verlet_step) {

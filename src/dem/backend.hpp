@@ -45,10 +45,13 @@ struct ParticleLedger {
 // From the sums of LedgerItem over the particles, indexed by LedgerTerm, and the shapes' shares.
 ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes);
 
+inline bool is_verlet(const Model& model) {
+  return model.integrator.particles == ParticleIntegrator::velocity_verlet;
+}
+
 // The particles' substep with velocity-Verlet [s]; 0 for HHT.
 inline Real verlet_step(const Model& model) {
-  const bool verlet = model.integrator.particles == ParticleIntegrator::velocity_verlet;
-  return verlet ? model.time.step / model.integrator.substeps : 0;
+  return is_verlet(model) ? model.time.step / model.integrator.substeps : 0;
 }
 
 // What stands before and after the id of a particle that wrap_if_sound() refuses.

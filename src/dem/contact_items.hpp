@@ -214,9 +214,8 @@ struct StepContact {
 
 template <class Elastic>
 SCREE_HD StepContact step_contact(const KelvinVoigt& law, const StepStart& start, const ContactPath& c) {
-  const ContactForce end = c.step.overlap1 > 0
-                               ? contact_force<Elastic>(law, c.step.overlap1, c.step.rate1)
-                               : ContactForce{0, 0, 0, 0};
+  const ContactForce end = c.step.overlap1 > 0 ? contact_force<Elastic>(law, c.step.overlap1, c.step.rate1)
+                                               : ContactForce{0, 0, 0, 0};
   if (!start.resolve_events) return {{end.force, end.stiffness, end.damping}, end.force, c.normal1};
   return {step_contact_force<Elastic>(law, c.step), end.force, c.normal1};
 }

@@ -37,8 +37,8 @@ class ContactKernels {
   virtual void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
                       ShapeContact* out) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
-  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an accepted
-  // implicit step.
+  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an
+  // accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;
   virtual void shape_books(const ContactViews<PackedRows>& in, Index n, const StepStart& start,

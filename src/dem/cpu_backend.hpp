@@ -73,6 +73,7 @@ class CpuBackend : public Backend {
   Real along_correction(const std::vector<Vec3>& residual) const;
   void share_step();
   bool any_outside() const;
+  void take_contacts_out();
   // Parts of build_list, in their order.
   void wrap_positions();
   void migrate();

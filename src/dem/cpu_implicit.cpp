@@ -27,7 +27,7 @@ void CpuBackend::initial_forces() {
   for_each(Serial{}, layout_.owned,
            StartAccelerationItem{store_.force.data(), store_.velocity.data(), store_.acceleration.data()});
   find_shape_contacts(views());
-  if (verlet_step(model_) > 0)
+  if (is_verlet(model_))
     side_.book_losses(0);
   else
     std::fill(store_.loss_power.begin(), store_.loss_power.end(), 0);
@@ -183,9 +183,8 @@ void CpuBackend::accept() {
   std::vector<ContactBooks> shapes(static_cast<std::size_t>(layout_.items - layout_.first_shape));
   kernels_->shape_books(views(), layout_.items - layout_.first_shape, step_start(), shapes.data());
   side_.book_step(shapes);
-  for_each(
-      Serial{}, layout_.owned,
-      AcceptItem{step_views(), step_forces(), store_.force.data(), store_.integrator_loss.data()});
+  for_each(Serial{}, layout_.owned,
+           AcceptItem{step_views(), step_forces(), store_.force.data(), store_.integrator_loss.data()});
   in_implicit_step_ = false;
 }
 

@@ -32,13 +32,18 @@ std::vector<Leaver> CpuBackend::outside() const {
   return leavers;
 }
 
-void CpuBackend::take_out(const std::vector<Leaver>& leavers) {
-  const Real h = verlet_step(model_);
-  kernels_->departures(views(store_.position, h > 0 ? spare_velocity_ : store_.velocity), model_.gravity,
+// Before the leavers are wrapped and marked.
+void CpuBackend::take_contacts_out() {
+  const bool verlet = is_verlet(model_);
+  kernels_->departures(views(store_.position, verlet ? spare_velocity_ : store_.velocity), model_.gravity,
                        subdomain_.box(), layout_.owned,
-                       {store_.force.data(), store_.acceleration.data(), store_.loss_power.data(),
-                        store_.integrator_loss.data(), store_.drifting.data(),
-                        h > 0 ? hht_coefficients(0) : hht_, h});
+                       {store_.force.data(), store_.acceleration.data(),
+                        verlet ? store_.loss_power.data() : nullptr, store_.integrator_loss.data(),
+                        store_.drifting.data(), verlet ? hht_coefficients(0) : hht_, verlet_step(model_)});
+}
+
+void CpuBackend::take_out(const std::vector<Leaver>& leavers) {
+  take_contacts_out();
   for (const Leaver& leaver : leavers) {
     if (leaver.rank != ranks_.rank()) continue;
     const auto i = static_cast<std::size_t>(leaver.local_index);

@@ -23,8 +23,8 @@ struct Leaver {
   int rank = 0;                        // that owns it
 };
 
-// Which items leave, where all particles in the rows are in the search: those outside. The ranks agree, because
-// ghosts are where their particles are.
+// Which items leave, where all particles in the rows are in the search: those outside. The ranks agree,
+// because ghosts are where their particles are.
 template <class Rows>
 struct Leaves {
   const ContactViews<Rows>& in;
@@ -32,7 +32,8 @@ struct Leaves {
   SCREE_HD bool operator()(Index j) const { return j < in.first_shape && !box.inside(xyz(in.position[j])); }
 };
 
-// The elastic energy of the contacts that end with a leaver: all of it, but half with one that leaves as well.
+// The elastic energy of the contacts that end with a leaver: all of it, but half with one that leaves as
+// well.
 template <class Elastic, class Laws, class Rows>
 struct LeaverEnergyItem {
   ContactViews<Rows> in;
@@ -50,16 +51,17 @@ struct LeaverEnergyItem {
 // What the next step starts from.
 struct StartViews {
   Vec3 *force, *acceleration;  // [N], [m/s^2]
-  Real* loss_power;            // of velocity-Verlet [W]
+  Real* loss_power;            // [W]; null for HHT
   Real* integrator_loss;       // [J]
   const std::uint8_t* drifting;
   HhtCoefficients hht;  // hht_alpha = 0 for velocity-Verlet
-  Real verlet_step;     // 0 for HHT, else the substep [s]
+  Real verlet_step;     // of velocity-Verlet [s]
 };
 
-// Takes the contacts that end out of what the next step starts from: out of the start of a particle that stays
-// those with particles that leave, out of one that leaves all. Else the step would do half a step's work with a
-// force that has no elastic energy any more. in: as the forces were computed, with the velocities that the law saw.
+// Takes the contacts that end out of what the next step starts from: out of the start of a particle that
+// stays those with particles that leave, out of one that leaves all. Else the step would do half a step's
+// work with a force that has no elastic energy any more. in: as the forces were computed, with the velocities
+// that the law saw.
 template <class Elastic, class Laws, class Rows>
 struct DepartureItem {
   ContactViews<Rows> in;
@@ -72,7 +74,11 @@ struct DepartureItem {
     if (start.drifting[i]) return;
     const Leaves<Rows> leaves{in, box};
     const Vec4 p = in.position[i], u = in.velocity[i];
-    if (leaves(i)) return begin_from(i, u.w, u.w * gravity, 0);
+    if (leaves(i)) {
+      begin_from(i, u.w, u.w * gravity);
+      if (start.loss_power != nullptr) start.loss_power[i] = 0;
+      return;
+    }
     PairForce ended{};
     Index contacts = 0;
     in.rows.for_each_contact(
@@ -80,18 +86,18 @@ struct DepartureItem {
         [&](Index j) { return pair_force<Elastic>(in, laws, p, u, in.material[i], j); },
         [&](const PairForce& c) { ended.force += c.force, ended.loss += c.loss, ++contacts; });
     if (contacts == 0) return;
-    begin_from(i, u.w, start.force[i] - ended.force, start.loss_power[i] - Real(0.5) * ended.loss);
+    begin_from(i, u.w, start.force[i] - ended.force);
+    if (start.loss_power != nullptr) start.loss_power[i] -= Real(0.5) * ended.loss;
   }
 
-  SCREE_HD void begin_from(Index i, Real mass, Vec3 force, Real loss_power) const {
+  SCREE_HD void begin_from(Index i, Real mass, Vec3 force) const {
     const Vec3 a0 = start.acceleration[i];
     const Vec3 a1 = a0 + hht_event_acceleration(start.hht, mass, start.force[i], force);
     start.force[i] = force, start.acceleration[i] = a1;
-    if (start.verlet_step == 0) return;
-    start.loss_power[i] = loss_power;
+    if (start.loss_power == nullptr) return;
     // The energy of the motion is counted with this function of the acceleration: it has not changed.
-    start.integrator_loss[i] += verlet_energy_shift(start.verlet_step, mass, a1) -
-                                verlet_energy_shift(start.verlet_step, mass, a0);
+    start.integrator_loss[i] +=
+        verlet_energy_shift(start.verlet_step, mass, a1) - verlet_energy_shift(start.verlet_step, mass, a0);
   }
 };
 

@@ -108,14 +108,15 @@ struct ShapesOfRows {
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
                                  const Add& add) const {
-    rows.for_each_contact(i, [&](Index j) { return j >= first_shape && touches(j); }, evaluate, add);
+    rows.for_each_contact(
+        i, [&](Index j) { return j >= first_shape && touches(j); }, evaluate, add);
   }
 };
 
 template <class Rows>
 ContactViews<ShapesOfRows<Rows>> with_shapes_alone(const ContactViews<Rows>& in) {
-  return {in.position, in.velocity, in.material, {in.rows, in.first_shape},
-          in.wall_offsets, in.walls, in.planes, in.first_shape};
+  return {in.position,     in.velocity, in.material, {in.rows, in.first_shape},
+          in.wall_offsets, in.walls,    in.planes,   in.first_shape};
 }
 
 // What a shape item's own share of its contacts adds to the energy ledger over an accepted step.

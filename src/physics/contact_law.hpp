@@ -163,8 +163,7 @@ SCREE_HD StepContactForce fading_force(const ContactForce& start, Real end_force
 // The contact over a step that may open or close within it.
 template <class Elastic>
 SCREE_HD StepContactForce step_contact_force(const KelvinVoigt& law, const ContactStep& c) {
-  if (c.overlap0 <= 0)
-    return c.overlap1 > 0 ? touching_force<Elastic>(law, c) : StepContactForce{0, 0, 0};
+  if (c.overlap0 <= 0) return c.overlap1 > 0 ? touching_force<Elastic>(law, c) : StepContactForce{0, 0, 0};
   const ContactForce start = contact_force<Elastic>(law, c.overlap0, c.rate0);
   if (c.overlap1 > 0) {
     const ContactForce end = contact_force<Elastic>(law, c.overlap1, c.rate1);

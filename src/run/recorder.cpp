@@ -37,7 +37,9 @@ void energy_columns(Columns& out) {
   add("dissipated_contacts", "dissipated in contacts since t = 0");
   add("dissipated_integrator", "taken out by the time integration since t = 0");
   add("driver_work", "work of drivers, actuators and applied forces since t = 0");
-  add("carried_out", "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended as a particle left");
+  add("carried_out",
+      "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended as a "
+      "particle left");
   add("total", "kinetic, gravitational and elastic energy");
   add("balance_error", "total + dissipated + carried out - driver work, less its value at t = 0");
   add("exchanged", "energy that changed its place since t = 0, from row to row");

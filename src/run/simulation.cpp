@@ -347,12 +347,10 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"history_rows", state_.history_rows},
                    {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
   const BalanceState& b = state_.balance;
-  record.measures = {{"simulated_time", state_.clock.time},
-                     {"balance_error", balance_error(b)},
-                     {"energy_exchanged", b.exchanged},
-                     {"energy_taken_by_integrator", b.last.dissipated_integrator},
-                     {"imbalance", balance.imbalance},
-                     {"largest_imbalance", balance.largest}};
+  record.measures = {
+      {"simulated_time", state_.clock.time}, {"balance_error", balance_error(b)},
+      {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", b.last.dissipated_integrator},
+      {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest}};
   record.warnings = log_.warnings();
   write_run_record(options_.output_directory, record);
 }

@@ -1,5 +1,5 @@
-// What a contact over a step adds to the energy ledger: the law's dissipation against the law integrated in fine
-// parts, and what is left for the integrator.
+// What a contact over a step adds to the energy ledger: the law's dissipation against the law integrated in
+// fine parts, and what is left for the integrator.
 #include "physics/contact_books.hpp"
 
 #include <algorithm>
@@ -85,8 +85,8 @@ TEST_CASE("what a contact dissipates over a step is the law's loss along its way
       }
       const Real travel = c.overlap1 - c.overlap0;
       CHECK(dissipated == Approx(integrated(
-                              law, [&](Real t) { return c.overlap0 + t * travel; },
-                              [&](Real) { return travel / c.h; }))
+                                     law, [&](Real t) { return c.overlap0 + t * travel; },
+                                     [&](Real) { return travel / c.h; }))
                               .margin(tolerance));
     });
   }
@@ -119,8 +119,7 @@ TEST_CASE("the integrator does nothing to an undamped linear contact that opens 
     for_each_step([&](const ContactStep& c) {
       if (c.overlap0 > 0 && c.overlap1 > 0 && law.over_step(law.law, c).force == 0) return;
       const Real start = c.overlap0 > 0 ? law.at_instant(law.law, c.overlap0, c.rate0).force : 0;
-      const Real work =
-          -(start + law.over_step(law.law, c).force) / 2 * (c.overlap1 - c.overlap0);
+      const Real work = -(start + law.over_step(law.law, c).force) / 2 * (c.overlap1 - c.overlap0);
       CAPTURE(c.overlap0, c.overlap1);
       CHECK(std::abs(law.books(law.law, c, work).integrator) < 1e-12 * law.energy(law.law, kReach));
     });

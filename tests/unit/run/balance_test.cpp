@@ -42,7 +42,8 @@ TEST_CASE("the warning says how much, of how much, and what to do") {
   CHECK(hht.find("by 480 J, 48 % of the 1000 J exchanged") != std::string::npos);
   CHECK(hht.find("took out -480 J, and 0.5 J are not accounted for") != std::string::npos);
   CHECK(hht.find("set time.control = \"adaptive\"") != std::string::npos);
-  CHECK(text(ParticleIntegrator::hht, StepControl::adaptive, 20, 0).find("time.tolerance") != std::string::npos);
+  CHECK(text(ParticleIntegrator::hht, StepControl::adaptive, 20, 0).find("time.tolerance") !=
+        std::string::npos);
   CHECK(text(ParticleIntegrator::velocity_verlet, StepControl::fixed, 0, 20).find("integrator.substeps") !=
         std::string::npos);
 }
