@@ -82,6 +82,7 @@ y_max = "wall"
 [time]
 end = 0.5
 step = 1e-4
+control = "fixed"
 
 [[contact.pairs]]
 stiffness = 1e6
