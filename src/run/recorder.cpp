@@ -41,7 +41,9 @@ void energy_columns(Columns& out) {
       "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended as a "
       "particle left");
   add("total", "kinetic, gravitational and elastic energy");
-  add("balance_error", "total + dissipated + carried out - driver work, less its value at t = 0");
+  add("balance_error",
+      "total + dissipated + carried out - driver work, less its value at t = 0; with velocity-Verlet what "
+      "its steps did to contacts");
   add("exchanged", "energy that changed its place since t = 0, from row to row");
 }
 
