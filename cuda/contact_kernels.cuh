@@ -9,6 +9,7 @@
 
 #include "dem/contact_items.hpp"
 #include "dem/contact_kernels.hpp"
+#include "dem/leaver_items.hpp"
 #include "dem/mixed_items.hpp"
 #include "dem/step_items.hpp"
 #include "device.cuh"
@@ -163,6 +164,16 @@ class DeviceContactKernels {
   virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                          ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
+  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an accepted implicit
+  // step.
+  virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
+                     Real* integrator_loss) const = 0;
+  virtual void shape_books(Device device, const DeviceViews& in, Index n, const StepStart& start,
+                           ContactBooks* out) const = 0;
+  // n particles that leave, and what they leave to all others: see the items.
+  virtual void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n, Leaver* leavers) const = 0;
+  virtual void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
+                          const StartViews& start) const = 0;
   // One explicit step, closed and the next opened; does nothing once the control says stop.
   virtual void verlet_advance(Device device, const VerletRequest& request) const = 0;
   virtual void mixed_advance(Device device, const MixedRequest& request) const = 0;

@@ -220,6 +220,22 @@ class ContactKernelsOf : public DeviceContactKernels {
     for_each(device, n,
              ContactEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, out.energy, out.contacts, out.pairs});
   }
+  void books(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
+             Real* integrator_loss) const override {
+    for_each(device, n,
+             ContactBooksItem<Elastic, Laws, SlicedRows>{{in, laws_, start}, contact_loss, integrator_loss});
+  }
+  void shape_books(Device device, const DeviceViews& in, Index n, const StepStart& start,
+                   ContactBooks* out) const override {
+    for_each(device, n, ShapeBooksItem<Elastic, Laws, SlicedRows>{{with_shapes_alone(in), laws_, start}, out});
+  }
+  void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n, Leaver* leavers) const override {
+    for_each(device, n, LeaverEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, box, leavers});
+  }
+  void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
+                  const StartViews& start) const override {
+    for_each(device, n, DepartureItem<Elastic, Laws, SlicedRows>{in, laws_, gravity, box, start});
+  }
   void verlet_advance(Device device, const VerletRequest& r) const override {
     const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
     launch(device, r, eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>

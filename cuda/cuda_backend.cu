@@ -280,7 +280,7 @@ void CudaBackend::lay_out_items(Real skin) {
                  "cudaMemcpyAsync");
     shape_body_.upload(body, stream_);
   }
-  h_shape_contacts_.resize(n);
+  h_shape_contacts_.resize(n), h_shape_books_.resize(n);
   refresh_ghosts(now_.position.data(), now_.velocity.data());
   side_.place(layout_);
   put_shapes(now_);

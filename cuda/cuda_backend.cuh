@@ -102,6 +102,7 @@ class CudaBackend : public Backend {
   DeviceViews views(const Vec4* position, const Vec4* velocity) const;
   StepViews step_views();
   StepForces step_forces();
+  StepStart step_start() const;
   ContactMatrix matrix();
   Index shape_items() const { return layout_.items - layout_.first_shape; }
 
@@ -147,6 +148,7 @@ class CudaBackend : public Backend {
   void find_shape_contacts();
   void fetch_shape_contacts(ContactSpan span, cudaStream_t stream);
   void report_not_finite(const Vec3* force) const;
+  void take_contacts_out();
 
   // Parts of the implicit step.
   CorrectItem correct_item(Real share);
@@ -218,6 +220,7 @@ class CudaBackend : public Backend {
   Event places_copied_, step_queued_;
   Event rows_done_, halo_done_;
   PinnedArray<ShapeContact> h_shape_contacts_;  // written by the device: few, and awaited
+  PinnedArray<ContactBooks> h_shape_books_;     // likewise
   bool layout_changed_ = true;  // particles left since the list was built, or it is not finished
   std::int64_t list_builds_ = 0;
 
@@ -230,7 +233,7 @@ class CudaBackend : public Backend {
   bool in_implicit_step_ = false;
   bool ghosts_stale_ = false;  // the next contact_force refreshes them
   DeviceArray<Vec3> step_force_, end_force_, residual_, right_hand_side_, correction_;
-  DeviceArray<Real> step_loss_, end_loss_, force_magnitude_, stiffening_;
+  DeviceArray<Real> force_magnitude_, stiffening_;
   DeviceArray<Index> matrix_count_;
   DeviceArray<ContactEntry> matrix_entries_;
   DeviceArray<Sym3> matrix_diagonal_, inverse_block_;

@@ -20,7 +20,11 @@ StepViews CudaBackend::step_views() {
 }
 
 StepForces CudaBackend::step_forces() {
-  return {step_force_.data(), end_force_.data(), step_loss_.data(), end_loss_.data(), force_magnitude_.data()};
+  return {step_force_.data(), end_force_.data(), force_magnitude_.data()};
+}
+
+StepStart CudaBackend::step_start() const {
+  return {other_.position.data(), other_.velocity.data(), h_, model_.integrator.resolve_events};
 }
 
 ContactMatrix CudaBackend::matrix() {
@@ -31,8 +35,7 @@ void CudaBackend::size_step_arrays() {
   const auto owned = static_cast<std::size_t>(owned_), slots = static_cast<std::size_t>(list_.slots());
   matrix_entries_.resize(slots);
   for (DeviceArray<Vec4>& direction : direction_) direction.resize(static_cast<std::size_t>(layout_.items));
-  step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
-  force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
+  step_force_.resize(owned), end_force_.resize(owned), force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
   residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned);
   matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
 }
@@ -139,7 +142,10 @@ void CudaBackend::initial_forces() {
   for_each(device(), owned_,
            StartAccelerationItem{now_.force.data(), now_.velocity.data(), now_.acceleration.data()});
   find_shape_contacts();
-  side_.book_losses(0);
+  if (is_verlet(model_))
+    side_.book_losses(0);
+  else
+    now_.loss_power.zero(stream_);
 }
 
 void CudaBackend::begin_step(Real h) {
@@ -176,7 +182,7 @@ ParticleNorms CudaBackend::contact_force() {
   SystemRequest r;
   r.in = views(), r.gravity = model_.gravity;
   r.weights = {newmark_position_gain(hht_, h_), newmark_velocity_gain(hht_, h_)};
-  r.start = {other_.position.data(), other_.velocity.data(), h_, model_.integrator.resolve_events};
+  r.start = step_start();
   r.forces = step_forces(), r.matrix = matrix(), r.step = step_views();
   r.residual = residual_.data(), r.stiffening = stiffening_.data(), r.inverse_block = inverse_block_.data();
   r.largest = result(&Results::norms);
@@ -320,10 +326,14 @@ Real CudaBackend::error() {
 }
 
 void CudaBackend::accept() {
+  kernels_->books(device(), views(), owned_, step_start(), now_.contact_loss.data(), now_.integrator_loss.data());
   for_each(device(), owned_,
-           AcceptItem{step_views(), step_forces(), now_.force.data(), now_.loss_power.data(),
-                      now_.contact_loss.data(), now_.integrator_loss.data()});
-  side_.book_losses(h_);
+           AcceptItem{step_views(), step_forces(), now_.force.data(), now_.integrator_loss.data()});
+  if (const auto shapes = static_cast<std::size_t>(shape_items()); shapes > 0) {
+    kernels_->shape_books(device(), views(), shape_items(), step_start(), h_shape_books_.data());
+    wait_for(stream_);
+    side_.book_step({h_shape_books_.data(), shapes});
+  }
   in_implicit_step_ = false;
 }
 

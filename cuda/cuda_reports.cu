@@ -12,6 +12,7 @@ struct LeaverItem {
   ParticleViews in;
   OpenBox box;
   Vec3 gravity, period;
+  Real verlet_step;  // [s]
   Leaver* out;
   Index room;
   Index* count;
@@ -22,7 +23,8 @@ struct LeaverItem {
     const Index slot = atomicAdd(count, 1);
     if (slot >= room) return;
     const Real energy = energy_of_motion(x, in.velocity[i], in.image[i], gravity, period);
-    out[slot] = {id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i]};
+    const Real shift = verlet_energy_shift(verlet_step, in.velocity[i].w, in.acceleration[i]);
+    out[slot] = {id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i] - shift};
   }
 };
 
@@ -78,8 +80,8 @@ std::vector<Leaver> CudaBackend::outside() const {
   const auto find = [&] {
     require_cuda(cudaMemsetAsync(result(&Results::leavers), 0, sizeof(Index), stream_), "cudaMemsetAsync");
     for_each(device(), owned_,
-             LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), leavers_.data(),
-                        static_cast<Index>(leavers_.size()), result(&Results::leavers)});
+             LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), verlet_step(model_),
+                        leavers_.data(), static_cast<Index>(leavers_.size()), result(&Results::leavers)});
     return static_cast<std::size_t>(fetch(&Results::leavers));
   };
   std::vector<Leaver> leavers(find());
@@ -88,6 +90,7 @@ std::vector<Leaver> CudaBackend::outside() const {
     leavers_.resize_clean(leavers.size(), stream_);
     find();
   }
+  kernels_->leavers(device(), views(), subdomain_.box(), static_cast<Index>(leavers.size()), leavers_.data());
   copy_async(leavers.data(), leavers_.data(), leavers.size(), stream_);
   wait_for(stream_);
   for (Leaver& leaver : leavers)
@@ -109,6 +112,7 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
   DeviceArray<Index> d_particles, iota(n), staying(n), row_length(ranks_.alone() ? 0 : n);
   DeviceArray<std::uint8_t> stays(n);
   d_particles.upload(particles, stream_);
+  take_contacts_out();
   for_each(device(), static_cast<Index>(particles.size()),
            MarkItem{d_particles.data(), views_of(now_), model_.space.min, subdomain_.period()});
   layout_changed_ = true;
@@ -127,6 +131,16 @@ void CudaBackend::take_out(const std::vector<Leaver>& leavers) {
   }
   wait_for(stream_);  // before the arrays above go
   row_length_.swap(row_length);
+}
+
+// Before the leavers are wrapped and marked.
+void CudaBackend::take_contacts_out() {
+  const bool verlet = is_verlet(model_);
+  const Vec4* seen = (level_ == Level::finished ? other_ : now_).velocity.data();  // by the law
+  kernels_->departures(device(), views(now_.position.data(), seen), model_.gravity, subdomain_.box(), owned_,
+                       {now_.force.data(), now_.acceleration.data(), verlet ? now_.loss_power.data() : nullptr,
+                        now_.integrator_loss.data(), now_.drifting.data(), verlet ? hht_coefficients(0) : hht_,
+                        verlet_step(model_)});
 }
 
 ParticleLedger CudaBackend::ledger(Real verlet_step) {

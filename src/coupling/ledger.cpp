@@ -6,6 +6,7 @@ namespace scree {
 
 void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out) {
   carried_out.left += static_cast<std::int64_t>(leavers.size());
+  for (const Leaver& leaver : leavers) carried_out.energy += leaver.elastic;
   if (policy != Leaving::remove) return;
   carried_out.removed += static_cast<std::int64_t>(leavers.size());
   for (const Leaver& leaver : leavers) {

@@ -15,7 +15,9 @@ struct Ledger {
   Real elastic_force_elements = 0, elastic_contacts = 0;
   Real dissipated_force_elements = 0, dissipated_contacts = 0, dissipated_integrator = 0;
   Real driver_work = 0;  // of drivers, actuators and applied forces
-  Real carried_out = 0;  // kinetic and gravitational energy of removed particles
+  // Kinetic and gravitational energy of removed particles, elastic energy of the contacts that ended as one
+  // left.
+  Real carried_out = 0;
 
   Real mechanical() const { return kinetic + gravitational + elastic_force_elements + elastic_contacts; }
   Real accounted() const {
@@ -35,11 +37,12 @@ struct Ledger {
   }
 };
 
-// What removed particles took along, booked when they left; part of the state.
+// What particles took along, booked when they left; part of the state.
 struct CarriedOut {
   std::int64_t left = 0;  // particles that have left, drifting or removed
   std::int64_t removed = 0;
-  Real energy = 0, contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
+  Real energy = 0;                             // see Ledger::carried_out [J]
+  Real contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
 };
 
 void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out);

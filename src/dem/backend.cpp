@@ -12,7 +12,7 @@ ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes) {
   out.kinetic = sums[kKinetic], out.gravitational = sums[kGravitational];
   out.contact_elastic = sums[kContactElastic] + shapes.elastic_energy();
   out.contact_loss = sums[kContactLoss] + shapes.losses().contact_loss;
-  out.integrator_loss = sums[kIntegratorLoss];
+  out.integrator_loss = sums[kIntegratorLoss] + shapes.losses().integrator_loss;
   out.momentum = {sums[kMomentum], sums[kMomentum + 1], sums[kMomentum + 2]};
   out.angular_momentum = {sums[kAngularMomentum], sums[kAngularMomentum + 1], sums[kAngularMomentum + 2]};
   out.contacts = std::llround(sums[kPairs] + shapes.pairs());

@@ -10,6 +10,7 @@
 #include "base/log.hpp"
 #include "base/timer.hpp"
 #include "base/types.hpp"
+#include "dem/leaver_items.hpp"
 #include "dem/particle_store.hpp"
 #include "dem/shape_side.hpp"
 #include "model/body_exchange.hpp"
@@ -47,16 +48,14 @@ ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes);
 // From the sums of WallContactItem over what touches a wall, indexed by WallTerm.
 ContactSum make_wall_contact(const Real* sums);
 
-// A particle outside the space.
-struct Leaver {
-  GlobalId global_id;
-  Index local_index;                   // on its rank
-  Vec3 position;                       // [m]
-  bool lost;                           // beyond a side that is a wall, which no particle can leave through
-  Real energy;                         // kinetic and gravitational [J]
-  Real contact_loss, integrator_loss;  // booked on it so far [J]
-  int rank = 0;                        // that owns it
-};
+inline bool is_verlet(const Model& model) {
+  return model.integrator.particles == ParticleIntegrator::velocity_verlet;
+}
+
+// The particles' substep with velocity-Verlet [s]; 0 for HHT.
+inline Real verlet_step(const Model& model) {
+  return is_verlet(model) ? model.time.step / model.integrator.substeps : 0;
+}
 
 // What stands before and after the id of a particle that wrap_if_sound() refuses.
 inline constexpr const char* kUnsoundPosition[] = {
@@ -138,8 +137,8 @@ class Backend {
 
   // The particles that are outside the space now and not known to drift, ordered by global id.
   virtual std::vector<Leaver> outside() const = 0;
-  // Takes them out of the search: they drift from now on or are removed, as the deck says. The list must then
-  // be built anew.
+  // Takes them out of the search, and their contacts out of what the next step starts from: they drift from
+  // now on or are removed, as the deck says. The list must then be built anew.
   virtual void take_out(const std::vector<Leaver>& leavers) = 0;
   // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s]. Complete on rank 0.
   virtual ParticleLedger ledger(Real verlet_step) = 0;

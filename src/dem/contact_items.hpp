@@ -7,6 +7,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/body_exchange.hpp"
+#include "physics/contact_books.hpp"
 #include "physics/contact_law.hpp"
 
 namespace scree {
@@ -97,6 +98,18 @@ struct PairForce {
   bool with_shape;  // of a body
 };
 
+// On an item at p with velocity u by item j, which it touches.
+template <class Elastic, class Laws, class Rows>
+SCREE_HD PairForce pair_force(const ContactViews<Rows>& in, const Laws& laws, Vec4 p, Vec4 u, int material,
+                              Index j) {
+  const Vec4 q = in.position[j];
+  const Vec3 r = xyz(p) - xyz(q);
+  const Gap gap = sphere_gap(dot(r, r), p.w + q.w);
+  const Real rate = approach_rate(r, gap.inverse_distance, xyz(u) - xyz(in.velocity[j]));
+  const ContactForce c = contact_force<Elastic>(laws.get(material, in.material[j]), gap.overlap, rate);
+  return {(c.force * gap.inverse_distance) * r, c.loss, j >= in.first_shape};
+}
+
 struct TotalForce {
   Vec3 force;       // [N], gravity included
   Real loss_power;  // the particle's share of its contacts' dissipation [W]
@@ -122,14 +135,7 @@ struct ContactForceItem {
     const int material = in.material[i];
     Vec3 f = u.w * gravity;
     Real loss = 0, shape_loss = 0;
-    const auto evaluate = [&](Index j) {
-      const Vec4 q = in.position[j];
-      const Vec3 r = xyz(p) - xyz(q);
-      const Gap gap = sphere_gap(dot(r, r), p.w + q.w);
-      const Real rate = approach_rate(r, gap.inverse_distance, xyz(u) - xyz(in.velocity[j]));
-      const ContactForce c = contact_force<Elastic>(laws.get(material, in.material[j]), gap.overlap, rate);
-      return PairForce{(c.force * gap.inverse_distance) * r, c.loss, j >= in.first_shape};
-    };
+    const auto evaluate = [&](Index j) { return pair_force<Elastic>(in, laws, p, u, material, j); };
     in.rows.for_each_contact(i, TouchTest{p, in.position}, evaluate, [&](const PairForce& c) {
       f += c.force;
       loss += c.loss;
@@ -174,7 +180,6 @@ struct ContactMatrix {
 // Sums over the contacts of each particle in an implicit step; "step" and "end" as in StepContact.
 struct StepForces {
   Vec3 *step_force, *end_force;  // gravity included [N]
-  Real *step_loss, *end_loss;    // [W]
   Real* magnitude;               // sum of |F| over contacts and gravity: the scale of the residual [N]
 };
 
@@ -193,77 +198,86 @@ struct StepStart {
   bool resolve_events;
 };
 
-// One contact of an implicit step.
-struct StepContact {
-  ContactForce step;  // what the step's end must hold for the step to be right: see step_contact_force
-  Real end_force;     // at the end itself [N]
-  Real end_loss;      // [W]
+// One contact over an implicit step, as it lies between its two partners.
+struct ContactPath {
+  ContactStep step;
+  Vec3 normal0, normal1;  // at its start and its end
+  Vec3 travel;            // of i relative to j [m]
 };
 
-// o, rate: overlap and rate at the end of the step; o0, rate0: at its start.
+// What the step solves with.
+struct StepContact {
+  StepContactForce step;  // what the step's end must hold for the step to be right: see step_contact_force
+  Real end_force;         // at the end itself [N]
+  Vec3 normal;            // there
+};
+
 template <class Elastic>
-SCREE_HD StepContact step_contact(const KelvinVoigt& law, const StepStart& start, Real overlap0, Real rate0,
-                                  Real overlap1, Real rate1) {
-  const ContactForce end =
-      overlap1 > 0 ? contact_force<Elastic>(law, overlap1, rate1) : ContactForce{0, 0, 0, 0};
-  if (!start.resolve_events) return {end, end.force, end.loss};
-  return {step_contact_force<Elastic>(law, {overlap0, rate0, overlap1, rate1, start.h}), end.force, end.loss};
+SCREE_HD StepContact step_contact(const KelvinVoigt& law, const StepStart& start, const ContactPath& c) {
+  const ContactForce end = c.step.overlap1 > 0 ? contact_force<Elastic>(law, c.step.overlap1, c.step.rate1)
+                                               : ContactForce{0, 0, 0, 0};
+  if (!start.resolve_events) return {{end.force, end.stiffness, end.damping}, end.force, c.normal1};
+  return {step_contact_force<Elastic>(law, c.step), end.force, c.normal1};
 }
 
-// Visits the contacts of item i over a step: visit(StepContact, normal at the end, slot of the neighbour or
-// -1 for a wall, partner).
-template <class Elastic, class Laws, class Rows>
+// What it adds to the energy ledger.
+template <class Elastic>
+SCREE_HD ContactBooks step_books(const KelvinVoigt& law, const StepStart& start, const ContactPath& c) {
+  const Real force0 =
+      c.step.overlap0 > 0 ? contact_force<Elastic>(law, c.step.overlap0, c.step.rate0).force : 0;
+  const Real force1 = step_contact<Elastic>(law, start, c).step.force;
+  return contact_books<Elastic>(law, c.step,
+                                Real(0.5) * dot(force0 * c.normal0 + force1 * c.normal1, c.travel));
+}
+
+// Visits the contacts of item i over a step: visit(of(law, ContactPath)[, partner]).
+template <class Laws, class Rows>
 struct StepContacts {
   ContactViews<Rows> in;
   Laws laws;
   StepStart start;
 
-  struct Neighbor {
-    StepContact contact;
-    Vec3 normal;
-    Index j;
-  };
-
   SCREE_HD static Real rate(Vec3 normal, Vec3 relative_velocity) { return -dot(normal, relative_velocity); }
 
-  template <class Visit>
-  SCREE_HD void neighbors(Index i, const Visit& visit) const {
+  template <class Of, class Visit>
+  SCREE_HD void neighbors(Index i, const Of& of, const Visit& visit) const {
     const Vec4 p = in.position[i], p0 = start.position[i];
+    struct Neighbor {
+      decltype(of(laws.get(0, 0), ContactPath{})) contact;
+      Index j;
+    };
     const auto evaluate = [&](Index j) {
       const Vec4 q = in.position[j];
       const Real reach = p.w + q.w;
-      const Overlap o = sphere_overlap(xyz(p) - xyz(q), reach);
-      const Overlap o0 = sphere_overlap(xyz(p0) - xyz(start.position[j]), reach);
-      const KelvinVoigt& law = laws.get(in.material[i], in.material[j]);
-      return Neighbor{
-          step_contact<Elastic>(law, start, o0.overlap,
-                                rate(o0.normal, xyz(start.velocity[i]) - xyz(start.velocity[j])), o.overlap,
-                                rate(o.normal, xyz(in.velocity[i]) - xyz(in.velocity[j]))),
-          o.normal, j};
+      const Vec3 r = xyz(p) - xyz(q), r0 = xyz(p0) - xyz(start.position[j]);
+      const Overlap o = sphere_overlap(r, reach), o0 = sphere_overlap(r0, reach);
+      const ContactStep step{o0.overlap, rate(o0.normal, xyz(start.velocity[i]) - xyz(start.velocity[j])),
+                             o.overlap, rate(o.normal, xyz(in.velocity[i]) - xyz(in.velocity[j])), start.h};
+      return Neighbor{of(laws.get(in.material[i], in.material[j]), {step, o0.normal, o.normal, r - r0}), j};
     };
     in.rows.for_each_contact(
         i, [&](Index j) { return touch(p, in.position[j]) || touch(p0, start.position[j]); }, evaluate,
-        [&](const Neighbor& n) { visit(n.contact, n.normal, n.j); });
+        [&](const Neighbor& n) { visit(n.contact, n.j); });
   }
 
-  template <class Visit>
-  SCREE_HD void walls(Index i, const Visit& visit) const {
+  template <class Of, class Visit>
+  SCREE_HD void walls(Index i, const Of& of, const Visit& visit) const {
     for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
       const WallPlane& wall = in.planes[in.walls[k]];
-      const Overlap o = wall_overlap(in.position[i], wall), o0 = wall_overlap(start.position[i], wall);
+      const Vec4 p = in.position[i], p0 = start.position[i];
+      const Overlap o = wall_overlap(p, wall), o0 = wall_overlap(p0, wall);
       if (o.overlap <= 0 && o0.overlap <= 0) continue;
-      const KelvinVoigt& law = laws.get(in.material[i], wall.material);
-      visit(step_contact<Elastic>(law, start, o0.overlap, rate(o.normal, xyz(start.velocity[i])), o.overlap,
-                                  rate(o.normal, xyz(in.velocity[i]))),
-            o.normal);
+      const ContactStep step{o0.overlap, rate(o.normal, xyz(start.velocity[i])), o.overlap,
+                             rate(o.normal, xyz(in.velocity[i])), start.h};
+      visit(of(laws.get(in.material[i], wall.material), {step, o.normal, o.normal, xyz(p) - xyz(p0)}));
     }
   }
 };
 
-// Force, dissipation and Newton matrix row of particle i in an implicit step.
+// Force and Newton matrix row of particle i in an implicit step.
 template <class Elastic, class Laws, class Rows>
 struct ContactSystemItem {
-  StepContacts<Elastic, Laws, Rows> contacts;
+  StepContacts<Laws, Rows> contacts;
   Vec3 gravity;
   NewtonWeights weights;
   StepForces out;
@@ -272,33 +286,90 @@ struct ContactSystemItem {
   SCREE_HD void operator()(Index i) const {
     const Vec3 weight = contacts.in.velocity[i].w * gravity;
     Vec3 step_force = weight, end_force = weight;
-    Real step_loss = 0, end_loss = 0, magnitude = norm(weight);
+    Real magnitude = norm(weight);
     Index entries = 0;
     std::int64_t slot = contacts.in.rows.first(i);
     Sym3 diagonal;
-    const auto add = [&](const StepContact& c, Vec3 normal, Real share) {
-      step_force += c.step.force * normal;
-      end_force += c.end_force * normal;
+    const auto of = [&](const KelvinVoigt& law, const ContactPath& c) {
+      return step_contact<Elastic>(law, contacts.start, c);
+    };
+    const auto add = [&](const StepContact& c) {
+      step_force += c.step.force * c.normal;
+      end_force += c.end_force * c.normal;
       magnitude += std::abs(c.step.force);
-      step_loss += share * c.step.loss;
-      end_loss += share * c.end_loss;
       const Real s = weights.stiffness * c.step.stiffness + weights.damping * c.step.damping;
-      diagonal += outer(s, normal);
+      diagonal += outer(s, c.normal);
       return s;
     };
-    contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
-      const Real s = add(c, normal, particle_share(j, contacts.in.first_shape));
-      matrix.entries[slot] = contact_entry(std::sqrt(s) * normal, j);
+    contacts.neighbors(i, of, [&](const StepContact& c, Index j) {
+      const Real s = add(c);
+      matrix.entries[slot] = contact_entry(std::sqrt(s) * c.normal, j);
       ++entries, slot += Rows::stride();
     });
-    contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
+    contacts.walls(i, of, add);
     out.step_force[i] = step_force, out.end_force[i] = end_force;
-    out.step_loss[i] = step_loss, out.end_loss[i] = end_loss;
     out.magnitude[i] = magnitude;
     matrix.count[i] = entries;
     matrix.diagonal[i] = diagonal;
   }
 };
+
+// What the contacts of item i over a step add to the energy ledger, those with item j by share(j).
+template <class Elastic, class Contacts, class Share>
+SCREE_HD ContactBooks books_of(const Contacts& contacts, Index i, const Share& share) {
+  ContactBooks sum;
+  const auto of = [&](const KelvinVoigt& law, const ContactPath& c) {
+    return step_books<Elastic>(law, contacts.start, c);
+  };
+  contacts.neighbors(i, of, [&](const ContactBooks& one, Index j) { sum.add(one, share(j)); });
+  contacts.walls(i, of, [&](const ContactBooks& one) { sum.add(one, 1); });
+  return sum;
+}
+
+// Books particle i's share of its contacts over an accepted step.
+template <class Elastic, class Laws, class Rows>
+struct ContactBooksItem {
+  StepContacts<Laws, Rows> contacts;
+  Real *contact_loss, *integrator_loss;  // [J]
+
+  SCREE_HD void operator()(Index i) const {
+    const Index first_shape = contacts.in.first_shape;
+    const ContactBooks sum =
+        books_of<Elastic>(contacts, i, [&](Index j) { return particle_share(j, first_shape); });
+    contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
+  }
+};
+
+// Over the contacts of a particle, each with its weight.
+struct TouchSums {
+  Real energy = 0;  // elastic [J]
+  Real share = 0;   // sum of the weights
+  Index contacts = 0;
+};
+
+// share(j): the weight of a contact with item j; those with walls count in full.
+template <class Elastic, class Laws, class Rows, class Share>
+SCREE_HD TouchSums touch_sums(const ContactViews<Rows>& in, const Laws& laws, Index i, const Share& share) {
+  const Vec4 p = in.position[i];
+  TouchSums sum;
+  const auto add = [&](const KelvinVoigt& law, Real overlap, Real weight) {
+    sum.energy += weight * Elastic::energy(law, overlap);
+    sum.share += weight;
+    ++sum.contacts;
+  };
+  in.rows.for_each_contact(
+      i, TouchTest{p, in.position}, [](Index j) { return j; },
+      [&](Index j) {
+        const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
+        add(laws.get(in.material[i], in.material[j]), o.overlap, share(j));
+      });
+  for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
+    const WallPlane& wall = in.planes[in.walls[k]];
+    const Overlap o = wall_overlap(p, wall);
+    if (o.overlap > 0) add(laws.get(in.material[i], wall.material), o.overlap, 1);
+  }
+  return sum;
+}
 
 // Elastic energy of particle i's share of its contacts, their number, and its share of that number.
 template <class Elastic, class Laws, class Rows>
@@ -310,29 +381,11 @@ struct ContactEnergyItem {
   Real* pairs;  // half of each contact with another particle, all of any other
 
   SCREE_HD void operator()(Index i) const {
-    const Vec4 p = in.position[i];
-    Real sum = 0, share = 0;
-    Index n = 0;
-    in.rows.for_each_contact(
-        i, TouchTest{p, in.position}, [](Index j) { return j; },
-        [&](Index j) {
-          const Overlap o = sphere_overlap(xyz(p) - xyz(in.position[j]), p.w + in.position[j].w);
-          const Real own = particle_share(j, in.first_shape);
-          sum += own * Elastic::energy(laws.get(in.material[i], in.material[j]), o.overlap);
-          share += own;
-          ++n;
-        });
-    for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
-      const WallPlane& wall = in.planes[in.walls[k]];
-      const Overlap o = wall_overlap(p, wall);
-      if (o.overlap <= 0) continue;
-      sum += Elastic::energy(laws.get(in.material[i], wall.material), o.overlap);
-      share += 1;
-      ++n;
-    }
-    energy[i] = sum;
-    contacts[i] = n;
-    pairs[i] = share;
+    const TouchSums sum =
+        touch_sums<Elastic>(in, laws, i, [&](Index j) { return particle_share(j, in.first_shape); });
+    energy[i] = sum.energy;
+    contacts[i] = sum.contacts;
+    pairs[i] = sum.share;
   }
 };
 

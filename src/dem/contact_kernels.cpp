@@ -50,6 +50,24 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n,
              ContactEnergyItem<Elastic, Laws, PackedRows>{in, laws_, out.energy, out.contacts, out.pairs});
   }
+  void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
+             Real* integrator_loss) const override {
+    for_each(Serial{}, n,
+             ContactBooksItem<Elastic, Laws, PackedRows>{{in, laws_, start}, contact_loss, integrator_loss});
+  }
+  void shape_books(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
+                   ContactBooks* out) const override {
+    for_each(Serial{}, n,
+             ShapeBooksItem<Elastic, Laws, PackedRows>{{with_shapes_alone(in), laws_, start}, out});
+  }
+  void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
+               Leaver* leavers) const override {
+    for_each(Serial{}, n, LeaverEnergyItem<Elastic, Laws, PackedRows>{in, laws_, box, leavers});
+  }
+  void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
+                  const StartViews& start) const override {
+    for_each(Serial{}, n, DepartureItem<Elastic, Laws, PackedRows>{in, laws_, gravity, box, start});
+  }
 
  private:
   Laws laws_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dem/contact_items.hpp"
+#include "dem/leaver_items.hpp"
 #include "dem/shape_items.hpp"
 #include "dem/step_items.hpp"
 #include "dem/wall_items.hpp"
@@ -41,6 +42,17 @@ class ContactKernels {
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
+  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an
+  // accepted implicit step.
+  virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
+                     Real* integrator_loss) const = 0;
+  virtual void shape_books(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
+                           ContactBooks* out) const = 0;
+  // n particles that leave, and what they leave to all others: see the items.
+  virtual void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
+                       Leaver* leavers) const = 0;
+  virtual void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
+                          const StartViews& start) const = 0;
 };
 
 // The walls in the form the items read.

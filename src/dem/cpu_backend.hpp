@@ -70,10 +70,12 @@ class CpuBackend : public Backend {
   bool ends_step() const { return (closed_ + 1) % model_.integrator.substeps == 0; }
   VerletViews verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity);
   StepForces step_forces();
+  StepStart step_start() const;
   CorrectItem correct_item(Real share);
   Real along_correction(const std::vector<Vec3>& residual) const;
   void share_step();
   bool any_outside() const;
+  void take_contacts_out();
   // Parts of build_list, in their order.
   void wrap_positions();
   void migrate();
@@ -119,7 +121,7 @@ class CpuBackend : public Backend {
   std::vector<Vec4> start_position_, start_velocity_;
   std::vector<Vec3> start_acceleration_, start_force_;
   std::vector<Vec3> step_force_, end_force_;
-  std::vector<Real> step_loss_, end_loss_, force_magnitude_, stiffening_;
+  std::vector<Real> force_magnitude_, stiffening_;
   std::vector<Index> matrix_count_;
   std::vector<ContactEntry> matrix_entries_;
   std::vector<Vec3> residual_, right_hand_side_, correction_;

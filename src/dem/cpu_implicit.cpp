@@ -27,7 +27,10 @@ void CpuBackend::initial_forces() {
   for_each(Serial{}, layout_.owned,
            StartAccelerationItem{store_.force.data(), store_.velocity.data(), store_.acceleration.data()});
   find_shape_contacts(views());
-  side_.book_losses(0);
+  if (is_verlet(model_))
+    side_.book_losses(0);
+  else
+    std::fill(store_.loss_power.begin(), store_.loss_power.end(), 0);
 }
 
 void CpuBackend::begin_step(Real h) {
@@ -61,17 +64,19 @@ Real CpuBackend::step_displacement() {
 }
 
 StepForces CpuBackend::step_forces() {
-  return {step_force_.data(), end_force_.data(), step_loss_.data(), end_loss_.data(),
-          force_magnitude_.data()};
+  return {step_force_.data(), end_force_.data(), force_magnitude_.data()};
+}
+
+StepStart CpuBackend::step_start() const {
+  return {start_position_.data(), start_velocity_.data(), h_, model_.integrator.resolve_events};
 }
 
 ParticleNorms CpuBackend::contact_force() {
   const Index n = layout_.owned;
   const NewtonWeights weights{newmark_position_gain(hht_, h_), newmark_velocity_gain(hht_, h_)};
-  const StepStart start{start_position_.data(), start_velocity_.data(), h_, model_.integrator.resolve_events};
   const ContactMatrix matrix{matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()};
-  kernels_->system(views(), model_.gravity, n, weights, start, step_forces(), matrix);
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, start, side_.contacts().data());
+  kernels_->system(views(), model_.gravity, n, weights, step_start(), step_forces(), matrix);
+  kernels_->shapes(views(), layout_.items - layout_.first_shape, step_start(), side_.contacts().data());
   for_each(Serial{}, n,
            ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
                         stiffening_.data()});
@@ -173,10 +178,13 @@ Real CpuBackend::error() {
 }
 
 void CpuBackend::accept() {
+  kernels_->books(views(), layout_.owned, step_start(), store_.contact_loss.data(),
+                  store_.integrator_loss.data());
+  std::vector<ContactBooks> shapes(static_cast<std::size_t>(layout_.items - layout_.first_shape));
+  kernels_->shape_books(views(), layout_.items - layout_.first_shape, step_start(), shapes.data());
+  side_.book_step(shapes);
   for_each(Serial{}, layout_.owned,
-           AcceptItem{step_views(), step_forces(), store_.force.data(), store_.loss_power.data(),
-                      store_.contact_loss.data(), store_.integrator_loss.data()});
-  side_.book_losses(h_);
+           AcceptItem{step_views(), step_forces(), store_.force.data(), store_.integrator_loss.data()});
   in_implicit_step_ = false;
 }
 

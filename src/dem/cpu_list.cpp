@@ -135,8 +135,8 @@ void CpuBackend::measure_balance() {
 void CpuBackend::size_step_arrays() {
   const std::size_t slots = list_.neighbors.size(), owned = static_cast<std::size_t>(layout_.owned);
   matrix_entries_.resize(slots), direction_.resize(layout_.items);
-  step_force_.resize(owned), end_force_.resize(owned), step_loss_.resize(owned), end_loss_.resize(owned);
-  force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
+  step_force_.resize(owned), end_force_.resize(owned), force_magnitude_.resize(owned),
+      stiffening_.resize(owned), matrix_count_.resize(owned);
   residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned),
       matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
 }

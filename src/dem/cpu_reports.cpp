@@ -21,16 +21,29 @@ std::vector<Leaver> CpuBackend::outside() const {
     if (store_.drifting[i] || subdomain_.inside(p)) continue;
     const Real energy = energy_of_motion(store_.position[i], store_.velocity[i], store_.image[i],
                                          model_.gravity, subdomain_.period());
+    const Real shift = verlet_energy_shift(verlet_step(model_), store_.velocity[i].w, store_.acceleration[i]);
     leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy, store_.contact_loss[i],
-                       store_.integrator_loss[i], ranks_.rank()});
+                       store_.integrator_loss[i] - shift, 0, ranks_.rank()});
   }
+  kernels_->leavers(views(), subdomain_.box(), static_cast<Index>(leavers.size()), leavers.data());
   leavers = ranks_.gather_everywhere(std::move(leavers));
   std::sort(leavers.begin(), leavers.end(),
             [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
   return leavers;
 }
 
+// Before the leavers are wrapped and marked.
+void CpuBackend::take_contacts_out() {
+  const bool verlet = is_verlet(model_);
+  kernels_->departures(views(store_.position, verlet ? spare_velocity_ : store_.velocity), model_.gravity,
+                       subdomain_.box(), layout_.owned,
+                       {store_.force.data(), store_.acceleration.data(),
+                        verlet ? store_.loss_power.data() : nullptr, store_.integrator_loss.data(),
+                        store_.drifting.data(), verlet ? hht_coefficients(0) : hht_, verlet_step(model_)});
+}
+
 void CpuBackend::take_out(const std::vector<Leaver>& leavers) {
+  take_contacts_out();
   for (const Leaver& leaver : leavers) {
     if (leaver.rank != ranks_.rank()) continue;
     const auto i = static_cast<std::size_t>(leaver.local_index);

@@ -20,7 +20,7 @@ constexpr double kSortArrays =
 constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);  // counts, walls, positions at the build
 constexpr double kGhostArrays = sizeof(Ghost) + kSortArrays + sizeof(Index);
 constexpr double kStepArrays =
-    5 * sizeof(Vec3) + 4 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
+    5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
 constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
 constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);

@@ -44,9 +44,9 @@ struct ShapeForces {  // of no meaning without contacts
 // What the contacts of one shape item of a body sum to. The energies are those of contacts with other shapes
 // and with walls alone, which one rank sees.
 struct ShapeContact {
-  Real step_loss = 0, end_loss = 0;  // the shape's share [W]
-  Real energy = 0;                   // the shape's share of the contacts' elastic energy [J]
-  Real pairs = 0;                    // the shape's share of the number of contacts
+  Real loss = 0;    // at an instant: the shape's share of the dissipation [W]
+  Real energy = 0;  // the shape's share of the contacts' elastic energy [J]
+  Real pairs = 0;   // the shape's share of the number of contacts
   ShapeForces forces;
 };
 
@@ -56,8 +56,7 @@ enum class ContactSpan { instant, step };
 // Puts a sum where it belongs, but for what has no meaning: the forces of a shape that touches nothing, like
 // most, and at an instant what is a step's. A GPU writes this to the host's memory.
 SCREE_HD void store(ContactSpan span, const ShapeContact& sum, ShapeContact& out) {
-  out.step_loss = sum.step_loss, out.end_loss = sum.end_loss;
-  out.energy = sum.energy, out.pairs = sum.pairs;
+  out.loss = sum.loss, out.energy = sum.energy, out.pairs = sum.pairs;
   out.forces.contacts = sum.forces.contacts;
   if (sum.forces.contacts == 0) return;
   if (span == ContactSpan::step)
@@ -78,26 +77,58 @@ SCREE_HD Real shape_share(Index j, Index first_shape) { return j < first_shape ?
 // Contacts of a shape item over an implicit step.
 template <class Elastic, class Laws, class Rows>
 struct ShapeStepItem {
-  StepContacts<Elastic, Laws, Rows> contacts;
+  StepContacts<Laws, Rows> contacts;
   ShapeContact* out;  // [shape items], indexed from first_shape
 
   SCREE_HD void operator()(Index shape) const {
     const Index i = contacts.in.first_shape + shape;
     ShapeContact sum;
-    const auto add = [&](const StepContact& c, Vec3 normal, Real share) {
-      sum.forces.step.add(c.step.force * normal);
-      sum.forces.end.add(c.end_force * normal);
-      sum.forces.stiffness.add(outer(c.step.stiffness, normal));
-      sum.forces.damping.add(outer(c.step.damping, normal));
-      sum.step_loss += share * c.step.loss;
-      sum.end_loss += share * c.end_loss;
+    const auto of = [&](const KelvinVoigt& law, const ContactPath& c) {
+      return step_contact<Elastic>(law, contacts.start, c);
+    };
+    const auto add = [&](const StepContact& c) {
+      sum.forces.step.add(c.step.force * c.normal);
+      sum.forces.end.add(c.end_force * c.normal);
+      sum.forces.stiffness.add(outer(c.step.stiffness, c.normal));
+      sum.forces.damping.add(outer(c.step.damping, c.normal));
       ++sum.forces.contacts;
     };
-    contacts.neighbors(i, [&](const StepContact& c, Vec3 normal, Index j) {
-      add(c, normal, shape_share(j, contacts.in.first_shape));
-    });
-    contacts.walls(i, [&](const StepContact& c, Vec3 normal) { add(c, normal, 1); });
+    contacts.neighbors(i, of, [&](const StepContact& c, Index) { add(c); });
+    contacts.walls(i, of, add);
     store(ContactSpan::step, sum, out[shape]);
+  }
+};
+
+// Of a row, the entries that are shapes.
+template <class Rows>
+struct ShapesOfRows {
+  Rows rows;
+  Index first_shape;
+
+  template <class Touches, class Evaluate, class Add>
+  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
+                                 const Add& add) const {
+    rows.for_each_contact(
+        i, [&](Index j) { return j >= first_shape && touches(j); }, evaluate, add);
+  }
+};
+
+template <class Rows>
+ContactViews<ShapesOfRows<Rows>> with_shapes_alone(const ContactViews<Rows>& in) {
+  return {in.position,     in.velocity, in.material, {in.rows, in.first_shape},
+          in.wall_offsets, in.walls,    in.planes,   in.first_shape};
+}
+
+// What a shape item's own share of its contacts adds to the energy ledger over an accepted step.
+template <class Elastic, class Laws, class Rows>
+struct ShapeBooksItem {
+  StepContacts<Laws, ShapesOfRows<Rows>> contacts;
+  ContactBooks* out;  // [shape items], indexed from first_shape
+
+  SCREE_HD void operator()(Index shape) const {
+    const Index first_shape = contacts.in.first_shape;
+    out[shape] = books_of<Elastic>(contacts, first_shape + shape,
+                                   [&](Index j) { return shape_share(j, first_shape); });
   }
 };
 
@@ -120,7 +151,7 @@ struct ShapeContactItem {
                     Real share) const {
     const ContactForce c = contact_force<Elastic>(law, o.overlap, rate);
     sum.forces.end.add(c.force * o.normal);
-    sum.end_loss += share * c.loss;
+    sum.loss += share * c.loss;
     sum.energy += share * Elastic::energy(law, o.overlap);
     sum.pairs += share;
     ++sum.forces.contacts;
@@ -143,7 +174,6 @@ struct ShapeContactItem {
       const Overlap o = wall_overlap(p, wall);
       if (o.overlap > 0) add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
     }
-    sum.step_loss = sum.end_loss;
     store(ContactSpan::instant, sum, out[shape]);
   }
 };

@@ -123,11 +123,16 @@ void ShapeSide::take_contacts(ContactSpan span, std::span<const ShapeContact> fo
 }
 
 void ShapeSide::book_losses(Real h) {
-  Real step_power = 0, end_power = 0;
-  for (const ShapeContact& contact : contacts_)
-    step_power += contact.step_loss, end_power += contact.end_loss;
-  losses_.contact_loss += h / 2 * (losses_.loss_power + step_power);
-  losses_.loss_power = end_power;
+  Real power = 0;
+  for (const ShapeContact& contact : contacts_) power += contact.loss;
+  losses_.contact_loss += h / 2 * (losses_.loss_power + power);
+  losses_.loss_power = power;
+}
+
+void ShapeSide::book_step(std::span<const ContactBooks> items) {
+  ContactBooks sum;
+  for (const ContactBooks& item : items) sum.add(item, 1);
+  losses_.contact_loss += sum.dissipated, losses_.integrator_loss += sum.integrator;
 }
 
 Real ShapeSide::elastic_energy() const {

@@ -15,10 +15,11 @@
 
 namespace scree {
 
-// Dissipation in the shapes' own share of their contacts (with other bodies' shapes and with walls).
+// Of the shapes' own share of their contacts (with other bodies' shapes and with walls).
 struct ShapeLosses {
-  Real contact_loss = 0;  // since t = 0 [J]
-  Real loss_power = 0;    // at t_n [W]
+  Real contact_loss = 0;     // dissipated since t = 0 [J]
+  Real loss_power = 0;       // the same at t_n, with velocity-Verlet [W]
+  Real integrator_loss = 0;  // taken out by HHT since t = 0 [J]
 };
 
 // What touches a body or a wall, and what it does to it.
@@ -61,8 +62,10 @@ class ShapeSide {
   void reduce(const ItemLayout& layout, const Ranks& ranks, ContactWrenches& step,
               std::vector<BodyWrench>& end) const;
   void reduce(const ItemLayout& layout, const Ranks& ranks, std::vector<BodyWrench>& end) const;
-  // Books the dissipation of a step of length h from contacts(): trapezoidal, like the particles' losses.
+  // Books the dissipation of an explicit step of length h from contacts(): trapezoidal, like the particles'.
   void book_losses(Real h);
+  // Books an implicit step, from one entry per shape item.
+  void book_step(std::span<const ContactBooks> items);
   ShapeLosses& losses() { return losses_; }
   const ShapeLosses& losses() const { return losses_; }
   // Shapes' share of the contacts' elastic energy [J] and of their number.

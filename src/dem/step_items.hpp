@@ -180,25 +180,21 @@ struct NormItem {
   SCREE_HD Real operator()(Index i) const { return norm(vector[i]); }
 };
 
-// Closes an implicit step: dissipation and the integrator's loss from the step's forces; force, acceleration
-// and dissipation at its end are what the next step starts from.
+// Closes an implicit step: what the integrator takes out of the particle's motion, from the step's forces;
+// force and acceleration at its end are what the next step starts from.
 struct AcceptItem {
   StepViews step;
   StepForces forces;
   Vec3* force;            // [N]
-  Real* loss_power;       // at the step's start, then at its end [W]
-  Real* contact_loss;     // [J]
   Real* integrator_loss;  // [J]
 
   SCREE_HD void operator()(Index i) const {
     const Vec4 v0 = step.start_velocity[i];
     const Vec3 dx = xyz(step.position[i]) - xyz(step.start_position[i]);
-    contact_loss[i] += step.h / 2 * (loss_power[i] + forces.step_loss[i]);
     integrator_loss[i] += ::scree::integrator_loss(v0.w, dx, xyz(v0), xyz(step.velocity[i]),
                                                    step.start_force[i], forces.step_force[i]);
     step.acceleration[i] += hht_event_acceleration(step.hht, v0.w, forces.step_force[i], forces.end_force[i]);
     force[i] = forces.end_force[i];
-    loss_power[i] = forces.end_loss[i];
   }
 };
 

@@ -82,6 +82,8 @@ struct LinearElastic {
   SCREE_HD static Real energy(const KelvinVoigt& law, Real d) {
     return Real(0.5) * law.normal_stiffness * d * d;
   }
+  // The overlap [m] with this force [N].
+  SCREE_HD static Real overlap(const KelvinVoigt& law, Real force) { return force / law.normal_stiffness; }
 };
 
 struct PowerElastic {
@@ -95,6 +97,9 @@ struct PowerElastic {
   }
   SCREE_HD static Real energy(const KelvinVoigt& law, Real d) {
     return law.normal_stiffness / (law.exponent + 1) * std::pow(d, law.exponent + 1);
+  }
+  SCREE_HD static Real overlap(const KelvinVoigt& law, Real force) {
+    return std::pow(force / law.normal_stiffness, 1 / law.exponent);
   }
 };
 
@@ -114,6 +119,13 @@ struct ContactStep {
   Real h;  // [s]
 };
 
+// The force of a contact for a step, and its derivatives with respect to the overlap and its rate at the end.
+struct StepContactForce {
+  Real force;      // F [N]
+  Real stiffness;  // dF/d(overlap1) [N/m]
+  Real damping;    // dF/d(rate1) [N s/m]
+};
+
 // What the trapezoidal rule must find at the end of the step, in place of the force there, for the step's
 // impulse and work to be right although the contact opens or closes within the step:
 //   impulse h (F0 + F) / 2 = force summed over the part of the step that is spent in contact.
@@ -121,67 +133,49 @@ struct ContactStep {
 // exactly the change of the elastic energy: no step size creates energy at impacts. This is the discrete
 // gradient of LaBudde and Greenspan (1974) and of Simo, Tarnow and Wong (1992). F is continuous at d1 = 0,
 // where the force itself jumps by C d_dot: a Newton loop cannot cycle between open and closed. stiffness and
-// damping are dF/d(overlap1) and dF/d(rate1), cut at 0; loss is made for the trapezoidal rule alike.
+// damping are cut at 0.
 
 // d0 <= 0 < d1: in contact over the share d1 / (d1 - d0), at the rate (d1 - d0) / h.
 template <class Elastic>
-SCREE_HD ContactForce touching_force(const KelvinVoigt& law, const ContactStep& c) {
-  const Real travel = c.overlap1 - c.overlap0, rate = travel / c.h, twice_damping = 2 * law.normal_damping;
+SCREE_HD StepContactForce touching_force(const KelvinVoigt& law, const ContactStep& c) {
+  const Real travel = c.overlap1 - c.overlap0, twice_damping = 2 * law.normal_damping;
   const Real elastic = 2 * Elastic::energy(law, c.overlap1) / travel;
   const Real slope = (2 * Elastic::force(law, c.overlap1) - elastic) / travel + twice_damping / c.h;
-  return {elastic + twice_damping * c.overlap1 / c.h, slope, 0, twice_damping * rate * c.overlap1 / c.h};
+  return {elastic + twice_damping * c.overlap1 / c.h, slope, 0};
 }
 
 // d1 <= 0 < d0 with tension: in contact over the share d0 / (d0 - d1).
 template <class Elastic>
-SCREE_HD ContactForce releasing_force(const KelvinVoigt& law, const ContactStep& c,
-                                      const ContactForce& start) {
-  const Real travel = c.overlap0 - c.overlap1, rate = -travel / c.h, twice_damping = 2 * law.normal_damping;
+SCREE_HD StepContactForce releasing_force(const KelvinVoigt& law, const ContactStep& c,
+                                          const ContactForce& start) {
+  const Real travel = c.overlap0 - c.overlap1, twice_damping = 2 * law.normal_damping;
   const Real elastic = 2 * Elastic::energy(law, c.overlap0) / travel;
-  const Real lost = -twice_damping * rate * c.overlap0 / c.h;
-  return {elastic - twice_damping * c.overlap0 / c.h - start.force, elastic / travel, 0, lost - start.loss};
+  return {elastic - twice_damping * c.overlap0 / c.h - start.force, elastic / travel, 0};
 }
 
 // d0 > 0 without tension, the law's force F1 at the end negative (end_force, beyond release along the slope
-// at the start): the force falls to zero in a straight line over the share F0 / (F0 - F1). What elastic
-// energy is left then is lost.
-template <class Elastic>
-SCREE_HD ContactForce fading_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start,
-                                   Real end_force) {
-  const Real share = end_force < 0 ? start.force / (start.force - end_force) : 1,
-             impulse = share * start.force / 2;
-  const Real energy1 = c.overlap1 > 0 ? Elastic::energy(law, c.overlap1) : 0;
-  const Real lost = Elastic::energy(law, c.overlap0) - energy1 - impulse * (c.overlap0 - c.overlap1);
-  return {2 * impulse - start.force, share * share * start.stiffness, share * share * start.damping,
-          2 * lost / c.h - start.loss};
-}
-
-// d0, d1 > 0, the force F1 at the end not cut. The loss makes the trapezoidal rule give the work of the
-// damping force, (C d_dot0 + C d_dot1) / 2 (d1 - d0).
-SCREE_HD ContactForce lasting_force(const KelvinVoigt& law, const ContactStep& c, const ContactForce& start,
-                                    ContactForce end) {
-  if (start.force != 0)
-    end.loss = law.normal_damping * (c.rate0 + c.rate1) * (c.overlap1 - c.overlap0) / c.h - start.loss;
-  return end;
+// at the start): the force falls to zero in a straight line over the share F0 / (F0 - F1).
+SCREE_HD StepContactForce fading_force(const ContactForce& start, Real end_force) {
+  const Real share = end_force < 0 ? start.force / (start.force - end_force) : 1;
+  return {share * start.force - start.force, share * share * start.stiffness, share * share * start.damping};
 }
 
 // The contact over a step that may open or close within it.
 template <class Elastic>
-SCREE_HD ContactForce step_contact_force(const KelvinVoigt& law, const ContactStep& c) {
-  if (c.overlap0 <= 0) return c.overlap1 > 0 ? touching_force<Elastic>(law, c) : ContactForce{0, 0, 0, 0};
+SCREE_HD StepContactForce step_contact_force(const KelvinVoigt& law, const ContactStep& c) {
+  if (c.overlap0 <= 0) return c.overlap1 > 0 ? touching_force<Elastic>(law, c) : StepContactForce{0, 0, 0};
   const ContactForce start = contact_force<Elastic>(law, c.overlap0, c.rate0);
   if (c.overlap1 > 0) {
     const ContactForce end = contact_force<Elastic>(law, c.overlap1, c.rate1);
-    if (end.force > 0 || law.tension) return lasting_force(law, c, start, end);
+    if (end.force > 0 || law.tension) return {end.force, end.stiffness, end.damping};
   }
   if (law.tension) return releasing_force<Elastic>(law, c, start);
   const Real stiffness =
       c.overlap1 > 0 ? Elastic::stiffness(law, c.overlap1) : Elastic::stiffness(law, c.overlap0);
   const Real elastic = c.overlap1 > 0 ? Elastic::force(law, c.overlap1) : stiffness * c.overlap1;
   const Real end_force = elastic + law.normal_damping * c.rate1;
-  if (end_force > 0)
-    return {end_force, stiffness, law.normal_damping, law.normal_damping * c.rate1 * c.rate1};
-  return fading_force<Elastic>(law, c, start, end_force);
+  if (end_force > 0) return {end_force, stiffness, law.normal_damping};
+  return fading_force(start, end_force);
 }
 
 }  // namespace scree

@@ -40,9 +40,13 @@ void energy_columns(Columns& out) {
   add("dissipated_contacts", "dissipated in contacts since t = 0");
   add("dissipated_integrator", "taken out by the time integration since t = 0");
   add("driver_work", "work of drivers, actuators and applied forces since t = 0");
-  add("carried_out", "kinetic and gravitational energy of removed particles when they left");
+  add("carried_out",
+      "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended as a "
+      "particle left");
   add("total", "kinetic, gravitational and elastic energy");
-  add("balance_error", "total + dissipated + carried out - driver work, less its value at t = 0");
+  add("balance_error",
+      "total + dissipated + carried out - driver work, less its value at t = 0; with velocity-Verlet what "
+      "its steps did to contacts");
   add("exchanged", "energy that changed its place since t = 0, from row to row");
 }
 
@@ -157,9 +161,7 @@ void Recorder::history(State& state, Real h) {
 }
 
 void Recorder::energy_row(State& state, std::vector<Real>& row) {
-  const bool verlet = model_.integrator.particles == ParticleIntegrator::velocity_verlet;
-  const ParticleLedger particles =
-      backend_.ledger(verlet ? model_.time.step / model_.integrator.substeps : 0);
+  const ParticleLedger particles = backend_.ledger(verlet_step(model_));
   const Ledger ledger =
       make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   BalanceState& balance = state.balance;

@@ -15,6 +15,7 @@
 #include "output/run_record.hpp"
 #include "partition/id_order.hpp"
 #include "partition/shared_model.hpp"
+#include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
 #include "run/step_loop.hpp"
 
@@ -334,8 +335,8 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   recorder_->finish();
   list_entries_ = ranks_.sum(backend_->list_entries());
   migrated_ = ranks_.sum(backend_->balance().migrated);
+  summarize();  // what it warns of goes into the record
   ranks_.on_root([&] { write_record(status, code); });
-  summarize();
   return code;
 }
 
@@ -373,11 +374,10 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"history_rows", state_.history_rows},
                    {"snapshots", recorder_ ? recorder_->snapshots_written() : state_.snapshots}};
   const BalanceState& b = state_.balance;
-  record.measures = {{"simulated_time", state_.clock.time},
-                     {"balance_error", b.last.accounted() - b.start},
-                     {"energy_exchanged", b.exchanged},
-                     {"imbalance", balance.imbalance},
-                     {"largest_imbalance", balance.largest}};
+  record.measures = {
+      {"simulated_time", state_.clock.time}, {"balance_error", balance_error(b)},
+      {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", b.last.dissipated_integrator},
+      {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest}};
   record.warnings = log_.warnings();
   write_run_record(options_.output_directory, record);
 }
@@ -391,12 +391,13 @@ void Simulation::summarize() const {
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
       n.linear_iterations, backend_->list_builds()));
   const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
-  log_.info(fmt::format(
-      "energy balance error {:.2e} J of {:.4g} J exchanged; {} left the space{}",
-      b.last.accounted() - b.start, b.exchanged, counted(state_.carried_out.left, "particle", "particles"),
-      outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
+  log_.info(
+      fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} left the space{}",
+                  balance_error(b), b.exchanged, counted(state_.carried_out.left, "particle", "particles"),
+                  outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
   log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,
                         options_.output_directory));
+  if (const std::string warning = balance_warning(b, model_); !warning.empty()) log_.warning(warning);
 }
 
 }  // namespace

@@ -147,6 +147,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("bodies/driver_work", state.bodies.driver_work);
   visit("shapes/contact_loss", state.shapes.contact_loss);
   visit("shapes/loss_power", state.shapes.loss_power);
+  visit("shapes/integrator_loss", state.shapes.integrator_loss);
   visit("carried_out/left", state.carried_out.left);
   visit("carried_out/removed", state.carried_out.removed);
   visit("carried_out/energy", state.carried_out.energy);

@@ -70,6 +70,36 @@ history_csv = true
 history_bodies = ["pad"]
 history_particles = [0, 5]
 """
+# Discs that collide with each other and with the sides of a box.
+GAS = """
+[space]
+dimension = 2
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+x_min = "wall"
+x_max = "wall"
+y_min = "wall"
+y_max = "wall"
+
+[time]
+end = 0.5
+step = 1e-4
+control = "fixed"
+
+[[contact.pairs]]
+stiffness = 1e6
+
+[[particles]]
+name = "gas"
+kind = "random"
+count = 100
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+radius = 0.02
+mass = 1.0
+random_velocity = 1.0
+seed = 3
+"""
 SANITIZED = "-fsanitize" in subprocess.run([SCREE, "--version"], env=ENVIRONMENT, capture_output=True, text=True).stdout
 EXPLICIT = ["--set", "integrator.particles=velocity-verlet", "--set", "integrator.substeps=10"]
 
@@ -226,6 +256,29 @@ class DeckErrorTest(CommandLineTest):
 
 class RunTest(CommandLineTest):
     SHORT = ("--set", "time.end=0.02")
+
+    def test_a_run_says_at_its_end_what_its_steps_did_to_the_energy(self):
+        deck = self.write("gas.toml", GAS)
+        explicit = "integrator.particles=velocity-verlet"
+        for name, settings, advice in (("fine", [], None),
+                                       ("coarse", ["time.step=4e-3"], "time.control = \"adaptive\""),
+                                       ("explicit", ["time.step=5e-4", "contact.pairs.0.damping=100.0", explicit], "integrator.substeps")):
+            with self.subTest(name):
+                words = [word for setting in settings for word in ("--set", setting)]
+                result = self.expect(DONE, "run", deck, "--output", self.folder / name, *words)
+                record = json.loads((self.folder / name / "run_record.json").read_text())
+                measures = record["measures"]
+                changed = max(abs(measures["balance_error"]), abs(measures["energy_taken_by_integrator"]))
+                if advice is None:
+                    self.assertLess(changed, 0.01 * measures["energy_exchanged"])
+                    self.assertNotIn("the time integration has changed", result.stderr)
+                    self.assertEqual(record["warnings"], [])
+                else:
+                    self.assertGreater(changed, 0.01 * measures["energy_exchanged"])
+                    last = result.stderr.splitlines()[-1].removeprefix("warning: ")
+                    self.assertRegex(last, r"the time integration has changed the energy by [0-9.]+ J, [0-9.]+ % of the ")
+                    self.assertIn(advice, last)
+                    self.assertEqual(record["warnings"][-1], last)
 
     def test_a_run_writes_its_files_and_one_that_may_replaces_them(self):
         for _ in range(2):

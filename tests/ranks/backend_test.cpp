@@ -197,6 +197,49 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
     }
 }
 
+TEST_CASE("what leaves while it touches others, and what it leaves, has the bits of one rank") {
+  petsc();
+  const Ranks world = Ranks::world();
+  for (const BoxCase& c : kBoxes)
+    for (const ParticleIntegrator integrator : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet})
+      for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+        if (c.periodic_axes == c.dimension) continue;
+        CAPTURE(c.name, static_cast<int>(integrator), static_cast<int>(leaving));
+        Model model = random_box(c, kParticles, 21);
+        model.integrator.particles = integrator;
+        model.space.leaving = leaving;
+        for (std::size_t id = 0; id < 15; ++id) {  // over a side that is open in all these cases
+          model.particles.position[9 * id].y = model.space.max.y - 1e-6;
+          model.particles.velocity[9 * id] = {0, 10, 0};
+        }
+        RankedBox many(model, world), one(model, Ranks());
+        std::vector<Leaver> leavers[2];
+        for (const bool alone : {false, true}) {
+          RankedBox& box = alone ? one : many;
+          step(box, 2e-4);
+          leavers[alone] = box.backend->outside();
+          box.backend->take_out(leavers[alone]);
+          box.backend->build_list(kSkin, box.timers);
+          step(box, 2e-4);
+        }
+        REQUIRE(leavers[0].size() == leavers[1].size());
+        CHECK(leavers[0].size() >= 15);
+        bool same_energies = true;
+        Real elastic = 0;
+        for (std::size_t k = 0; k < leavers[0].size(); ++k) {
+          const Leaver &a = leavers[0][k], &b = leavers[1][k];
+          same_energies = same_energies && a.energy == b.energy && a.elastic == b.elastic &&
+                          a.contact_loss == b.contact_loss && a.integrator_loss == b.integrator_loss;
+          elastic += a.elastic;
+        }
+        CHECK((same_energies && elastic > 0));
+        CHECK(same(one.records(), many.records()));
+        const ShapeLosses p = one.backend->shape_losses(), q = many.backend->shape_losses();
+        if (world.is_root())
+          CHECK((p.contact_loss == q.contact_loss && p.integrator_loss == q.integrator_loss));
+      }
+}
+
 // So many that each rank has particles far from its sides, whose forces a GPU computes while the ghosts come;
 // and lists that expire amid steps that have been asked for together.
 TEST_CASE("many explicit steps of many particles have the bits of one rank") {

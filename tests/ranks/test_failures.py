@@ -56,7 +56,7 @@ class FailureTest(RanksTest):
         def ids(*both):  # with no image counts, and not drifting
             return b"".join(struct.pack("<5q", one, 0, 0, 0, 0) for one in both)
         speed = struct.pack("<d", VELOCITY)
-        format_name = b"scree checkpoint 2"
+        format_name = b"scree checkpoint 3"
         damages = {
             "ids must increase": (ids(0, 1), ids(0, 0)), "comes after particle 1": (ids(0, 1), ids(1, 0)),
             "particle id -1": (ids(0, 1), ids(-1, 1)), "particle id 2": (ids(0, 1), ids(0, 2)),
@@ -74,7 +74,7 @@ class FailureTest(RanksTest):
                     result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
                     self.assert_one_message(result, "damaged.h5: not a valid checkpoint: ", words)
         self.assertEqual(content.count(format_name), 1)
-        for number, words in ((b"1", "of an older version"), (b"3", "of a newer version")):
+        for number, words in ((b"1", "of an older version"), (b"4", "of a newer version")):
             with self.subTest(words=words):
                 damaged.write_bytes(content.replace(format_name, format_name[:-1] + number))
                 result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)

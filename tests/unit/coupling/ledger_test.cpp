@@ -9,21 +9,21 @@ namespace scree {
 
 namespace {
 
-const std::vector<Leaver> kLeavers = {{3, 0, {1, 2, 0}, false, 10, 0.5, 0.25},
-                                      {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125}};
+const std::vector<Leaver> kLeavers = {{3, 0, {1, 2, 0}, false, 10, 0.5, 0.25, 2},
+                                      {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125, 0}};
 
 }  // namespace
 
-TEST_CASE("removed particles take their energies along, drifting ones keep them") {
+TEST_CASE("removed particles take their energies along, drifting ones that of their contacts") {
   CarriedOut removed, drifting;
   for (int twice = 0; twice < 2; ++twice) {
     book_leavers(kLeavers, Leaving::remove, removed);
     book_leavers(kLeavers, Leaving::drift, drifting);
   }
   CHECK((removed.left == 4 && removed.removed == 4));
-  CHECK((removed.energy == 12 && removed.contact_loss == 1.5 && removed.integrator_loss == 0.25));
+  CHECK((removed.energy == 16 && removed.contact_loss == 1.5 && removed.integrator_loss == 0.25));
   CHECK((drifting.left == 4 && drifting.removed == 0));
-  CHECK((drifting.energy == 0 && drifting.contact_loss == 0 && drifting.integrator_loss == 0));
+  CHECK((drifting.energy == 4 && drifting.contact_loss == 0 && drifting.integrator_loss == 0));
 }
 
 TEST_CASE("removing a particle leaves the balance as it was") {
@@ -36,10 +36,10 @@ TEST_CASE("removing a particle leaves the balance as it was") {
   CarriedOut carried;
   book_leavers(kLeavers, Leaving::remove, carried);
   ParticleLedger after = before;
-  after.kinetic -= carried.energy, after.contact_loss -= carried.contact_loss;
+  after.kinetic -= 6, after.contact_elastic -= 2, after.contact_loss -= carried.contact_loss;
   after.integrator_loss -= carried.integrator_loss;
   const Ledger without = make_ledger(after, carried, nullptr, {}, 0);
-  CHECK(without.carried_out == 6);
+  CHECK(without.carried_out == 8);
   CHECK(without.accounted() == with.accounted());
 }
 

@@ -1,0 +1,104 @@
+// What happens when particles leave the space: what they take along, and what they leave behind. One text for
+// the CPU and CUDA.
+#pragma once
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/contact_items.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+// A particle outside the space.
+struct Leaver {
+  GlobalId global_id;
+  Index local_index;                   // on its rank
+  Vec3 position;                       // [m]
+  bool lost;                           // beyond a side that is a wall, which no particle can leave through
+  Real energy;                         // kinetic and gravitational [J]
+  Real contact_loss, integrator_loss;  // booked on it so far [J]
+  Real elastic = 0;                    // of its contacts, which end with it [J]
+  int rank = 0;                        // that owns it
+};
+
+// Which items leave, where all particles in the rows are in the search: those outside. The ranks agree,
+// because ghosts are where their particles are.
+template <class Rows>
+struct Leaves {
+  const ContactViews<Rows>& in;
+  const OpenBox& box;
+  SCREE_HD bool operator()(Index j) const { return j < in.first_shape && !box.inside(xyz(in.position[j])); }
+};
+
+// The elastic energy of the contacts that end with a leaver: all of it, but half with one that leaves as
+// well.
+template <class Elastic, class Laws, class Rows>
+struct LeaverEnergyItem {
+  ContactViews<Rows> in;
+  Laws laws;
+  OpenBox box;
+  Leaver* leavers;
+
+  SCREE_HD void operator()(Index k) const {
+    const Leaves<Rows> leaves{in, box};
+    const auto share = [&](Index j) { return leaves(j) ? Real(0.5) : Real(1); };
+    leavers[k].elastic = touch_sums<Elastic>(in, laws, leavers[k].local_index, share).energy;
+  }
+};
+
+// What the next step starts from.
+struct StartViews {
+  Vec3 *force, *acceleration;  // [N], [m/s^2]
+  Real* loss_power;            // [W]; null for HHT
+  Real* integrator_loss;       // [J]
+  const std::uint8_t* drifting;
+  HhtCoefficients hht;  // hht_alpha = 0 for velocity-Verlet
+  Real verlet_step;     // of velocity-Verlet [s]
+};
+
+// Takes the contacts that end out of what the next step starts from: out of the start of a particle that
+// stays those with particles that leave, out of one that leaves all. Else the step would do half a step's
+// work with a force that has no elastic energy any more. in: as the forces were computed, with the velocities
+// that the law saw.
+template <class Elastic, class Laws, class Rows>
+struct DepartureItem {
+  ContactViews<Rows> in;
+  Laws laws;
+  Vec3 gravity;
+  OpenBox box;
+  StartViews start;
+
+  SCREE_HD void operator()(Index i) const {
+    if (start.drifting[i]) return;
+    const Leaves<Rows> leaves{in, box};
+    const Vec4 p = in.position[i], u = in.velocity[i];
+    if (leaves(i)) {
+      begin_from(i, u.w, u.w * gravity);
+      if (start.loss_power != nullptr) start.loss_power[i] = 0;
+      return;
+    }
+    PairForce ended{};
+    Index contacts = 0;
+    in.rows.for_each_contact(
+        i, [&](Index j) { return touch(p, in.position[j]) && leaves(j); },
+        [&](Index j) { return pair_force<Elastic>(in, laws, p, u, in.material[i], j); },
+        [&](const PairForce& c) { ended.force += c.force, ended.loss += c.loss, ++contacts; });
+    if (contacts == 0) return;
+    begin_from(i, u.w, start.force[i] - ended.force);
+    if (start.loss_power != nullptr) start.loss_power[i] -= Real(0.5) * ended.loss;
+  }
+
+  SCREE_HD void begin_from(Index i, Real mass, Vec3 force) const {
+    const Vec3 a0 = start.acceleration[i];
+    const Vec3 a1 = a0 + hht_event_acceleration(start.hht, mass, start.force[i], force);
+    start.force[i] = force, start.acceleration[i] = a1;
+    if (start.loss_power == nullptr) return;
+    // The energy of the motion is counted with this function of the acceleration: it has not changed.
+    start.integrator_loss[i] +=
+        verlet_energy_shift(start.verlet_step, mass, a1) - verlet_energy_shift(start.verlet_step, mass, a0);
+  }
+};
+
+}  // namespace scree

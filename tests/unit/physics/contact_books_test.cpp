@@ -1,0 +1,137 @@
+// What a contact over a step adds to the energy ledger: the law's dissipation against the law integrated in
+// fine parts, and what is left for the integrator.
+#include "physics/contact_books.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kStep = 1e-3, kReach = 2e-4;  // [s], [m]
+
+struct BookedLaw {
+  const char* name;
+  KelvinVoigt law;
+  Real (*dissipation)(const KelvinVoigt&, const ContactStep&);
+  ContactBooks (*books)(const KelvinVoigt&, const ContactStep&, Real);
+  StepContactForce (*over_step)(const KelvinVoigt&, const ContactStep&);
+  ContactForce (*at_instant)(const KelvinVoigt&, Real, Real);
+  Real (*energy)(const KelvinVoigt&, Real);
+};
+
+template <class Elastic>
+BookedLaw booked(const char* name, Real stiffness, Real damping, Real exponent, bool tension) {
+  return {name,
+          {stiffness, damping, exponent, tension},
+          step_dissipation<Elastic>,
+          contact_books<Elastic>,
+          step_contact_force<Elastic>,
+          contact_force<Elastic>,
+          Elastic::energy};
+}
+
+const BookedLaw kLaws[] = {booked<LinearElastic>("linear, cut", 1e6, 400, 1, false),
+                           booked<LinearElastic>("linear, tension", 1e6, 400, 1, true),
+                           booked<PowerElastic>("n = 1.5, cut", 1e8, 400, 1.5, false),
+                           booked<PowerElastic>("n = 1.5, tension", 1e8, 400, 1.5, true),
+                           booked<LinearElastic>("linear, cut, undamped", 1e6, 0, 1, false),
+                           booked<PowerElastic>("n = 1.5, cut, undamped", 1e8, 0, 1.5, false),
+                           booked<PowerElastic>("n = 1.5, tension, undamped", 1e8, 0, 1.5, true)};
+
+constexpr Real kOverlaps[] = {-kReach, -0.01 * kReach, 0, 0.3 * kReach, kReach};
+
+// Calls visit(step) for steps between all overlaps, with rates of either sign.
+template <class Visit>
+void for_each_step(const Visit& visit) {
+  for (const Real overlap0 : kOverlaps)
+    for (const Real overlap1 : kOverlaps)
+      for (const Real rate0 : {-0.5, -0.05, 0.0, 0.3})
+        for (const Real rate1 : {-0.4, 0.0, 0.2}) visit(ContactStep{overlap0, rate0, overlap1, rate1, kStep});
+}
+
+// Work of the law's own loss along a path with a given rate at each moment; the middle of small parts.
+template <class Overlap, class Rate>
+Real integrated(const BookedLaw& law, const Overlap& overlap, const Rate& rate) {
+  constexpr int kParts = 200000;
+  Real sum = 0;
+  for (int k = 0; k < kParts; ++k) {
+    const Real t = (k + 0.5) / kParts, d = overlap(t);
+    if (d > 0) sum += law.at_instant(law.law, d, rate(t)).loss * kStep / kParts;
+  }
+  return sum;
+}
+
+bool holds(const BookedLaw& law, Real overlap, Real rate) {
+  return overlap > 0 && (law.law.tension || law.at_instant(law.law, overlap, rate).force > 0);
+}
+
+}  // namespace
+
+TEST_CASE("what a contact dissipates over a step is the law's loss along its way") {
+  for (const BookedLaw& law : kLaws) {
+    const Real tolerance = 1e-4 * law.energy(law.law, kReach);
+    for_each_step([&](const ContactStep& c) {
+      CAPTURE(law.name, c.overlap0, c.overlap1, c.rate0, c.rate1);
+      const Real dissipated = law.dissipation(law.law, c);
+      if (holds(law, c.overlap0, c.rate0) && holds(law, c.overlap1, c.rate1)) {
+        // In contact all the while, at a rate that changes evenly: the damper alone.
+        const Real mean_square = (c.rate0 * c.rate0 + c.rate0 * c.rate1 + c.rate1 * c.rate1) / 3;
+        CHECK(dissipated == Approx(law.law.normal_damping * mean_square * c.h));
+        return;
+      }
+      const Real travel = c.overlap1 - c.overlap0;
+      CHECK(dissipated == Approx(integrated(
+                                     law, [&](Real t) { return c.overlap0 + t * travel; },
+                                     [&](Real) { return travel / c.h; }))
+                              .margin(tolerance));
+    });
+  }
+}
+
+TEST_CASE("a contact never gives energy by its damper, and without one dissipates exactly nothing") {
+  for (const BookedLaw& law : kLaws)
+    for_each_step([&](const ContactStep& c) {
+      CAPTURE(law.name, c.overlap0, c.overlap1, c.rate0, c.rate1);
+      const Real dissipated = law.dissipation(law.law, c);
+      CHECK((law.law.normal_damping > 0 ? dissipated >= 0 : dissipated == 0));
+    });
+}
+
+TEST_CASE("work, elastic energy, dissipation and the integrator's part add up") {
+  for (const BookedLaw& law : kLaws)
+    for_each_step([&](const ContactStep& c) {
+      const auto stored = [&](Real d) { return d > 0 ? law.energy(law.law, d) : 0; };
+      const Real work = 0.37;
+      const ContactBooks books = law.books(law.law, c, work);
+      CHECK(work + stored(c.overlap1) - stored(c.overlap0) + books.dissipated + books.integrator ==
+            Approx(0).margin(1e-14));
+    });
+}
+
+// The linear law without damping, on the straight way of an impact: step_contact_force is made for that.
+TEST_CASE("the integrator does nothing to an undamped linear contact that opens or closes") {
+  for (const BookedLaw& law : kLaws) {
+    if (law.law.exponent != 1 || law.law.normal_damping > 0) continue;
+    for_each_step([&](const ContactStep& c) {
+      if (c.overlap0 > 0 && c.overlap1 > 0 && law.over_step(law.law, c).force == 0) return;
+      const Real start = c.overlap0 > 0 ? law.at_instant(law.law, c.overlap0, c.rate0).force : 0;
+      const Real work = -(start + law.over_step(law.law, c).force) / 2 * (c.overlap1 - c.overlap0);
+      CAPTURE(c.overlap0, c.overlap1);
+      CHECK(std::abs(law.books(law.law, c, work).integrator) < 1e-12 * law.energy(law.law, kReach));
+    });
+  }
+}
+
+TEST_CASE("a pair of materials without stiffness and damping has nothing in the books") {
+  for (const bool tension : {false, true})
+    for_each_step([&](const ContactStep& c) {
+      const ContactBooks books = contact_books<LinearElastic>({0, 0, 1, tension}, c, 0);
+      CHECK((books.dissipated == 0 && books.integrator == 0));
+    });
+}
+
+}  // namespace scree

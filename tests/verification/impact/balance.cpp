@@ -1,0 +1,272 @@
+// The energy ledger: what steps of any length do to contacts, and what leaves with a particle that touches
+// others, has its entry; nothing is left over.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <string>
+
+#include "support/catch.hpp"
+#include "support/impacts.hpp"
+#include "support/simulation_run.hpp"
+
+using namespace scree;
+
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+constexpr Real kRoundOff = 1e-12;  // of the energy exchanged
+
+std::string contact_deck(const std::string& space, const std::string& time, const std::string& particles) {
+  return "[space]\ndimension = 2\n" + space + "[time]\ncontrol = \"fixed\"\n" + time +
+         "[contact]\nmax_start_overlap = 0.2\n[[contact.pairs]]\nstiffness = 1e6\ndamping = 0.0\n" +
+         particles;
+}
+
+std::string disc(const std::string& name, const std::string& position, const std::string& velocity) {
+  return fmt::format("[[particles]]\nname = \"{}\"\nkind = \"list\"\npositions = [{}]\nvelocity = {}\n", name,
+                     position, velocity) +
+         "radius = 0.05\nmass = 1.0\n";
+}
+
+// Three discs in a row, pressed together. They fly apart, and the last crosses the side while it touches the
+// second.
+const std::string kCrossing =
+    contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\n", "end = 8e-4\nstep = 2e-5\n",
+                 disc("first", "[0.809, 0.0]", "[0.0, 0.0]") + disc("second", "[0.904, 0.0]", "[0.0, 0.0]") +
+                     disc("third", "[0.999, 0.0]", "[0.0, 0.0]"));
+
+// An oblique impact in some ten steps.
+const std::string kOblique = contact_deck(
+    "min = [-1.0, -1.0]\nmax = [1.0, 1.0]\n", "end = 6e-3\nstep = 3e-4\n",
+    disc("left", "[-0.0507, 0.02]", "[3.0, 0.4]") + disc("right", "[0.0501, -0.03]", "[-2.0, -0.7]"));
+
+// Discs in a box at a third of the time that an impact takes.
+const std::string kGas = contact_deck(
+    "min = [0.0, 0.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = "
+    "\"wall\"\n",
+    "end = 0.6\nstep = 3e-3\n", R"(
+[[particles]]
+name = "gas"
+kind = "random"
+count = 80
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+radius = 0.03
+mass = 1.0
+random_velocity = 1.0
+seed = 3
+)");
+
+// Discs between two slopes, which fall out through the gap while they press against each other.
+const std::string kHopper = R"(
+gravity = [0.0, -9.8066]
+[integrator]
+max_iterations = 60
+[[walls]]
+name = "left"
+point = [0.38, 0.0]
+normal = [0.8, 0.6]
+[[walls]]
+name = "right"
+point = [0.62, 0.0]
+normal = [-0.8, 0.6]
+)" + contact_deck("min = [0.0, 0.0]\nmax = [1.0, 1.2]\n", "end = 0.7\nstep = 5e-4\n", R"(
+[[particles]]
+name = "grains"
+kind = "random"
+count = 60
+min = [0.25, 0.18]
+max = [0.75, 1.1]
+radius = 0.03
+mass = 1.0
+random_velocity = 0.1
+seed = 7
+[output]
+history_interval = 0.01
+)");
+
+struct Outcome {
+  Ledger end;
+  Real balance = 0, exchanged = 0, largest_balance = 0;
+  bool loses = true;  // dissipation never goes back
+  std::int64_t left = 0;
+
+  Real largest_share() const { return largest_balance / exchanged; }
+};
+
+Outcome outcome_of(const std::string& deck, const Overrides& overrides) {
+  SimulationRun run(model_of(deck, overrides));
+  Outcome out;
+  Real lost = 0;
+  run.run([&] {
+    const Real now = run.ledger().dissipated_contacts;
+    out.loses = out.loses && now >= lost;
+    lost = now;
+    out.largest_balance = std::max(out.largest_balance, std::abs(run.balance_error()));
+  });
+  out.end = run.ledger(), out.balance = run.balance_error(), out.exchanged = run.exchanged();
+  out.left = run.complete_state().carried_out.left;
+  return out;
+}
+
+Overrides with(Overrides a, const Overrides& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+const std::vector<Overrides> kImplicitWays = {
+    {"integrator.hht_alpha=0.0"},
+    {"integrator.hht_alpha=-0.3"},
+    {"integrator.contact_events=end-of-step"},
+    {"contact.pairs.0.damping=50.0"},
+    {"contact.pairs.0.damping=50.0", "contact.pairs.0.tension=true"},
+    {"contact.pairs.0.exponent=1.5", "contact.pairs.0.stiffness=1e7"}};
+
+std::string text(const Overrides& overrides) {
+  std::string all;
+  for (const std::string& one : overrides) all += one + " ";
+  return all;
+}
+
+// Prints the largest of what a test has found.
+class Largest {
+ public:
+  explicit Largest(const char* what) : what_(what) {}
+  ~Largest() {
+    std::cout << fmt::format("{}: largest balance error {:.1e} of what was exchanged\n", what_, share_);
+  }
+  Real of(const Outcome& run) {
+    share_ = std::max(share_, run.largest_share());
+    return run.largest_share();
+  }
+
+ private:
+  const char* what_;
+  Real share_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a particle that leaves while it touches another takes the contact's energy along") {
+  Largest largest("a particle leaves a contact");
+  for (const std::string policy : {"remove", "drift"}) {
+    std::vector<Overrides> ways = kImplicitWays;
+    ways.push_back({"integrator.particles=velocity-verlet"});
+    for (const Overrides& way : ways) {
+      CAPTURE(policy, text(way));
+      const Outcome run = outcome_of(kCrossing, with(way, {"space.leaving=" + policy}));
+      CHECK(run.left == 1);
+      CHECK(largest.of(run) < kRoundOff);
+      // The contact holds a good part of the energy that there is.
+      CHECK(run.end.carried_out > 0.1 * run.exchanged);
+    }
+  }
+}
+
+TEST_CASE("two particles that leave together take their contact along once, and that with a wall as well") {
+  Largest largest("two leave together");
+  const std::string deck = contact_deck(
+      "min = [-1.0, -1.0]\nmax = [1.0, 1.0]\ny_min = \"wall\"\n", "end = 4e-4\nstep = 2e-5\n",
+      disc("low", "[0.9999, -0.955]", "[2.0, 0.0]") + disc("high", "[0.9999, -0.86]", "[2.0, 0.0]"));
+  for (const std::string policy : {"remove", "drift"})
+    for (const std::string particles : {"hht", "velocity-verlet"}) {
+      CAPTURE(policy, particles);
+      const Outcome run = outcome_of(deck, {"space.leaving=" + policy, "integrator.particles=" + particles});
+      CHECK(run.left == 2);
+      CHECK(largest.of(run) < kRoundOff);
+    }
+}
+
+TEST_CASE("what leaves a hopper leaves the books balanced") {
+  Largest largest("hopper, implicit"), explicit_largest("hopper, explicit");
+  for (const std::string policy : {"remove", "drift"}) {
+    const Outcome hht = outcome_of(kHopper, {"space.leaving=" + policy, "contact.pairs.0.damping=20.0"});
+    CAPTURE(policy, hht.balance, hht.exchanged);
+    CHECK(hht.left > 10);
+    CHECK((hht.loses && hht.end.dissipated_contacts > 0));
+    CHECK(largest.of(hht) < kRoundOff);
+    const Outcome verlet =
+        outcome_of(kHopper, {"space.leaving=" + policy, "integrator.particles=velocity-verlet",
+                             "time.step=5e-5", "contact.pairs.0.damping=20.0"});
+    CAPTURE(verlet.balance, verlet.exchanged);
+    CHECK(verlet.left > 10);
+    CHECK(explicit_largest.of(verlet) < 1e-3);  // what the steps do to impacts
+  }
+}
+
+TEST_CASE("what implicit steps do to oblique impacts is the integrator's") {
+  Largest largest("oblique impacts, implicit");
+  for (const Overrides& way : kImplicitWays)
+    for (const std::string step : {"3e-4", "1e-3"}) {
+      CAPTURE(text(way), step);
+      const Outcome run = outcome_of(kOblique, with(way, {"time.step=" + step}));
+      CHECK(run.exchanged > 1);
+      CHECK(largest.of(run) < kRoundOff);
+      const bool damped = way.front().find("damping") != std::string::npos;
+      CHECK((damped ? run.loses && run.end.dissipated_contacts > 0 : run.end.dissipated_contacts == 0));
+    }
+}
+
+TEST_CASE("what implicit steps do to a gas of another exponent is the integrator's") {
+  Largest largest("gas, n = 1.5, implicit");
+  for (const std::string tension : {"false", "true"}) {
+    const Outcome run = outcome_of(kGas, {"contact.pairs.0.exponent=1.5", "contact.pairs.0.stiffness=1e7",
+                                          "contact.pairs.0.tension=" + tension, "integrator.hht_alpha=0.0"});
+    std::cout << fmt::format("gas, n = 1.5, tension {}: the steps took {:.3g} J of {:.4g} J exchanged\n",
+                             tension, run.end.dissipated_integrator, run.exchanged);
+    CAPTURE(tension, run.end.dissipated_integrator, run.exchanged);
+    CHECK(run.end.dissipated_contacts == 0);
+    CHECK(std::abs(run.end.dissipated_integrator) > 0.01 * run.exchanged);
+    CHECK(largest.of(run) < kRoundOff);
+  }
+}
+
+// Explicit steps: the energy of the motion changes by the trapezoidal work of the forces, but for a function
+// of state that has its entry. What that work misses of a contact's elastic energy is the balance error, and
+// all of it.
+TEST_CASE("the balance error of explicit steps is what they do to contacts") {
+  const std::string deck =
+      contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\n", "end = 0.02\nstep = 3e-4\n",
+                   disc("disc", "[-0.948, 0.0]", "[-3.0, 1.0]"));
+  SimulationRun run(model_of(deck, {"integrator.particles=velocity-verlet", "contact.pairs.0.exponent=1.5"}));
+  const auto overlap = [&] { return std::max(0.0, -0.95 - run.particles()[0].position.x); };
+  const auto force = [](Real d) { return 1e6 * std::pow(d, 1.5); };
+  const auto energy = [](Real d) { return 1e6 / 2.5 * std::pow(d, 2.5); };
+  Real x = run.particles()[0].position.x, d = overlap(), missed = 0, largest = 0;
+  run.run([&] {
+    const Real x1 = run.particles()[0].position.x, d1 = overlap();
+    missed += energy(d1) - energy(d) + (force(d) + force(d1)) / 2 * (x1 - x);
+    x = x1, d = d1;
+    largest = std::max(largest, std::abs(missed));
+    CHECK(run.balance_error() == Approx(missed).margin(kRoundOff));
+  });
+  CHECK(largest > 1e-3);
+}
+
+// Shapes of bodies meet each other and a wall; their centres are the bodies', so that the bodies' own books
+// have the same work. The bodies' Newton loop ends at its tolerances, not at round-off.
+TEST_CASE("the contacts of bodies' shapes are booked like those of particles") {
+  const std::string body = R"(
+[[bodies]]
+name = "{}"
+mass = 1.0
+inertia = 0.001
+position = [{}, 0.0]
+velocity = [{}, 0.0]
+shapes = [{{ radius = 0.05 }}]
+)";
+  const std::string deck =
+      contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\n", "end = 0.02\nstep = 5e-4\n",
+                   fmt::format(fmt::runtime(body), "left", -0.92, -3) +
+                       fmt::format(fmt::runtime(body), "right", -0.81, -7));
+  for (const Overrides& way : kImplicitWays) {
+    CAPTURE(text(way));
+    const Outcome run = outcome_of(deck, way);
+    const bool damped = way.front().find("damping") != std::string::npos;
+    CHECK((damped ? run.loses && run.end.dissipated_contacts > 0 : run.end.dissipated_contacts == 0));
+    CHECK(run.largest_share() < 1e-7);
+  }
+}
