@@ -31,8 +31,8 @@ namespace {
 constexpr const char* kExitCodes =
     "Exit codes: 0 done, 2 bad usage or deck, or too little memory for it, 3 the simulation failed,\n"
     "4 a file could not be read or written,\n"
-    "5 stopped by a signal (SIGTERM, SIGINT, SIGUSR1) after writing a checkpoint, or without one\n"
-    "where the model was still being built.\n"
+    "5 stopped by a signal (SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU) after writing a\n"
+    "checkpoint, or without one where the model was still being built.\n"
     "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
 
 struct CommandLine {
@@ -100,7 +100,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const std::string directory = output_directory(arguments, deck);
   ranks.on_root([&] { ResultsFolder({directory, arguments.restart, arguments.overwrite}).check(); });
   const Model model = build_model(deck, log, RanksShare(ranks));
-  if (const int signal = signal_received(ranks); signal != 0) {
+  if (const int signal = static_cast<int>(ranks.max(signal_received())); signal != 0) {
     log.info(fmt::format("stopped by signal ({}) before the first step: there is no new checkpoint",
                          strsignal(signal)));
     return ExitCode::stopped_by_signal;
