@@ -58,6 +58,7 @@ CommandLine split(int count, char** values) {
 struct Arguments {
   std::string deck, output, backend = "auto", restart;
   bool overwrite = false;
+  bool allow_changes = false;
   std::vector<std::string> overrides;
 };
 
@@ -107,8 +108,15 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   }
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
-  RunOptions options{arguments.backend,    directory,          arguments.restart, arguments.deck,
-                     deck.resolved_text(), deck.fingerprint(), line.text,         ranks,
+  RunOptions options{arguments.backend,
+                     directory,
+                     arguments.restart,
+                     arguments.allow_changes,
+                     arguments.deck,
+                     deck.resolved_text(),
+                     deck.fingerprint(),
+                     line.text,
+                     ranks,
                      arguments.overwrite};
   const ExitCode code = naming_deck(arguments.deck, [&] {
     return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
@@ -167,7 +175,14 @@ ExitCode dispatch(const CommandLine& line) {
           "cpu; cuda: the GPU; auto: the GPU if there is one and the particles are enough to gain by it "
           "(default: auto)")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
-  run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")->type_name("FILE");
+  CLI::Option* restart =
+      run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")
+          ->type_name("FILE");
+  run_command
+      ->add_flag("--allow-changes", arguments.allow_changes,
+                 "with --restart: also where the deck is another one than the checkpoint's; the run is then "
+                 "not bit for bit")
+      ->needs(restart);
   run_command->add_flag("--overwrite", arguments.overwrite,
                         "remove the results of an earlier run from the output folder (default: refuse)");
   run_command->footer(kExitCodes);

@@ -152,10 +152,22 @@ void Recorder::history(State& state, Real h) {
   ++state.history_rows;
 }
 
-void Recorder::energy_row(State& state, std::vector<Real>& row) {
+ParticleLedger Recorder::particle_ledger() const {
   const bool verlet = model_.integrator.particles == ParticleIntegrator::velocity_verlet;
-  const ParticleLedger particles =
-      backend_.ledger(verlet ? model_.time.step / model_.integrator.substeps : 0);
+  return backend_.ledger(verlet ? model_.time.step / model_.integrator.substeps : 0);
+}
+
+void Recorder::rebase_balance(State& state) {
+  BalanceState& balance = state.balance;
+  if (!balance.open) return;
+  const Ledger now =
+      make_ledger(particle_ledger(), state.carried_out, link_.multibody(), state.bodies, state.clock.time);
+  balance.start += now.accounted() - balance.last.accounted();
+  balance.last = now;
+}
+
+void Recorder::energy_row(State& state, std::vector<Real>& row) {
+  const ParticleLedger particles = particle_ledger();
   const Ledger ledger =
       make_ledger(particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   BalanceState& balance = state.balance;
