@@ -199,8 +199,7 @@ class SignalTest(RanksTest):
 
     def test_a_signal_stops_all_ranks_with_a_checkpoint(self):
         # To one rank, or to mpirun, as a batch system does it.
-        for to_one_rank, number in ((True, signal.SIGUSR1), (False, signal.SIGUSR1), (False, signal.SIGUSR2),
-                                    (True, signal.SIGHUP), (True, signal.SIGXCPU)):
+        for to_one_rank, number in ((True, signal.SIGHUP), (False, signal.SIGUSR1), (False, signal.SIGUSR2)):
             with self.subTest(to_one_rank=to_one_rank, number=number.name):
                 run = self.start(2)
                 os.kill(self.children(run.pid)[1] if to_one_rank else run.pid, number)

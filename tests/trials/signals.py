@@ -37,9 +37,10 @@ def listening(run, ranks, number):
     return []
 
 
-def send(trials, run, ranks, number):
+def send(trials, run, ranks, number, seconds):
+    """At once, while the model is built, or at any time of the run."""
     processes = listening(run, ranks, number)
-    time.sleep(trials.random.uniform(0, trials.random.choice((0.1, 1.1 * ranks))))
+    time.sleep(trials.random.choice((0, 1, 1)) * trials.random.uniform(0, ranks * seconds))
     target = run.pid if ranks > 1 and number in PASSED_ON and trials.random.random() < 0.5 else None
     try:
         if processes and run.poll() is None:
@@ -52,9 +53,9 @@ def trial(trials, number):
     rng = trials.random
     way, ranks, output = rng.choice(WAYS), rng.choice((1, 1, 2)), f"trial {number}"
     word = HANDLED[number % len(HANDLED)]
-    trials.reference(way)
+    seconds = trials.reference(way)[2]
     run = trials.start(way, ranks, output)
-    send(trials, run, ranks, word)
+    send(trials, run, ranks, word, seconds)
     code, text = trials.finish(run)
     if code not in (DONE, STOPPED):
         return trials.complain(number, f"{word.name} on {ranks} ranks: ended with {code}: {text}")

@@ -14,9 +14,9 @@ import h5py
 import numpy
 
 DONE, STOPPED = 0, 5
-LIMIT = 120  # [s] for any one run: past it, the run hangs
+LIMIT = 300  # [s] for any one run: past it, the run hangs
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMPI_MCA_rmaps_base_oversubscribe="1", HWLOC_COMPONENTS="-opencl")
+                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", HWLOC_COMPONENTS="-opencl")
 
 # Discs fall on a disc that hangs on a spring, in a box that is periodic in x and open at its bottom.
 DECK = """title = "trial"
@@ -31,7 +31,7 @@ leaving = "drift"
 [time]
 end = 0.05
 control = "fixed"
-step = 2e-5
+step = 5e-5
 [[contact.pairs]]
 stiffness = 1e5
 damping = 3.0
