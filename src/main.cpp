@@ -31,8 +31,8 @@ namespace {
 constexpr const char* kExitCodes =
     "Exit codes: 0 done, 2 bad usage or deck, or too little memory for it, 3 the simulation failed,\n"
     "4 a file could not be read or written,\n"
-    "5 stopped by a signal (SIGTERM, SIGINT, SIGUSR1) after writing a checkpoint, or without one\n"
-    "where the model was still being built.\n"
+    "5 stopped by a signal (SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU) after writing a\n"
+    "checkpoint, or without one where the model was still being built.\n"
     "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
 
 struct CommandLine {
@@ -58,6 +58,7 @@ CommandLine split(int count, char** values) {
 struct Arguments {
   std::string deck, output, backend = "auto", restart;
   bool overwrite = false;
+  bool allow_changes = false;
   std::vector<std::string> overrides;
 };
 
@@ -100,15 +101,22 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const std::string directory = output_directory(arguments, deck);
   ranks.on_root([&] { ResultsFolder({directory, arguments.restart, arguments.overwrite}).check(); });
   const Model model = build_model(deck, log, RanksShare(ranks));
-  if (const int signal = signal_received(ranks); signal != 0) {
+  if (const int signal = static_cast<int>(ranks.max(signal_received())); signal != 0) {
     log.info(fmt::format("stopped by signal ({}) before the first step: there is no new checkpoint",
                          strsignal(signal)));
     return ExitCode::stopped_by_signal;
   }
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
-  RunOptions options{arguments.backend,    directory,          arguments.restart, arguments.deck,
-                     deck.resolved_text(), deck.fingerprint(), line.text,         ranks,
+  RunOptions options{arguments.backend,
+                     directory,
+                     arguments.restart,
+                     arguments.allow_changes,
+                     arguments.deck,
+                     deck.resolved_text(),
+                     deck.fingerprint(),
+                     line.text,
+                     ranks,
                      arguments.overwrite};
   const ExitCode code = naming_deck(arguments.deck, [&] {
     return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
@@ -178,7 +186,14 @@ ExitCode dispatch(const CommandLine& line) {
           "cpu; cuda: the GPU; auto: the GPU if there is one and the particles are enough to gain by it "
           "(default: auto)")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
-  run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")->type_name("FILE");
+  CLI::Option* restart =
+      run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")
+          ->type_name("FILE");
+  run_command
+      ->add_flag("--allow-changes", arguments.allow_changes,
+                 "with --restart: also where the deck is another one than the checkpoint's; the run is then "
+                 "not bit for bit")
+      ->needs(restart);
   run_command->add_flag("--overwrite", arguments.overwrite,
                         "remove the results of an earlier run from the output folder (default: refuse)");
   run_command->footer(kExitCodes);

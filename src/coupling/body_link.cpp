@@ -17,6 +17,11 @@ void BodyLink::set_initial_state(MultibodyState& bodies, const std::vector<BodyW
   if (has_bodies()) ranks_.on_root([&] { bodies = multibody_->initial_state(wrench); });
 }
 
+void BodyLink::solve_acceleration(MultibodyState& bodies, Real t) {
+  if (has_bodies()) ranks_.on_root([&] { multibody_->solve_acceleration(bodies, t, end_wrench_); });
+  bodies.wrench = end_wrench_;
+}
+
 void BodyLink::predict(const MultibodyState& bodies, Real t, Real h) {
   if (multibody_) multibody_->predict(bodies, t, h);
 }

@@ -24,6 +24,7 @@ class BodyLink {
 
   // The functions of Multibody on rank 0; collective, and nothing without bodies.
   void set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench);
+  void solve_acceleration(MultibodyState& bodies, Real t);  // with end_wrench()
   void predict(const MultibodyState& bodies, Real t, Real h);
   IterationNorms correct();             // with the step's wrench; the norms on every rank
   Real error() const;                   // on every rank

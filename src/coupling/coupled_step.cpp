@@ -64,6 +64,12 @@ void CoupledStep::resume(const MultibodyState& bodies) {
   rebuild_list(model_.contact.skin);
 }
 
+void CoupledStep::renew_forces(MultibodyState& bodies, Real t) {
+  backend_.initial_forces();
+  link_.reduce_end_wrench(backend_);
+  link_.solve_acceleration(bodies, t);
+}
+
 void CoupledStep::open_step(const MultibodyState& bodies, Real t, Real h) {
   {
     const auto scope = timers_.time(Stage::predict);

@@ -35,6 +35,8 @@ class CoupledStep {
   void start(MultibodyState& bodies);
   // After a restart: the same without recomputing what the state holds.
   void resume(const MultibodyState& bodies);
+  // After resume(): forces, accelerations and multipliers of this model, where the state is of another one.
+  void renew_forces(MultibodyState& bodies, Real t);
   // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they
   // were, where a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);

@@ -82,8 +82,8 @@ struct Deck {
 
   // The deck with all defaults filled in and overrides applied, as TOML that loads to the same deck.
   std::string resolved_text() const;
-  // 16 hexadecimal digits that change with anything a restarted run must share: all values but output.* and
-  // time.end, and the contents of the files that the deck names. Throws IoError on such a file.
+  // What a restarted run must share, as TOML: all values but title, time.end, output.* and parallel.*, and
+  // for the files that the deck names hashes of their contents. Throws IoError on such a file.
   std::string fingerprint() const;
 };
 

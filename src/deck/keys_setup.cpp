@@ -226,7 +226,13 @@ const TableKeys& output_keys() {
        real("checkpoint_interval", "s")
            .at_least(0)
            .otherwise("0.0")
-           .about("Simulated time between checkpoints; 0: only on failure and on a signal."),
+           .about("Simulated time between checkpoints; 0: none of these."),
+       real("checkpoint_wall_interval", "s")
+           .at_least(0)
+           .otherwise("600.0")
+           .about(
+               "Time on the clock on the wall after which a checkpoint is written where there was none; 0: "
+               "none of these. On failure and on a signal there is one in any case."),
        integer("compression")
            .within(0, 9)
            .otherwise("0")

@@ -27,8 +27,8 @@ class Writer {
   std::string inline_table(const DeckTable& table) const;
   std::string vector_text(Vec3 v) const;
   bool left_out(const std::string& table, const Key& key) const {
-    return for_fingerprint_ && ((table.empty() && (key.name == "output" || key.name == "parallel")) ||
-                                (table == "time" && key.name == "end"));
+    const bool of_no_result = key.name == "title" || key.name == "output" || key.name == "parallel";
+    return for_fingerprint_ && ((table.empty() && of_no_result) || (table == "time" && key.name == "end"));
   }
 
   int dimension_;
@@ -105,7 +105,7 @@ std::string Writer::value_text(const DeckTable& table, const Key& key) const {
     case ValueType::name:
       return quoted(table.text(name));
     case ValueType::file:
-      return quoted(for_fingerprint_ ? file_hash(table.text(name)) : table.text(name));
+      return quoted(for_fingerprint_ ? "contents " + file_hash(table.text(name)) : table.text(name));
     case ValueType::vector:
       return vector_text(table.vector(name));
     case ValueType::reals:
@@ -153,6 +153,6 @@ std::string text_of(const DeckTable& root, bool for_fingerprint) {
 
 std::string Deck::resolved_text() const { return text_of(root, false); }
 
-std::string Deck::fingerprint() const { return hash_text(text_of(root, true)); }
+std::string Deck::fingerprint() const { return text_of(root, true); }
 
 }  // namespace scree

@@ -108,6 +108,12 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   return state;
 }
 
+void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench) {
+  impl_->system.set_contacts({wrench, {}});
+  check_joints_hold(impl_->system, state.position, state.velocity, t);
+  impl_->newton.solve_acceleration(state, t);
+}
+
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
   impl_->time = t;
   impl_->method.predict(state, t, h);

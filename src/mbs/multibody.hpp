@@ -53,6 +53,10 @@ class Multibody {
   // acceleration-level system with these wrenches.
   MultibodyState initial_state(const std::vector<BodyWrench>& wrench);
 
+  // For a state of another model, to go on from with this one: q'' and lambda as in initial_state, at its
+  // time t [s]. Throws InputError where a joint or driver does not hold there.
+  void solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench);
+
   // Opens a step from `state` at time t of length h: Newmark prediction with q''_{n+1} = q''_n.
   void predict(const MultibodyState& state, Real t, Real h);
   // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError

@@ -18,6 +18,9 @@ class ScalarFunction {
   // The constant `value`.
   explicit ScalarFunction(Real value) { function_.value = value; }
 
+  // Whether the other has the same values, bit for bit, at all instants from 0 to `t` [s], though not after.
+  bool same_until(const ScalarFunction& other, Real t) const;
+
   // t [s]; round-off past a table's ends follows the end tangent, which keeps both derivatives continuous.
   TimeValue operator()(Real t) const {
     if (function_.kind == TimeFunction::Kind::constant) return {function_.value, 0, 0};  // most of them

@@ -13,6 +13,7 @@ namespace scree {
 namespace {
 
 constexpr Real kPositionGap = 1e-10;  // of the constraint's scale
+constexpr Real kKeptGap = 1e-6;       // the same on the way, where steps have kept it to their tolerance
 constexpr Real kVelocityGap = 1e-8;   // of the largest velocity plus the constraint's scale per second
 constexpr std::size_t kNamesShown = 8;
 
@@ -113,6 +114,17 @@ std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>
     if (!trouble.empty()) return trouble;
   }
   return "";
+}
+
+void check_joints_hold(PlanarSystem& system, const std::vector<Real>& position,
+                       const std::vector<Real>& velocity, Real t) {
+  SystemTerms terms;
+  terms.applied_force.assign(at(system.coordinates()), 0);
+  terms.constraint.assign(at(system.constraints()), 0);
+  system.evaluate({t, position, velocity}, terms);
+  const std::string what = fmt::format("its two sides do not meet at t = {:.9g} s, they miss by", t);
+  for (const ConstraintGroup& group : system.groups())
+    check_rows(system, group, terms.constraint, kKeptGap, what.c_str(), "");
 }
 
 std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& pattern,

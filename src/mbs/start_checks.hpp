@@ -22,6 +22,10 @@ void check_start(const Model& model, PlanarSystem& system, const std::vector<Rea
 // rad) per second is taken as round-off.
 std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity);
+// The same of the positions alone at a later time t [s], where they are as exact as steps keep them: gaps up
+// to 1e-6 of the length scale (1e-6 rad).
+void check_joints_hold(PlanarSystem& system, const std::vector<Real>& position,
+                       const std::vector<Real>& velocity, Real t);
 
 // For messages: why a saddle-point matrix could not be solved, with the joints, drivers and bodies that take
 // part, e.g. "is singular: body 'link' (id 3)".

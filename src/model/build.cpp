@@ -206,6 +206,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.snapshot_interval = table.real("snapshot_interval");
   output.history_interval = table.real("history_interval");
   output.checkpoint_interval = table.real("checkpoint_interval");
+  output.checkpoint_wall_interval = table.real("checkpoint_wall_interval");
   output.history_csv = table.boolean("history_csv");
   output.compression = static_cast<int>(table.integer("compression"));
   output.history_reactions = table.integer("history_reactions");

@@ -95,6 +95,16 @@ void check_single(const DeckTable& table, const std::string& key) {
   if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
 }
 
+int constraint_count(const Model& model) {
+  int count = static_cast<int>(model.drivers.size());
+  for (const Joint& joint : model.joints) {
+    if (joint.kind == JointKind::fixed) count += 3;
+    if (joint.kind == JointKind::revolute || joint.kind == JointKind::translational) count += 2;
+    if (joint.kind == JointKind::distance) count += 1;
+  }
+  return count;
+}
+
 std::vector<std::pair<int, int>> connected_bodies(const Model& model) {
   std::vector<std::pair<int, int>> pairs;
   const auto add = [&](const int(&body)[2]) {

@@ -91,9 +91,10 @@ struct ContactTarget {
 
 struct Output {
   std::string directory;
-  Real snapshot_interval = 0;    // [s]; 0: none but the first and last state
-  Real history_interval = 0;     // [s]; 0: every step
-  Real checkpoint_interval = 0;  // [s] of simulated time; 0: only on failure and signal
+  Real snapshot_interval = 0;         // [s]; 0: none but the first and last state
+  Real history_interval = 0;          // [s]; 0: every step
+  Real checkpoint_interval = 0;       // [s] of simulated time; 0: none of these
+  Real checkpoint_wall_interval = 0;  // [s] of the run's own time without a checkpoint; 0: none of these
   bool history_csv = false;
   int compression = 0;                   // of particles in snapshots and checkpoints: 0, or deflate's level
   std::int64_t history_reactions = 100;  // joints and drivers, the first so many

@@ -4,11 +4,13 @@
 
 #include <charconv>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 
 #include "base/error.hpp"
 #include "model/id_range.hpp"
 #include "output/durable_file.hpp"
+#include "output/file_seal.hpp"
 #include "output/hdf5_file.hpp"
 #include "output/shared_rows.hpp"
 
@@ -100,21 +102,62 @@ void write_file(const std::string& path, const Checkpoint& checkpoint, const Ran
   file.close();
 }
 
-void check_format(const Hdf5File& file, const std::string& path) {
-  const std::string format = file.has_attribute("/", "format") ? file.read_text_attribute("/", "format") : "";
+[[noreturn]] void refuse_format(const std::string& path, const std::string& format) {
   int number = 0;
   if (format.starts_with(kFormatName)) {
     const char* const end = format.data() + format.size();
     const auto [rest, error] = std::from_chars(format.data() + kFormatName.size(), end, number);
     if (error != std::errc() || rest != end) number = 0;
   }
+  if (number == kFormatNumber)
+    throw IoError(
+        path + ": the checkpoint is damaged: it was cut off or changed, and does not end with its checksum");
   if (number < 1)
     throw IoError(fmt::format("{}: not a checkpoint of this program (its format is not \"{}{}\")", path,
                               kFormatName, kFormatNumber));
-  if (number != kFormatNumber)
-    throw IoError(fmt::format(
-        "{}: a checkpoint of {} version of this program (its format is \"{}\", not \"{}{}\")", path,
-        number < kFormatNumber ? "an older" : "a newer", format, kFormatName, kFormatNumber));
+  throw IoError(
+      fmt::format("{}: a checkpoint of {} version of this program (its format is \"{}\", not \"{}{}\")", path,
+                  number < kFormatNumber ? "an older" : "a newer", format, kFormatName, kFormatNumber));
+}
+
+// What a file without a seal says of itself, as far as its bytes tell: HDF5 may crash on damaged ones.
+std::string format_in_bytes(const std::string& path) {
+  constexpr std::size_t kLooked = std::size_t{1} << 26, kNear = 64;
+  std::string bytes(kLooked, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), static_cast<std::streamsize>(kLooked));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  const std::string attribute("format\0", 7);
+  for (std::size_t at = bytes.find(attribute); at != std::string::npos; at = bytes.find(attribute, at + 1)) {
+    const std::size_t name = bytes.find(kFormatName, at);
+    if (name == std::string::npos || name > at + kNear) continue;
+    const std::size_t digits = name + kFormatName.size();
+    return bytes.substr(name, bytes.find_first_not_of("0123456789", digits) - name);
+  }
+  return "";
+}
+
+// Nothing but an intact file of this format passes. Collective.
+void check_file(const std::string& path, const Ranks& ranks) {
+  const Seal seal = check_seal(path, ranks);
+  ranks.on_root([&] {
+    if (seal == Seal::none) refuse_format(path, format_in_bytes(path));
+    if (seal == Seal::broken)
+      throw IoError(path + ": the checkpoint is damaged: its content does not have the checksum at its end");
+    const Hdf5File file(path, Hdf5Access::read);
+    const std::string format =
+        file.has_attribute("/", "format") ? file.read_text_attribute("/", "format") : "";
+    if (format != kFormatName + std::to_string(kFormatNumber)) refuse_format(path, format);
+  });
+}
+
+// Datasets that are in none of the groups.
+void check_groups(const Hdf5File& file, const std::string& path) {
+  for (const std::string& name : file.dataset_names("/")) {
+    const auto holds = [&](const std::string& group) { return ("/" + name).starts_with(group); };
+    if (!holds(kReals) && !holds(kIntegers) && !holds(kTexts) && !holds(kRealRows) && !holds(kIntegerRows))
+      throw IoError(fmt::format("{}: dataset \"{}\" is no part of a checkpoint", path, name));
+  }
 }
 
 template <class T>
@@ -158,6 +201,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, con
   try {
     write_file(beside, checkpoint, ranks, compression);
     ranks.together([&] { sync_file(beside); });
+    seal_file(beside, ranks);
     ranks.on_root([&] { replace_file(beside, path); });
   } catch (...) {
     if (ranks.is_root()) std::remove(beside.c_str());
@@ -166,21 +210,21 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, con
 }
 
 Checkpoint read_checkpoint(const std::string& path, const Ranks& ranks) {
-  const auto file = std::make_shared<const Hdf5File>(path, Hdf5Access::read);
-  check_format(*file, path);
+  check_file(path, ranks);
   Checkpoint checkpoint;
   checkpoint.path = path;
-  for (const std::string& name : file->dataset_names(kReals)) {
-    checkpoint.reals[name] = file->read_array<Real>(kReals + name);
-  }
-  for (const std::string& name : file->dataset_names(kIntegers)) {
-    checkpoint.integers[name] = file->read_array<std::int64_t>(kIntegers + name);
-  }
-  for (const std::string& name : file->dataset_names(kTexts)) {
-    checkpoint.texts[name] = file->read_text(kTexts + name);
-  }
-  checkpoint.real_rows = find_rows<Real>(file, kRealRows, ranks);
-  checkpoint.integer_rows = find_rows<std::int64_t>(file, kIntegerRows, ranks);
+  ranks.together([&] {
+    const auto file = std::make_shared<const Hdf5File>(path, Hdf5Access::read);
+    check_groups(*file, path);
+    for (const std::string& name : file->dataset_names(kReals))
+      checkpoint.reals[name] = file->read_array<Real>(kReals + name);
+    for (const std::string& name : file->dataset_names(kIntegers))
+      checkpoint.integers[name] = file->read_array<std::int64_t>(kIntegers + name);
+    for (const std::string& name : file->dataset_names(kTexts))
+      checkpoint.texts[name] = file->read_text(kTexts + name);
+    checkpoint.real_rows = find_rows<Real>(file, kRealRows, ranks);
+    checkpoint.integer_rows = find_rows<std::int64_t>(file, kIntegerRows, ranks);
+  });
   return checkpoint;
 }
 

@@ -1,4 +1,5 @@
-// Checkpoint: the whole state as named arrays in one HDF5 file, written beside and renamed.
+// Checkpoint: the whole state as named arrays in one HDF5 file, sealed with a checksum (file_seal.hpp),
+// written beside and renamed.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +47,8 @@ struct Checkpoint {
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint, const Ranks& ranks = {},
                       int compression = 0);
 // Every rank reads what is the same on all of them, and has an equal part of the rows (id_range), which their
-// `copy` reads from the file. Throws IoError on a missing, truncated or foreign file.
+// `copy` reads from the file. Throws IoError, on every rank, on a missing, truncated, damaged or foreign
+// file. Collective.
 Checkpoint read_checkpoint(const std::string& path, const Ranks& ranks = {});
 
 }  // namespace scree

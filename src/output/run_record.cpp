@@ -40,6 +40,13 @@ std::string processor() {
   return "unknown";
 }
 
+toml::array lines(const std::string& text) {
+  toml::array result;
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) result.push_back(line);
+  return result;
+}
+
 toml::table run_table(const RunRecord& record) {
   return toml::table{{"deck_path", record.deck_path},
                      {"resolved_deck", record.resolved_deck},
@@ -52,6 +59,7 @@ toml::table run_table(const RunRecord& record) {
                      {"solver", record.solver},
                      {"start_change", record.start_change},
                      {"restarted_from", record.restarted_from},
+                     {"changes", lines(record.changes)},
                      {"state_hash", record.state_hash},
                      {"ranks", record.ranks}};
 }

@@ -20,6 +20,7 @@ struct RunRecord {
   std::string backend, solver;
   std::string start_change;  // velocities = "consistent": the largest change at t = 0
   std::string restarted_from;
+  std::string changes;     // lines on the keys that --allow-changes let differ since t = 0
   std::string state_hash;  // of the state in the last checkpoint; empty before the first
   int ranks = 1;
   double wall_seconds = 0, cpu_seconds = 0;

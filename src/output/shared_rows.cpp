@@ -4,8 +4,8 @@
 #include <mpi.h>
 
 #include <algorithm>
-#include <cstring>
 
+#include "base/bit_hash.hpp"
 #include "base/error.hpp"
 #include "output/durable_file.hpp"
 
@@ -28,16 +28,10 @@ std::int64_t rows_per_piece(std::size_t row_bytes) {
   return static_cast<std::int64_t>(std::max<std::size_t>(1, kPieceBytes / row_bytes));
 }
 
-// Of the bytes, in words of 8; what is left over is a word with zeros.
 std::uint64_t hash_of(const void* values, std::size_t bytes) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (std::size_t at = 0; at < bytes; at += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, static_cast<const std::byte*>(values) + at, std::min<std::size_t>(8, bytes - at));
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 32;
-  }
-  return hash;
+  BitHash hash;
+  hash.add(values, bytes);
+  return hash.hash();
 }
 
 // Compressed rows get other places when they are written than those that were made for them.

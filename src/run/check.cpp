@@ -10,6 +10,7 @@
 #include "base/host_memory.hpp"
 #include "base/printable.hpp"
 #include "dem/device.hpp"
+#include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
 
@@ -23,16 +24,6 @@ constexpr Real kSnapshotParticle = 100, kSnapshotShape = 160, kCheckpointParticl
                kCheckpointBody = 160;
 
 constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-
-int constraint_count(const Model& model) {
-  int count = static_cast<int>(model.drivers.size());
-  for (const Joint& joint : model.joints) {
-    if (joint.kind == JointKind::fixed) count += 3;
-    if (joint.kind == JointKind::revolute || joint.kind == JointKind::translational) count += 2;
-    if (joint.kind == JointKind::distance) count += 1;
-  }
-  return count;
-}
 
 std::string range(Real smallest, Real largest, const char* unit) {
   if (smallest == largest) return fmt::format("{:.6g} {}", smallest, unit);

@@ -160,6 +160,15 @@ void Recorder::history(State& state, Real h) {
   ++state.history_rows;
 }
 
+void Recorder::rebase_balance(State& state) {
+  BalanceState& balance = state.balance;
+  if (!balance.open) return;
+  const Ledger now = make_ledger(backend_.ledger(verlet_step(model_)), state.carried_out, link_.multibody(),
+                                 state.bodies, state.clock.time);
+  balance.start += now.accounted() - balance.last.accounted();
+  balance.last = now;
+}
+
 void Recorder::energy_row(State& state, std::vector<Real>& row) {
   const ParticleLedger particles = backend_.ledger(verlet_step(model_));
   const Ledger ledger =

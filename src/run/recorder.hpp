@@ -25,6 +25,9 @@ class Recorder {
 
   // One row; h: length of the step just taken [s]. Updates the balance in the state.
   void history(State& state, Real h);
+  // After a restart with another deck: what that adds to the energies or takes from them, at this instant, is
+  // neither a balance error nor exchanged. The balance goes on from its last sample.
+  void rebase_balance(State& state);
   // Takes one. On one rank a backend that computes asynchronously goes on with its steps, and the snapshot is
   // written while the host would only wait for them, at the latest by flush() or before the next one.
   void snapshot(State& state);

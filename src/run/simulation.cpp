@@ -17,6 +17,7 @@
 #include "partition/shared_model.hpp"
 #include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
+#include "run/restart.hpp"
 #include "run/step_loop.hpp"
 
 namespace scree {
@@ -92,21 +93,6 @@ std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, co
   }
 }
 
-// A file may be unreadable where one rank's rows are.
-State read_state(const RunOptions& options, std::int64_t particles) {
-  State state;
-  options.ranks.together([&] {
-    const Checkpoint checkpoint = read_checkpoint(options.restart, options.ranks);
-    if (checkpoint.text("fingerprint") != options.fingerprint)
-      throw InputError("--restart " + options.restart +
-                       ": the checkpoint belongs to another deck; only time.end and the tables output and "
-                       "parallel may differ");
-    state = unpack(checkpoint);
-  });
-  check_state(state, options.restart, particles, options.ranks);
-  return state;
-}
-
 class Simulation {
  public:
   Simulation(const Model& model, const RunOptions& options, Log& log)
@@ -115,7 +101,8 @@ class Simulation {
         ranks_(options.ranks),
         log_(log),
         folder_({options.output_directory, options.restart, options.overwrite}),
-        state_(options.restart.empty() ? State{} : read_state(options, model.particles.totals.count)),
+        restart_(options.restart.empty() ? Restart{} : read_restart(model, options, log)),
+        state_(std::move(restart_.state)),
         backend_(make_backend(model, ranks_, options.backend, log)),
         link_(model, ranks_),
         step_(model, *backend_, link_, timers_) {
@@ -128,6 +115,7 @@ class Simulation {
       recorder_->snapshot(state_);
       ranks_.on_root([&] { recorder_->flush_history(); });
     }
+    if (restart_.changed) recorder_->rebase_balance(state_);
   }
 
   ExitCode run();
@@ -154,6 +142,7 @@ class Simulation {
   Ranks ranks_;
   Log& log_;
   ResultsFolder folder_;
+  Restart restart_;  // but for its state
   State state_;
   StageTimers timers_;
   std::unique_ptr<Backend> backend_;
@@ -188,6 +177,7 @@ void Simulation::start_or_resume() {
                                    options_.restart, state_.clock.time, model_.time.end));
     if (!continues_files()) state_.history_rows = state_.snapshots = 0;
     step_.resume(state_.bodies);
+    if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
   }
   start_time_ = state_.clock.time;
 }
@@ -214,12 +204,10 @@ std::vector<ParticleRecord> Simulation::in_id_order(std::vector<ParticleRecord> 
 
 void Simulation::checkpoint(State& state, const std::string& name) {
   recorder_->flush();
-  const auto own_hash = static_cast<std::int64_t>(state_hash(state, ranks_.is_root()));
-  state_hash_ = fmt::format("{:016x}", static_cast<std::uint64_t>(ranks_.sum(own_hash)));
+  state_hash_ = hash_of_all(state, ranks_);
   state.particles = in_id_order(std::move(state.particles));
   Checkpoint out = pack(state);
-  out.texts["fingerprint"] = options_.fingerprint;
-  out.texts["deck"] = options_.resolved_deck;
+  add_restart_texts(out, options_, state_hash_, restart_.changes);
   write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
   state.particles = {};
 }
@@ -349,7 +337,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.backend = backend_->description();
   record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
   record.start_change = start_change();
-  record.restarted_from = options_.restart;
+  record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_;
   record.ranks = ranks_.size();
   const LoadBalance balance = backend_->balance();

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "base/bit_hash.hpp"
 #include "base/error.hpp"
 
 namespace scree {
@@ -54,29 +54,22 @@ class Reader {
   const Checkpoint& in_;
 };
 
-// Over the bits of what it visits, 64 at a time: a checkpoint of a million particles must not wait for it.
+// Over the bits of what it visits; a checkpoint of a million particles must not wait for it.
 class Hasher {
  public:
-  void operator()(const char*, const Real& value) { add(value); }
-  void operator()(const char*, const std::int64_t& value) { add(value); }
-  void operator()(const char*, const bool& value) { add(std::int64_t{value}); }
+  void operator()(const char*, const Real& value) { hash_.add(value); }
+  void operator()(const char*, const std::int64_t& value) { hash_.add(value); }
+  void operator()(const char*, const bool& value) { hash_.add(std::int64_t{value}); }
   void operator()(const char*, const std::vector<Real>& values) {
-    for (const Real value : values) add(value);
+    for (const Real value : values) hash_.add(value);
   }
   void operator()(const char*, const std::vector<BodyWrench>& wrenches) {
-    for (const BodyWrench& w : wrenches) add(w.force), add(w.torque);
+    for (const BodyWrench& w : wrenches) hash_.add(w.force), hash_.add(w.torque);
   }
-  void add(const Vec3& v) { add(v.x), add(v.y), add(v.z); }
-  void add(Real value) { add(std::bit_cast<std::int64_t>(value)); }
-  // The product carries every bit upwards, the shift brings them down again.
-  void add(std::int64_t value) {
-    hash_ = (hash_ ^ static_cast<std::uint64_t>(value)) * 0x9e3779b97f4a7c15u;
-    hash_ ^= hash_ >> 32;
-  }
-  std::uint64_t hash() const { return hash_; }
+  std::uint64_t hash() const { return hash_.hash(); }
 
  private:
-  std::uint64_t hash_ = 14695981039346656037u;
+  BitHash hash_;
 };
 
 // Finds the first value that is not finite.
@@ -237,7 +230,7 @@ Checkpoint pack(const State& state) {
 std::uint64_t state_hash(const State& state, bool with_rest) {
   std::uint64_t sum = 0;
   for (const ParticleRecord& p : state.particles) {
-    Hasher one;
+    BitHash one;
     one.add(p.global_id);
     for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force}) one.add(v);
     for (const Real value : {p.contact_loss, p.loss_power, p.integrator_loss}) one.add(value);
@@ -288,6 +281,10 @@ void check_particles(const State& state, const std::string& path, std::int64_t p
 }  // namespace
 
 void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks) {
+  const std::int64_t found = ranks.sum(std::ssize(state.particles)), removed = state.carried_out.removed;
+  if (found != particles - removed)
+    refuse(path,
+           fmt::format("{} particles; the deck has {}, of which {} were removed", found, particles, removed));
   ranks.together([&] {
     FiniteCheck finite;
     visit_state(finite, state);
@@ -298,10 +295,6 @@ void check_state(const State& state, const std::string& path, std::int64_t parti
   if (!state.particles.empty()) ends = {state.particles.front().global_id, state.particles.back().global_id};
   ends = ranks.gather_everywhere(ends);
   for (std::size_t k = 2; k < ends.size(); k += 2) check_ids_increase(path, ends[k - 1], ends[k]);
-  const std::int64_t found = ranks.sum(std::ssize(state.particles)), removed = state.carried_out.removed;
-  if (found != particles - removed)
-    refuse(path,
-           fmt::format("{} particles; the deck has {}, of which {} were removed", found, particles, removed));
 }
 
 }  // namespace scree

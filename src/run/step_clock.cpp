@@ -16,6 +16,14 @@ constexpr Real kSameTime = 1e-6;
 
 }  // namespace
 
+ClockState with_new_steps(const ClockState& state, const TimeControl& time) {
+  ClockState next;
+  next.time = next.start = next.end = state.time;  // a new segment begins
+  next.next_step = time.step;
+  next.histories = state.histories, next.snapshots = state.snapshots, next.checkpoints = state.checkpoints;
+  return next;
+}
+
 StepClock::StepClock(const Model& model) : time_(model.time), output_(model.output) {
   // An end that is an output time but for round-off becomes it: a run that goes on from there has the same
   // times.

@@ -23,6 +23,9 @@ struct ClockState {
   std::int64_t histories = 0, snapshots = 0, checkpoints = 0;  // output times reached
 };
 
+// At the same time, but with nothing carried on from the steps before: the next ones follow from these keys.
+ClockState with_new_steps(const ClockState& state, const TimeControl& time);
+
 class StepClock {
  public:
   explicit StepClock(const Model& model);

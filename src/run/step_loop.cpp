@@ -50,12 +50,32 @@ StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(Stat
 }
 
 LoopEnd StepLoop::run() {
+  checkpoint_age_ = seconds_now();
   while (!clock_.done()) {
-    signal_ = signal_received(ranks());
-    if (signal_ != 0) return LoopEnd::stopped_by_signal;
+    if (look_outside() != 0) return LoopEnd::stopped_by_signal;
     take_step();
   }
   return LoopEnd::done;
+}
+
+// What the world wants between two steps, the same on all ranks: a signal on any of them, rank 0's clock. The
+// state is at rest here, whoever takes the steps: a checkpoint moves none of them.
+int StepLoop::look_outside() {
+  const Real interval = parts_.model.output.checkpoint_wall_interval;
+  const bool due = interval > 0 && ranks().is_root() && seconds_now() - checkpoint_age_ >= interval;
+  Real wanted[] = {static_cast<Real>(signal_received()), due ? Real(1) : Real(0)};
+  ranks().max(wanted);
+  signal_ = static_cast<int>(wanted[0]);
+  if (signal_ == 0 && wanted[1] != 0) {
+    const auto scope = parts_.timers.time(Stage::output);
+    write_checkpoint();
+  }
+  return signal_;
+}
+
+void StepLoop::write_checkpoint() {
+  write_checkpoint_(complete_state());
+  checkpoint_age_ = seconds_now();
 }
 
 void StepLoop::take_step() {
@@ -106,7 +126,7 @@ void StepLoop::output(Real h) {
   state_.clock = clock_.state();
   if (history) parts_.recorder.history(state_, h);
   if (snapshot) parts_.recorder.snapshot(state_);
-  if (checkpoint) write_checkpoint_(complete_state());
+  if (checkpoint) write_checkpoint();
   progress_(state_, h);
   bool stale = !implicit_ && seconds_now() - good_age_ > good_cost_ / kGoodStateShare;
   if (!implicit_) ranks().broadcast(stale);

@@ -46,6 +46,8 @@ class StepLoop {
   State& last_good_state();
 
  private:
+  int look_outside();
+  void write_checkpoint();
   void take_step();
   void take_explicit_steps(Real h);
   void close_step(Real h);
@@ -62,6 +64,7 @@ class StepLoop {
   bool implicit_;
   double step_seconds_ = std::numeric_limits<double>::infinity();  // of the last explicit steps
   int signal_ = 0;
+  double checkpoint_age_ = 0;  // steady clock when the last one was written, or the loop began [s]
   std::optional<State> good_;  // explicit: the copy
   double good_cost_ = 0;       // seconds that keeping it took
   double good_age_ = 0;        // steady clock when it was kept [s]

@@ -401,6 +401,23 @@ class RunTest(CommandLineTest):
                 self.assertIn(name, message)
 
 
+class ChangesTest(CommandLineTest):
+    def test_a_failed_run_goes_on_with_half_the_step(self):
+        stiff = ("--set", "time.step=2e-3", "--set", "time.min_step=2e-3", "--set", "integrator.max_iterations=5")
+        self.run_deck(FAILED, "out", *stiff)
+        restart = ("--restart", self.folder / "out/checkpoint_failed.h5")
+        smaller = ("--set", "time.step=1e-4", "--set", "time.min_step=1e-6", "--set", "time.end=0.4")
+        self.assertIn("time.step: 0.002 -> 0.0001", self.run_deck(BAD_INPUT, "out", *restart, *smaller).stderr)
+        result = self.run_deck(DONE, "out", *restart, *smaller, "--allow-changes")
+        self.assertIn("warning: --allow-changes", result.stderr)
+        record = json.loads((self.folder / "out/run_record.json").read_text())
+        self.assertTrue(any("not bit for bit" in warning for warning in record["warnings"]))
+        self.assertTrue(any(": time.step: 0.002 -> 0.0001" in line for line in record["run"]["changes"]))
+
+    def test_allow_changes_is_for_restarts(self):
+        self.assertIn("--restart", self.run_deck(BAD_INPUT, "out", "--allow-changes").stderr)
+
+
 class FailureTest(CommandLineTest):
     def failure(self, *words):
         """The message of a failed run; a restart from its last good state fails alike."""
@@ -490,6 +507,50 @@ class RestartTest(CommandLineTest):
                 self.run_deck(DONE, "parts", *longer, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
                 self.assert_same_results("parts", "whole")
 
+    LONG = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
+
+    def stopped(self, run, number):
+        """A run that the signal has ended with a checkpoint."""
+        run.send_signal(number)
+        text = run.stdout.read()
+        self.assertEqual(run.wait(LIMIT), STOPPED, text)
+        record = json.loads((self.folder / "out/run_record.json").read_text())["run"]
+        self.assertEqual(record["status"], f"stopped by signal: {signal.strsignal(number)}")
+        self.run_deck(DONE, "out", "--restart", self.folder / "out/checkpoint.h5", *self.LONG, "--set", "time.end=0.05")
+
+    def test_every_handled_signal_stops_a_run_with_a_checkpoint(self):
+        for number in (signal.SIGINT, signal.SIGHUP, signal.SIGUSR2, signal.SIGXCPU):
+            with self.subTest(signal=number.name):
+                self.stopped(self.start("out", *self.LONG, "--set", "time.end=0.05"), number)
+
+    def test_an_ignored_hangup_stays_ignored(self):
+        run = self.start("out", *self.LONG, "--set", "time.end=0.05", launcher=("nohup",))
+        run.send_signal(signal.SIGHUP)
+        self.stopped(run, signal.SIGUSR2)
+
+    def test_a_run_goes_on_where_nobody_reads_its_log(self):
+        self.run_deck(DONE, "whole", *self.LONG, "--set", "time.end=0.05")
+        line = f"{SCREE} run {self.deck} --output {self.folder}/out {' '.join(self.LONG)} --set time.end=0.05"
+        shell = subprocess.run(["bash", "-c", f"{line} | head -1; exit ${{PIPESTATUS[0]}}"], cwd=self.folder,
+                               env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual((shell.returncode, shell.stderr), (DONE, ""))
+        self.assertEqual(len(shell.stdout.splitlines()), 1)
+        self.assert_same_history("out", "whole")
+        self.assertEqual(json.loads((self.folder / "out/run_record.json").read_text())["run"]["status"], "done")
+
+    def test_a_checkpoint_by_the_clock_on_the_wall_changes_no_bit(self):
+        for words in ((), EXPLICIT, ("--set", "time.control=adaptive")):
+            with self.subTest(words=words):
+                hashes = []
+                for interval in (0, 0.002):
+                    shutil.rmtree(self.folder / "out", ignore_errors=True)
+                    self.run_deck(DONE, "out", *words, "--set", "time.step=2e-5", "--set", "time.end=0.02",
+                                  "--set", f"output.checkpoint_wall_interval={interval}")
+                    self.assertEqual((self.folder / "out/checkpoint.h5").exists(), interval > 0)
+                    record = json.loads((self.folder / "out/run_record.json").read_text())
+                    hashes.append(record["run"]["state_hash"])
+                self.assertEqual(*hashes)
+
     def test_a_killed_run_leaves_files_to_restart_from(self):
         longer = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
         frequent = ("--set", "output.checkpoint_interval=0.002")
@@ -507,6 +568,8 @@ class RestartTest(CommandLineTest):
             message = self.run_deck(BAD_INPUT, "out", *restart, "--set", key).stderr
             self.assertIn("another deck", message)
             self.assertIn("time.end", message)
+            self.assertRegex(message, rf"\n  {re.escape(key.split('=')[0]).replace('0', r'[a-z0-9]+')}(\.value)?: \S+ -> {float(key.split('=')[1]):g}\n")
+        self.run_deck(DONE, "out", *restart, "--set", "title=corrected")
         self.run_deck(DONE, "out", *restart, "--set", "time.end=0.02")
         self.run_deck(DONE, "whole", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
         self.assert_same_history("out", "whole")

@@ -9,6 +9,7 @@ import struct
 import subprocess
 import unittest
 
+from checkpoint_bytes import sealed, with_velocity
 from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, IO_FAILED, LIMIT, LONELY, MPIEXEC,
                       SCREE, STOPPED, VELOCITY, RanksTest, h5py)
 
@@ -70,13 +71,23 @@ class FailureTest(RanksTest):
             for words, (healthy, ill) in damages.items():
                 with self.subTest(ranks=ranks, words=words):
                     self.assertIn(healthy, content)
-                    damaged.write_bytes(content.replace(healthy, ill, 1))
+                    damaged.write_bytes(sealed(content.replace(healthy, ill, 1)))
                     result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
                     self.assert_one_message(result, "damaged.h5: not a valid checkpoint: ", words)
         self.assertEqual(content.count(format_name), 1)
+        self.assertEqual(sealed(content), content)
+        other = content.replace(struct.pack("<d", VELOCITY), struct.pack("<d", 2 * VELOCITY), 1)
+        for ranks in (1, 3):
+            for words, ill in (("the checkpoint is damaged: its content", other),
+                               ("the checkpoint is damaged: the hash of its state", sealed(other)),
+                               ("the checkpoint is damaged: it was cut off", content[:-30])):
+                with self.subTest(ranks=ranks, words=words):
+                    damaged.write_bytes(ill)
+                    result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
+                    self.assert_one_message(result, "damaged.h5: ", words)
         for number, words in ((b"1", "of an older version"), (b"4", "of a newer version")):
             with self.subTest(words=words):
-                damaged.write_bytes(content.replace(format_name, format_name[:-1] + number))
+                damaged.write_bytes(sealed(content.replace(format_name, format_name[:-1] + number)))
                 result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)
                 self.assert_one_message(result, "damaged.h5", words)
 
@@ -91,7 +102,11 @@ class FailureTest(RanksTest):
             content = (self.folder / "start" / "checkpoint_end.h5").read_bytes()
             speed = content.rindex(struct.pack("<d", VELOCITY))
             absurd = self.folder / "absurd.h5"
-            absurd.write_bytes(content[:speed] + struct.pack("<d", 1e308) + content[speed + 8:])
+            # The second particle's, along y; with the state hash and the checksum that belong to it.
+            content, hash_of = with_velocity(content, speed - 4 * 8, (1, 0, 0, 0, 0), 4, 1e308)
+            state_hash = self.hash("start")
+            self.assertEqual(content.count(state_hash.encode()), 1)
+            absurd.write_bytes(sealed(content.replace(state_hash.encode(), hash_of(state_hash).encode())))
             for ranks in (1, 3):
                 with self.subTest(name=name, ranks=ranks):
                     result = self.run_deck(FAILED, ranks, deck, "out", how, "--restart", absurd)
@@ -183,10 +198,11 @@ class SignalTest(RanksTest):
         return [int(words[0]) for words in lines if "scree" in words[1]]
 
     def test_a_signal_stops_all_ranks_with_a_checkpoint(self):
-        for to_one_rank in (True, False):  # or to mpirun, as a batch system does it
-            with self.subTest(to_one_rank=to_one_rank):
+        # To one rank, or to mpirun, as a batch system does it.
+        for to_one_rank, number in ((True, signal.SIGHUP), (False, signal.SIGUSR1), (False, signal.SIGUSR2)):
+            with self.subTest(to_one_rank=to_one_rank, number=number.name):
                 run = self.start(2)
-                os.kill(self.children(run.pid)[1] if to_one_rank else run.pid, signal.SIGUSR1)
+                os.kill(self.children(run.pid)[1] if to_one_rank else run.pid, number)
                 self.assertEqual(run.wait(LIMIT), STOPPED)
                 record = self.record("out")
                 self.assertIn("stopped by signal", record["run"]["status"])
@@ -194,6 +210,18 @@ class SignalTest(RanksTest):
                 self.run_deck(DONE, 3, DAM[0], "on", [*self.SETTINGS, f"time.end={end}"], "--restart",
                               self.folder / "out" / "checkpoint.h5")
                 (self.folder / "out" / "checkpoint.h5").unlink()
+
+    def test_checkpoints_by_the_clock_on_the_wall_change_no_bit(self):
+        settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.05"]
+        self.run_deck(DONE, 1, DAM[0], "none", [*settings, "output.checkpoint_wall_interval=0"])
+        self.assertFalse((self.folder / "none" / "checkpoint.h5").exists())
+        for ranks in (1, 2):
+            self.run_deck(DONE, ranks, DAM[0], f"many {ranks}", [*settings, "output.checkpoint_wall_interval=0.02"])
+            self.assertTrue((self.folder / f"many {ranks}" / "checkpoint.h5").exists())
+            self.assertEqual(self.hash(f"many {ranks}"), self.hash("none"))
+            self.run_deck(DONE, 3 - ranks, DAM[0], "on", settings, "--restart",
+                          self.folder / f"many {ranks}" / "checkpoint.h5")
+            self.assertEqual(self.hash("on"), self.hash("none"))
 
     def test_a_signal_to_one_rank_before_the_first_step_stops_all(self):
         fifo = self.folder / "fifo.toml"

@@ -227,3 +227,27 @@ TEST_CASE("tables that cannot be used are refused by the owner's name") {
   CHECK(refusal(table({0.1, 2}, {1, 2}), 1).find("0.1 s to 2 s") != std::string::npos);
   CHECK(refusal(table({-1, 2}, {1, 2}), 1).empty());
 }
+
+TEST_CASE("functions are the same until a time where no value before it differs in a bit") {
+  const auto linear = [](const TimeFunction& function) {
+    return ScalarFunction(function, "f", 1, Interpolation::linear);
+  };
+  const TimeFunction first = table({0, 1, 2}, {0, 3, 1}), longer = table({0, 1, 2, 3}, {0, 3, 1, 7}),
+                     bent = table({0, 1, 2}, {0, 3, 2});
+  CHECK(linear(first).same_until(linear(longer), 2));
+  CHECK(linear(longer).same_until(linear(first), 1.5));
+  CHECK_FALSE(linear(first).same_until(linear(longer), 2.1));
+  CHECK_FALSE(linear(longer).same_until(linear(first), 2.1));
+  CHECK(linear(first).same_until(linear(bent), 1));
+  CHECK_FALSE(linear(first).same_until(linear(bent), 1.1));
+  CHECK(linear(first).same_until(linear(first), 5));
+  // The natural spline through more points is another one from the start.
+  CHECK_FALSE(ScalarFunction(first, "f", 2).same_until(ScalarFunction(longer, "f", 2), 0.5));
+  TimeFunction ramp;
+  ramp.kind = TimeFunction::Kind::ramp;
+  CHECK_FALSE(linear(first).same_until(linear(ramp), 0));
+  TimeFunction steeper = ramp;
+  steeper.rate = 1;
+  CHECK_FALSE(linear(ramp).same_until(linear(steeper), 0));
+  CHECK(linear(ramp).same_until(linear(ramp), 1));
+}

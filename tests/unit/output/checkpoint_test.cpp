@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <random>
 
 #include "base/error.hpp"
+#include "output/file_seal.hpp"
 #include "scratch.hpp"
 #include "support/catch.hpp"
 
@@ -81,6 +83,79 @@ TEST_CASE("a truncated checkpoint is refused at every length") {
     CAPTURE(length);
     CHECK_THROWS_AS(read_checkpoint(scratch / "cut.h5"), IoError);
   }
+}
+
+namespace {
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// What reading a file with these bytes says; "" if it is read.
+std::string refusal(const std::string& bytes) {
+  const ScratchDirectory scratch;
+  std::ofstream(scratch / "c.h5", std::ios::binary) << bytes;
+  try {
+    read_checkpoint(scratch / "c.h5");
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint in which bits have changed is refused, whichever they are") {
+  const ScratchDirectory scratch;
+  write_checkpoint(scratch / "c.h5", awkward_checkpoint());
+  const std::string whole = bytes_of(scratch / "c.h5");
+  REQUIRE(refusal(whole) == "");
+  std::mt19937_64 random(7);
+  for (const int flips : {1, 2, 64})
+    for (int trial = 0; trial < 400; ++trial) {
+      std::string bytes = whole;
+      for (int k = 0; k < flips; ++k) bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);
+      CAPTURE(flips, trial);
+      CHECK((bytes == whole || refusal(bytes) != ""));
+    }
+  for (std::size_t at = whole.size() - 40; at < whole.size(); ++at) {  // the seal itself
+    std::string bytes = whole;
+    bytes[at] ^= 1;
+    CHECK(refusal(bytes).find("the checkpoint is damaged") != std::string::npos);
+  }
+}
+
+TEST_CASE("a checkpoint that another program has changed is refused, and one of another version") {
+  const ScratchDirectory scratch;
+  write_checkpoint(scratch / "c.h5", awkward_checkpoint());
+  const std::string sealed = bytes_of(scratch / "c.h5");
+  {
+    Hdf5File file(scratch / "c.h5", Hdf5Access::modify);
+    file.write_array("/reals/more", std::vector<Real>{1});
+    file.close();
+  }
+  CHECK(refusal(bytes_of(scratch / "c.h5")).find("the checkpoint is damaged") != std::string::npos);
+  const std::string name = "scree checkpoint 3";
+  for (const auto& [number, words] : {std::pair{'1', "of an older version"}, {'4', "of a newer version"}}) {
+    std::string other = sealed.substr(0, sealed.size() - 26);  // older ones have no seal
+    REQUIRE(other.find(name) != std::string::npos);
+    other[other.find(name) + name.size() - 1] = number;
+    CHECK(refusal(other).find(words) != std::string::npos);
+  }
+}
+
+TEST_CASE("datasets outside the groups of a checkpoint are refused") {
+  const ScratchDirectory scratch;
+  write_checkpoint(scratch / "c.h5", awkward_checkpoint());
+  {
+    Hdf5File file(scratch / "c.h5", Hdf5Access::modify);
+    file.write_array("/more/values", std::vector<Real>{1});
+    file.close();
+  }
+  seal_file(scratch / "c.h5", {});
+  CHECK(refusal(bytes_of(scratch / "c.h5")).find("\"more/values\" is no part of a checkpoint") !=
+        std::string::npos);
 }
 
 TEST_CASE("foreign and missing files are refused") {

@@ -1,0 +1,70 @@
+#include "run/checkpoint_datasets.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <type_traits>
+
+#include "base/error.hpp"
+#include "model/connections.hpp"
+#include "run/state.hpp"
+
+namespace scree {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what) {
+  throw IoError(path + ": not a valid checkpoint: " + what);
+}
+
+// A dataset of `group` that one of the two has and the other has not, or with another number of values.
+template <class Values>
+void check_group(const std::string& path, const std::string& group,
+                 const std::map<std::string, Values>& found, const std::map<std::string, Values>& expected) {
+  for (const auto& [name, values] : expected) {
+    const auto there = found.find(name);
+    if (there == found.end()) refuse(path, fmt::format("dataset {}/{} is missing", group, name));
+    if constexpr (!std::is_same_v<Values, std::string>)
+      if (there->second.size() != values.size())
+        refuse(path, fmt::format("dataset {}/{} has {} values; the deck's model has {}", group, name,
+                                 there->second.size(), values.size()));
+  }
+  for (const auto& [name, values] : found)
+    if (!expected.count(name)) refuse(path, fmt::format("dataset {}/{} is not known", group, name));
+}
+
+template <class T>
+void check_row_group(const std::string& path, const std::string& group,
+                     const std::map<std::string, CheckpointRows<T>>& found,
+                     const std::map<std::string, CheckpointRows<T>>& expected) {
+  for (const auto& [name, rows] : expected) {
+    const auto there = found.find(name);
+    if (there == found.end()) refuse(path, fmt::format("dataset {}/{} is missing", group, name));
+    if (there->second.width != rows.width)
+      refuse(path, fmt::format("dataset {}/{} has {} values per row; it should have {}", group, name,
+                               there->second.width, rows.width));
+  }
+  for (const auto& [name, rows] : found)
+    if (!expected.count(name)) refuse(path, fmt::format("dataset {}/{} is not known", group, name));
+}
+
+}  // namespace
+
+void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
+  State sizes;
+  const std::size_t bodies = model.bodies.size();
+  for (std::vector<Real>* values : {&sizes.bodies.position, &sizes.bodies.velocity,
+                                    &sizes.bodies.acceleration, &sizes.bodies.force, &sizes.bodies.applied})
+    values->resize(3 * bodies);
+  sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
+  sizes.bodies.wrench.resize(bodies);
+  Checkpoint expected = pack(sizes);
+  for (const std::string& name : texts) expected.texts[name] = "";
+  check_group(checkpoint.path, "/reals", checkpoint.reals, expected.reals);
+  check_group(checkpoint.path, "/integers", checkpoint.integers, expected.integers);
+  check_group(checkpoint.path, "/texts", checkpoint.texts, expected.texts);
+  check_row_group(checkpoint.path, "/real_rows", checkpoint.real_rows, expected.real_rows);
+  check_row_group(checkpoint.path, "/integer_rows", checkpoint.integer_rows, expected.integer_rows);
+}
+
+}  // namespace scree

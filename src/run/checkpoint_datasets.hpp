@@ -1,0 +1,16 @@
+// Which datasets a checkpoint has, and how long they are.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+#include "output/checkpoint.hpp"
+
+namespace scree {
+
+// Throws IoError naming file and dataset where they are not those of a state of this model, each with its
+// length. texts: that the checkpoint has besides.
+void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts);
+
+}  // namespace scree

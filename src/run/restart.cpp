@@ -1,0 +1,197 @@
+#include "run/restart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.hpp"
+#include "deck/deck.hpp"
+#include "deck/differences.hpp"
+#include "mbs/scalar_function.hpp"
+#include "model/build_parts.hpp"
+#include "run/checkpoint_datasets.hpp"
+
+namespace scree {
+namespace {
+
+using Differences = std::vector<DeckDifference>;
+
+constexpr std::size_t kMostShown = 10;
+constexpr const char* kHash = "state_hash";
+
+std::string listed(const Differences& differences) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(differences.size(), kMostShown); ++i)
+    text += "\n  " + to_text(differences[i]);
+  if (differences.size() > kMostShown)
+    text += fmt::format("\n  and {} more", differences.size() - kMostShown);
+  return text;
+}
+
+bool starts_with_any(const std::string& text, std::initializer_list<const char*> starts) {
+  return std::any_of(starts.begin(), starts.end(),
+                     [&](const char* start) { return text.starts_with(start); });
+}
+
+// The numbers of a checkpoint stand in the order of the deck's bodies, joints, drivers and particles, and
+// positions along periodic axes on a grid that belongs to the space.
+bool must_stay(const DeckDifference& difference, bool periodic) {
+  static const std::set<std::string> kLists = {"",
+                                               "bodies",
+                                               "joints",
+                                               "drivers",
+                                               "particles",
+                                               "space.dimension",
+                                               "bodies.*.count",
+                                               "joints.*.type",
+                                               "joints.*.bodies",
+                                               "joints.*.chain",
+                                               "joints.*.each",
+                                               "drivers.*.joint",
+                                               "particles.*.kind",
+                                               "particles.*.count",
+                                               "particles.*.size"};
+  static const std::set<std::string> kSides = {"space.min",   "space.max",   "space.x_min", "space.x_max",
+                                               "space.y_min", "space.y_max", "space.z_min", "space.z_max"};
+  if (kSides.count(difference.pattern))
+    return periodic || difference.before == "\"periodic\"" || difference.after == "\"periodic\"";
+  return kLists.count(difference.pattern) > 0;
+}
+
+bool is_periodic(const Space& space) {
+  return std::count(space.boundary.begin(), space.boundary.end(), Boundary::periodic) > 0;
+}
+
+// Functions of time that have the same values up to t in both decks: the checkpoint is that of either.
+class SameFunctions {
+ public:
+  SameFunctions(const Deck& before, const Deck& after, Real t) : t_(t) {
+    compare(before, after, "drivers", {"motion"}, Interpolation::spline);
+    compare(before, after, "spring_dampers", {"actuator"}, Interpolation::linear);
+    compare(before, after, "applied_forces", {"fx", "fy", "torque"}, Interpolation::linear);
+  }
+  bool hold(const DeckDifference& difference) const {
+    return std::any_of(keys_.begin(), keys_.end(),
+                       [&](const std::string& key) { return difference.key.starts_with(key + "."); });
+  }
+
+ private:
+  void compare(const Deck& before, const Deck& after, const std::string& list,
+               std::initializer_list<const char*> names, Interpolation interpolation) {
+    const std::vector<DeckTable>& old = before.root.tables(list);
+    for (const DeckTable& now : after.root.tables(list)) {
+      const auto then = std::find_if(old.begin(), old.end(),
+                                     [&](const DeckTable& table) { return table.path() == now.path(); });
+      if (then == old.end()) continue;
+      for (const char* name : names)
+        if (function(then->table(name), interpolation)
+                .same_until(function(now.table(name), interpolation), t_))
+          keys_.push_back(now.path() + "." + name);
+    }
+  }
+  static ScalarFunction function(const DeckTable& table, Interpolation interpolation) {
+    return {build_time_function(table), table.path(), 0, interpolation};
+  }
+
+  Real t_;
+  std::vector<std::string> keys_;
+};
+
+// Keys in which the deck is another one for the time up to the checkpoint's.
+Differences differences_until(const Checkpoint& checkpoint, const RunOptions& options) {
+  if (checkpoint.text("fingerprint") == options.fingerprint) return {};
+  Differences differences = deck_differences(checkpoint.text("fingerprint"), options.fingerprint);
+  const std::vector<Real>& time = checkpoint.real_array("clock/time");
+  try {
+    const SameFunctions same(parse_deck(checkpoint.text("deck"), "checkpoint", {}),
+                             parse_deck(options.resolved_deck, "deck", {}), time.empty() ? 0 : time[0]);
+    std::erase_if(differences, [&](const DeckDifference& d) { return same.hold(d); });
+  } catch (const InputError&) {  // a deck of a version with other keys: all that differs counts
+  }
+  return differences;
+}
+
+[[noreturn]] void refuse(const Differences& differences, const RunOptions& options) {
+  throw InputError(fmt::format(
+      "--restart {}: the checkpoint belongs to another deck; only title, time.end and the tables output and "
+      "parallel may differ, unless --allow-changes lets the run go on, not bit for bit. Keys that differ:{}",
+      options.restart, listed(differences)));
+}
+
+void check_allowed(const Differences& differences, const Model& model, const RunOptions& options) {
+  if (!differences.empty() && !options.allow_changes) refuse(differences, options);
+  Differences refused;
+  for (const DeckDifference& difference : differences)
+    if (must_stay(difference, is_periodic(model.space))) refused.push_back(difference);
+  if (refused.empty()) return;
+  throw InputError(
+      fmt::format("--restart {}: the checkpoint's numbers have no meaning where these keys "
+                  "differ, with --allow-changes neither:{}",
+                  options.restart, listed(refused)));
+}
+
+// The deck's values hold from now on. What the state carries on from the steps before belongs to the old
+// ones, forces and accelerations to the old model.
+void apply(const Differences& differences, const Model& model, Restart& restart) {
+  if (differences.empty()) return;
+  restart.changed = true;
+  bool new_steps = false;
+  for (const DeckDifference& difference : differences) {
+    new_steps |= starts_with_any(difference.pattern, {"time."});
+    restart.forces_changed |= !starts_with_any(difference.pattern, {"time.", "integrator."}) ||
+                              difference.pattern == "integrator.particles";
+    restart.changes += fmt::format("t = {:.9g} s: {}\n", restart.state.clock.time, to_text(difference));
+  }
+  if (new_steps) restart.state.clock = with_new_steps(restart.state.clock, model.time);
+}
+
+void check_hash(const State& state, const Checkpoint& checkpoint, const Ranks& ranks) {
+  const std::string found = hash_of_all(state, ranks), &written = checkpoint.text(kHash);
+  if (found != written)
+    throw IoError(
+        fmt::format("{}: the checkpoint is damaged: the hash of its state is {}, of what was "
+                    "written {}",
+                    checkpoint.path, found, written));
+}
+
+}  // namespace
+
+std::string hash_of_all(const State& state, const Ranks& ranks) {
+  const auto own = static_cast<std::int64_t>(state_hash(state, ranks.is_root()));
+  return fmt::format("{:016x}", static_cast<std::uint64_t>(ranks.sum(own)));
+}
+
+void add_restart_texts(Checkpoint& checkpoint, const RunOptions& options, const std::string& state_hash,
+                       const std::string& changes) {
+  checkpoint.texts["fingerprint"] = options.fingerprint;
+  checkpoint.texts["deck"] = options.resolved_deck;
+  checkpoint.texts[kHash] = state_hash;
+  checkpoint.texts["changes"] = changes;
+}
+
+Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
+  const Ranks& ranks = options.ranks;
+  const Checkpoint checkpoint = read_checkpoint(options.restart, ranks);
+  Restart restart;
+  Differences differences;
+  ranks.together([&] {
+    differences = differences_until(checkpoint, options);
+    check_allowed(differences, model, options);
+    check_datasets(checkpoint, model, {"changes", "deck", "fingerprint", kHash});
+    restart.state = unpack(checkpoint);  // a file may be unreadable where one rank's rows are
+  });
+  check_state(restart.state, options.restart, model.particles.totals.count, ranks);
+  check_hash(restart.state, checkpoint, ranks);
+  restart.changes = checkpoint.text("changes");
+  apply(differences, model, restart);
+  if (restart.changed)
+    log.warning(fmt::format(
+        "--allow-changes: from t = {:.9g} s on this run has another deck than before, and is not bit for bit "
+        "that of either{}. Keys that differ:{}",
+        restart.state.clock.time,
+        restart.forces_changed ? "; forces and accelerations are computed anew" : "", listed(differences)));
+  return restart;
+}
+
+}  // namespace scree
