@@ -9,14 +9,12 @@
 #include <cstring>
 #include <ctime>
 
-#include "dem/device.hpp"
-#include "model/memory.hpp"
 #include "output/results_folder.hpp"
 #include "output/run_record.hpp"
 #include "partition/id_order.hpp"
-#include "partition/shared_model.hpp"
 #include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
+#include "run/choose_backend.hpp"
 #include "run/restart.hpp"
 #include "run/step_loop.hpp"
 
@@ -25,10 +23,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::int64_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
-constexpr double kProgressSeconds = 0.25;     // between progress lines on a terminal
-constexpr double kLogSeconds = 600;           // between those in a log, besides one per tenth of the run
-constexpr double kFlushSeconds = 5;           // between writes of the history, besides those with checkpoints
+constexpr double kProgressSeconds = 0.25;  // between progress lines on a terminal
+constexpr double kLogSeconds = 600;        // between those in a log, besides one per tenth of the run
+constexpr double kFlushSeconds = 5;        // between writes of the history, besides those with checkpoints
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
@@ -41,58 +38,6 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-const char* key_of(Transport transport) {
-  if (transport == Transport::cuda_aware) return "cuda-aware";
-  if (transport == Transport::nccl) return "nccl";
-  return transport == Transport::staged ? "staged" : "auto";
-}
-
-std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
-  std::unique_ptr<Backend> backend = make_cuda_backend(model, ranks);
-  log.info("backend cuda: " + why + "; " + device_name());
-  return backend;
-}
-
-std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
-  log.info("backend cpu: " + why);
-  const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
-  check_memory(size_of(model),
-               kBytesPerParticle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns,
-               "running it on the CPU", RanksShare(ranks));
-  if (model.integrator.precision == Precision::mixed)
-    log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
-  if (model.parallel.transport != Transport::automatic)
-    log.info(fmt::format("parallel.transport = \"{}\" is for GPUs: ranks on the CPU exchange halos by MPI",
-                         key_of(model.parallel.transport)));
-  return make_cpu_backend(model, ranks);
-}
-
-// The one that --backend names, or for auto the one that is likely to be faster. Where the deck forces a
-// transport between GPUs, the CPU does not stand in for one that cannot be had.
-std::unique_ptr<Backend> make_backend(const Model& model, const Ranks& ranks, const std::string& name,
-                                      Log& log) {
-  const std::int64_t particles = model.particles.totals.count / ranks.size();
-  const bool few = particles < kGpuParticles;
-  const std::string why = name != "auto" ? "chosen by --backend"
-                                         : fmt::format("{} particles{} are {} {}, from which a GPU is faster",
-                                                       particles, ranks.alone() ? "" : " per rank",
-                                                       few ? "fewer than" : "at least", kGpuParticles);
-  if (name == "cpu" || (name == "auto" && few)) return make_cpu(model, ranks, why, log);
-  try {
-    return make_gpu(model, ranks, why, log);
-  } catch (const TransportError&) {
-    throw;
-  } catch (const InputError& error) {
-    if (name == "cuda")
-      throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));
-    if (model.parallel.transport != Transport::automatic && !ranks.alone())
-      throw InputError(
-          fmt::format("parallel.transport = \"{}\" is for GPUs: {}; allowed here: \"auto\", or --backend cpu",
-                      key_of(model.parallel.transport), error.what()));
-    return make_cpu(model, ranks, error.what(), log);
-  }
-}
-
 class Simulation {
  public:
   Simulation(const Model& model, const RunOptions& options, Log& log)
@@ -103,7 +48,7 @@ class Simulation {
         folder_({options.output_directory, options.restart, options.overwrite}),
         restart_(options.restart.empty() ? Restart{} : read_restart(model, options, log)),
         state_(std::move(restart_.state)),
-        backend_(make_backend(model, ranks_, options.backend, log)),
+        backend_(choose_backend(model, ranks_, options.backend, log)),
         link_(model, ranks_),
         step_(model, *backend_, link_, timers_) {
     ranks_.on_root([&] { folder_.claim(); });
