@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <optional>
+#include <regex>
 #include <sstream>
 
 namespace scree {
@@ -57,11 +58,10 @@ void tighten_by_control_groups(MemoryBound& bound, const std::string& root) {
   for (std::string line; std::getline(file, line);) {
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (second == std::string::npos) continue;
-    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",",
-                      path = line.substr(second + 1);
-    if (controllers == ",,")
+    const std::string controllers = line.substr(first, second - first) + ':', path = line.substr(second + 1);
+    if (controllers == "::")
       tighten_by_groups(bound, mount, path, {"memory.max", "memory.current", "inactive_file"});
-    if (controllers.find(",memory,") != std::string::npos)
+    if (std::regex_search(controllers, std::regex("[:,]memory[:,]")))
       tighten_by_groups(bound, mount + "/memory", path,
                         {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"});
   }
