@@ -70,6 +70,8 @@ TEST_CASE("names of what a history records the contacts of") {
                  "\"floor\"?"));
   CHECK(contains(model_error(recording("\"y_min\"")),
                  "the side y_min is no wall; space.y_min = \"wall\" makes it one"));
+  CHECK(contains(model_error(recording("\"a\", \"floor\", \"a\"")),
+                 "\"a\" is repeated; every entry must be another one"));
   CHECK(contains(model_error(recording("\"a\""), {"walls.0.name=a"}),
                  "\"a\" is the name of 2 bodies, rows and walls; it must be that of one"));
 }
