@@ -51,6 +51,24 @@ std::string row_trouble(const PlanarSystem& system, const ConstraintGroup& group
   return "";
 }
 
+SystemTerms terms_at(PlanarSystem& system, const std::vector<Real>& position,
+                     const std::vector<Real>& velocity, Real t) {
+  SystemTerms terms;
+  terms.applied_force.assign(at(system.coordinates()), 0);
+  terms.constraint.assign(at(system.constraints()), 0);
+  system.evaluate({t, position, velocity}, terms);
+  return terms;
+}
+
+void check_gaps(const PlanarSystem& system, const SystemTerms& terms, Real limit, Real t) {
+  const std::string what =
+      fmt::format("its two sides do not meet at t = {:.9g}{}, they miss by", t, t > 0 ? " s" : "");
+  for (const ConstraintGroup& group : system.groups()) {
+    const std::string trouble = row_trouble(system, group, terms.constraint, limit, what.c_str(), "");
+    if (!trouble.empty()) throw InputError(trouble);
+  }
+}
+
 // The direction of a spring-damper or a distance is not defined where its points coincide.
 void check_directions(const Model& model, const PlanarMotion& motion) {
   const auto check = [&](const int(&body)[2], const Vec3(&point)[2], const char* kind,
@@ -90,15 +108,8 @@ void check_start(const Model& model, PlanarSystem& system, const std::vector<Rea
   PlanarMotion motion(static_cast<int>(model.bodies.size()));
   motion.set(position, velocity);
   check_directions(model, motion);
-  SystemTerms terms;
-  terms.applied_force.assign(at(system.coordinates()), 0);
-  terms.constraint.assign(at(system.constraints()), 0);
-  system.evaluate({0, position, velocity}, terms);
-  for (const ConstraintGroup& group : system.groups()) {
-    const std::string trouble = row_trouble(system, group, terms.constraint, kPositionGap,
-                                            "its two sides do not meet at t = 0, they miss by", "");
-    if (!trouble.empty()) throw InputError(trouble);
-  }
+  const SystemTerms terms = terms_at(system, position, velocity, 0);
+  check_gaps(system, terms, kPositionGap, 0);
   check_redundancy(system, terms.constraint_jacobian);
 }
 
@@ -118,13 +129,7 @@ std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>
 
 void check_joints_hold(PlanarSystem& system, const std::vector<Real>& position,
                        const std::vector<Real>& velocity, Real t) {
-  SystemTerms terms;
-  terms.applied_force.assign(at(system.coordinates()), 0);
-  terms.constraint.assign(at(system.constraints()), 0);
-  system.evaluate({t, position, velocity}, terms);
-  const std::string what = fmt::format("its two sides do not meet at t = {:.9g} s, they miss by", t);
-  for (const ConstraintGroup& group : system.groups())
-    check_rows(system, group, terms.constraint, kKeptGap, what.c_str(), "");
+  check_gaps(system, terms_at(system, position, velocity, t), kKeptGap, t);
 }
 
 std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& pattern,
