@@ -129,20 +129,22 @@ TimeValue ScalarFunction::segment_value(std::size_t i, Real t) const {
   return spline_function({times[i], times[i + 1], values[i], values[i + 1], bends[i], bends[i + 1]}, t);
 }
 
-// Of tables: the same points, and second derivatives there, of all pieces that begin before t.
+// Of tables: the same points, rates and second derivatives there, of all pieces that begin before t.
 bool ScalarFunction::same_until(const ScalarFunction& other, Real t) const {
   const TimeFunction &a = function_, &b = other.function_;
   if (a.kind != b.kind) return false;
   if (a.kind != TimeFunction::Kind::table)
     return a.value == b.value && a.rate == b.rate && a.amplitude == b.amplitude &&
-           a.frequency == b.frequency && a.phase == b.phase;
+           a.frequency == b.frequency && a.phase == b.phase && a.end_value == b.end_value &&
+           a.start == b.start && a.end == b.end;
+  if (a.interpolation != b.interpolation) return false;
   const auto before = std::lower_bound(a.times.begin(), a.times.end(), t) - a.times.begin();
   const auto points = std::min(static_cast<std::size_t>(before) + 1, a.times.size());
   if (points > b.times.size() || (t > a.times.back() && a.times.size() != b.times.size())) return false;
   const auto same = [points](const std::vector<Real>& x, const std::vector<Real>& y) {
     return std::equal(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(points), y.begin());
   };
-  return same(a.times, b.times) && same(a.values, b.values) &&
+  return same(a.times, b.times) && same(a.values, b.values) && same(rates_, other.rates_) &&
          same(second_derivatives_, other.second_derivatives_);
 }
 

@@ -67,9 +67,9 @@ bool is_periodic(const Space& space) {
 class SameFunctions {
  public:
   SameFunctions(const Deck& before, const Deck& after, Real t) : t_(t) {
-    compare(before, after, "drivers", {"motion"}, Interpolation::spline);
-    compare(before, after, "spring_dampers", {"actuator"}, Interpolation::linear);
-    compare(before, after, "applied_forces", {"fx", "fy", "torque"}, Interpolation::linear);
+    compare(before, after, "drivers", {"motion"}, build_motion);
+    compare(before, after, "spring_dampers", {"actuator"}, build_force);
+    compare(before, after, "applied_forces", {"fx", "fy", "torque"}, build_force);
   }
   bool hold(const DeckDifference& difference) const {
     return std::any_of(keys_.begin(), keys_.end(),
@@ -78,20 +78,17 @@ class SameFunctions {
 
  private:
   void compare(const Deck& before, const Deck& after, const std::string& list,
-               std::initializer_list<const char*> names, Interpolation interpolation) {
+               std::initializer_list<const char*> names, TimeFunction (*build)(const DeckTable&)) {
     const std::vector<DeckTable>& old = before.root.tables(list);
     for (const DeckTable& now : after.root.tables(list)) {
       const auto then = std::find_if(old.begin(), old.end(),
                                      [&](const DeckTable& table) { return table.path() == now.path(); });
       if (then == old.end()) continue;
       for (const char* name : names)
-        if (function(then->table(name), interpolation)
-                .same_until(function(now.table(name), interpolation), t_))
+        if (ScalarFunction(build(then->table(name)), name, 0)
+                .same_until(ScalarFunction(build(now.table(name)), name, 0), t_))
           keys_.push_back(now.path() + "." + name);
     }
-  }
-  static ScalarFunction function(const DeckTable& table, Interpolation interpolation) {
-    return {build_time_function(table), table.path(), 0, interpolation};
   }
 
   Real t_;

@@ -229,9 +229,11 @@ TEST_CASE("tables that cannot be used are refused by the owner's name") {
 }
 
 TEST_CASE("functions are the same until a time where no value before it differs in a bit") {
-  const auto linear = [](const TimeFunction& function) {
-    return ScalarFunction(function, "f", 1, Interpolation::linear);
+  const auto with = [](Interpolation interpolation, TimeFunction function) {
+    function.interpolation = interpolation;
+    return ScalarFunction(function, "f", 1);
   };
+  const auto linear = [&](const TimeFunction& function) { return with(Interpolation::linear, function); };
   const TimeFunction first = table({0, 1, 2}, {0, 3, 1}), longer = table({0, 1, 2, 3}, {0, 3, 1, 7}),
                      bent = table({0, 1, 2}, {0, 3, 2});
   CHECK(linear(first).same_until(linear(longer), 2));
@@ -241,13 +243,18 @@ TEST_CASE("functions are the same until a time where no value before it differs 
   CHECK(linear(first).same_until(linear(bent), 1));
   CHECK_FALSE(linear(first).same_until(linear(bent), 1.1));
   CHECK(linear(first).same_until(linear(first), 5));
-  // The natural spline through more points is another one from the start.
-  CHECK_FALSE(ScalarFunction(first, "f", 2).same_until(ScalarFunction(longer, "f", 2), 0.5));
-  TimeFunction ramp;
-  ramp.kind = TimeFunction::Kind::ramp;
-  CHECK_FALSE(linear(first).same_until(linear(ramp), 0));
-  TimeFunction steeper = ramp;
-  steeper.rate = 1;
-  CHECK_FALSE(linear(ramp).same_until(linear(steeper), 0));
-  CHECK(linear(ramp).same_until(linear(ramp), 1));
+  CHECK_FALSE(linear(first).same_until(with(Interpolation::monotone, first), 0.5));
+  // The natural spline through more points is another one from the start; the monotone one is local.
+  CHECK_FALSE(with(Interpolation::natural, first).same_until(with(Interpolation::natural, longer), 0.5));
+  CHECK(with(Interpolation::monotone, first).same_until(with(Interpolation::monotone, longer), 1));
+  CHECK_FALSE(with(Interpolation::monotone, first).same_until(with(Interpolation::monotone, longer), 1.1));
+  for (const auto change : {&TimeFunction::value, &TimeFunction::rate, &TimeFunction::end_value,
+                            &TimeFunction::start, &TimeFunction::end}) {
+    TimeFunction step, other;
+    step.kind = other.kind = TimeFunction::Kind::step;
+    other.*change = 1;
+    CHECK_FALSE(linear(step).same_until(linear(other), 0));
+    CHECK(linear(other).same_until(linear(other), 1));
+    CHECK_FALSE(linear(first).same_until(linear(step), 0));
+  }
 }

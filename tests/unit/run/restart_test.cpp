@@ -79,7 +79,7 @@ struct Case {
     petsc();
     Log log(true);
     model = build_model(deck, log);
-    options.backend = "cpu";
+    options.backend = "cpu", options.overwrite = true;
     options.resolved_deck = deck.resolved_text(), options.fingerprint = deck.fingerprint();
   }
   // Into a folder; what a failed one says.
