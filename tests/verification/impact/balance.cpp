@@ -229,7 +229,7 @@ TEST_CASE("what implicit steps do to a gas of another exponent is the integrator
 // all of it.
 TEST_CASE("the balance error of explicit steps is what they do to contacts") {
   const std::string deck =
-      contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\n", "end = 0.02\nstep = 3e-4\n",
+      contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\n", "end = 0.021\nstep = 3e-4\n",
                    disc("disc", "[-0.948, 0.0]", "[-3.0, 1.0]"));
   SimulationRun run(model_of(deck, {"integrator.particles=velocity-verlet", "contact.pairs.0.exponent=1.5"}));
   const auto overlap = [&] { return std::max(0.0, -0.95 - run.particles()[0].position.x); };
@@ -244,6 +244,28 @@ TEST_CASE("the balance error of explicit steps is what they do to contacts") {
     CHECK(run.balance_error() == Approx(missed).margin(kRoundOff));
   });
   CHECK(largest > 1e-3);
+}
+
+// The body's next step begins with the force of the contact that ended: half a step's work, and no more, is
+// missing.
+TEST_CASE("a particle that leaves while it touches a body takes the contact's energy along") {
+  const std::string deck =
+      contact_deck("min = [-1.0, -1.0]\nmax = [1.0, 1.0]\nleaving = \"remove\"\n",
+                   "end = 8e-4\nstep = 2e-5\n", disc("disc", "[0.999, 0.0]", "[0.0, 0.0]") + R"([[bodies]]
+name = "body"
+mass = 1.0
+inertia = 0.001
+position = [0.904, 0.0]
+shapes = [{ radius = 0.05 }]
+)");
+  for (const std::string step : {"2e-5", "4e-6"})
+    for (const std::string particles : {"hht", "velocity-verlet"}) {
+      CAPTURE(step, particles);
+      const Outcome run = outcome_of(deck, {"time.step=" + step, "integrator.particles=" + particles});
+      CHECK(run.left == 1);
+      CHECK(run.end.carried_out > 0.5 * run.exchanged);
+      CHECK(run.largest_share() < 500 * std::stod(step));
+    }
 }
 
 // Shapes of bodies meet each other and a wall; their centres are the bodies', so that the bodies' own books
