@@ -53,7 +53,8 @@ def make_checkpoints(program, maker, folder):
             if ended.code != judge.DONE:
                 sys.exit(f"fuzz.py: {deck} does not run: {ended.errors.decode()}")
             if not words:
-                shutil.copy(place / "out" / "checkpoint.h5", place / "kept.h5")
+                shutil.move(place / "out" / "checkpoint.h5", place / "kept.h5")
+                shutil.rmtree(place / "out")
         maker.add_checkpoint(deck, (place / "kept.h5").read_bytes(), judge.read_hash(place))
 
 

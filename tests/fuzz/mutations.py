@@ -109,7 +109,8 @@ def scale_number(text, rng):
     number = rng.choice(numbers)
     factor = rng.choice([-1.0, 0.5, 2.0, 10.0, 1.0 + 1e-12, 1e3, 1e-3, 1e6, 1e-6, 1e12, 1e-12, 1e100, 1e-100])
     value = float(number.group()) * factor
-    shown = str(int(value)) if "." not in number.group() and value == int(value) else repr(value)
+    whole = "." not in number.group() and value.is_integer()  # infinity is not
+    shown = str(int(value)) if whole else repr(value)
     return text[:number.start()] + shown + text[number.end():]
 
 
