@@ -20,9 +20,10 @@ namespace scree {
 
 namespace {
 
-// Alternating part of the reactions over the largest mean part: where the run ends because shorter steps do
-// not help, and where it ends in any case.
-constexpr Real kOscillation = 10, kRuin = 1000;
+// Alternating part of the reactions over the largest mean part: from here on shorter steps do not help.
+constexpr Real kOscillation = 10;
+// Where the velocities suffer too, in thousandths, the run ends in any case.
+constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
 // The bodies' error, over the tolerance, from which they decide on the step's length.
 constexpr Real kGoverns = 0.3;
 
@@ -62,6 +63,7 @@ struct Multibody::Impl {
 
   void settle_velocities(const Model& model);
   void watch_reactions(const MultibodyState& state, Real error);
+  std::string oscillation(Real share) const;
   [[noreturn]] void fail_for_oscillation() const;
 
   void update_motion() {
@@ -168,19 +170,26 @@ void Multibody::Impl::watch_reactions(const MultibodyState& state, Real error) {
   if (!watch.oscillates()) return;
   const bool governs =
       time_control.control == StepControl::adaptive && error >= kGoverns * time_control.tolerance;
-  if (watch.share() >= (governs ? kOscillation : kRuin)) fail_for_oscillation();
+  const bool ruined = watch.share() >= kRuin && watch.gap_share() >= kRuinedVelocity;
+  if (ruined || (governs && watch.share() >= kOscillation)) fail_for_oscillation();
+}
+
+std::string Multibody::Impl::oscillation(Real share) const {
+  const Real alpha = method.coefficients().hht_alpha;
+  const bool none = alpha == 0;  // of either sign
+  return fmt::format(
+      "the reactions of joints and drivers change sign at every step and have grown to {:.0f} "
+      "times their mean: an oscillation of the method, which integrator.hht_alpha = {:g} {}; set "
+      "it {}below zero, e.g. -0.05",
+      share, none ? 0 : alpha, none ? "does not damp" : "damps too little", none ? "" : "further ");
 }
 
 void Multibody::Impl::fail_for_oscillation() const {
-  const Real alpha = method.coefficients().hht_alpha;
-  throw SimulationError(
-      fmt::format("stage accept: the reactions of joints and drivers change sign at every step and have "
-                  "grown to {:.0f} times "
-                  "their mean: an oscillation of the method, which integrator.hht_alpha = {:g} damps {}; set "
-                  "it {}below zero, "
-                  "e.g. -0.05",
-                  watch.share(), alpha == 0 ? 0 : alpha, alpha == 0 ? "not at all" : "too little",
-                  alpha == 0 ? "" : "further "));
+  throw SimulationError("stage accept: " + oscillation(watch.share()));
+}
+
+std::string Multibody::reaction_warning() const {
+  return impl_->watch.worst_share() >= kOscillation ? impl_->oscillation(impl_->watch.worst_share()) : "";
 }
 
 const std::vector<BodyMotion>& Multibody::motion() const { return impl_->motion; }

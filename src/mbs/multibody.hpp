@@ -73,6 +73,8 @@ class Multibody {
   // After a step that failed: throws SimulationError where the reactions oscillate, as shorter steps do not
   // help then.
   void check_reactions() const;
+  // What is to be said of a run whose reactions oscillated, though it went on; else empty.
+  std::string reaction_warning() const;
 
   // One entry per body, at the current iterate of the open step.
   const std::vector<BodyMotion>& motion() const;

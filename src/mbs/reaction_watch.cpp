@@ -47,13 +47,19 @@ void ReactionWatch::observe(const MultibodyState& start, const MultibodyState& e
     change[i] = scale * (after - before);
     alternating_ = std::max(alternating_, std::abs(change[i]) / 2);
     mean_ = std::max(mean_, scale * std::abs(after + before) / 2);
+    fastest_ = std::max(fastest_, std::abs(end.velocity[i]) / scale);
     applied_change = std::max(applied_change, scale * std::abs(end.applied[i] - start.applied[i]));
   }
-  for (std::size_t j = 0; j < gap.size(); ++j) scaled_gap[j] = gap[j] / constraint_scale_[j];
+  largest_gap_ = 0;
+  for (std::size_t j = 0; j < gap.size(); ++j) {
+    scaled_gap[j] = gap[j] / constraint_scale_[j];
+    largest_gap_ = std::max(largest_gap_, std::abs(scaled_gap[j]));
+  }
   steps_ = alternates(change, applied_change, scaled_gap) ? steps_ + 1 : 0;
   if (steps_ <= 1) first_ = alternating_;
   change_ = std::move(change);
   gap_ = std::move(scaled_gap);
+  if (oscillates()) worst_share_ = std::max(worst_share_, share());
 }
 
 bool ReactionWatch::oscillates() const { return steps_ >= kSteps && alternating_ >= kGrowth * first_; }

@@ -24,13 +24,17 @@ class ReactionWatch {
 
   // The last 50 steps and more alternate, and A has grown tenfold since they do.
   bool oscillates() const;
-  // A over the largest S seen.
+  // A over the largest S seen; the largest share of steps that oscillated.
   Real share() const { return mean_ > 0 ? alternating_ / mean_ : 0; }
+  Real worst_share() const { return worst_share_; }
+  // The velocity gap over the largest velocity seen, both over their scales.
+  Real gap_share() const { return fastest_ > 0 ? largest_gap_ / fastest_ : 0; }
 
  private:
   bool alternates(const std::vector<Real>& change, Real applied_change, const std::vector<Real>& gap) const;
 
   const std::vector<Real>&coordinate_scale_, &constraint_scale_;
+  Real worst_share_ = 0, largest_gap_ = 0, fastest_ = 0;
   std::vector<Real> change_, gap_;   // of the last step, scaled
   Real alternating_ = 0, mean_ = 0;  // A of the last step, largest S [J]
   Real first_ = 0;                   // A of the first of the steps that alternate [J]

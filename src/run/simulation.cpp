@@ -267,6 +267,8 @@ void Simulation::keep_last_good_state(StepLoop& loop) {
 
 ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   recorder_->finish();
+  const std::string reactions = link_.multibody() ? link_.multibody()->reaction_warning() : "";
+  if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
   list_entries_ = ranks_.sum(backend_->list_entries());
   migrated_ = ranks_.sum(backend_->balance().migrated);
   summarize();  // what it warns of goes into the record

@@ -3,7 +3,7 @@ Usage: SCREE=path/to/scree MPIEXEC=path/to/mpirun [SCREE_TEST_BACKEND=cuda] pyth
 
 import unittest
 
-from mpi_case import DAM, DONE, EXPLICIT, IMPLICIT, INPUT, RanksTest, h5py
+from mpi_case import DAM, DONE, EXPLICIT, FAILED, IMPLICIT, INPUT, RanksTest, h5py
 
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
 NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
@@ -47,6 +47,16 @@ class SameBitsTest(RanksTest):
             self.assertGreater(migrated, 0, name)
             if name in MAIN_CASES:
                 self.assertGreater(rebalances, 0, name)
+
+    def test_velocities_found_at_the_start_and_reactions_that_oscillate(self):
+        deck = INPUT / "examples/hold_and_move.toml"
+        for ranks in (1, 2):
+            self.run_deck(DONE, ranks, deck, f"held {ranks}", ["time.end=0.03"])
+            self.assertIn("from 0.0 to 6.28", self.record(f"held {ranks}")["run"]["start_change"])
+            text = self.run_deck(FAILED, ranks, deck, f"oscillating {ranks}", ["integrator.hht_alpha=0.0"]).stderr
+            self.assertEqual(text.count("integrator.hht_alpha = 0 does not damp; set it below zero"), 1)
+        self.assertEqual(self.hash("held 1"), self.hash("held 2"))
+        self.assertEqual(self.hash("oscillating 1"), self.hash("oscillating 2"))
 
     def test_uneven_loads_move_the_boxes(self):
         deck, *overrides = CASES["dam break, explicit"][0]

@@ -116,6 +116,45 @@ TEST_CASE("a step that does not converge names the side that is at fault") {
       contains(bodies, "stage mbs_correct: no convergence in 1 iterations; the bodies' scaled residual is "));
 }
 
+TEST_CASE("a step too long for the pair search says so, and only where something can touch") {
+  const std::vector<std::string> fast{"gravity=[0, 0]", "particles.falling.velocity=[100.0, 0.0]",
+                                      "particles.falling.origin=[-0.03, 0.4]",
+                                      "particles.falling.size=[1, 1]"};
+  Coupled step(fast);
+  const StepOutcome outcome = step.step->implicit_step(step.bodies, 0, 0.02);
+  CHECK(outcome.verdict == Verdict::not_converged);
+  CHECK(contains(outcome.trouble, "stage neighbors: the step moves a particle or a shape of a body by 2 m"));
+  // A body alone that turns by many of its radii per step: no list has to cover it.
+  petsc();
+  const Model model = model_of(kSmallDeck + R"(
+[[contact.pairs]]
+stiffness = 0.0
+[[bodies]]
+name = "arm"
+position = [0.5, 0.0]
+velocity = [0.0, 20.0]
+angular_velocity = 40.0
+mass = 1.0
+inertia = 0.005
+shapes = [{ radius = 0.01 }]
+[[joints]]
+name = "pin"
+type = "revolute"
+bodies = ["ground", "arm"]
+point = [0.0, 0.0]
+)");
+  StageTimers timers;
+  const std::unique_ptr<Backend> backend = make_test_backend(model);
+  BodyLink link(model);
+  CoupledStep alone(model, *backend, link, timers);
+  MultibodyState bodies;
+  backend->load({}, {});
+  alone.start(bodies);
+  for (int n = 0; n < 5; ++n)
+    REQUIRE(alone.implicit_step(bodies, n * 0.01, 0.01).verdict == Verdict::accepted);
+  CHECK(backend->list_builds() == 1);
+}
+
 TEST_CASE("a step that is not accurate enough leaves both sides as they were") {
   const std::vector<std::string> adaptive{"time.control=adaptive", "time.tolerance=1e-12"};
   Coupled refused(adaptive), same_start(adaptive);

@@ -109,8 +109,7 @@ TEST_CASE("the refusal of start velocities says which keys to set to what, with 
   model.space.dimension = 3;
   CHECK(contains(refusal(model), "bodies.bob.velocity = [0.0, 0.92500000000000004, 0.0], or"));
   model.bodies[0].in_row = true;  // its keys are those of the whole row
-  CHECK(contains(refusal(model),
-                 "; set velocities = \"consistent\" at the top of the deck"));
+  CHECK(contains(refusal(model), "; set velocities = \"consistent\" at the top of the deck"));
 }
 
 TEST_CASE("consistent start velocities change the given ones least in the norm of M") {

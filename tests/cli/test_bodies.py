@@ -1,0 +1,144 @@
+"""Bodies as the command line shows them: velocities at t = 0, motions, reactions that oscillate.
+Usage: SCREE=path/to/scree python3 test_bodies.py"""
+
+import json
+import math
+import re
+import unittest
+
+from test_cli import BAD_INPUT, DONE, FAILED, CommandLineTest
+
+HEAD = """gravity = [0.0, -9.8066]
+
+[space]
+dimension = 2
+min = [-2.0, -2.0]
+max = [2.0, 2.0]
+
+[time]
+end = {end}
+step = 1e-3
+control = "{control}"
+
+[integrator]
+hht_alpha = {alpha}
+
+[[contact.pairs]]
+stiffness = {stiffness}
+"""
+CORNERS = {"o": (0.0, 0.0), "a": (0.0, 0.2), "b": (0.4, 0.4), "d": (0.5, 0.0)}
+MOTOR = """
+[[drivers]]
+name = "motor"
+joint = "o"
+motion = {{ {} }}
+"""
+
+
+def four_bar(end=1.0, control="fixed", alpha=-0.05, stiffness=0.0, motion=None):
+    """Crank o-a, coupler a-b, rocker d-b, with a small circle on each; driven at o, or free."""
+    text = HEAD.format(end=end, control=control, alpha=alpha, stiffness=stiffness)
+    for name, (first, second), mass in (("crank", "oa", 0.5), ("coupler", "ab", 1.2), ("rocker", "db", 1.0)):
+        p, q = CORNERS[first], CORNERS[second]
+        text += (f'\n[[bodies]]\nname = "{name}"\nposition = [{(p[0] + q[0]) / 2!r}, {(p[1] + q[1]) / 2!r}]\n'
+                 f"mass = {mass}\ninertia = {mass * math.dist(p, q) ** 2 / 12!r}\nshapes = [{{ radius = 0.02 }}]\n")
+    for corner, first, second in (("o", "ground", "crank"), ("a", "crank", "coupler"), ("b", "coupler", "rocker"),
+                                  ("d", "ground", "rocker")):
+        text += (f'\n[[joints]]\nname = "{corner}"\ntype = "revolute"\nbodies = ["{first}", "{second}"]\n'
+                 f"point = {list(CORNERS[corner])}\n")
+    return text + (MOTOR.format(motion) if motion else "")
+
+
+class BodiesTest(CommandLineTest):
+    def use(self, **settings):
+        self.deck = self.write("deck.toml", four_bar(**settings))
+
+    def record(self, output="out"):
+        return json.loads((self.folder / output / "run_record.json").read_text())
+
+
+class StartVelocityTest(BodiesTest):
+    RAMP = 'kind = "ramp", rate = 1.85'
+
+    def test_the_keys_that_the_refusal_names_are_those_that_pass(self):
+        self.use(end=0.01, motion=self.RAMP)
+        for words in (("check", self.deck), ("run", self.deck, "--output", self.folder / "out")):
+            text = self.expect(BAD_INPUT, *words).stderr
+            self.assertIn("driver 'motor': the velocities at t = 0 contradict it by 1.85 rad/s, allowed is ", text)
+            self.assertIn('; set bodies.crank.velocity = [-0.185', text)
+            self.assertIn("bodies.crank.angular_velocity = 1.8500000000000001, ", text)
+            self.assertIn('or velocities = "consistent" at the top of the deck', text)
+        settings = re.findall(r"(bodies\.\w+\.(?:angular_)?velocity) = (\[[^]]*\]|[-+.e0-9]+)", text)
+        self.assertEqual(len(settings), 6)
+        words = [word for key, value in settings for word in ("--set", f"{key}={value}")]
+        self.expect(DONE, "check", self.deck, *words)
+        self.run_deck(DONE, "given", *words)
+        self.assertEqual(self.record("given")["run"]["start_change"], "")
+        log = self.run_deck(DONE, "found", "--set", "velocities=consistent").stdout
+        change = self.record("found")["run"]["start_change"]
+        self.assertRegex(change, r"^x component of the velocity of body 'coupler' \(id 1\) from 0\.0 to -0\.3[0-9]+ m/s$")
+        self.assertIn(f'velocities = "consistent": the largest change at t = 0 is that of the {change}\n', log)
+        self.assertIn(change, self.expect(DONE, "check", self.deck, "--set", "velocities=consistent").stdout)
+
+    def test_a_restart_finds_no_velocities_anew(self):
+        self.use(end=0.1, motion=self.RAMP)
+        words = ("--set", "velocities=consistent", "--set", "output.checkpoint_interval=0.05",
+                 "--set", "output.history_csv=true")
+        self.run_deck(DONE, "whole", *words)
+        self.run_deck(DONE, "parts", *words, "--restart", self.folder / "whole/checkpoint.h5")
+        self.assertEqual(self.record("whole")["run"]["state_hash"], self.record("parts")["run"]["state_hash"])
+        self.assertEqual(self.record("parts")["run"]["start_change"], "")
+
+
+class MotionTest(BodiesTest):
+    TABLE = 'kind = "table", times = [0.0, 0.1, 0.2, 0.3], values = [0.0, 0.0, 0.1, 0.1]'
+
+    def test_a_table_holds_where_it_is_monotone(self):
+        self.use(end=0.3, motion=self.TABLE)
+        self.assertIn("bodies.crank.angular_velocity = -0.3", self.expect(BAD_INPUT, "check", self.deck).stderr)
+        self.use(end=0.3, motion=self.TABLE + ', interpolation = "monotone"')
+        self.run_deck(DONE, "table")
+        self.use(end=0.3, motion='kind = "step", end_value = 0.1, start = 0.1, end = 0.2')
+        self.run_deck(DONE, "out")
+
+    def test_a_motion_of_straight_lines_is_refused(self):
+        self.use(motion=self.TABLE + ', interpolation = "linear"')
+        text = self.expect(BAD_INPUT, "check", self.deck).stderr
+        self.assertRegex(text, r'deck\.toml:\d+:\d+: drivers\.motor\.motion\.interpolation = "linear": the velocity of '
+                               "a motion must not jump; allowed for a driver: natural, clamped, monotone")
+
+
+class OscillationTest(BodiesTest):
+    MESSAGE = ("the reactions of joints and drivers change sign at every step",
+               "integrator.hht_alpha = 0 does not damp; set it below zero, e.g. -0.05")
+
+    def test_reactions_that_nothing_damps_end_the_run_at_once(self):
+        turning = 'kind = "sine", value = 6.0, amplitude = 6.0, frequency = 0.1, phase = -1.5707963267948966'
+        for case, (control, motion, stiffness) in enumerate((("fixed", None, 0.0), ("fixed", None, 1e5),
+                                                             ("adaptive", None, 0.0), ("adaptive", turning, 1e5))):
+            with self.subTest(control=control, motion=motion, stiffness=stiffness):
+                output = f"out {case}"
+                self.use(end=20.0, control=control, alpha=0.0, stiffness=stiffness, motion=motion)
+                text = self.run_deck(FAILED, output).stderr
+                for words in self.MESSAGE:
+                    self.assertIn(words, text)
+                self.assertNotIn("neighbors", text)
+                counts = self.record(output)["counts"]
+                self.assertLess(counts["steps"], 20000)
+                self.assertLess(counts["rejected_error"] + counts["rejected_newton"], 200)
+                self.assertTrue((self.folder / output / "checkpoint_failed.h5").exists())
+
+    def test_a_run_whose_motion_is_sound_ends_with_a_warning(self):
+        self.use(end=3.4, alpha=0.0)
+        result = self.run_deck(DONE, "out")
+        for words in self.MESSAGE:
+            self.assertIn(words, result.stderr)
+            self.assertIn(words, self.record()["warnings"][-1])
+
+    def test_a_little_damping_suffices(self):
+        self.use(end=20.0, alpha=-0.02)
+        self.assertNotIn("hht_alpha", self.run_deck(DONE, "out").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
