@@ -23,9 +23,8 @@ constexpr const char* kHash = "state_hash";
 std::string listed(const Differences& differences) {
   std::string text;
   for (std::size_t i = 0; i < std::min(differences.size(), kMostShown); ++i)
-    text += "\n  " + to_text(differences[i]);
-  if (differences.size() > kMostShown)
-    text += fmt::format("\n  and {} more", differences.size() - kMostShown);
+    text += (i == 0 ? "" : "; ") + to_text(differences[i]);
+  if (differences.size() > kMostShown) text += fmt::format("; and {} more", differences.size() - kMostShown);
   return text;
 }
 
@@ -112,7 +111,7 @@ Differences differences_until(const Checkpoint& checkpoint, const RunOptions& op
 [[noreturn]] void refuse(const Differences& differences, const RunOptions& options) {
   throw InputError(fmt::format(
       "--restart {}: the checkpoint belongs to another deck; only title, time.end and the tables output and "
-      "parallel may differ, unless --allow-changes lets the run go on, not bit for bit. Keys that differ:{}",
+      "parallel may differ, unless --allow-changes lets the run go on, not bit for bit. Keys that differ: {}",
       options.restart, listed(differences)));
 }
 
@@ -124,7 +123,7 @@ void check_allowed(const Differences& differences, const Model& model, const Run
   if (refused.empty()) return;
   throw InputError(
       fmt::format("--restart {}: the checkpoint's numbers have no meaning where these keys "
-                  "differ, with --allow-changes neither:{}",
+                  "differ, with --allow-changes neither: {}",
                   options.restart, listed(refused)));
 }
 
@@ -185,7 +184,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
   if (restart.changed)
     log.warning(fmt::format(
         "--allow-changes: from t = {:.9g} s on this run has another deck than before, and is not bit for bit "
-        "that of either{}. Keys that differ:{}",
+        "that of either{}. Keys that differ: {}",
         restart.state.clock.time,
         restart.forces_changed ? "; forces and accelerations are computed anew" : "", listed(differences)));
   return restart;

@@ -153,7 +153,7 @@ TEST_CASE("overlaps at the start are found whichever ranks have the two, and nam
       {"particles.lattice.origin=[0.1, 0.1, -0.02]", "particle 0 starts at"},
       {"particles.csv.velocity=[0, 0]", "must be 3 numbers"},
       {"bodies.pad.position=[3.5, 2.1, 1.0]", "and body \"pad\" overlap"},
-      {"particles.packing.count=4000", "particles found a place"},
+      {"particles.packing.count=4000", "of the volume of their box"},
       {"particles.csv.radius=0.1", "the file has a column radius"},
   };
   for (const Wrong& one : wrong) {
@@ -176,7 +176,7 @@ TEST_CASE("a value in a file that only one rank reads ends all with its message"
   const std::string text = kSmallDeck +
                            "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"file\"\n" +
                            "mass = 1.0\nfile = \"" + (folder / "p.csv") + "\"\n";
-  CHECK(contains(failure(text, {}, RanksShare(ranks)), "particle 37: radius = -1: must be a positive"));
+  CHECK(contains(failure(text, {}, RanksShare(ranks)), "p.csv:39: column radius = -1: must be a positive"));
 }
 
 }  // namespace scree
