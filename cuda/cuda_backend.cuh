@@ -82,12 +82,14 @@ class CudaBackend : public Backend {
     Real displacement, largest;
     ExactSums<1> slope;
     ExactSums<kLedgerTerms> ledger;
-    ExactSums<kWallTerms> wall;
+    // All blocks of a step add to its first members and read the others. Here a line of the cache ends within it; where
+    // it stood in one line, an explicit step of 1e6 particles took 4 % (double) and 10 % (mixed) longer on an H200.
     VerletControl control;
     long long worst_id;
     Index index;
     Index leavers;
     Index interior, active, staying;  // particles in the interior, in the search, and on this rank from now on
+    ExactSums<kWallTerms> wall;
   };
   Device device() const { return {stream_}; }
   // Copies one member of the results to the host, once what is queued is done.
