@@ -8,9 +8,11 @@
 #include <functional>
 #include <iostream>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "base/version.hpp"
 #include "deck/deck.hpp"
 #include "mbs/multibody.hpp"
@@ -108,15 +110,9 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   }
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
-  RunOptions options{arguments.backend,
-                     directory,
-                     arguments.restart,
-                     arguments.allow_changes,
-                     arguments.deck,
-                     deck.resolved_text(),
-                     deck.fingerprint(),
-                     line.text,
-                     ranks,
+  RunOptions options{arguments.backend,       directory,      arguments.restart,
+                     arguments.allow_changes, arguments.deck, deck.resolved_text(),
+                     deck.fingerprint(),      line.text,      ranks,
                      arguments.overwrite};
   const ExitCode code = naming_deck(arguments.deck, [&] {
     return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
@@ -236,10 +232,30 @@ ExitCode guarded(const std::function<ExitCode()>& body) {
   }
 }
 
+// A process that is started alone starts MPI with its command line in one variable of the environment, and
+// the system refuses one of 128 KiB. Says so, or nothing.
+std::string length_trouble(int count, char** values) {
+  constexpr std::size_t kLongest = 110000, kShown = 80;  // [B]
+  std::size_t length = 0;
+  std::string_view longest;
+  for (const std::string_view word : std::span(values, static_cast<std::size_t>(count))) {
+    length += word.size() + 1;
+    if (word.size() > longest.size()) longest = word;
+  }
+  if (length <= kLongest) return "";
+  return fmt::format(
+      "--set or another word, {}: the command line has {} bytes; allowed are {}, a deck has no limit",
+      shortened(std::string(longest), kShown), length, kLongest);
+}
+
 }  // namespace
 }  // namespace scree
 
 int main(int count, char** values) {
+  if (const std::string trouble = scree::length_trouble(count, values); !trouble.empty()) {
+    std::cerr << scree::message_line("error", trouble);
+    return static_cast<int>(scree::ExitCode::bad_input);
+  }
   const bool runs = count > 1 && std::string_view(values[1]) == "run";
   if (runs) scree::catch_signals();  // before MPI starts, which takes a while, too
   MPI_Init(&count, &values);

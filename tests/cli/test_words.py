@@ -24,6 +24,9 @@ class MessageTest(CommandLineTest):
         self.assertLess(len(self.message(DECK.replace('"discs"', '"' + "x" * 100000 + '"'))), 1300)
         self.assertLess(len(self.message(DECK, "--set", "time.step=" + "x" * 100000)), 1300)
 
+    def test_a_command_line_that_mpi_cannot_start_with(self):
+        self.assertIn("the command line has 125", self.message(DECK, "--set", "time.step=" + "x" * 125000))
+
     def test_a_title_is_printed_on_one_line(self):
         deck = self.write("good.toml", DECK.replace('title = "test"', 'title = "a\\nb\\u001b[31m"'))
         self.assertIn("title          a\\nb\\x1b[31m\n", self.expect(DONE, "check", deck).stdout)
