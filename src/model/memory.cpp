@@ -22,6 +22,11 @@ Real gigabytes(Real bytes) { return bytes / 1e9; }
 
 }  // namespace
 
+Real bytes_per_particle(const Model& model) {
+  const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
+  return implicit ? kBytesPerImplicitParticle : kBytesPerExplicitParticle;
+}
+
 std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -75,7 +80,7 @@ void check_memory(const ModelSize& size, Real bytes, const std::string& task, co
 }
 
 std::string memory_trouble(const ModelSize& size, int ranks, const std::string& finding) {
-  const Real particles = kBytesPerParticle * static_cast<Real>(size.particles);
+  const Real particles = kBytesPerExplicitParticle * static_cast<Real>(size.particles);
   // A body has three coordinates, a link two constraints at the most but for fixed joints.
   const Real unknowns = kBytesPerUnknown * static_cast<Real>(3 * size.bodies + 2 * size.links);
   std::string of = counted(size.particles, "particle", "particles");
@@ -90,7 +95,7 @@ std::string memory_trouble(const ModelSize& size, int ranks, const std::string& 
   const char* advice = particles >= unknowns
                            ? "start more ranks on more machines (mpirun -n), or take fewer particles"
                            : "take fewer bodies, or a machine with more memory: rank 0 has them all";
-  return fmt::format("not enough memory: {}{}a run of {} takes about {:.3g} GB {}; {}", finding,
+  return fmt::format("not enough memory: {}{}a run of {} takes at least {:.3g} GB {}; {}", finding,
                      finding.empty() ? "" : "; ", of, gigabytes(particles + unknowns), where, advice);
 }
 

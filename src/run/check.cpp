@@ -18,10 +18,9 @@ namespace scree {
 
 namespace {
 
-// In files without compression, of a run of 300,000 particles and of one of 10,000 bodies: of a particle, of
-// a shape or body [B].
-constexpr Real kSnapshotParticle = 100, kSnapshotShape = 160, kCheckpointParticle = 162,
-               kCheckpointBody = 160;
+// In files without compression, of a particle, of a shape or body [B]; tests/performance/bytes_per_item.py.
+constexpr Real kSnapshotParticle = 102, kSnapshotShape = 120, kCheckpointParticle = 162,
+               kCheckpointBody = 170;
 
 constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
@@ -175,7 +174,7 @@ std::string output_lines(const Model& model) {
 
 // Rank 0 has all unknowns, and its share of the particles.
 std::string memory_line(const Model& model, int ranks) {
-  const Real particles = kBytesPerParticle * static_cast<Real>(model.particles.totals.count);
+  const Real particles = bytes_per_particle(model) * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
       kBytesPerUnknown * (3 * static_cast<Real>(model.bodies.size()) + constraint_count(model));
   const std::string most = ranks == 1 ? ""
@@ -187,8 +186,8 @@ std::string memory_line(const Model& model, int ranks) {
       "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown); {} "
       "are free here "
       "({})\n",
-      megabytes(particles + unknowns), most, kBytesPerParticle, kBytesPerUnknown, megabytes(bound.bytes),
-      bound.set_by);
+      megabytes(particles + unknowns), most, bytes_per_particle(model), kBytesPerUnknown,
+      megabytes(bound.bytes), bound.set_by);
 }
 
 // The estimate counts neighbours and images where radii differ or sides are periodic: whether there is room

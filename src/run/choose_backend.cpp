@@ -27,9 +27,10 @@ std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const 
 std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   log.info("backend cpu: " + why);
   const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
-  check_memory(size_of(model),
-               kBytesPerParticle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns,
-               "running it on the CPU", RanksShare(ranks));
+  check_memory(
+      size_of(model),
+      bytes_per_particle(model) * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns,
+      "running it on the CPU", RanksShare(ranks));
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   if (model.parallel.transport != Transport::automatic)

@@ -357,7 +357,7 @@ class RunTest(CommandLineTest):
         for words in ("check", deck), ("run", deck, "--output", self.folder / "out"):
             message = self.expect(BAD_INPUT, *words, launcher=limited).stderr
             self.assertRegex(message, r"error: not enough memory: building the particles takes about 135 GB, "
-                                      r"[0-9.]+ GB are free \(.+\); a run of 900000000 particles and 1 body takes about 540 GB on one rank; "
+                                      r"[0-9.]+ GB are free \(.+\); a run of 900000000 particles and 1 body takes at least 630 GB on one rank; "
                                       r"start more ranks on more machines")
         self.assertFalse((self.folder / "out").exists())
 
@@ -367,7 +367,7 @@ class RunTest(CommandLineTest):
         group = '[[particles]]\nname = "many"\nkind = "random"\ncount = {}\nmin = [-0.3, -1.0]\nmax = [0.3, 0.9]\n' \
                 "radius = {}\nmass = 1.0\n"
         cases = ((row.format(10000000, 1e-9), r"not enough memory: building the bodies takes about 20 GB, [0-9.]+ GB are "
-                  r"free \(ulimit -v, the address space\); a run of 10000001 bodies takes about 30 GB on one rank; take fewer bodies"),
+                  r"free \(ulimit -v, the address space\); a run of 10000001 bodies takes at least 30 GB on one rank; take fewer bodies"),
                  (row.format(6000000, 2e-7), r'body "row\.[0-9]+" starts at \(0\.35.+, outside the space'),
                  (group.format(1000000000, 1e-6), "not enough memory: building the particles takes about 280 GB"),
                  (group.format(1000000, 0.01), r"particles\.many\.count = 1000000: the particles are 276 of the area of their box "

@@ -1,0 +1,79 @@
+"""What a particle takes in memory, and a particle and a body in files: the numbers of src/model/memory.hpp and
+src/run/check.cpp.
+Usage: bytes_per_item.py SCREE"""
+
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+
+HEAD = """
+[time]
+end = 1e-4
+step = 2e-5
+control = "fixed"
+[[contact.pairs]]
+stiffness = 1e5
+"""
+PARTICLES = """
+[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [101.0, 101.0, 101.0]
+[[particles]]
+name = "block"
+kind = "lattice"
+origin = [0.5, 0.5, 0.5]
+spacing = [0.999, 0.999, 0.999]     # six neighbours each
+size = [100, 100, 100]
+radius = 0.5
+mass = 1.0
+"""
+BODIES = """
+[space]
+dimension = 2
+min = [0.0, 0.0]
+max = [20001.0, 10.0]
+[[bodies]]
+name = "row"
+count = 10000
+position = [1.0, 5.0]
+spacing = [2.0, 0.0]
+mass = 1.0
+inertia = 0.1
+shapes = [{ radius = 0.5 }]
+"""
+
+
+def run(scree, folder, deck, *words):
+    """Runs the deck; the most memory that it had [B]."""
+    (folder / "deck.toml").write_text(HEAD + deck)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+    subprocess.run([scree, "run", folder / "deck.toml", "--backend", "cpu", "--overwrite", "--output", folder / "out", *words],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+    assert most > before, "an earlier run took more"
+    return most * 1024
+
+
+def print_files(folder, name, what, count):
+    snapshots = 2
+    print(f"{what}: {(folder / 'out' / name).stat().st_size / snapshots / count:.0f} B in a snapshot, "
+          f"{(folder / 'out/checkpoint_end.h5').stat().st_size / count:.0f} B in a checkpoint")
+
+
+def main():
+    scree = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        empty = run(scree, folder, BODIES)
+        print_files(folder, "bodies.vtkhdf", "body of one shape", 10000)
+        for integrator in ("velocity-verlet", "hht"):  # what takes more comes later
+            most = run(scree, folder, PARTICLES, "--set", f"integrator.particles={integrator}")
+            print(f"{integrator}: {(most - empty) / 1e6:.0f} B of memory per particle")
+        print_files(folder, "particles.vtkhdf", "particle", 1e6)
+
+
+if __name__ == "__main__":
+    main()
