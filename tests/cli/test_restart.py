@@ -1,0 +1,203 @@
+"""Runs that fail, that go on from a checkpoint, and with another deck. Usage: as test_cli.py"""
+
+import itertools
+import json
+import re
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from test_cli import (BAD_INPUT, DECK, DONE, ENVIRONMENT, EXPLICIT, FAILED, IO_FAILED, LIMIT, SCREE, STOPPED,
+                      CommandLineTest)
+
+
+class ChangesTest(CommandLineTest):
+    def test_a_failed_run_goes_on_with_half_the_step(self):
+        stiff = ("--set", "time.step=2e-3", "--set", "time.min_step=2e-3", "--set", "integrator.max_iterations=5")
+        self.run_deck(FAILED, "out", *stiff)
+        restart = ("--restart", self.folder / "out/checkpoint_failed.h5")
+        smaller = ("--set", "time.step=1e-4", "--set", "time.min_step=1e-6", "--set", "time.end=0.4")
+        self.assertIn("time.step: 0.002 -> 0.0001", self.run_deck(BAD_INPUT, "out", *restart, *smaller).stderr)
+        result = self.run_deck(DONE, "out", *restart, *smaller, "--allow-changes")
+        self.assertIn("warning: --allow-changes", result.stderr)
+        record = json.loads((self.folder / "out/run_record.json").read_text())
+        self.assertTrue(any("not bit for bit" in warning for warning in record["warnings"]))
+        self.assertTrue(any(": time.step: 0.002 -> 0.0001" in line for line in record["run"]["changes"]))
+
+    def test_allow_changes_is_for_restarts(self):
+        self.assertIn("--restart", self.run_deck(BAD_INPUT, "out", "--allow-changes").stderr)
+
+
+class FailureTest(CommandLineTest):
+    def failure(self, *words):
+        """The message of a failed run; a restart from its last good state fails alike."""
+        message = self.run_deck(FAILED, "failed", *words).stderr
+        checkpoint = self.folder / "failed" / "checkpoint_failed.h5"
+        self.assertTrue(checkpoint.exists())
+        again = self.run_deck(FAILED, "failed", "--restart", checkpoint, *words)
+        self.assertEqual(again.stderr, message)
+        # What it goes on from is the good state that the message tells.
+        time = re.search(r"at t = (\S+) s", message).group(1)
+        self.assertRegex(again.stdout, rf"(?m)^last good state, t = [0-9.e-]+ s: {checkpoint}$")
+        kept = float(re.search(r"last good state, t = (\S+) s", again.stdout).group(1))
+        self.assertLessEqual(kept, float(time))
+        return message
+
+    def test_a_particle_that_leaves(self):
+        for words in ((), EXPLICIT):
+            with self.subTest(words=words):
+                message = self.failure("--set", "space.leaving=error", "--set", "particles.0.velocity=[0, 30]", *words)
+                self.assertRegex(message, r"stage accept: particle [45] is outside the space")
+                self.assertIn("space.leaving", message)
+
+    def test_a_particle_that_goes_through_a_wall(self):
+        soft = ("--set", "space.y_max=wall", "--set", "particles.0.velocity=[0, 30]", "--set", "contact.pairs.0.stiffness=100")
+        message = self.failure(*soft)
+        self.assertIn("beyond a side that is a wall: it overlapped the wall by more than its radius; the contact's stiffness "
+                      "is too low for this impact", message)
+        self.assertIn("warning: contact \"default\" on \"default\": the stiffness is too low for impacts at 3", message)
+
+    def test_a_body_that_leaves_is_counted(self):
+        free = DECK[:DECK.index("[[spring_dampers]]")] + DECK[DECK.index("[[particles]]"):]
+        deck = self.write("free.toml", free.replace("inertia", "velocity = [0.0, -30.0]\ninertia"))
+        result = self.expect(DONE, "run", deck, "--output", "out", "--set", "time.end=0.05", "--set", "time.step=5e-4")
+        warnings = re.findall(r'warning: body "pad" is outside the space at t = ([0-9.]+) s: bodies that leave are counted, '
+                              "neither stopped nor removed", result.stderr)
+        self.assertEqual(len(warnings), 1)
+        self.assertAlmostEqual(float(warnings[0]), 0.8 / 30, delta=1e-3)
+        self.assertRegex(result.stdout, "0 particles left the space, 1 body is outside\n")
+        self.assertEqual(json.loads((self.folder / "out" / "run_record.json").read_text())["counts"]["bodies_outside"], 1)
+        rows = [row.split(",") for row in self.history("out") if not row.startswith("#")]
+        column = next(i for i, name in enumerate(rows[0]) if "bodies_outside" in name)
+        counts = [float(row[column]) for row in rows[1:]]
+        self.assertEqual(sorted(set(counts)), [0, 1])
+        self.assertEqual(counts, sorted(counts))
+
+    def test_the_smallest_step(self):
+        message = self.failure("--set", "integrator.max_iterations=2")
+        self.assertIn("stage ", message)
+        self.assertIn("no convergence in 2 iterations", message)
+        self.assertIn("time.min_step", message)
+
+    def test_a_force_that_is_not_finite(self):
+        message = self.failure("--set", "contact.pairs.0.stiffness=1e300")
+        self.assertIn("stage contact_force", message)
+        self.assertRegex(message, r"particle \d is not finite|residual")
+
+    def test_materials_that_do_not_feel_each_other(self):
+        self.run_deck(DONE, "ghosts", "--set", "contact.pairs.0.stiffness=0", "--set", "contact.pairs.0.damping=0")
+
+
+class RestartTest(CommandLineTest):
+    VARIANTS = {"hht": (), "velocity-verlet": EXPLICIT, "adaptive": ("--set", "time.control=adaptive"),
+                "periodic history": ("--set", "output.history_interval=0.0007")}
+    AT_END = ("--set", "output.checkpoint_interval=0.4")
+
+    def test_a_restarted_run_ends_with_the_same_bits(self):
+        for name, words in self.VARIANTS.items():
+            with self.subTest(name=name):
+                words = (*words, "--set", "output.checkpoint_interval=0.15")
+                self.run_deck(DONE, "whole", *words)
+                shutil.copytree(self.folder / "whole", self.folder / "parts", dirs_exist_ok=True)
+                restarted = self.run_deck(DONE, "parts", *words, "--restart", self.folder / "parts/checkpoint.h5")
+                self.assertNotIn("t = 0.2", restarted.stdout)  # it went on from 0.3 s
+                self.assert_same_results("parts", "whole")
+
+    def test_a_signal_stops_the_run_and_a_restart_completes_it(self):
+        longer = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
+        self.run_deck(DONE, "whole", *longer, *self.AT_END)
+        blocked = ("env", "--block-signal=TERM", "--block-signal=USR1")
+        for number, launcher in itertools.product((signal.SIGTERM, signal.SIGUSR1), ((), blocked)):
+            with self.subTest(signal=number.name, launcher=launcher):
+                run = self.start("parts", *longer, *self.AT_END, launcher=launcher)
+                run.send_signal(number)
+                text = run.stdout.read()
+                self.assertEqual(run.wait(LIMIT), STOPPED, text)
+                self.assertIn("continue with --restart", text)
+                self.run_deck(DONE, "parts", *longer, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
+                self.assert_same_results("parts", "whole")
+
+    LONG = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
+
+    def stopped(self, run, number):
+        """A run that the signal has ended with a checkpoint."""
+        run.send_signal(number)
+        text = run.stdout.read()
+        self.assertEqual(run.wait(LIMIT), STOPPED, text)
+        record = json.loads((self.folder / "out/run_record.json").read_text())["run"]
+        self.assertEqual(record["status"], f"stopped by signal: {signal.strsignal(number)}")
+        self.run_deck(DONE, "out", "--restart", self.folder / "out/checkpoint.h5", *self.LONG, "--set", "time.end=0.05")
+
+    def test_every_handled_signal_stops_a_run_with_a_checkpoint(self):
+        for number in (signal.SIGINT, signal.SIGHUP, signal.SIGUSR2, signal.SIGXCPU):
+            with self.subTest(signal=number.name):
+                self.stopped(self.start("out", *self.LONG, "--set", "time.end=0.05"), number)
+
+    def test_an_ignored_hangup_stays_ignored(self):
+        run = self.start("out", *self.LONG, "--set", "time.end=0.05", launcher=("nohup",))
+        run.send_signal(signal.SIGHUP)
+        self.stopped(run, signal.SIGUSR2)
+
+    def test_a_run_goes_on_where_nobody_reads_its_log(self):
+        self.run_deck(DONE, "whole", *self.LONG, "--set", "time.end=0.05")
+        line = f"{SCREE} run {self.deck} --output {self.folder}/out {' '.join(self.LONG)} --set time.end=0.05"
+        shell = subprocess.run(["bash", "-c", f"{line} | head -1; exit ${{PIPESTATUS[0]}}"], cwd=self.folder,
+                               env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual((shell.returncode, shell.stderr), (DONE, ""))
+        self.assertEqual(len(shell.stdout.splitlines()), 1)
+        self.assert_same_history("out", "whole")
+        self.assertEqual(json.loads((self.folder / "out/run_record.json").read_text())["run"]["status"], "done")
+
+    def test_a_checkpoint_by_the_clock_on_the_wall_changes_no_bit(self):
+        for words in ((), EXPLICIT, ("--set", "time.control=adaptive", "--set", "time.max_step=2e-5")):
+            with self.subTest(words=words):
+                hashes = []
+                for interval in (0, 0.002):
+                    shutil.rmtree(self.folder / "out", ignore_errors=True)
+                    self.run_deck(DONE, "out", *words, "--set", "time.step=2e-5", "--set", "time.end=0.02",
+                                  "--set", f"output.checkpoint_wall_interval={interval}")
+                    self.assertEqual((self.folder / "out/checkpoint.h5").exists(), interval > 0)
+                    record = json.loads((self.folder / "out/run_record.json").read_text())
+                    hashes.append(record["run"]["state_hash"])
+                self.assertEqual(*hashes)
+
+    def test_a_killed_run_leaves_files_to_restart_from(self):
+        longer = ("--set", "time.step=4e-6", "--set", "output.history_interval=0.001")
+        frequent = ("--set", "output.checkpoint_interval=0.002")
+        self.run_deck(DONE, "whole", *longer, *self.AT_END)
+        run = self.start("parts", *longer, *frequent)
+        run.kill()
+        self.assertEqual(run.wait(LIMIT), -signal.SIGKILL)
+        self.run_deck(DONE, "parts", *longer, *self.AT_END, "--restart", self.folder / "parts/checkpoint.h5")
+        self.assert_same_results("parts", "whole")
+
+    def test_another_deck_is_refused_but_a_later_end_is_not(self):
+        self.run_deck(DONE, "out", "--set", "time.end=0.01", "--set", "output.checkpoint_interval=0.01")
+        restart = ("--restart", self.folder / "out/checkpoint.h5")
+        for key in ("contact.pairs.0.damping=4.0", "time.step=2e-4", "particles.0.mass=2.0"):
+            message = self.run_deck(BAD_INPUT, "out", *restart, "--set", key).stderr
+            self.assertIn("another deck", message)
+            self.assertIn("time.end", message)
+            name, value = key.split("=")
+            self.assertRegex(message, rf"{re.escape(name).replace('0', '[a-z0-9]+')}(\.value)?: \S+ -> {float(value):g}(;|\n)")
+        self.run_deck(DONE, "out", *restart, "--set", "title=corrected")
+        self.run_deck(DONE, "out", *restart, "--set", "time.end=0.02")
+        self.run_deck(DONE, "whole", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
+        self.assert_same_history("out", "whole")
+
+    def test_checkpoints_that_cannot_be_read(self):
+        self.run_deck(DONE, "out", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
+        whole = (self.folder / "out" / "checkpoint.h5").read_bytes()
+        (self.folder / "truncated.h5").write_bytes(whole[: len(whole) // 2])
+        self.write("empty.h5", "")
+        self.write("text.h5", "no checkpoint")
+        for name in ("absent.h5", "truncated.h5", "empty.h5", "text.h5", "out/history.h5"):
+            with self.subTest(name=name):
+                message = self.run_deck(IO_FAILED, "out", "--set", "time.end=0.02", "--restart", self.folder / name).stderr
+                self.assertIn(name, message)
+
+
+if __name__ == "__main__":
+    unittest.main()
