@@ -201,7 +201,7 @@ const TableKeys& material_keys() {
 const TableKeys& wall_keys() {
   static const TableKeys keys{
       "Plane walls inside the space, solid behind the plane.",
-      {name_key().required().about("Name for messages."),
+      {name_key().required().about("Name for messages and output.history_contacts."),
        vector("point", "m").required().about("Any point of the plane."),
        vector("normal", "").required().about("Direction into the free side, of any length but 0."),
        text("material").left_out("the only material").about("Material of the wall.")},

@@ -26,12 +26,15 @@ class ReadFile {
  public:
   explicit ReadFile(const std::string& path) : path_(path), file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
     struct stat status {};
-    if (file_ < 0 || fstat(file_, &status) != 0) fail("open");
+    if (file_ < 0) fail("open", errno);
+    if (fstat(file_, &status) != 0) {
+      const int error = errno;
+      close(file_);
+      fail("open", error);
+    }
     size_ = status.st_size;
   }
-  ~ReadFile() {
-    if (file_ >= 0) close(file_);
-  }
+  ~ReadFile() { close(file_); }
   ReadFile(const ReadFile&) = delete;
   ReadFile& operator=(const ReadFile&) = delete;
 
@@ -41,15 +44,13 @@ class ReadFile {
       const ssize_t done = pread(file_, to, static_cast<std::size_t>(count), from);
       if (done < 0 && errno == EINTR) continue;
       if (done == 0) errno = EIO;  // shorter than it was
-      if (done <= 0) fail("read");
+      if (done <= 0) fail("read", errno);
       from += done, to += done, count -= done;
     }
   }
 
  private:
-  [[noreturn]] void fail(const char* action) const {
-    const int error = errno;
-    if (file_ >= 0) close(file_);
+  [[noreturn]] void fail(const char* action, int error) const {
     throw IoError(fmt::format("{}: cannot {}: {}", path_, action, std::strerror(error)));
   }
   std::string path_;

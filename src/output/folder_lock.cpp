@@ -112,8 +112,9 @@ bool FolderLock::try_to_take() {
   const bool free = made ? lock != LockState::held : is_over(owner, file, lock);
   const bool named = is_named(file, path_);
   if (!made && free && named && lock != LockState::free) {  // the next try makes one that can be locked
-    unlink(path_.c_str());
+    const int error = unlink(path_.c_str()) == 0 ? 0 : errno;
     close(file);
+    if (error != 0 && error != ENOENT) fail("remove", error);
     return false;
   }
   const int error = free && named ? write_owner(file) : 0;

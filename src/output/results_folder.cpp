@@ -17,8 +17,11 @@ namespace {
 constexpr const char* kNames[] = {
     "history.h5",  "history.csv",   "particles.vtkhdf",  "particles.xdmf",       "bodies.vtkhdf",
     "bodies.xdmf", "checkpoint.h5", "checkpoint_end.h5", "checkpoint_failed.h5", "run_record.json"};
+constexpr const char* kCheckpoints[] = {"checkpoint.h5", "checkpoint_end.h5", "checkpoint_failed.h5"};
 // Behind these names: what a run that was killed leaves beside them.
 constexpr const char* kBeside[] = {".tmp", ".spare", ".old"};
+// Behind a checkpoint's: one that belongs to the steps which a continued run has taken anew.
+constexpr const char* kEarlier = ".earlier";
 
 void remove_file(const std::string& path) {
   std::error_code error;
@@ -89,8 +92,25 @@ void ResultsFolder::claim() {
   check_results();  // another run may have come and gone since
 }
 
+// History and snapshots go on from --restart: a checkpoint of another state does not fit to them any longer,
+// and no later restart may take it for the newest.
+void ResultsFolder::set_checkpoints_aside() const {
+  for (const char* name : kCheckpoints) {
+    const std::string path = options_.folder + "/" + name;
+    std::error_code error;
+    if (!is_there(path) || fs::equivalent(path, options_.restart, error)) continue;
+    fs::rename(path, path + kEarlier, error);
+    if (error) throw IoError(fmt::format("{}: cannot rename: {}", path, error.message()));
+  }
+}
+
 void ResultsFolder::clear() const {
-  for (const std::string& name : results_of_others()) remove_file(options_.folder + "/" + name);
+  if (continues()) {
+    set_checkpoints_aside();
+  } else {
+    for (const std::string& name : results_of_others()) remove_file(options_.folder + "/" + name);
+    for (const char* name : kCheckpoints) remove_file(options_.folder + "/" + name + kEarlier);
+  }
   for (const char* name : kNames)
     for (const char* suffix : kBeside) remove_file(options_.folder + "/" + name + suffix);
 }

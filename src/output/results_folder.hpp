@@ -26,12 +26,13 @@ class ResultsFolder {
   void claim();
   // Whether the run goes on with the files in the folder: the checkpoint is one of them.
   bool continues() const;
-  // Removes what an earlier run has left, the checkpoint that the run continues excepted; what is continued
-  // stays. Throws IoError.
+  // Removes what an earlier run has left, the checkpoint that the run continues excepted. Where its results
+  // are continued they stay, and its other checkpoints get the name NAME.earlier. Throws IoError.
   void clear() const;
 
  private:
   void check_results() const;
+  void set_checkpoints_aside() const;
   std::vector<std::string> results_of_others() const;
   std::string way_out() const;
 

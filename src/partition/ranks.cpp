@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -67,6 +68,8 @@ Caught caught(const std::exception_ptr& failure) {
   } catch (const DeviceError& error) {
     return {kDevice, error.what()};
   } catch (const IoError& error) {
+    return {kFile, error.what()};
+  } catch (const std::filesystem::filesystem_error& error) {
     return {kFile, error.what()};
   } catch (const std::bad_alloc&) {
     return {kMemory, "not enough memory"};

@@ -50,6 +50,8 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "drivers.*.joint",
                                                "particles.*.kind",
                                                "particles.*.count",
+                                               "particles.*.positions",
+                                               "particles.*.file",
                                                "particles.*.size"};
   static const std::set<std::string> kSides = {"space.min",   "space.max",   "space.x_min", "space.x_max",
                                                "space.y_min", "space.y_max", "space.z_min", "space.z_max"};

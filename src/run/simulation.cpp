@@ -80,7 +80,7 @@ class Simulation {
   void keep_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
   void write_record(const std::string& status, ExitCode code);
-  void record_io_failure(const IoError& error);
+  void record_failure(const std::string& why, ExitCode code);
   void summarize() const;
 
   const Model& model_;
@@ -192,7 +192,10 @@ ExitCode Simulation::run() {
   try {
     return run_to_the_end();
   } catch (const IoError& error) {
-    record_io_failure(error);
+    record_failure(error.what(), ExitCode::io_failed);
+    throw;
+  } catch (const std::bad_alloc&) {
+    record_failure("not enough memory", ExitCode::bad_input);
     throw;
   }
 }
@@ -230,12 +233,12 @@ ExitCode Simulation::run_to_the_end() {
 
 // The record may meet the same trouble: what counts is the first. On a full disk the copies of growing files,
 // which nobody needs any longer, make room for it.
-void Simulation::record_io_failure(const IoError& error) {
+void Simulation::record_failure(const std::string& why, ExitCode code) {
   if (!ranks_.is_root()) return;
   try {
     state_.snapshots = recorder_->snapshots_written();
     recorder_.reset();
-    write_record(std::string("failed: ") + error.what(), ExitCode::io_failed);
+    write_record("failed: " + why, code);
   } catch (const IoError&) {
   }
 }

@@ -51,6 +51,15 @@ class FolderTest(CommandLineTest):
         self.assertEqual(set(self.contents("out")), set(self.contents("fresh")) | {"notes.txt"})
         self.assertNotIn("bodies.vtkhdf", self.contents("out"))
 
+    def test_a_continued_run_leaves_no_checkpoint_of_steps_that_it_takes_anew(self):
+        self.run_into(DONE, "out", *SHORT)
+        end = (self.folder / "out/checkpoint_end.h5").read_bytes()
+        self.run_into(DONE, "out", *SHORT, "--restart", self.folder / "out/checkpoint.h5")
+        self.assertEqual((self.folder / "out/checkpoint_end.h5.earlier").read_bytes(), end)
+        self.assertFalse((self.folder / "out/checkpoint.h5.earlier").exists())
+        self.run_into(DONE, "out", *SHORT, "--overwrite")
+        self.assertFalse((self.folder / "out/checkpoint_end.h5.earlier").exists())
+
     def test_two_runs_do_not_share_a_folder_and_a_kill_leaves_it_to_the_next(self):
         self.run_into(DONE, "whole", *LONG)
         first = self.start("out", *LONG)
