@@ -25,19 +25,22 @@ struct CudaBackend::PackArrays {
 };
 
 template <class T>
-const T& CudaBackend::fetch(T Results::* member) const {
+const T& CudaBackend::fetch(T Results::*member) const {
   T& host = h_results_.data()->*member;
-  require_cuda(cudaMemcpyAsync(&host, result(member), sizeof(T), cudaMemcpyDeviceToHost, stream_), "cudaMemcpyAsync");
+  require_cuda(cudaMemcpyAsync(&host, result(member), sizeof(T), cudaMemcpyDeviceToHost, stream_),
+               "cudaMemcpyAsync");
   wait_for(stream_);
   return host;
 }
 
-// Queues a pass over the particles that needs their ghosts: queue_ghosts(device), queue_rows(device, first, end). With
-// several ranks the interior, which meets no ghosts, is computed while the halo is under way, and the rest beside it as
-// soon as that is there. Both streams stand where the pass may begin; afterwards the halo's stands behind it, so that the
-// next halo begins before the next rows fill the GPU. clock: if given, it looks.
+// Queues a pass over the particles that needs their ghosts: queue_ghosts(device), queue_rows(device, first,
+// end). With several ranks the interior, which meets no ghosts, is computed while the halo is under way, and
+// the rest beside it as soon as that is there. Both streams stand where the pass may begin; afterwards the
+// halo's stands behind it, so that the next halo begins before the next rows fill the GPU. clock: if given,
+// it looks.
 template <class QueueGhosts, class QueueRows>
-void CudaBackend::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock) {
+void CudaBackend::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
+                                    HaloClock* clock) {
   if (ranks_.alone()) {
     queue_ghosts(device());
     queue_rows(device(), 0, owned_);
@@ -53,7 +56,7 @@ void CudaBackend::queue_beside_halo(const QueueGhosts& queue_ghosts, const Queue
 }
 
 template <int N, class Item>
-void CudaBackend::queue_sums(const Item& item, ExactSums<N> Results::* sums) const {
+void CudaBackend::queue_sums(const Item& item, ExactSums<N> Results::*sums) const {
   exact_sums(device(), owned_, item, result(sums), [&](Real* largest) { halo_.max(device(), largest, N); });
 }
 

@@ -9,23 +9,26 @@
 
 namespace scree {
 
-// Cells are numbered brick by brick, so that the particles of a thread block and most of their neighbours share
-// cache lines: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D. Bricks are numbered along the axis with the fewest of them first, so
-// that those beside each other are as close in memory as can be. With several ranks the interior comes first: the bricks
-// whose particles meet no ghost and are ghosts nowhere.
+// Cells are numbered brick by brick, so that the particles of a thread block and most of their neighbours
+// share cache lines: 4 x 4 x 4 cells in 3D, 8 x 8 in 2D. Bricks are numbered along the axis with the fewest
+// of them first, so that those beside each other are as close in memory as can be. With several ranks the
+// interior comes first: the bricks whose particles meet no ghost and are ghosts nowhere.
 struct BrickGrid {
   SearchCells cells;
-  Index shift[3] = {2, 2, 2};  // sides of a brick as powers of two
+  Index shift[3] = {2, 2, 2};   // sides of a brick as powers of two
   Index stride[3] = {1, 1, 1};  // from a brick to the next along an axis
   Index bricks = 1;
-  // Along the axes from the smallest stride to the largest: the axis, and where the interior begins and how long it is.
+  // Along the axes from the smallest stride to the largest: the axis, and where the interior begins and how
+  // long it is.
   struct Along {
     int axis;
     Index first, length;
   } along[3] = {};
   Index interior = 0;  // bricks in it
 
-  Index cells_of(Index number_of_bricks) const { return number_of_bricks << (shift[0] + shift[1] + shift[2]); }
+  Index cells_of(Index number_of_bricks) const {
+    return number_of_bricks << (shift[0] + shift[1] + shift[2]);
+  }
   Index count() const { return cells_of(bricks); }
   SCREE_HD Index number(Index x, Index y, Index z) const {
     const Index plain = z * stride[2] + y * stride[1] + x * stride[0];
@@ -50,7 +53,8 @@ struct BrickGrid {
   SCREE_HD Index next_brick(Index x) const { return ((x >> shift[0]) + 1) << shift[0]; }
 };
 
-// First brick along an axis of those that keep more than the list's reach from the sides of the rank's box, and how many.
+// First brick along an axis of those that keep more than the list's reach from the sides of the rank's box,
+// and how many.
 inline std::pair<Index, Index> interior_along(const SearchCells& cells, int axis, Index shift, Index bricks) {
   if (cells.own.layer && axis == 2) return {0, bricks};
   const auto of = [&](Vec3 v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
@@ -58,7 +62,8 @@ inline std::pair<Index, Index> interior_along(const SearchCells& cells, int axis
   const Real low = of(cells.box.min) + margin, high = of(cells.box.max) - margin;
   // What lies beyond the grid belongs to its first and last cells.
   const auto begins = [&](Index brick) {
-    return brick == 0 ? -std::numeric_limits<Real>::infinity() : of(cells.own.origin) + edge * (brick << shift);
+    return brick == 0 ? -std::numeric_limits<Real>::infinity()
+                      : of(cells.own.origin) + edge * (brick << shift);
   };
   const auto ends = [&](Index brick) {
     return brick + 1 == bricks ? std::numeric_limits<Real>::infinity() : begins(brick + 1);

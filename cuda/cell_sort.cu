@@ -1,9 +1,8 @@
-#include "cell_sort.cuh"
-
 #include <bit>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 
+#include "cell_sort.cuh"
 #include "for_each.cuh"
 
 namespace scree {
@@ -14,7 +13,8 @@ struct IotaItem {
   SCREE_HD void operator()(Index i) const { out[i] = i; }
 };
 
-// Where the keys change in sorted order, a cell ends and another begins: the difference of the two is its count.
+// Where the keys change in sorted order, a cell ends and another begins: the difference of the two is its
+// count.
 struct CountItem {
   const unsigned* keys;
   Index* counts;
@@ -51,8 +51,9 @@ void CellSort::sort(Device device, Index n, unsigned last_key) {
   if (n > 0) with_space(space_, sort);
   for_each(device, n, CountItem{sorted_keys_.data(), counts_.data(), n});
   with_space(space_, [&](void* at, std::size_t& bytes) {
-    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), starts_.data(), starts, device.stream),
-                 "scan");
+    require_cuda(
+        cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), starts_.data(), starts, device.stream),
+        "scan");
   });
 }
 

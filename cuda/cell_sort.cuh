@@ -12,8 +12,8 @@ class CellSort {
  public:
   // Keys of the items to sort; written by the caller before sort().
   unsigned* keys(std::size_t n);
-  // Afterwards order()[k] is the item at place k, items of one key in the order that they had; those of a key stand
-  // from starts()[key] to starts()[key + 1], for keys up to last_key.
+  // Afterwards order()[k] is the item at place k, items of one key in the order that they had; those of a key
+  // stand from starts()[key] to starts()[key + 1], for keys up to last_key.
   void sort(Device device, Index n, unsigned last_key);
   const Index* order() const { return order_.data(); }
   const Index* starts() const { return starts_.data(); }

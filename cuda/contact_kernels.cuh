@@ -1,5 +1,5 @@
-// The contact stages on the device for the law of this run, chosen once. All pointers are the device's; everything is
-// queued and nothing waits. The CPU's counterpart is src/dem/contact_kernels.hpp.
+// The contact stages on the device for the law of this run, chosen once. All pointers are the device's;
+// everything is queued and nothing waits. The CPU's counterpart is src/dem/contact_kernels.hpp.
 #pragma once
 
 #include <algorithm>
@@ -22,12 +22,14 @@ namespace scree {
 using DeviceViews = ContactViews<SlicedRows>;
 using PrunedViews = ContactViews<PrunedRows<0>>;
 
-// The same for a kernel that evaluates so many entries of a row at once, with the rows that the control names.
+// The same for a kernel that evaluates so many entries of a row at once, with the rows that the control
+// names.
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
   const PrunedRows<0>& r = in.rows;
-  return {in.position, in.velocity, in.material, {r.rows, r.counts, r.neighbors, r.first_shape, use, margin},
-          in.wall_offsets, in.walls, in.planes, in.first_shape};
+  return {
+      in.position,     in.velocity, in.material, {r.rows, r.counts, r.neighbors, r.first_shape, use, margin},
+      in.wall_offsets, in.walls,    in.planes,   in.first_shape};
 }
 
 // Force, Newton matrix and residual of the particles [first, end).
@@ -46,28 +48,29 @@ struct SystemRequest {
   StepNorms* largest;  // maxima over these particles and those before
 };
 
-// Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run see
-// `stop` and change nothing.
+// Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run
+// see `stop` and change nothing.
 struct VerletControl {
   static constexpr Real kNoRows = std::numeric_limits<Real>::infinity();
-  unsigned largest;  // bits of the single that is at least the largest squared displacement of this step [m^2]
+  unsigned
+      largest;  // bits of the single that is at least the largest squared displacement of this step [m^2]
   unsigned finished_blocks;
-  Real bound;               // displacement of any item since the list was built, at most [m]
-  Real half_skin;           // what the list covers [m]
-  Real displacement;        // of any particle when the open step was opened, at most [m]
-  RowUse rows;              // of the open step
-  Real margin;              // of the pruned rows [m]
-  Real moved;               // displacement of any particle since they were pruned, at most [m]; kNoRows: there are none
-  Index closed;             // steps, since the start of the run
-  Index last;               // stop when so many are closed
-  Index substeps;           // steps of the particles per step of the bodies
-  int parity[2];            // which of the two position and velocity arrays holds the open step
-  int outside;              // whether a particle of a step of this run was outside the space
+  Real bound;         // displacement of any item since the list was built, at most [m]
+  Real half_skin;     // what the list covers [m]
+  Real displacement;  // of any particle when the open step was opened, at most [m]
+  RowUse rows;        // of the open step
+  Real margin;        // of the pruned rows [m]
+  Real moved;    // displacement of any particle since they were pruned, at most [m]; kNoRows: there are none
+  Index closed;  // steps, since the start of the run
+  Index last;    // stop when so many are closed
+  Index substeps;  // steps of the particles per step of the bodies
+  int parity[2];   // which of the two position and velocity arrays holds the open step
+  int outside;     // whether a particle of a step of this run was outside the space
   int stop;
   int alone;       // one rank: the last block closes the step. Several do so after the ranks have shared:
   Real shared[2];  // the largest squared displacement of the step [m^2], and outside
-  // What was found when step `closed` was closed and the next opened, for the last steps: a host that looks while the
-  // next step runs sees it unchanged.
+  // What was found when step `closed` was closed and the next opened, for the last steps: a host that looks
+  // while the next step runs sees it unchanged.
   struct Closed {
     bool expired;  // the list does not cover the open step
     bool leaves;   // the open step ends a step of the bodies, and a particle is outside
@@ -112,7 +115,9 @@ struct VerletControl {
 inline constexpr int kStepBlock = 128;  // threads of a block of an explicit step
 
 // Blocks of a launch for the particles [first, end); one for none of them.
-inline unsigned step_blocks(Index first, Index end) { return std::max(1u, blocks_for(end - first, kStepBlock)); }
+inline unsigned step_blocks(Index first, Index end) {
+  return std::max(1u, blocks_for(end - first, kStepBlock));
+}
 
 // The particles [first, end) of a launch; first: a multiple of kStepBlock.
 struct StepRows {
@@ -164,14 +169,15 @@ class DeviceContactKernels {
   virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                          ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
-  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an accepted implicit
-  // step.
-  virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
-                     Real* integrator_loss) const = 0;
+  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an
+  // accepted implicit step.
+  virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
+                     Real* contact_loss, Real* integrator_loss) const = 0;
   virtual void shape_books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                            ContactBooks* out) const = 0;
   // n particles that leave, and what they leave to all others: see the items.
-  virtual void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n, Leaver* leavers) const = 0;
+  virtual void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
+                       Leaver* leavers) const = 0;
   virtual void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
                           const StartViews& start) const = 0;
   // One explicit step, closed and the next opened; does nothing once the control says stop.
@@ -182,6 +188,7 @@ class DeviceContactKernels {
 };
 
 // d_laws: the model's table of laws on the device.
-std::unique_ptr<DeviceContactKernels> make_device_contact_kernels(const Contact& contact, const KelvinVoigt* d_laws);
+std::unique_ptr<DeviceContactKernels> make_device_contact_kernels(const Contact& contact,
+                                                                  const KelvinVoigt* d_laws);
 
 }  // namespace scree

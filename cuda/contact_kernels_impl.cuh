@@ -1,4 +1,5 @@
-// The contact stages of one law as kernels; included where they are compiled, one source file per elastic law.
+// The contact stages of one law as kernels; included where they are compiled, one source file per elastic
+// law.
 #pragma once
 
 #include "contact_kernels.cuh"
@@ -35,9 +36,10 @@ __global__ void __launch_bounds__(kSystemThreads)
   Sym3 diagonal, inverse_block;
   StepNorms norms{};
   if (i < r.end) {
-    SystemItem<Elastic, Laws> item{{{r.in, laws, r.start}, r.gravity, r.weights, r.forces, r.matrix},
-                                   {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
-                                   {r.step, r.residual, r.forces.magnitude, r.stiffening}};
+    SystemItem<Elastic, Laws> item{
+        {{r.in, laws, r.start}, r.gravity, r.weights, r.forces, r.matrix},
+        {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
+        {r.step, r.residual, r.forces.magnitude, r.stiffening}};
     item.system.out.step_force = only(step_force, i), item.residual.force = only(step_force, i);
     item.system.out.end_force = only(end_force, i);
     item.system.matrix.diagonal = item.residual.matrix.diagonal = only(diagonal, i);
@@ -65,7 +67,8 @@ __device__ inline void close_step(VerletControl& c) {
 }
 
 // Whether the particle's new place is outside. Far from the sides the old place alone says no.
-__device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_place, Vec4 new_place, Real d_squared) {
+__device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_place, Vec4 new_place,
+                                  Real d_squared) {
   const Real margin = r.control->half_skin;
   if (d_squared < margin * margin && r.box.inside(xyz(old_place), margin)) return false;
   return !r.box.inside(xyz(new_place)) && !r.drifting[i];
@@ -73,8 +76,8 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_plac
 
 // Entries of a row that a launch of few threads evaluates at once.
 inline constexpr int kFewThreadsAtOnce = 4;
-// Registers are rationed for so many blocks on a multiprocessor: the kernels live from many threads that wait, or from
-// many entries at once.
+// Registers are rationed for so many blocks on a multiprocessor: the kernels live from many threads that
+// wait, or from many entries at once.
 constexpr int verlet_blocks(int at_once) { return at_once == 0 ? 7 : 4; }
 constexpr int mixed_blocks(int at_once) { return at_once == 0 ? 10 : 6; }
 
@@ -95,9 +98,10 @@ struct BlockLargest {
   }
 };
 
-// Every thread calls this at its end: the last block of the step closes it. d_squared: of the thread's particle, 0 for
-// one outside the search.
-__device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, unsigned step_blocks, VerletControl& control) {
+// Every thread calls this at its end: the last block of the step closes it. d_squared: of the thread's
+// particle, 0 for one outside the search.
+__device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, unsigned step_blocks,
+                                           VerletControl& control) {
   __syncwarp();  // lane 0 speaks for all: it sees what they wrote
   // Singles that round up keep the order of the doubles, and a NaN stays the largest.
   const unsigned bits = __float_as_uint(__double2float_ru(d_squared)) & 0x7fffffffu;
@@ -128,7 +132,8 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   Vec3* const acceleration = stage.load(r.state.acceleration);
   VerletAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
-      {views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, nullptr, nullptr}, r.state};
+      {views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, nullptr, nullptr},
+      r.state};
   item.contacts.in.position = p == 0 ? r.position[0] : r.position[1];
   item.contacts.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
   Vec4 position, velocity;
@@ -161,19 +166,27 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
   Real d_squared = 0;
   if (i < r.rows.end) {
     const MixedAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
-        views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, r.state, parity, r.grid, r.h};
+        views_for<kAtOnce>(r.in, r.control->rows, r.control->margin),
+        laws,
+        r.gravity,
+        r.state,
+        parity,
+        r.grid,
+        r.h};
     d_squared = item(i);
     const MixedFraction part = r.state.fraction[i];
     const Real margin = r.control->half_skin;
     if ((part.near_side || d_squared > margin * margin) && !r.drifting[i] &&
-        !r.box.inside(mixed_position(r.grid, r.in.position[i], (parity == 0 ? r.state.place[1] : r.state.place[0])[i], part)))
+        !r.box.inside(mixed_position(r.grid, r.in.position[i],
+                                     (parity == 0 ? r.state.place[1] : r.state.place[0])[i], part)))
       r.control->outside = 1;
   }
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
 template <class Elastic, class Laws>
-__global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, const Laws laws, Real* largest) {
+__global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, const Laws laws,
+                                     Real* largest) {
   const int p = r.control->parity[0], v = r.control->parity[1];
   const Index i = thread_index();
   Real a_squared = 0;
@@ -227,9 +240,11 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void shape_books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                    ContactBooks* out) const override {
-    for_each(device, n, ShapeBooksItem<Elastic, Laws, SlicedRows>{{with_shapes_alone(in), laws_, start}, out});
+    for_each(device, n,
+             ShapeBooksItem<Elastic, Laws, SlicedRows>{{with_shapes_alone(in), laws_, start}, out});
   }
-  void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n, Leaver* leavers) const override {
+  void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
+               Leaver* leavers) const override {
     for_each(device, n, LeaverEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, box, leavers});
   }
   void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
@@ -238,18 +253,21 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
     const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
-    launch(device, r, eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
-                              : verlet_advance_kernel<0, Elastic, Laws>);
+    launch(device, r,
+           eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
+                   : verlet_advance_kernel<0, Elastic, Laws>);
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
     const bool eagerly = several_at_once(r.rows, mixed_blocks(kFewThreadsAtOnce));
-    launch(device, r, eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
-                              : mixed_advance_kernel<0, Elastic, Laws>);
+    launch(device, r,
+           eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
+                   : mixed_advance_kernel<0, Elastic, Laws>);
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
     if (r.rows.end == 0) return;
-    verlet_finish_kernel<Elastic><<<blocks_for(r.rows.end), launches().block, 0, device.stream>>>(r, laws_, largest);
+    verlet_finish_kernel<Elastic>
+        <<<blocks_for(r.rows.end), launches().block, 0, device.stream>>>(r, laws_, largest);
     require_cuda(cudaGetLastError(), "explicit step");
   }
 
@@ -267,7 +285,8 @@ class ContactKernelsOf : public DeviceContactKernels {
     overlap.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
     config.gridDim = step_blocks(r.rows.first, r.rows.end), config.blockDim = kStepBlock;
-    config.stream = device.stream, config.attrs = &overlap, config.numAttrs = overlaps_ && r.rows.follows ? 1 : 0;
+    config.stream = device.stream, config.attrs = &overlap,
+    config.numAttrs = overlaps_ && r.rows.follows ? 1 : 0;
     require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");
   }
 
@@ -279,7 +298,8 @@ class ContactKernelsOf : public DeviceContactKernels {
 
 template <class Elastic>
 std::unique_ptr<DeviceContactKernels> kernels_with(const Contact& contact, const KelvinVoigt* d_laws) {
-  if (contact.laws.size() == 1) return std::make_unique<ContactKernelsOf<Elastic, OneLaw>>(OneLaw{contact.laws[0]});
+  if (contact.laws.size() == 1)
+    return std::make_unique<ContactKernelsOf<Elastic, OneLaw>>(OneLaw{contact.laws[0]});
   return std::make_unique<ContactKernelsOf<Elastic, LawTable>>(LawTable{d_laws, contact.materials()});
 }
 

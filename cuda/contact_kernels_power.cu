@@ -5,8 +5,10 @@ namespace scree {
 
 std::unique_ptr<DeviceContactKernels> make_linear_kernels(const Contact& contact, const KelvinVoigt* d_laws);
 
-std::unique_ptr<DeviceContactKernels> make_device_contact_kernels(const Contact& contact, const KelvinVoigt* d_laws) {
-  return is_linear(contact) ? make_linear_kernels(contact, d_laws) : kernels_with<PowerElastic>(contact, d_laws);
+std::unique_ptr<DeviceContactKernels> make_device_contact_kernels(const Contact& contact,
+                                                                  const KelvinVoigt* d_laws) {
+  return is_linear(contact) ? make_linear_kernels(contact, d_laws)
+                            : kernels_with<PowerElastic>(contact, d_laws);
 }
 
 }  // namespace scree

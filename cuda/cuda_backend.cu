@@ -1,8 +1,7 @@
 // Particles, items and list of the GPU's backend. The steps are in cuda_implicit.cu and cuda_explicit.cu.
-#include "cuda_backend.cuh"
-
 #include "backend_parts.cuh"
 #include "base/countable.hpp"
+#include "cuda_backend.cuh"
 #include "dem/device.hpp"
 
 namespace scree {
@@ -45,7 +44,7 @@ std::string CudaBackend::description() const {
 }
 
 DeviceViews CudaBackend::views(const Vec4* position, const Vec4* velocity) const {
-  return {position,       velocity,      now_.material.data(), list_.rows(), list_.wall_offsets(),
+  return {position,      velocity,       now_.material.data(), list_.rows(), list_.wall_offsets(),
           list_.walls(), planes_.data(), layout_.first_shape};
 }
 
@@ -117,7 +116,8 @@ const Vec4* CudaBackend::stage_shapes() {
 
 void CudaBackend::find_shape_contacts() {
   if (shape_items() == 0) return;
-  const ShapePlaces places{now_.position.data() + layout_.first_shape, now_.velocity.data() + layout_.first_shape};
+  const ShapePlaces places{now_.position.data() + layout_.first_shape,
+                           now_.velocity.data() + layout_.first_shape};
   kernels_->shapes(device(), views(), places, shape_items(), h_shape_contacts_.data());
   fetch_shape_contacts(ContactSpan::instant, stream_);
 }
@@ -160,7 +160,7 @@ struct CellKeyItem {
 
   SCREE_HD void operator()(Index i) const {
     const CellPlace c = grid.cells.place(xyz(position[i]));
-    keys[i] = drifting[i] == kGone            ? outside + 1
+    keys[i] = drifting[i] == kGone          ? outside + 1
               : drifting[i] != 0 || c.x < 0 ? outside
                                             : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
@@ -188,7 +188,9 @@ struct OtherKeyItem {
   SCREE_HD void operator()(Index k) const {
     const Vec3 p = xyz(position[k]);
     const CellPlace c = grid.cells.place(p);
-    keys[k] = c.x < 0 || (k >= ghosts && !grid.cells.reaches(p)) ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
+    keys[k] = c.x < 0 || (k >= ghosts && !grid.cells.reaches(p))
+                  ? outside
+                  : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
 };
 
@@ -202,7 +204,8 @@ struct OtherItem {
 }  // namespace
 
 void CudaBackend::wrap_positions() {
-  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
+  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_),
+               "cudaMemsetAsync");
   for_each(device(), owned_,
            WrapItem{views_of(now_), model_.space.min, subdomain_.period(), result(&Results::worst_id)});
   if (const long long bad = smallest_id(); bad < kNoId)
@@ -220,7 +223,8 @@ void CudaBackend::sort_cells(Real skin, std::int64_t particles) {
            CellKeyItem{now_.position.data(), now_.drifting.data(), grid_, outside,
                        particle_sort_.keys(static_cast<std::size_t>(owned_))});
   particle_sort_.sort(device(), owned_, outside + 1);
-  copy_async(&h_results_.data()->interior, particle_sort_.starts() + grid_.cells_of(grid_.interior), 1, stream_);
+  copy_async(&h_results_.data()->interior, particle_sort_.starts() + grid_.cells_of(grid_.interior), 1,
+             stream_);
   copy_async(&h_results_.data()->active, particle_sort_.starts() + outside, 1, stream_);
   copy_async(&h_results_.data()->staying, particle_sort_.starts() + outside + 1, 1, stream_);
   wait_for(stream_);
@@ -241,12 +245,14 @@ void CudaBackend::reorder(const Index* order, Index n) {
 
 // Lays out all items, makes room for them, and names the ghosts among them.
 void CudaBackend::find_ghosts(Real width) {
-  if (!decomposition_.exists()) decomposition_ = Decomposition(ranks_, make_domain_grid(model_.space, width), {}, {});
-  halo_.count(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(), layout_.active);
+  if (!decomposition_.exists())
+    decomposition_ = Decomposition(ranks_, make_domain_grid(model_.space, width), {}, {});
+  halo_.count(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(),
+              layout_.active);
   layout_.shapes_meet = ranks_.is_root();
   ranks_.together([&] {
-    layout_.first_shape = countable(static_cast<std::size_t>(owned_) + static_cast<std::size_t>(halo_.size()),
-                                    kTooManyItems);
+    layout_.first_shape =
+        countable(static_cast<std::size_t>(owned_) + static_cast<std::size_t>(halo_.size()), kTooManyItems);
     side_.lay_out(model_.space, width, layout_);
     halo_.list(device(), now_.position.data(), layout_.active);
     const auto items = static_cast<std::size_t>(layout_.items), owned = static_cast<std::size_t>(owned_);
@@ -275,8 +281,8 @@ void CudaBackend::lay_out_items(Real skin) {
     require_cuda(cudaMemcpyAsync(now_.material.data() + layout_.first_shape, material.data(), n * sizeof(int),
                                  cudaMemcpyHostToDevice, stream_),
                  "cudaMemcpyAsync");
-    require_cuda(cudaMemcpyAsync(now_.row_key.data() + layout_.first_shape, keys.data(), n * sizeof(std::int64_t),
-                                 cudaMemcpyHostToDevice, stream_),
+    require_cuda(cudaMemcpyAsync(now_.row_key.data() + layout_.first_shape, keys.data(),
+                                 n * sizeof(std::int64_t), cudaMemcpyHostToDevice, stream_),
                  "cudaMemcpyAsync");
     shape_body_.upload(body, stream_);
   }
@@ -333,8 +339,8 @@ void CudaBackend::find_rows(Real skin) {
     list_.pruned_rows(layout_.first_shape);  // makes room for them
 }
 
-// Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`: all ranks
-// then fail, and can write their last good state.
+// Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:
+// all ranks then fail, and can write their last good state.
 void CudaBackend::build_list(Real skin, StageTimers& timers) {
   settle();
   layout_changed_ = true;

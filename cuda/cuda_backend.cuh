@@ -1,5 +1,5 @@
-// The backend of one GPU: the paper's GMAP. The schedule of src/dem/cpu_backend.hpp as kernels; arithmetic stays in
-// src/physics, items in src/dem.
+// The backend of one GPU: the paper's GMAP. The schedule of src/dem/cpu_backend.hpp as kernels; arithmetic
+// stays in src/physics, items in src/dem.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 #include "dem/line_search.hpp"
 #include "device_halo.cuh"
 #include "device_list.cuh"
-#include "particle_arrays.cuh"
 #include "pack_items.cuh"
+#include "particle_arrays.cuh"
 #include "step_graph.cuh"
 #include "sums.cuh"
 
@@ -82,21 +82,23 @@ class CudaBackend : public Backend {
     Real displacement, largest;
     ExactSums<1> slope;
     ExactSums<kLedgerTerms> ledger;
-    // All blocks of a step add to its first members and read the others. Here a line of the cache ends within it; where
-    // it stood in one line, an explicit step of 1e6 particles took 4 % (double) and 10 % (mixed) longer on an H200.
+    // All blocks of a step add to its first members and read the others. Here a line of the cache ends within
+    // it; where it stood in one line, an explicit step of 1e6 particles took 4 % (double) and 10 % (mixed)
+    // longer on an H200.
     VerletControl control;
     long long worst_id;
     Index index;
     Index leavers;
-    Index interior, active, staying;  // particles in the interior, in the search, and on this rank from now on
+    Index interior, active,
+        staying;  // particles in the interior, in the search, and on this rank from now on
     ExactSums<kWallTerms> wall;
   };
   Device device() const { return {stream_}; }
   // Copies one member of the results to the host, once what is queued is done.
   template <class T>
-  const T& fetch(T Results::* member) const;
+  const T& fetch(T Results::*member) const;
   template <class T>
-  T* result(T Results::* member) const {
+  T* result(T Results::*member) const {
     return &(results_.data()->*member);
   }
 
@@ -108,9 +110,10 @@ class CudaBackend : public Backend {
   ContactMatrix matrix();
   Index shape_items() const { return layout_.items - layout_.first_shape; }
 
-  // Sums of terms over the particles of all ranks: queued, and complete once the device's part is on the host.
+  // Sums of terms over the particles of all ranks: queued, and complete once the device's part is on the
+  // host.
   template <int N, class Item>
-  void queue_sums(const Item& item, ExactSums<N> Results::* sums) const;
+  void queue_sums(const Item& item, ExactSums<N> Results::*sums) const;
   template <int N>
   std::array<Real, N> totals(const ExactSums<N>& sums) const;
   // The smallest of the ids that kernels have put into worst_id on any rank.
@@ -135,8 +138,8 @@ class CudaBackend : public Backend {
   void refresh_ghosts(Vec4* position, Vec4* velocity) {
     halo_.update_motion(device(), position, velocity, owned_);
   }
-  // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse. One rank
-  // alone does not use that stream.
+  // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.
+  // One rank alone does not use that stream.
   void halo_after_rows() {
     if (!ranks_.alone()) rows_done_.record(stream_), rows_done_.hold(halo_stream_);
   }
@@ -168,7 +171,8 @@ class CudaBackend : public Backend {
   Index steps_ahead(const VerletControl& control) const;
   void queue_steps(Real h, Index steps);
   template <class QueueGhosts, class QueueRows>
-  void queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
+  void queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
+                     const QueueRows& queue_rows);
   MixedViews mixed_views();
   void convert_to_mixed(Real h);
   void convert_from_mixed();
@@ -193,18 +197,18 @@ class CudaBackend : public Backend {
   std::unique_ptr<DeviceContactKernels> kernels_;
   DeviceArray<WallPlane> planes_;
 
-  // `now_` holds the state. `other_` is what sorting writes, the start of an open implicit step, or what the open
-  // explicit step reads or writes.
+  // `now_` holds the state. `other_` is what sorting writes, the start of an open implicit step, or what the
+  // open explicit step reads or writes.
   mutable ParticleArrays now_;
   ParticleArrays other_;
   Index owned_ = 0;
   bool migrating_ = false;  // some are on their way between ranks
-  ItemLayout layout_;  // without its list of ghosts
+  ItemLayout layout_;       // without its list of ghosts
   Decomposition decomposition_;
   DeviceArray<DomainCut> cuts_;
   LoadBalance balance_;
   DeviceArray<Index> row_length_;  // of the particles in the last list, with several ranks
-  Index interior_ = 0;      // the first so many particles, whole blocks of them, meet no ghosts and are none
+  Index interior_ = 0;  // the first so many particles, whole blocks of them, meet no ghosts and are none
   mutable DeviceHalo halo_;
   HaloClock halo_clock_;
   DeviceArray<Index> other_items_;
@@ -251,15 +255,15 @@ class CudaBackend : public Backend {
   int parity_[2] = {0, 0};  // of the open step's position and velocity: 0 in now_, 1 in other_
   Real bound_ = 0;          // displacement of any item since the list was built, at most [m]
   bool new_list_ = false;   // built since the control was told
-  // Where the particles as the last step left them are, with the velocities that the law saw: in the state itself, or
-  // where a step closed by opening the next, or closed alone, has left them.
+  // Where the particles as the last step left them are, with the velocities that the law saw: in the state
+  // itself, or where a step closed by opening the next, or closed alone, has left them.
   enum class Level { state, opened, finished } level_ = Level::state;
-  Index closed_ = 0;        // with bodies: steps since verlet_start
+  Index closed_ = 0;  // with bodies: steps since verlet_start
   StepGraph graph_;
-  bool mixed_;              // explicit runs are in mixed precision
-  bool in_mixed_ = false;   // where the open step is: in the arrays below, or in now_ and other_
-  Real mixed_h_ = 0;        // [s]
-  Index mixed_start_ = 0;   // steps closed when the open step was brought there
+  bool mixed_;             // explicit runs are in mixed precision
+  bool in_mixed_ = false;  // where the open step is: in the arrays below, or in now_ and other_
+  Real mixed_h_ = 0;       // [s]
+  Index mixed_start_ = 0;  // steps closed when the open step was brought there
   QuantumGrid quanta_;
   DeviceArray<MixedPlace> mixed_place_[2];
   DeviceArray<MixedMotion> mixed_motion_[2];

@@ -42,8 +42,8 @@ VerletRun CudaBackend::run_with_shapes(Real h, Index most, bool keep_open, Stage
   return run;
 }
 
-// One step with bodies; returns whether the next is open. The host waits for the contacts of the shapes only, and solves
-// for the bodies' motion while the particles' kernel runs.
+// One step with bodies; returns whether the next is open. The host waits for the contacts of the shapes only,
+// and solves for the bodies' motion while the particles' kernel runs.
 bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) {
   for (;;) {
     if (layout_changed_ || !shapes_covered()) build_list(model_.contact.skin, timers), resume_control();
@@ -84,8 +84,8 @@ void CudaBackend::shape_contacts() {
   shape_places_.resize(2 * n);
   copy_async(shape_places_.data(), stage_shapes(), 2 * n, shape_stream_);
   places_copied_.record(shape_stream_);
-  kernels_->shapes({shape_stream_}, views(position, velocity), {shape_places_.data(), shape_places_.data() + n},
-                   shape_items(), h_shape_contacts_.data());
+  kernels_->shapes({shape_stream_}, views(position, velocity),
+                   {shape_places_.data(), shape_places_.data() + n}, shape_items(), h_shape_contacts_.data());
   fetch_shape_contacts(ContactSpan::instant, shape_stream_);
 }
 

@@ -1,5 +1,5 @@
-// The explicit step of the GPU's backend. Steps are queued ahead of the host: each reads on the device whether the
-// list still covers it, and does nothing if not.
+// The explicit step of the GPU's backend. Steps are queued ahead of the host: each reads on the device
+// whether the list still covers it, and does nothing if not.
 #include <cmath>
 
 #include "backend_parts.cuh"
@@ -7,8 +7,8 @@
 namespace scree {
 namespace {
 
-// Steps queued before the host looks at how far they came: long enough to hide the look, short enough that little is
-// queued in vain where the list expires.
+// Steps queued before the host looks at how far they came: long enough to hide the look, short enough that
+// little is queued in vain where the list expires.
 constexpr Index kQueuedSteps = 128;
 // A list whose exact displacement is past this share of what it covers is built anew at once.
 constexpr Real kWornList = 0.9;
@@ -89,14 +89,15 @@ struct MixedGhostItem {
 
 PrunedViews CudaBackend::pruned_views(const Vec4* position) {
   const DeviceViews v = views(position, nullptr);
-  return {v.position, v.velocity, v.material, list_.pruned_rows(v.first_shape), v.wall_offsets, v.walls, v.planes,
-          v.first_shape};
+  return {v.position,     v.velocity, v.material, list_.pruned_rows(v.first_shape),
+          v.wall_offsets, v.walls,    v.planes,   v.first_shape};
 }
 
 // The launch of a step on the particles [first, end): all of them, or one of the step's two parts.
 StepRows CudaBackend::step_rows(Index first, Index end) const {
   const bool in_parts = !ranks_.alone() && interior_ > 0;
-  const unsigned blocks = in_parts ? step_blocks(0, interior_) + step_blocks(interior_, owned_) : step_blocks(0, owned_);
+  const unsigned blocks =
+      in_parts ? step_blocks(0, interior_) + step_blocks(interior_, owned_) : step_blocks(0, owned_);
   return {first, end, ranks_.alone(), blocks};
 }
 
@@ -106,7 +107,8 @@ VerletRequest CudaBackend::verlet_request(Real h) {
   r.rows = step_rows(0, owned_), r.active = layout_.active, r.gravity = model_.gravity;
   r.position[0] = now_.position.data(), r.position[1] = other_.position.data();
   r.velocity[0] = now_.velocity.data(), r.velocity[1] = other_.velocity.data();
-  r.state = {nullptr, nullptr,
+  r.state = {nullptr,
+             nullptr,
              now_.acceleration.data(),
              now_.contact_loss.data(),
              now_.loss_power.data(),
@@ -129,7 +131,8 @@ void CudaBackend::verlet_start(Real h) {
   const VerletRequest r = verlet_request(h);
   VerletViews state = r.state;
   state.position = now_.position.data(), state.velocity = now_.velocity.data();
-  max_over(device(), owned_, RunStartItem{{state}, r.active, r.box, r.drifting, r.control}, result(&Results::largest));
+  max_over(device(), owned_, RunStartItem{{state}, r.active, r.box, r.drifting, r.control},
+           result(&Results::largest));
   started_kernel<<<1, 1, 0, stream_>>>(r.control, result(&Results::largest));
   halo_.max(device(), r.control->shared, 2);
   open_kernel<<<1, 1, 0, stream_>>>(r.control);
@@ -147,8 +150,8 @@ const VerletControl& CudaBackend::wait_for_control() {
   return c;
 }
 
-// Steps to queue before the host looks again. On one rank those behind a stop cost nothing; on several each of them has
-// its halo, so that there are not many more than the list is likely to cover.
+// Steps to queue before the host looks again. On one rank those behind a stop cost nothing; on several each
+// of them has its halo, so that there are not many more than the list is likely to cover.
 Index CudaBackend::steps_ahead(const VerletControl& control) const {
   if (ranks_.alone()) return kQueuedSteps;
   if (halo_.waits()) return 1;
@@ -184,22 +187,22 @@ void CudaBackend::convert_to_mixed(Real h) {
   quanta_ = make_quantum_grid(builder_.cutoff(list_skin_));
   // Ghosts come with the first step's halo.
   for_each(device(), owned_,
-           ToMixedItem{now_.position.data(), now_.velocity.data(), now_.acceleration.data(), mixed_views(), quanta_,
-                       subdomain_.box(), h, list_skin_ / 2});
+           ToMixedItem{now_.position.data(), now_.velocity.data(), now_.acceleration.data(), mixed_views(),
+                       quanta_, subdomain_.box(), h, list_skin_ / 2});
   in_mixed_ = true, mixed_h_ = h, mixed_start_ = h_results_.data()->control.closed;
 }
 
 void CudaBackend::convert_from_mixed() {
   for_each(device(), owned_,
            FromMixedItem{mixed_views(), parity_[0], quanta_, now_.position.data(), now_.velocity.data(),
-                         now_.acceleration.data(), now_.contact_loss.data(), now_.drifting.data(), model_.gravity,
-                         mixed_h_, h_results_.data()->control.closed - mixed_start_});
+                         now_.acceleration.data(), now_.contact_loss.data(), now_.drifting.data(),
+                         model_.gravity, mixed_h_, h_results_.data()->control.closed - mixed_start_});
   in_mixed_ = false;
 }
 
 void CudaBackend::resume_control(Index last) {
-  resume_kernel<<<1, 1, 0, stream_>>>(result(&Results::control), last, bound_, list_skin_ / 2, new_list_, parity_[0],
-                                      parity_[1]);
+  resume_kernel<<<1, 1, 0, stream_>>>(result(&Results::control), last, bound_, list_skin_ / 2, new_list_,
+                                      parity_[0], parity_[1]);
   new_list_ = false;
   require_cuda(cudaGetLastError(), "explicit step");
 }
@@ -212,9 +215,9 @@ bool CudaBackend::renew_list(StageTimers& timers) {
   return true;
 }
 
-// Queues steps one after the other. queue_ghosts(device, k): the halo of the k-th from now on; queue_rows(device, first,
-// end): the kernel of a step on these particles; key: all that the launches depend on. After each step the ranks share
-// what decides whether the next one may be taken.
+// Queues steps one after the other. queue_ghosts(device, k): the halo of the k-th from now on;
+// queue_rows(device, first, end): the kernel of a step on these particles; key: all that the launches depend
+// on. After each step the ranks share what decides whether the next one may be taken.
 template <class QueueGhosts, class QueueRows>
 void CudaBackend::queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
                                 const QueueRows& queue_rows) {
@@ -241,10 +244,14 @@ void CudaBackend::queue_in_turn(const std::string& key, Index steps, const Queue
 
 // The host knows where the steps that are queued find their ghosts: behind a stop nothing is read any more.
 void CudaBackend::queue_steps(Real h, Index steps) {
-  const auto bytes = [](const auto& value) { return std::string(reinterpret_cast<const char*>(&value), sizeof(value)); };
+  const auto bytes = [](const auto& value) {
+    return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
   if (!mixed_) {
     const VerletRequest r = verlet_request(h);
-    const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) { return halo_.field(buffer, of[parity], owned_); };
+    const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) {
+      return halo_.field(buffer, of[parity], owned_);
+    };
     const RunGhostItem ghosts{halo_.ghosts(),
                               {field(0, r.position, 0), field(0, r.position, 1)},
                               {field(1, r.velocity, 0), field(1, r.velocity, 1)},
@@ -302,7 +309,8 @@ void CudaBackend::finish(Real h) {
 }
 
 VerletRun CudaBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) {
-  return shape_items() > 0 ? run_with_shapes(h, most, keep_open, timers) : run_alone(h, most, keep_open, timers);
+  return shape_items() > 0 ? run_with_shapes(h, most, keep_open, timers)
+                           : run_alone(h, most, keep_open, timers);
 }
 
 VerletRun CudaBackend::run_alone(Real h, Index most, bool keep_open, StageTimers& timers) {

@@ -35,7 +35,8 @@ void CudaBackend::size_step_arrays() {
   const auto owned = static_cast<std::size_t>(owned_), slots = static_cast<std::size_t>(list_.slots());
   matrix_entries_.resize(slots);
   for (DeviceArray<Vec4>& direction : direction_) direction.resize(static_cast<std::size_t>(layout_.items));
-  step_force_.resize(owned), end_force_.resize(owned), force_magnitude_.resize(owned), stiffening_.resize(owned), matrix_count_.resize(owned);
+  step_force_.resize(owned), end_force_.resize(owned), force_magnitude_.resize(owned),
+      stiffening_.resize(owned), matrix_count_.resize(owned);
   residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned);
   matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
 }
@@ -80,7 +81,8 @@ struct FirstDirectionItem {
   }
 };
 
-// One step of the solve: takes the direction d into the solution and the residual, and finds the next direction.
+// One step of the solve: takes the direction d into the solution and the residual, and finds the next
+// direction.
 struct SolverItem {
   SubtractMatrixItem<SlicedRows> subtract;
   DirectionItem direction;  // weights of the next one
@@ -107,7 +109,8 @@ __global__ void decide_kernel(SolverControl* c) {
 }
 
 // For the particles [first, end).
-__global__ void solver_kernel(Index first, Index end, const __grid_constant__ SolverItem item, SolverControl* c) {
+__global__ void solver_kernel(Index first, Index end, const __grid_constant__ SolverItem item,
+                              SolverControl* c) {
   if (c->stop) return;
   const Index i = first + thread_index();
   block_max(i < end ? item(i) : 0, &c->largest);
@@ -118,20 +121,24 @@ __global__ void solver_kernel(Index first, Index end, const __grid_constant__ So
 }  // namespace
 
 void CudaBackend::report_not_finite(const Vec3* force) const {
-  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
+  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_),
+               "cudaMemsetAsync");
   for_each(device(), owned_,
            SmallestIdItem<IsNotFinite>{now_.row_key.data(), {force}, result(&Results::worst_id)});
   if (const long long id = smallest_id(); id < kNoId)
-    throw SimulationError("stage contact_force: the force on particle " + std::to_string(id) + " is not finite");
+    throw SimulationError("stage contact_force: the force on particle " + std::to_string(id) +
+                          " is not finite");
 }
 
 GlobalId CudaBackend::worst_particle() const {
   max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
   halo_.max(device(), result(&Results::largest), 1);
-  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_), "cudaMemsetAsync");
-  for_each(device(), owned_,
-           SmallestIdItem<IsLargest>{now_.row_key.data(), {residual_.data(), result(&Results::largest)},
-                                     result(&Results::worst_id)});
+  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_),
+               "cudaMemsetAsync");
+  for_each(
+      device(), owned_,
+      SmallestIdItem<IsLargest>{
+          now_.row_key.data(), {residual_.data(), result(&Results::largest)}, result(&Results::worst_id)});
   const long long worst = smallest_id();
   return worst < kNoId ? worst : -1;
 }
@@ -155,8 +162,10 @@ void CudaBackend::begin_step(Real h) {
   const auto n = static_cast<std::size_t>(owned_), shapes = static_cast<std::size_t>(shape_items());
   std::swap(now_.position, other_.position), std::swap(now_.velocity, other_.velocity);
   copy_async(other_.acceleration.data(), now_.acceleration.data(), n, stream_);
-  copy_async(now_.position.data() + layout_.first_shape, other_.position.data() + layout_.first_shape, shapes, stream_);
-  copy_async(now_.velocity.data() + layout_.first_shape, other_.velocity.data() + layout_.first_shape, shapes, stream_);
+  copy_async(now_.position.data() + layout_.first_shape, other_.position.data() + layout_.first_shape, shapes,
+             stream_);
+  copy_async(now_.velocity.data() + layout_.first_shape, other_.velocity.data() + layout_.first_shape, shapes,
+             stream_);
   for_each(device(), owned_, NewmarkItem{step_views()});
   ghosts_stale_ = true;
 }
@@ -206,8 +215,7 @@ ParticleNorms CudaBackend::contact_force() {
     kernels_->shapes(device(), views(), shape_items(), r.start, h_shape_contacts_.data());
     fetch_shape_contacts(ContactSpan::step, stream_);
   }
-  if (line_search_.is_open())
-    queue_sums(SlopeItem{residual_.data(), correction_.data()}, &Results::slope);
+  if (line_search_.is_open()) queue_sums(SlopeItem{residual_.data(), correction_.data()}, &Results::slope);
   copy_async(&h_results_.data()->slope, result(&Results::slope), 1, stream_);
   StepNorms largest = fetch(&Results::norms);
   halo_clock_.read(balance_.halo);
@@ -250,7 +258,8 @@ void CudaBackend::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
   if (!std::isfinite(right_hand_side_norm_)) report_not_finite(residual_.data());
 }
 
-// Solves for correction_ in batches of products, so that the host seldom waits; returns the number of products.
+// Solves for correction_ in batches of products, so that the host seldom waits; returns the number of
+// products.
 int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
   constexpr int kBatch = 8;
   h_solver_[0] = {tolerance, 0, 0, 0, 0, ranks_.alone()};
@@ -259,7 +268,8 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
   const std::size_t shapes = static_cast<std::size_t>(shape_items()) * sizeof(Vec4);
   for (DeviceArray<Vec4>& direction : direction_)
     if (shapes > 0)
-      require_cuda(cudaMemsetAsync(direction.data() + layout_.first_shape, 0, shapes, stream_), "cudaMemsetAsync");
+      require_cuda(cudaMemsetAsync(direction.data() + layout_.first_shape, 0, shapes, stream_),
+                   "cudaMemsetAsync");
   ChebyshevWeights weights = solver_weights(largest_stiffening_);
   const auto direction = [&] {
     return DirectionItem{inverse_block_.data(), residual_.data(), weights.from_last, weights.from_residual};
@@ -297,8 +307,8 @@ int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolera
 }
 
 ParticleCorrection CudaBackend::particle_correct() {
-  const SubtractMatrixItem<SlicedRows> system{matrix(), list_.rows(), now_.velocity.data(), hht_inertia_weight(hht_),
-                                              nullptr,  residual_.data()};
+  const SubtractMatrixItem<SlicedRows> system{
+      matrix(), list_.rows(), now_.velocity.data(), hht_inertia_weight(hht_), nullptr, residual_.data()};
   subtract_shape_steps(system);
   const Real right_hand_side = right_hand_side_norm_;
   ParticleCorrection out;
@@ -326,7 +336,8 @@ Real CudaBackend::error() {
 }
 
 void CudaBackend::accept() {
-  kernels_->books(device(), views(), owned_, step_start(), now_.contact_loss.data(), now_.integrator_loss.data());
+  kernels_->books(device(), views(), owned_, step_start(), now_.contact_loss.data(),
+                  now_.integrator_loss.data());
   for_each(device(), owned_,
            AcceptItem{step_views(), step_forces(), now_.force.data(), now_.integrator_loss.data()});
   if (const auto shapes = static_cast<std::size_t>(shape_items()); shapes > 0) {

@@ -1,7 +1,8 @@
-// Who owns which particles where there are several ranks: src/dem/cpu_list.cpp for the GPU's backend. Particles that
-// change their rank, few after the first list, go through the host.
-#include <cub/device/device_select.cuh>
+// Who owns which particles where there are several ranks: src/dem/cpu_list.cpp for the GPU's backend.
+// Particles that change their rank, few after the first list, go through the host.
 #include <thrust/iterator/counting_iterator.h>
+
+#include <cub/device/device_select.cuh>
 
 #include "backend_parts.cuh"
 #include "base/countable.hpp"
@@ -28,8 +29,16 @@ struct MigrantItem {
     const Index i = leaving[k];
     const Vec4 x = in.position[i], v = in.velocity[i];
     Migrant m;
-    m.state = {id_of(in.row_key[i]), xyz(x), xyz(v), in.acceleration[i], in.force[i], in.contact_loss[i],
-               in.loss_power[i], in.integrator_loss[i], in.image[i], in.drifting[i] != 0};
+    m.state = {id_of(in.row_key[i]),
+               xyz(x),
+               xyz(v),
+               in.acceleration[i],
+               in.force[i],
+               in.contact_loss[i],
+               in.loss_power[i],
+               in.integrator_loss[i],
+               in.image[i],
+               in.drifting[i] != 0};
     m.radius = x.w, m.mass = v.w, m.material = in.material[i];
     out[k] = m;
     in.drifting[i] = kGone;
@@ -75,8 +84,8 @@ void CudaBackend::decompose() {
   cuts_.upload(decomposition_.cuts(), stream_);
 }
 
-// In parts of bounded size; all ranks take as many. Those that go stay in the arrays, marked, until the sort leaves them
-// behind.
+// In parts of bounded size; all ranks take as many. Those that go stay in the arrays, marked, until the sort
+// leaves them behind.
 void CudaBackend::migrate() {
   if (!decomposition_.exists() || balance_.imbalance > model_.parallel.imbalance) decompose();
   other_.grow(now_.position.size(), static_cast<std::size_t>(owned_), 0, stream_);
@@ -117,7 +126,8 @@ void CudaBackend::add_migrants(const std::vector<Migrant>& arriving) {
   const auto before = static_cast<std::size_t>(owned_), n = before + arriving.size();
   const Index owned = countable(n, kTooManyParticles);
   now_.grow(std::max(n, now_.position.size()), n, before, stream_);
-  for_each(device(), static_cast<Index>(arriving.size()), ArrivalItem{unpacked.data(), views_of(now_), owned_});
+  for_each(device(), static_cast<Index>(arriving.size()),
+           ArrivalItem{unpacked.data(), views_of(now_), owned_});
   owned_ = owned;
   wait_for(stream_);  // before the array above goes
 }
@@ -131,7 +141,9 @@ void CudaBackend::measure_balance() {
   balance_.largest = std::max(balance_.largest, balance_.imbalance);
 }
 
-DeviceClaim claim_device(const Model& model) { return {device_uuid(), device_memory(model), free_device_memory()}; }
+DeviceClaim claim_device(const Model& model) {
+  return {device_uuid(), device_memory(model), free_device_memory()};
+}
 
 std::unique_ptr<Backend> make_cuda_backend(const Model& model, const Ranks& ranks) {
   choose_device(ranks);

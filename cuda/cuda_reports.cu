@@ -24,7 +24,8 @@ struct LeaverItem {
     if (slot >= room) return;
     const Real energy = energy_of_motion(x, in.velocity[i], in.image[i], gravity, period);
     const Real shift = verlet_energy_shift(verlet_step, in.velocity[i].w, in.acceleration[i]);
-    out[slot] = {id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i] - shift};
+    out[slot] = {id_of(in.row_key[i]),         i, xyz(x), false, energy, in.contact_loss[i],
+                 in.integrator_loss[i] - shift};
   }
 };
 
@@ -79,9 +80,10 @@ std::vector<Leaver> CudaBackend::outside() const {
   if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, stream_);
   const auto find = [&] {
     require_cuda(cudaMemsetAsync(result(&Results::leavers), 0, sizeof(Index), stream_), "cudaMemsetAsync");
-    for_each(device(), owned_,
-             LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), verlet_step(model_),
-                        leavers_.data(), static_cast<Index>(leavers_.size()), result(&Results::leavers)});
+    for_each(
+        device(), owned_,
+        LeaverItem{views_of(now_), subdomain_.box(), model_.gravity, subdomain_.period(), verlet_step(model_),
+                   leavers_.data(), static_cast<Index>(leavers_.size()), result(&Results::leavers)});
     return static_cast<std::size_t>(fetch(&Results::leavers));
   };
   std::vector<Leaver> leavers(find());
@@ -138,9 +140,9 @@ void CudaBackend::take_contacts_out() {
   const bool verlet = is_verlet(model_);
   const Vec4* seen = (level_ == Level::finished ? other_ : now_).velocity.data();  // by the law
   kernels_->departures(device(), views(now_.position.data(), seen), model_.gravity, subdomain_.box(), owned_,
-                       {now_.force.data(), now_.acceleration.data(), verlet ? now_.loss_power.data() : nullptr,
-                        now_.integrator_loss.data(), now_.drifting.data(), verlet ? hht_coefficients(0) : hht_,
-                        verlet_step(model_)});
+                       {now_.force.data(), now_.acceleration.data(),
+                        verlet ? now_.loss_power.data() : nullptr, now_.integrator_loss.data(),
+                        now_.drifting.data(), verlet ? hht_coefficients(0) : hht_, verlet_step(model_)});
 }
 
 ParticleLedger CudaBackend::ledger(Real verlet_step) {
@@ -150,10 +152,17 @@ ParticleLedger CudaBackend::ledger(Real verlet_step) {
   elastic.resize(n), pairs.resize(n), contacts.resize(n);
   kernels_->energies(device(), views(), owned_, {elastic.data(), contacts.data(), pairs.data()});
   find_shape_contacts();
-  const LedgerItem item{now_.position.data(),     now_.velocity.data(), now_.acceleration.data(),
-                        now_.image.data(),        now_.contact_loss.data(),
-                        now_.integrator_loss.data(), elastic.data(),    pairs.data(),
-                        model_.gravity,           subdomain_.period(),  verlet_step};
+  const LedgerItem item{now_.position.data(),
+                        now_.velocity.data(),
+                        now_.acceleration.data(),
+                        now_.image.data(),
+                        now_.contact_loss.data(),
+                        now_.integrator_loss.data(),
+                        elastic.data(),
+                        pairs.data(),
+                        model_.gravity,
+                        subdomain_.period(),
+                        verlet_step};
   queue_sums(item, &Results::ledger);
   require_cuda(cudaMemsetAsync(result(&Results::index), 0, sizeof(Index), stream_), "cudaMemsetAsync");
   for_each(device(), owned_, CountDriftingItem{now_.drifting.data(), result(&Results::index)});
@@ -175,14 +184,15 @@ void CudaBackend::start_pack() {
   kernels_->energies(device(), views(), owned_, {p.elastic.data(), p.contacts.data(), p.pairs.data()});
   for_each(device(), owned_, IdItem{now_.row_key.data(), p.ids.data(), p.order.data()});
   const auto sort = [&](void* at, std::size_t& bytes) {
-    require_cuda(cub::DeviceRadixSort::SortPairs(at, bytes, p.ids.data(), p.sorted_ids.data(), p.order.data(),
-                                                 p.sorted_order.data(), owned_, 0, 8 * sizeof(GlobalId), stream_),
-                 "sort");
+    require_cuda(
+        cub::DeviceRadixSort::SortPairs(at, bytes, p.ids.data(), p.sorted_ids.data(), p.order.data(),
+                                        p.sorted_order.data(), owned_, 0, 8 * sizeof(GlobalId), stream_),
+        "sort");
   };
   if (n > 0) with_space(space_, sort);
   for_each(device(), owned_,
-           PackItem{views_of(now_), p.sorted_order.data(), p.contacts.data(), model_.gravity, model_.space.min,
-                    subdomain_.period(), p.packed.data()});
+           PackItem{views_of(now_), p.sorted_order.data(), p.contacts.data(), model_.gravity,
+                    model_.space.min, subdomain_.period(), p.packed.data()});
   step_queued_.record(stream_);
   step_queued_.hold(copy_stream_);
   copy_async(p.h_packed.data(), p.packed.data(), n, copy_stream_);

@@ -1,10 +1,9 @@
 // The machine's GPU, and what a model needs of its memory.
-#include "device.cuh"
-
 #include <algorithm>
 #include <iterator>
 
 #include "dem/device.hpp"
+#include "device.cuh"
 
 namespace scree {
 
@@ -40,7 +39,8 @@ void choose_device(const Ranks& ranks) {
 
 std::size_t multiprocessors() {
   int count = 0;
-  require_cuda(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, this_device()), "cudaDeviceGetAttribute");
+  require_cuda(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, this_device()),
+               "cudaDeviceGetAttribute");
   return static_cast<std::size_t>(count);
 }
 
@@ -53,11 +53,13 @@ std::string trouble_of(cudaError_t status) {
   cudaDriverGetVersion(&driver), cudaRuntimeGetVersion(&runtime);
   const auto version = [](int v) { return std::to_string(v / 1000) + "." + std::to_string(v % 1000 / 10); };
   switch (status) {
-    case cudaErrorNoDevice: return "there is no GPU that CUDA can use";
+    case cudaErrorNoDevice:
+      return "there is no GPU that CUDA can use";
     case cudaErrorInsufficientDriver:
     case cudaErrorUnsupportedPtxVersion:  // no machine code for the GPU, and a driver too old to make it
       return driver == 0 ? "there is no NVIDIA driver here"
-                         : "the NVIDIA driver supports CUDA " + version(driver) + ", this program needs " + version(runtime);
+                         : "the NVIDIA driver supports CUDA " + version(driver) + ", this program needs " +
+                               version(runtime);
     case cudaErrorNoKernelImageForDevice: {
       int major = 0, minor = 0;
       cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, this_device());
@@ -65,8 +67,10 @@ std::string trouble_of(cudaError_t status) {
       return "the GPU is of generation " + std::to_string(major) + "." + std::to_string(minor) +
              ", this program was built for " SCREE_CUDA_ARCHITECTURES " (CMAKE_CUDA_ARCHITECTURES)";
     }
-    case cudaErrorMemoryAllocation: return "the GPU's memory is taken by others";
-    default: return cudaGetErrorString(status);
+    case cudaErrorMemoryAllocation:
+      return "the GPU's memory is taken by others";
+    default:
+      return cudaGetErrorString(status);
   }
 }
 

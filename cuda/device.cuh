@@ -23,15 +23,17 @@ struct Device {
 std::size_t multiprocessors();
 std::array<char, 16> device_uuid();
 
-// Throws DeviceError with the runtime's text. what: the call that failed, for the message. Where memory was wanting the
-// device works on, and the runtime forgets the error: the next launch would report it as its own.
+// Throws DeviceError with the runtime's text. what: the call that failed, for the message. Where memory was
+// wanting the device works on, and the runtime forgets the error: the next launch would report it as its own.
 inline void require_cuda(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
   if (status == cudaErrorMemoryAllocation) cudaGetLastError();
   throw DeviceError(std::string("cuda: ") + what + ": " + cudaGetErrorString(status));
 }
 
-inline void wait_for(cudaStream_t stream) { require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize"); }
+inline void wait_for(cudaStream_t stream) {
+  require_cuda(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
+}
 
 // urgent: its blocks start before those that wait on other streams.
 enum class Priority { normal, urgent };
@@ -62,7 +64,9 @@ class Event {
   Event(const Event&) = delete;
   Event& operator=(const Event&) = delete;
   void record(cudaStream_t stream) { require_cuda(cudaEventRecord(event_, stream), "cudaEventRecord"); }
-  void hold(cudaStream_t stream) const { require_cuda(cudaStreamWaitEvent(stream, event_), "cudaStreamWaitEvent"); }
+  void hold(cudaStream_t stream) const {
+    require_cuda(cudaStreamWaitEvent(stream, event_), "cudaStreamWaitEvent");
+  }
   void wait() const { require_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
 
  private:
@@ -88,8 +92,8 @@ class TimedEvent {
   cudaEvent_t event_ = nullptr;
 };
 
-// Leaves all but `shared` bytes of a multiprocessor's fast memory, and what the driver takes for itself, to its cache.
-// Without this the driver takes more for shared memory than the blocks need.
+// Leaves all but `shared` bytes of a multiprocessor's fast memory, and what the driver takes for itself, to
+// its cache. Without this the driver takes more for shared memory than the blocks need.
 template <class Kernel>
 void prefer_cache(Kernel* kernel, std::size_t shared) {
   constexpr std::size_t kDriver = 16 * 1024;  // 1 KB per block
@@ -97,7 +101,8 @@ void prefer_cache(Kernel* kernel, std::size_t shared) {
   require_cuda(cudaGetDevice(&device), "cudaGetDevice");
   require_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerMultiprocessor, device),
                "cudaDeviceGetAttribute");
-  const auto percent = static_cast<int>(std::min<std::size_t>(100, 100 * (shared + kDriver) / static_cast<std::size_t>(most)));
+  const auto percent =
+      static_cast<int>(std::min<std::size_t>(100, 100 * (shared + kDriver) / static_cast<std::size_t>(most)));
   require_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, percent),
                "cudaFuncSetAttribute");
 }
@@ -113,7 +118,8 @@ int generation_of(Kernel* kernel) {
 // n values, queued on the stream. from and to: device and pinned memory.
 template <class T>
 void copy_async(T* to, const T* from, std::size_t n, cudaStream_t stream) {
-  if (n > 0) require_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDefault, stream), "cudaMemcpyAsync");
+  if (n > 0)
+    require_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDefault, stream), "cudaMemcpyAsync");
 }
 
 // Device memory that the arrays below hold now [B].
@@ -144,7 +150,8 @@ class DeviceArray {
     }
     size_ = size;
   }
-  // The same for records that travel to the host whole: bytes between their members, which nobody writes, are zero.
+  // The same for records that travel to the host whole: bytes between their members, which nobody writes, are
+  // zero.
   void resize_clean(std::size_t size, cudaStream_t stream) {
     if (size <= capacity_) {
       size_ = size;
@@ -153,7 +160,8 @@ class DeviceArray {
     resize(size);
     zero(stream);
   }
-  // The same, with the first `keep` values kept where the array has to grow, and room for more. Waits if it grows.
+  // The same, with the first `keep` values kept where the array has to grow, and room for more. Waits if it
+  // grows.
   void grow(std::size_t size, std::size_t keep, cudaStream_t stream) {
     if (size > capacity_) {
       DeviceArray larger(keep > 0 ? size + size / kSpare : size);
@@ -201,7 +209,8 @@ class DeviceArray {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-// A library call that needs space on the device: call(nullptr, bytes) asks for how much, call(at, bytes) does the work.
+// A library call that needs space on the device: call(nullptr, bytes) asks for how much, call(at, bytes) does
+// the work.
 template <class Call>
 void with_space(DeviceArray<unsigned char>& space, const Call& call) {
   std::size_t bytes = 0;

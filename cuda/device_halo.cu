@@ -3,8 +3,8 @@
 namespace scree {
 namespace {
 
-// Visits the targets of a particle: counts the entries per target, or writes them to their places. Entries of a target
-// come in any order; nothing depends on it, because rows are ordered by global id and image.
+// Visits the targets of a particle: counts the entries per target, or writes them to their places. Entries of
+// a target come in any order; nothing depends on it, because rows are ordered by global id and image.
 struct TargetItem {
   const Vec4* position;
   DomainBox box;
@@ -44,7 +44,9 @@ void DeviceHalo::count(Device device, const HaloPlan& plan, const Vec4* position
   std::size_t own = 0, all = 0;
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const std::size_t count = first[t];
-    (targets[t].neighbor == HaloTarget::kItself ? own : sent[static_cast<std::size_t>(targets[t].neighbor)]) += count;
+    (targets[t].neighbor == HaloTarget::kItself ? own
+                                                : sent[static_cast<std::size_t>(targets[t].neighbor)]) +=
+        count;
     first[t] = all, all += count;
   }
   plan_.set_counts(own, sent);
@@ -60,8 +62,8 @@ void DeviceHalo::list(Device device, const Vec4* position, Index n) {
 
 void DeviceHalo::visit_targets(Device device, const Vec4* position, Index n, Ghost* ghosts) {
   for_each(device, n,
-           TargetItem{position, plan_.box(), plan_.reach(), targets_.data(), static_cast<int>(plan_.targets().size()),
-                      counts_.data(), ghosts});
+           TargetItem{position, plan_.box(), plan_.reach(), targets_.data(),
+                      static_cast<int>(plan_.targets().size()), counts_.data(), ghosts});
 }
 
 void DeviceHalo::update_motion(Device device, Vec4* position, Vec4* velocity, Index first_ghost) {

@@ -34,8 +34,8 @@ struct MotionGhostItem {
   }
 };
 
-// Looks at some halos of positions and velocities: one of every batch of explicit steps, those of implicit forces. How long
-// each took, and how long the rows that need none left it waited for.
+// Looks at some halos of positions and velocities: one of every batch of explicit steps, those of implicit
+// forces. How long each took, and how long the rows that need none left it waited for.
 class HaloClock {
  public:
   void begin(cudaStream_t halo) { begin_.record(halo); }
@@ -65,14 +65,15 @@ class DeviceHalo {
   // Whether the host waits for the device in every exchange.
   bool waits() const { return transport_ && transport_->waits(); }
 
-  // exchange_halo: counts the ghosts among items at position[0 ... n-1], and tells the neighbours. Waits for the stream.
-  // Collective.
+  // exchange_halo: counts the ghosts among items at position[0 ... n-1], and tells the neighbours. Waits for
+  // the stream. Collective.
   void count(Device device, const HaloPlan& plan, const Vec4* position, Index n);
   // Then lists the same.
   void list(Device device, const Vec4* position, Index n);
   Index size() const { return plan_.ghosts(); }
   const HaloPlan& plan() const { return plan_; }
-  // What the ghosts' fields are filled from: for_each over entries() with an item that puts into fields, then exchange.
+  // What the ghosts' fields are filled from: for_each over entries() with an item that puts into fields, then
+  // exchange.
   Index entries() const { return plan_.own() + plan_.sent(); }
   const Ghost* ghosts() const { return ghost_.data(); }
   // buffer: 0 or 1, for fields in the same exchange. T: at most as large as Vec4.

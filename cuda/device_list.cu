@@ -1,8 +1,7 @@
-#include "device_list.cuh"
-
 #include <cub/device/device_scan.cuh>
 
 #include "dem/device.hpp"
+#include "device_list.cuh"
 #include "for_each.cuh"
 
 namespace scree {
@@ -47,8 +46,8 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
     const Real reach = p.w + q.w + in.skin;
     return dot(d, d) < reach * reach;
   };
-  // The cells of one rank of several hold only the shapes that reach its particles: where shapes meet, they look at
-  // each other one by one.
+  // The cells of one rank of several hold only the shapes that reach its particles: where shapes meet, they
+  // look at each other one by one.
   const bool shapes_apart = i >= in.first_shape && in.shapes_meet && !in.grid.cells.same;
   const Index end = shapes_apart ? in.first_shape : in.items;
   if (shapes_apart)
@@ -62,7 +61,8 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
       const Index key = in.grid.key(x0, y, z), second = split <= x1 ? in.grid.key(split, y, z) : key;
       const auto visit_runs = [&](const Index* starts, const auto& item) {
         const Index begin = starts[key], length = starts[key + split - x0] - begin;
-        const Index second_begin = starts[second], all = length + starts[second + x1 + 1 - split] - second_begin;
+        const Index second_begin = starts[second],
+                    all = length + starts[second + x1 + 1 - split] - second_begin;
         const auto at = [&](Index k) { return item(k < length ? begin + k : second_begin + k - length); };
         for (Index k = 0; k < all; k += 2) {  // two at once: loads that do not wait for each other
           const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
@@ -158,10 +158,12 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
   if (i >= in.items) return;
   out.counts[i] = found;
   out.wall_counts[i] = near_walls(in, i);
-  if (start + static_cast<unsigned long long>(width) * kSlice > out.capacity) return;  // the host repeats the search
+  if (start + static_cast<unsigned long long>(width) * kSlice > out.capacity)
+    return;  // the host repeats the search
   Index* row = out.neighbors + start + lane;
   if (found <= kEntries) {
-    for (Index k = 0; k < found; ++k) row[static_cast<std::int64_t>(k) * kSlice] = buffer.neighbor[k][threadIdx.x];
+    for (Index k = 0; k < found; ++k)
+      row[static_cast<std::int64_t>(k) * kSlice] = buffer.neighbor[k][threadIdx.x];
   } else {
     std::int64_t slot = 0;
     visit_row(in, i, [&](Index j) { row[slot] = j, slot += kSlice; });
@@ -211,10 +213,11 @@ void DeviceList::build(Device device, const ListInput& in) {
   search(device, in);
 
   // The entry past the end is read, though no sum depends on it.
-  require_cuda(cudaMemsetAsync(wall_counts_.data() + items, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
+  require_cuda(cudaMemsetAsync(wall_counts_.data() + items, 0, sizeof(Index), device.stream),
+               "cudaMemsetAsync");
   with_space(scan_space_, [&](void* at, std::size_t& bytes) {
-    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, wall_counts_.data(), wall_offsets_.data(), in.items + 1,
-                                               device.stream),
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, wall_counts_.data(), wall_offsets_.data(),
+                                               in.items + 1, device.stream),
                  "scan");
   });
   copy_async(&h_totals_.data()->wall_entries, wall_offsets_.data() + in.items, 1, device.stream);

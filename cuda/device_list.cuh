@@ -1,4 +1,5 @@
-// Neighbour list on the device: the same rows as those of src/dem/neighbor_list.hpp, laid out for coalesced reads.
+// Neighbour list on the device: the same rows as those of src/dem/neighbor_list.hpp, laid out for coalesced
+// reads.
 #pragma once
 
 #include "brick_grid.cuh"
@@ -9,8 +10,8 @@ namespace scree {
 
 inline constexpr Index kSlice = 32;  // rows that share a slice: one warp
 
-// Rows in slices of 32: entry k of row i stands 32 slots after entry k - 1, beside entry k of row i + 1. A slice is as
-// wide as its longest row.
+// Rows in slices of 32: entry k of row i stands 32 slots after entry k - 1, beside entry k of row i + 1. A
+// slice is as wide as its longest row.
 struct SlicedRows {
   const std::int64_t* slice_start;  // [slices]
   const Index* counts;              // [items]
@@ -19,10 +20,11 @@ struct SlicedRows {
   SCREE_HD std::int64_t first(Index i) const { return slice_start[i / kSlice] + i % kSlice; }
   SCREE_HD static constexpr int stride() { return kSlice; }
 
-  // As PackedRows::for_each_contact. Two entries are tested at once while the next two are under way: loads that do not
-  // wait for each other.
+  // As PackedRows::for_each_contact. Two entries are tested at once while the next two are under way: loads
+  // that do not wait for each other.
   template <class Touches, class Evaluate, class Add>
-  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate, const Add& add) const {
+  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
+                                 const Add& add) const {
     const Index* row = neighbors + first(i);
     Index left = counts[i];
     const auto entry = [&](Index k) { return k < left ? row[k * kSlice] : i; };
@@ -37,8 +39,8 @@ struct SlicedRows {
     }
   }
 
-  // The same for launches of so few threads that nothing else hides the loads: so many entries are tested and evaluated
-  // at once, whether they touch or not.
+  // The same for launches of so few threads that nothing else hides the loads: so many entries are tested and
+  // evaluated at once, whether they touch or not.
   template <int kAtOnce, class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact_eagerly(Index i, const Touches& touches, const Evaluate& evaluate,
                                          const Add& add) const {
@@ -69,10 +71,10 @@ enum class RowUse : int {
   all      // all entries: particles so fast that pruned rows would not last
 };
 
-// Rows of an explicit step. Most entries of a list with a skin do not touch; a step that has looked at all of them
-// keeps those within a small margin of touching, and the next steps walk these alone until a particle has moved by
-// half the margin: dynamic pruning, of Pall and Hess, Comput. Phys. Commun. 184 (2013) and J. Chem. Phys. 153 (2020).
-// Entries that do not touch add nothing, so that sums have the same bits either way.
+// Rows of an explicit step. Most entries of a list with a skin do not touch; a step that has looked at all of
+// them keeps those within a small margin of touching, and the next steps walk these alone until a particle
+// has moved by half the margin: dynamic pruning, of Pall and Hess, Comput. Phys. Commun. 184 (2013) and J.
+// Chem. Phys. 153 (2020). Entries that do not touch add nothing, so that sums have the same bits either way.
 //
 // kAtOnce: entries that are evaluated at once, eagerly; 0: those that touch, one by one.
 template <int kAtOnce>
@@ -108,7 +110,7 @@ struct PrunedRows {
 
 // Which bodies' shapes may touch: BodyShapes::may_touch for the device.
 struct ShapeBodies {
-  const Index* body;                         // [shape items]
+  const Index* body;                           // [shape items]
   const Index *connected_offsets, *connected;  // bodies that body b must not touch besides itself
 
   SCREE_HD bool may_touch(Index a, Index b) const {
@@ -119,8 +121,8 @@ struct ShapeBodies {
   }
 };
 
-// What the search reads. Active particles stand in the order of their cells; ghosts and shapes are found through an
-// index of their own.
+// What the search reads. Active particles stand in the order of their cells; ghosts and shapes are found
+// through an index of their own.
 struct ListInput {
   const Vec4* position;         // all items
   const std::int64_t* row_key;  // all items: orders the entries of a row, by global id and image
@@ -133,19 +135,20 @@ struct ListInput {
   Index walls;
   Index active, owned, first_shape, first_image, items;  // first_image: of the shapes' images
   bool shapes_meet;  // whether this rank has the contacts of shapes with each other and with walls
-  Real skin;                                              // [m]
+  Real skin;         // [m]
 };
 
 class DeviceList {
  public:
   DeviceList();
 
-  // Fills the list. Waits for the device once, to know whether the memory sufficed, and repeats with more if not.
-  // Throws DeviceError where there is none.
+  // Fills the list. Waits for the device once, to know whether the memory sufficed, and repeats with more if
+  // not. Throws DeviceError where there is none.
   void build(Device device, const ListInput& in);
 
   SlicedRows rows() const { return {slice_start_.data(), counts_.data(), neighbors_.data()}; }
-  // Room for the pruned rows is made here. After a build they hold nothing of use until a step with RowUse::prune.
+  // Room for the pruned rows is made here. After a build they hold nothing of use until a step with
+  // RowUse::prune.
   PrunedRows<0> pruned_rows(Index first_shape);
   const Index* wall_offsets() const { return wall_offsets_.data(); }
   const Index* walls() const { return walls_.data(); }

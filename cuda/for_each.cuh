@@ -32,8 +32,8 @@ void for_each(Device device, Index n, const Item& item) {
   require_cuda(cudaGetLastError(), "for_each");
 }
 
-// Non-negative doubles are ordered like their bits, and a NaN's bits lie above all of them: the largest bits are
-// the largest number, or a NaN if there is one, in whatever order the threads come.
+// Non-negative doubles are ordered like their bits, and a NaN's bits lie above all of them: the largest bits
+// are the largest number, or a NaN if there is one, in whatever order the threads come.
 __device__ inline unsigned long long ordered_bits(Real value) {
   return value <= 0 ? 0 : static_cast<unsigned long long>(__double_as_longlong(value)) & ~(1ull << 63);
 }
@@ -57,8 +57,8 @@ __device__ inline void block_max(Real value, Real* d_largest) {
   __syncthreads();
 }
 
-// Called by one thread per block after its share of a result: whether all blocks have come by. To that one thread
-// what the others wrote before is visible. *finished is 0 again afterwards.
+// Called by one thread per block after its share of a result: whether all blocks have come by. To that one
+// thread what the others wrote before is visible. *finished is 0 again afterwards.
 __device__ inline bool is_last_block(unsigned* finished, unsigned blocks) {
   // Release alone: an acquire on every block would empty its multiprocessor's cache each time.
   const cuda::atomic_ref<unsigned, cuda::thread_scope_device> count(*finished);
@@ -74,8 +74,8 @@ __global__ void max_over_kernel(Index n, const Item item, Real* d_largest) {
   block_max(i < n ? item(i) : 0, d_largest);
 }
 
-// The largest item(i), at least 0; a NaN makes the result a NaN. It stays on the device, in *d_largest, because reading
-// it here would wait for the stream.
+// The largest item(i), at least 0; a NaN makes the result a NaN. It stays on the device, in *d_largest,
+// because reading it here would wait for the stream.
 template <class Item>
 void max_over(Device device, Index n, const Item& item, Real* d_largest) {
   static_assert(std::is_trivially_copyable_v<Item>, "an item travels to the device as bytes");

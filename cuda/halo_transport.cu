@@ -76,7 +76,8 @@ class StagedTransport : public CudaAwareTransport {
 
 #ifdef SCREE_NCCL
 void require_nccl(ncclResult_t status, const char* what) {
-  if (status != ncclSuccess) throw DeviceError(std::string("nccl: ") + what + ": " + ncclGetErrorString(status));
+  if (status != ncclSuccess)
+    throw DeviceError(std::string("nccl: ") + what + ": " + ncclGetErrorString(status));
 }
 
 // Everything is queued on the stream, and the host goes on.
@@ -100,19 +101,20 @@ class NcclTransport : public HaloTransport {
       for (const HaloNeighbor& n : plan.neighbors()) {
         const auto bytes = [&](Index entries) { return static_cast<std::size_t>(entries) * m.element; };
         if (n.sent > 0)
-          require_nccl(ncclSend(static_cast<const char*>(m.packed) + bytes(n.first_sent), bytes(n.sent), ncclInt8,
-                                n.rank, communicator_, stream),
+          require_nccl(ncclSend(static_cast<const char*>(m.packed) + bytes(n.first_sent), bytes(n.sent),
+                                ncclInt8, n.rank, communicator_, stream),
                        "ncclSend");
         if (n.received > 0)
-          require_nccl(ncclRecv(static_cast<char*>(m.ghosts) + bytes(n.first_received), bytes(n.received), ncclInt8,
-                                n.rank, communicator_, stream),
+          require_nccl(ncclRecv(static_cast<char*>(m.ghosts) + bytes(n.first_received), bytes(n.received),
+                                ncclInt8, n.rank, communicator_, stream),
                        "ncclRecv");
       }
     require_nccl(ncclGroupEnd(), "ncclGroupEnd");
   }
   // The bits of numbers >= 0 order as the numbers do, and a NaN's come after all of them.
   void max(Real* values, Index n, cudaStream_t stream) override {
-    require_nccl(ncclAllReduce(values, values, static_cast<std::size_t>(n), ncclUint64, ncclMax, communicator_, stream),
+    require_nccl(ncclAllReduce(values, values, static_cast<std::size_t>(n), ncclUint64, ncclMax,
+                               communicator_, stream),
                  "ncclAllReduce");
   }
 

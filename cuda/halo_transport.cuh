@@ -20,14 +20,14 @@ class HaloTransport {
   virtual bool waits() const = 0;
   // The messages of a plan whose counts are set, in device memory, in the order of the stream. Collective.
   virtual void exchange(const HaloPlan& plan, std::span<const HaloMessage> messages, cudaStream_t stream) = 0;
-  // values[0 ... n-1] >= 0 in device memory become their maxima over all ranks; a NaN is larger than any number.
-  // Collective.
+  // values[0 ... n-1] >= 0 in device memory become their maxima over all ranks; a NaN is larger than any
+  // number. Collective.
   virtual void max(Real* values, Index n, cudaStream_t stream) = 0;
 };
 
-// The one that the deck names or, for automatic, the first that works here: MPI where it takes device memory, NCCL
-// where the program was built with it and no two ranks share a GPU, else copies in host memory. Collective. Throws
-// TransportError where the deck names one that does not work here.
+// The one that the deck names or, for automatic, the first that works here: MPI where it takes device memory,
+// NCCL where the program was built with it and no two ranks share a GPU, else copies in host memory.
+// Collective. Throws TransportError where the deck names one that does not work here.
 std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted);
 
 }  // namespace scree

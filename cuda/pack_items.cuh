@@ -25,8 +25,8 @@ struct PackItem {
     const Index i = order[k];
     ImageCount unused;
     const Vec4 x = in.position[i], v = in.velocity[i];
-    out[k] = {id_of(in.row_key[i]), x.w, wrap(box_min, period, xyz(x), unused), xyz(v), in.force[i] - v.w * gravity,
-              contacts[i]};
+    out[k] = {id_of(in.row_key[i]),        x.w,        wrap(box_min, period, xyz(x), unused), xyz(v),
+              in.force[i] - v.w * gravity, contacts[i]};
   }
 };
 

@@ -1,5 +1,5 @@
-// Particles on the device: the arrays of ParticleStore, twice, so that sorting, explicit and implicit steps can read
-// one and write the other.
+// Particles on the device: the arrays of ParticleStore, twice, so that sorting, explicit and implicit steps
+// can read one and write the other.
 #pragma once
 
 #include "dem/particle_store.hpp"
@@ -24,11 +24,13 @@ struct ParticleArrays {
     keep = std::min(keep, owned);
     acceleration.grow(owned, keep, stream), force.grow(owned, keep, stream);
     contact_loss.grow(owned, keep, stream), loss_power.grow(owned, keep, stream);
-    integrator_loss.grow(owned, keep, stream), image.grow(owned, keep, stream), drifting.grow(owned, keep, stream);
+    integrator_loss.grow(owned, keep, stream), image.grow(owned, keep, stream),
+        drifting.grow(owned, keep, stream);
   }
 };
 
-// Orders the entries of a neighbour list's row, by global id and then by image, whatever the local indices are.
+// Orders the entries of a neighbour list's row, by global id and then by image, whatever the local indices
+// are.
 SCREE_HD std::int64_t row_key(GlobalId id, std::int8_t image) { return id * 27 + image; }
 SCREE_HD GlobalId id_of(std::int64_t row_key) { return row_key / 27; }
 
@@ -44,9 +46,9 @@ struct ParticleViews {
 };
 
 inline ParticleViews views_of(ParticleArrays& a) {
-  return {a.position.data(),     a.velocity.data(), a.material.data(),     a.row_key.data(),
-          a.acceleration.data(), a.force.data(),    a.contact_loss.data(), a.loss_power.data(),
-          a.integrator_loss.data(), a.image.data(), a.drifting.data()};
+  return {a.position.data(),        a.velocity.data(), a.material.data(),     a.row_key.data(),
+          a.acceleration.data(),    a.force.data(),    a.contact_loss.data(), a.loss_power.data(),
+          a.integrator_loss.data(), a.image.data(),    a.drifting.data()};
 }
 
 // to[i] = from[order[i]].

@@ -9,8 +9,8 @@
 
 namespace scree {
 
-// Where the warps of a block stage arrays. kBytes: of the largest element. One array at a time, because shared memory is
-// taken from the first-level cache. All lanes of a warp call load, store and put together.
+// Where the warps of a block stage arrays. kBytes: of the largest element. One array at a time, because
+// shared memory is taken from the first-level cache. All lanes of a warp call load, store and put together.
 template <std::size_t kBytes, int kThreads>
 class WarpStage {
  public:
@@ -21,8 +21,8 @@ class WarpStage {
   __device__ WarpStage(Shared& shared, Index first, Index n)
       : bytes_(shared.bytes + threadIdx.x / warpSize * warpSize * kBytes), first_(first), n_(n) {}
 
-  // Begins to bring the warp's elements of the array in and returns what stands for the array: an item that reads and
-  // writes only its own element may use it from await to store.
+  // Begins to bring the warp's elements of the array in and returns what stands for the array: an item that
+  // reads and writes only its own element may use it from await to store.
   template <class T>
   __device__ T* load(const T* array) const {
     const auto* from = reinterpret_cast<const double*>(array + first_);

@@ -17,14 +17,15 @@ class StepGraph {
   StepGraph(const StepGraph&) = delete;
   StepGraph& operator=(const StepGraph&) = delete;
 
-  // Queues `steps` calls of queue_one(), which queues one step on the stream. key: all that the launches depend on; a
-  // batch of a key that was seen before is launched without capturing it again.
+  // Queues `steps` calls of queue_one(), which queues one step on the stream. key: all that the launches
+  // depend on; a batch of a key that was seen before is launched without capturing it again.
   template <class QueueOne>
   void queue(cudaStream_t stream, const std::string& key, int steps, const QueueOne& queue_one) {
     if (steps >= kSteps) {
       cudaGraphExec_t graph = find(key);
       if (graph == nullptr) graph = capture(stream, key, queue_one);
-      for (; steps >= kSteps; steps -= kSteps) require_cuda(cudaGraphLaunch(graph, stream), "cudaGraphLaunch");
+      for (; steps >= kSteps; steps -= kSteps)
+        require_cuda(cudaGraphLaunch(graph, stream), "cudaGraphLaunch");
     }
     for (; steps > 0; --steps) queue_one();
   }

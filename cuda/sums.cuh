@@ -1,5 +1,5 @@
-// Sums over items that do not depend on the order of the additions: base/reproducible_sum.hpp on the device, bit for
-// bit.
+// Sums over items that do not depend on the order of the additions: base/reproducible_sum.hpp on the device,
+// bit for bit.
 #pragma once
 
 #include "base/reproducible_sum.hpp"
@@ -7,15 +7,16 @@
 
 namespace scree {
 
-// Workspace of N sums. Quanta are added in two halves of 32 bits each, because the device adds 64 bits at once: up to
-// 2^31 terms of 62 bits do not overflow either.
+// Workspace of N sums. Quanta are added in two halves of 32 bits each, because the device adds 64 bits at
+// once: up to 2^31 terms of 62 bits do not overflow either.
 template <int N>
 struct ExactSums {
   Real largest[N];
   unsigned long long high[N], low[N];
 
   __int128 quanta(int k) const {
-    return static_cast<__int128>(static_cast<long long>(high[k])) * (1ll << 32) + static_cast<__int128>(low[k]);
+    return static_cast<__int128>(static_cast<long long>(high[k])) * (1ll << 32) +
+           static_cast<__int128>(low[k]);
   }
 };
 
@@ -47,11 +48,13 @@ __global__ void add_terms_kernel(Index n, const Item item, ExactSums<N>* sums) {
     if (threadIdx.x % warpSize == 0) atomicAdd(&high[k], h), atomicAdd(&low[k], l);
   }
   __syncthreads();
-  if (threadIdx.x < N) atomicAdd(&sums->high[threadIdx.x], high[threadIdx.x]), atomicAdd(&sums->low[threadIdx.x], low[threadIdx.x]);
+  if (threadIdx.x < N)
+    atomicAdd(&sums->high[threadIdx.x], high[threadIdx.x]),
+        atomicAdd(&sums->low[threadIdx.x], low[threadIdx.x]);
 }
 
-// Queues the sums of item(i).value[0 ... N-1] over i = 0 ... n-1 into *d_sums. share(largest) is called between the two
-// passes, where the largest terms become those of all ranks.
+// Queues the sums of item(i).value[0 ... N-1] over i = 0 ... n-1 into *d_sums. share(largest) is called
+// between the two passes, where the largest terms become those of all ranks.
 template <int N, class Item, class Share>
 void exact_sums(Device device, Index n, const Item& item, ExactSums<N>* d_sums, const Share& share) {
   require_cuda(cudaMemsetAsync(d_sums, 0, sizeof(ExactSums<N>), device.stream), "exact_sums");

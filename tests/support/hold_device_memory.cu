@@ -1,5 +1,6 @@
-// Takes all free memory of a GPU, and what others free there, until it is ended: for tests of runs that find none.
-// Usage: hold_device_memory GPU. Says "held" once it has it, and exits with 4 where there is no such GPU.
+// Takes all free memory of a GPU, and what others free there, until it is ended: for tests of runs that find
+// none. Usage: hold_device_memory GPU. Says "held" once it has it, and exits with 4 where there is no such
+// GPU.
 #include <cuda_runtime.h>
 
 #include <chrono>
