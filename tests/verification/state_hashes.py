@@ -1,6 +1,7 @@
-"""State hashes and histories of the cases that tests/ranks and same_bits.sh compare, one line each, to lay beside those of
-another version of the program: a change that is meant to keep every bit keeps every line.
-Usage: python3 state_hashes.py SCREE [SCREE ...] [--jobs N]; with several programs the lines that differ, exit code 1."""
+"""State hashes and histories of the cases that tests/ranks and same_bits.sh compare, one line each, to lay beside those
+of another version of the program: a change that is meant to keep every bit keeps every line.
+Usage: python3 state_hashes.py SCREE [SCREE ...] [--jobs N]; with several programs the lines that differ, and
+exit code 1."""
 
 import argparse
 import concurrent.futures
@@ -25,7 +26,8 @@ SAME_BITS = {
     "5.2 valley, 0.1 ms": ["paper/valley", "time.end=0.8", "time.step=1e-4"],
     "5.3 N = 9": ["paper/net_9", "time.end=0.5", "time.step=1e-4"],
     "5.3 N = 400": ["paper/net_400", "time.end=0.7", "time.step=5e-4", TARGETS],
-    "5.3 N = 400, explicit": ["paper/net_400", "time.end=0.7", "time.step=1e-4", *EXPLICIT, "integrator.substeps=10", TARGETS],
+    "5.3 N = 400, explicit": ["paper/net_400", "time.end=0.7", "time.step=1e-4", *EXPLICIT, "integrator.substeps=10",
+                              TARGETS],
     "heap": ["examples/heap_900", "time.end=0.125", "output.history_contacts=['x_min','y_min']"],
     "gas": ["examples/gas_periodic", "time.end=0.0625"],
 }
@@ -40,8 +42,9 @@ def all_cases():
 def line_of(program, name, deck, overrides):
     with tempfile.TemporaryDirectory(prefix="scree_hashes_") as folder:
         settings = [word for override in [*overrides, "output.history_csv=true"] for word in ("--set", override)]
-        subprocess.run([program, "run", str(deck), "--backend", os.environ.get("SCREE_TEST_BACKEND", "cpu"), "--output",
-                        folder, "--overwrite", *settings], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        backend = os.environ.get("SCREE_TEST_BACKEND", "cpu")
+        command = [program, "run", str(deck), "--backend", backend, "--output", folder, "--overwrite", *settings]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         record = json.loads((pathlib.Path(folder) / "run_record.json").read_text())
         history = hashlib.sha256((pathlib.Path(folder) / "history.csv").read_bytes()).hexdigest()
     bodies = " (bodies)" if "net" in str(deck) else ""
@@ -55,10 +58,9 @@ def main():
     arguments = parser.parse_args()
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         tables = [list(pool.map(lambda case: line_of(program, *case), all_cases())) for program in arguments.program]
-    print("\n".join(tables[0]))
     different = [f"{program}: {line}" for program, table in zip(arguments.program[1:], tables[1:])
                  for line, first in zip(table, tables[0]) if line != first]
-    print("\n".join(different))
+    print(*tables[0], *different, sep="\n")
     return 1 if different else 0
 
 
