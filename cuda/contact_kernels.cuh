@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "dem/contact_items.hpp"
 #include "dem/contact_kernels.hpp"
@@ -187,8 +188,10 @@ class DeviceContactKernels {
   virtual void verlet_finish(Device device, const VerletRequest& request, Real* largest) const = 0;
 };
 
-// d_laws: the model's table of laws on the device.
-std::unique_ptr<DeviceContactKernels> make_device_contact_kernels(const Contact& contact,
-                                                                  const KelvinVoigt* d_laws);
+// Of one type of law, each compiled in a source file of its own: contact_kernels_*.cu.
+template <class Law>
+std::unique_ptr<DeviceContactKernels> device_kernels(const std::vector<Law>& laws, int materials);
+
+std::unique_ptr<DeviceContactKernels> make_device_contact_kernels(const Contact& contact);
 
 }  // namespace scree

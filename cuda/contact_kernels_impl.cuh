@@ -9,9 +9,9 @@
 namespace scree {
 
 // Force, Newton matrix and residual of a particle in one pass.
-template <class Elastic, class Laws>
+template <class Laws>
 struct SystemItem {
-  ContactSystemItem<Elastic, Laws, SlicedRows> system;
+  ContactSystemItem<Laws, SlicedRows> system;
   ResidualItem residual;
   StepNormsItem norms;
 
@@ -26,7 +26,7 @@ inline constexpr int kSystemThreads = 128;
 
 using SystemStage = WarpStage<sizeof(Sym3), kSystemThreads>;
 
-template <class Elastic, class Laws>
+template <class Laws>
 __global__ void __launch_bounds__(kSystemThreads)
     system_kernel(const __grid_constant__ SystemRequest r, const Laws laws) {
   __shared__ SystemStage::Shared shared;
@@ -36,10 +36,9 @@ __global__ void __launch_bounds__(kSystemThreads)
   Sym3 diagonal, inverse_block;
   StepNorms norms{};
   if (i < r.end) {
-    SystemItem<Elastic, Laws> item{
-        {{r.in, laws, r.start}, r.gravity, r.weights, r.forces, r.matrix},
-        {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
-        {r.step, r.residual, r.forces.magnitude, r.stiffening}};
+    SystemItem<Laws> item{{{r.in, laws, {r.start}}, r.gravity, r.weights, r.forces, r.matrix},
+                          {r.step, r.forces.step_force, r.matrix, r.residual, r.inverse_block, r.stiffening},
+                          {r.step, r.residual, r.forces.magnitude, r.stiffening}};
     item.system.out.step_force = only(step_force, i), item.residual.force = only(step_force, i);
     item.system.out.end_force = only(end_force, i);
     item.system.matrix.diagonal = item.residual.matrix.diagonal = only(diagonal, i);
@@ -119,7 +118,7 @@ __device__ inline void close_by_last_block(BlockLargest& block, Real d_squared, 
 
 using VerletStage = WarpStage<sizeof(Vec4), kStepBlock>;
 
-template <int kAtOnce, class Elastic, class Laws>
+template <int kAtOnce, class Laws>
 __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
     verlet_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
   await_step_before();
@@ -131,21 +130,21 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   Vec3* const acceleration = stage.load(r.state.acceleration);
-  VerletAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
-      {views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws, r.gravity, nullptr, nullptr},
+  VerletAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
+      {{views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws}, r.gravity, nullptr, nullptr},
       r.state};
-  item.contacts.in.position = p == 0 ? r.position[0] : r.position[1];
-  item.contacts.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
+  item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
+  item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
   Vec4 position, velocity;
   item.state.position = only(position, i), item.state.velocity = only(velocity, i);
   item.state.acceleration = acceleration;
   TotalForce force;
-  if (i < r.rows.end) force = item.contacts.total(i);
+  if (i < r.rows.end) force = item.forces.total(i);
   stage.await();
   Real d_squared = 0;
   if (i < r.rows.end) {
     d_squared = item.advance(i, force);
-    if (is_outside(r, i, item.contacts.in.position[i], position, d_squared)) r.control->outside = 1;
+    if (is_outside(r, i, item.forces.walk.in.position[i], position, d_squared)) r.control->outside = 1;
   }
   stage.store(r.state.acceleration);
   stage.put(position, p == 0 ? r.position[1] : r.position[0]);
@@ -154,7 +153,7 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
-template <int kAtOnce, class Elastic, class Laws>
+template <int kAtOnce, class Laws>
 __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
     mixed_advance_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
   await_step_before();
@@ -165,7 +164,7 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
   const Index i = r.rows.first + thread_index();
   Real d_squared = 0;
   if (i < r.rows.end) {
-    const MixedAdvanceItem<Elastic, Laws, PrunedRows<kAtOnce>> item{
+    const MixedAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
         views_for<kAtOnce>(r.in, r.control->rows, r.control->margin),
         laws,
         r.gravity,
@@ -184,89 +183,86 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
-template <class Elastic, class Laws>
+template <class Laws>
 __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, const Laws laws,
                                      Real* largest) {
   const int p = r.control->parity[0], v = r.control->parity[1];
   const Index i = thread_index();
   Real a_squared = 0;
   if (i < r.rows.end) {
-    VerletFinishItem<Elastic, Laws, PrunedRows<0>> item{
-        {views_for<0>(r.in, RowUse::all, 0), laws, r.gravity, r.force, r.state.loss_power}, r.state};
-    item.contacts.in.position = r.position[p], item.contacts.in.velocity = r.velocity[v];
+    VerletFinishItem<Laws, PrunedRows<0>> item{
+        {{views_for<0>(r.in, RowUse::all, 0), laws}, r.gravity, r.force, r.state.loss_power}, r.state};
+    item.forces.walk.in.position = r.position[p], item.forces.walk.in.velocity = r.velocity[v];
     item.state.position = r.position[p], item.state.velocity = r.velocity[1 - v];
     a_squared = item(i);
   }
   block_max(a_squared, largest);
 }
 
-template <class Elastic, class Laws>
+template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
-    prefer_cache(verlet_advance_kernel<0, Elastic, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
+    prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
   }
 
   void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
               Real* loss_power) const override {
-    for_each(device, n, ContactForceItem<Elastic, Laws, SlicedRows>{in, laws_, gravity, force, loss_power});
+    for_each(device, n, ContactForceItem<Laws, SlicedRows>{{in, laws_}, gravity, force, loss_power});
   }
   void system(Device device, const SystemRequest& r) const override {
     if (r.end == r.first) return;
-    system_kernel<Elastic>
+    system_kernel<Laws>
         <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
     require_cuda(cudaGetLastError(), "system");
   }
   void shapes(Device device, const DeviceViews& in, Index n, const StepStart& start,
               ShapeContact* out) const override {
-    for_each(device, n, ShapeStepItem<Elastic, Laws, SlicedRows>{{in, laws_, start}, out});
+    for_each(device, n, ShapeStepItem<Laws, SlicedRows>{{in, laws_, {start}}, out});
   }
   void shapes(Device device, const DeviceViews& in, const ShapePlaces& places, Index n,
               ShapeContact* out) const override {
-    for_each(device, n, ShapeContactItem<Elastic, Laws, SlicedRows>{in, places, laws_, out});
+    for_each(device, n, ShapeContactItem<Laws, SlicedRows>{{in, laws_, {{}, places}}, out});
   }
   void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                  ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const override {
-    exact_sums(device, n, WallContactItem<Elastic, Laws, SlicedRows>{in, laws_, choice}, sums, share);
+    exact_sums(device, n, WallContactItem<Laws, SlicedRows>{{in, laws_}, choice}, sums, share);
   }
   void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const override {
     for_each(device, n,
-             ContactEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, out.energy, out.contacts, out.pairs});
+             ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});
   }
   void books(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
              Real* integrator_loss) const override {
     for_each(device, n,
-             ContactBooksItem<Elastic, Laws, SlicedRows>{{in, laws_, start}, contact_loss, integrator_loss});
+             ContactBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
   void shape_books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                    ContactBooks* out) const override {
-    for_each(device, n,
-             ShapeBooksItem<Elastic, Laws, SlicedRows>{{with_shapes_alone(in), laws_, start}, out});
+    for_each(device, n, ShapeBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, out});
   }
   void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
                Leaver* leavers) const override {
-    for_each(device, n, LeaverEnergyItem<Elastic, Laws, SlicedRows>{in, laws_, box, leavers});
+    for_each(device, n, LeaverEnergyItem<Laws, SlicedRows>{{in, laws_}, box, leavers});
   }
   void departures(Device device, const DeviceViews& in, Vec3 gravity, const OpenBox& box, Index n,
                   const StartViews& start) const override {
-    for_each(device, n, DepartureItem<Elastic, Laws, SlicedRows>{in, laws_, gravity, box, start});
+    for_each(device, n, DepartureItem<Laws, SlicedRows>{{in, laws_}, gravity, box, start});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
     const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
     launch(device, r,
-           eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
-                   : verlet_advance_kernel<0, Elastic, Laws>);
+           eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Laws> : verlet_advance_kernel<0, Laws>);
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
     const bool eagerly = several_at_once(r.rows, mixed_blocks(kFewThreadsAtOnce));
     launch(device, r,
-           eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Elastic, Laws>
-                   : mixed_advance_kernel<0, Elastic, Laws>);
+           eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Laws> : mixed_advance_kernel<0, Laws>);
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
     if (r.rows.end == 0) return;
-    verlet_finish_kernel<Elastic>
+    verlet_finish_kernel<Laws>
         <<<blocks_for(r.rows.end), launches().block, 0, device.stream>>>(r, laws_, largest);
     require_cuda(cudaGetLastError(), "explicit step");
   }
@@ -292,15 +288,27 @@ class ContactKernelsOf : public DeviceContactKernels {
 
   Laws laws_;
   // Kernels compiled for older generations do not wait for the step before.
-  bool overlaps_ = generation_of(verlet_advance_kernel<0, Elastic, Laws>) >= 90;
+  bool overlaps_ = generation_of(verlet_advance_kernel<0, Laws>) >= 90;
   unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());
 };
 
-template <class Elastic>
-std::unique_ptr<DeviceContactKernels> kernels_with(const Contact& contact, const KelvinVoigt* d_laws) {
-  if (contact.laws.size() == 1)
-    return std::make_unique<ContactKernelsOf<Elastic, OneLaw>>(OneLaw{contact.laws[0]});
-  return std::make_unique<ContactKernelsOf<Elastic, LawTable>>(LawTable{d_laws, contact.materials()});
+// With the table that the kernels of several laws refer to.
+template <class Law>
+class TableKernels : public ContactKernelsOf<LawTable<Law>> {
+ public:
+  TableKernels(DeviceArray<Law> table, int materials)
+      : ContactKernelsOf<LawTable<Law>>({table.data(), materials}), table_(std::move(table)) {}
+
+ private:
+  DeviceArray<Law> table_;
+};
+
+template <class Law>
+std::unique_ptr<DeviceContactKernels> device_kernels(const std::vector<Law>& laws, int materials) {
+  if (laws.size() == 1) return std::make_unique<ContactKernelsOf<OneLaw<Law>>>(OneLaw<Law>{laws[0]});
+  DeviceArray<Law> table;
+  table.upload(laws, nullptr);
+  return std::make_unique<TableKernels<Law>>(std::move(table), materials);
 }
 
 }  // namespace scree

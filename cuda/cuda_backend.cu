@@ -22,8 +22,7 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
       pack_(std::make_unique<PackArrays>()) {
   results_.zero(stream_);
   records_.resize_clean(kRecordsAtOnce, stream_);
-  laws_.upload(model.contact.laws, stream_);
-  kernels_ = make_device_contact_kernels(model.contact, laws_.data());
+  kernels_ = make_device_contact_kernels(model.contact);
   planes_.upload(wall_planes(model), stream_);
   std::vector<Index> offsets{0}, connected;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {

@@ -193,7 +193,6 @@ class CudaBackend : public Backend {
   // Everything that follows the particles; contacts of shapes, and the halo, beside an explicit step; output.
   mutable Stream stream_, shape_stream_{Priority::urgent}, halo_stream_{Priority::urgent}, copy_stream_;
 
-  DeviceArray<KelvinVoigt> laws_;
   std::unique_ptr<DeviceContactKernels> kernels_;
   DeviceArray<WallPlane> planes_;
 

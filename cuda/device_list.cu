@@ -98,7 +98,7 @@ __device__ void sort_row(const std::int64_t* row_key, Index* row, Index n) {
 }
 
 __device__ bool near(const ListInput& in, Vec4 p, const WallPlane& wall) {
-  return wall_overlap(p, wall).distance < p.w + in.skin;
+  return wall_pair(p, wall).distance < p.w + in.skin;
 }
 
 __device__ bool collides_with_walls(const ListInput& in, Index i) {

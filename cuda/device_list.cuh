@@ -3,7 +3,7 @@
 #pragma once
 
 #include "brick_grid.cuh"
-#include "dem/contact_items.hpp"
+#include "dem/contact_walk.hpp"
 #include "device.cuh"
 
 namespace scree {

@@ -1,85 +1,85 @@
 #include "dem/contact_kernels.hpp"
 
-#include <algorithm>
-
 #include "base/for_each.hpp"
 #include "base/reproducible_sum.hpp"
+#include "dem/choose_law.hpp"
 
 namespace scree {
 namespace {
 
-template <class Elastic, class Laws>
+template <class Laws>
 class CpuContactKernels : public ContactKernels {
  public:
   explicit CpuContactKernels(Laws laws) : laws_(laws) {}
 
   void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
               Real* loss_power) const override {
-    for_each(Serial{}, n, ContactForceItem<Elastic, Laws, PackedRows>{in, laws_, gravity, force, loss_power});
+    for_each(Serial{}, n, ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power});
   }
   Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, const VerletViews& state,
                      Vec3* force) const override {
     return max_over(
         Serial{}, n,
-        VerletFinishItem<Elastic, Laws, PackedRows>{{in, laws_, gravity, force, state.loss_power}, state});
+        VerletFinishItem<Laws, PackedRows>{{{in, laws_}, gravity, force, state.loss_power}, state});
   }
   Real verlet_advance(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
                       const VerletViews& state) const override {
-    return max_over(
-        Serial{}, n,
-        VerletAdvanceItem<Elastic, Laws, PackedRows>{{in, laws_, gravity, nullptr, nullptr}, state});
+    return max_over(Serial{}, n,
+                    VerletAdvanceItem<Laws, PackedRows>{{{in, laws_}, gravity, nullptr, nullptr}, state});
   }
   void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
               const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
     for_each(Serial{}, n,
-             ContactSystemItem<Elastic, Laws, PackedRows>{{in, laws_, start}, gravity, weights, out, matrix});
+             ContactSystemItem<Laws, PackedRows>{{in, laws_, {start}}, gravity, weights, out, matrix});
   }
   void shapes(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
               ShapeContact* out) const override {
-    for_each(Serial{}, n, ShapeStepItem<Elastic, Laws, PackedRows>{{in, laws_, start}, out});
+    for_each(Serial{}, n, ShapeStepItem<Laws, PackedRows>{{in, laws_, {start}}, out});
   }
   void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
               ShapeContact* out) const override {
-    for_each(Serial{}, n, ShapeContactItem<Elastic, Laws, PackedRows>{in, places, laws_, out});
+    for_each(Serial{}, n, ShapeContactItem<Laws, PackedRows>{{in, laws_, {{}, places}}, out});
   }
   void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
                  Real (&sums)[kWallTerms]) const override {
-    reproducible_sums(n, WallContactItem<Elastic, Laws, PackedRows>{in, laws_, choice}, sums, ranks);
+    reproducible_sums(n, WallContactItem<Laws, PackedRows>{{in, laws_}, choice}, sums, ranks);
   }
   void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
     for_each(Serial{}, n,
-             ContactEnergyItem<Elastic, Laws, PackedRows>{in, laws_, out.energy, out.contacts, out.pairs});
+             ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});
   }
   void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
              Real* integrator_loss) const override {
     for_each(Serial{}, n,
-             ContactBooksItem<Elastic, Laws, PackedRows>{{in, laws_, start}, contact_loss, integrator_loss});
+             ContactBooksItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
   void shape_books(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
                    ContactBooks* out) const override {
-    for_each(Serial{}, n,
-             ShapeBooksItem<Elastic, Laws, PackedRows>{{with_shapes_alone(in), laws_, start}, out});
+    for_each(Serial{}, n, ShapeBooksItem<Laws, PackedRows>{{in, laws_, {start}}, out});
   }
   void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
                Leaver* leavers) const override {
-    for_each(Serial{}, n, LeaverEnergyItem<Elastic, Laws, PackedRows>{in, laws_, box, leavers});
+    for_each(Serial{}, n, LeaverEnergyItem<Laws, PackedRows>{{in, laws_}, box, leavers});
   }
   void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
                   const StartViews& start) const override {
-    for_each(Serial{}, n, DepartureItem<Elastic, Laws, PackedRows>{in, laws_, gravity, box, start});
+    for_each(Serial{}, n, DepartureItem<Laws, PackedRows>{{in, laws_}, gravity, box, start});
   }
 
  private:
   Laws laws_;
 };
 
-template <class Elastic>
-std::unique_ptr<ContactKernels> with_elastic(const Contact& contact) {
-  if (contact.laws.size() == 1)
-    return std::make_unique<CpuContactKernels<Elastic, OneLaw>>(OneLaw{contact.laws[0]});
-  return std::make_unique<CpuContactKernels<Elastic, LawTable>>(
-      LawTable{contact.laws.data(), contact.materials()});
-}
+// With the table that the kernels of several laws refer to.
+template <class Law>
+class CpuTableKernels : public CpuContactKernels<LawTable<Law>> {
+ public:
+  CpuTableKernels(std::vector<Law> table, int materials)
+      : CpuContactKernels<LawTable<Law>>({table.data(), materials}), table_(std::move(table)) {}
+
+ private:
+  std::vector<Law> table_;
+};
 
 }  // namespace
 
@@ -89,13 +89,13 @@ std::vector<WallPlane> wall_planes(const Model& model) {
   return planes;
 }
 
-bool is_linear(const Contact& contact) {
-  return std::all_of(contact.laws.begin(), contact.laws.end(),
-                     [](const KelvinVoigt& l) { return l.exponent == 1; });
-}
-
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact) {
-  return is_linear(contact) ? with_elastic<LinearElastic>(contact) : with_elastic<PowerElastic>(contact);
+  return with_contact_laws(contact,
+                           [&]<class Law>(const std::vector<Law>& laws) -> std::unique_ptr<ContactKernels> {
+                             if (laws.size() == 1)
+                               return std::make_unique<CpuContactKernels<OneLaw<Law>>>(OneLaw<Law>{laws[0]});
+                             return std::make_unique<CpuTableKernels<Law>>(laws, contact.materials());
+                           });
 }
 
 }  // namespace scree

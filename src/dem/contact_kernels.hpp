@@ -8,6 +8,7 @@
 #include "dem/leaver_items.hpp"
 #include "dem/shape_items.hpp"
 #include "dem/step_items.hpp"
+#include "dem/system_items.hpp"
 #include "dem/wall_items.hpp"
 #include "model/model.hpp"
 #include "partition/ranks.hpp"
@@ -57,9 +58,6 @@ class ContactKernels {
 
 // The walls in the form the items read.
 std::vector<WallPlane> wall_planes(const Model& model);
-
-// Whether all laws have exponent 1: their kernels need no pow().
-bool is_linear(const Contact& contact);
 
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact);
 

@@ -34,17 +34,16 @@ struct Leaves {
 
 // The elastic energy of the contacts that end with a leaver: all of it, but half with one that leaves as
 // well.
-template <class Elastic, class Laws, class Rows>
+template <class Laws, class Rows>
 struct LeaverEnergyItem {
-  ContactViews<Rows> in;
-  Laws laws;
+  ContactWalk<Laws, Rows> walk;
   OpenBox box;
   Leaver* leavers;
 
   SCREE_HD void operator()(Index k) const {
-    const Leaves<Rows> leaves{in, box};
+    const Leaves<Rows> leaves{walk.in, box};
     const auto share = [&](Index j) { return leaves(j) ? Real(0.5) : Real(1); };
-    leavers[k].elastic = touch_sums<Elastic>(in, laws, leavers[k].local_index, share).energy;
+    leavers[k].elastic = touch_sums(walk, leavers[k].local_index, share).energy;
   }
 };
 
@@ -62,32 +61,32 @@ struct StartViews {
 // stays those with particles that leave, out of one that leaves all. Else the step would do half a step's
 // work with a force that has no elastic energy any more. in: as the forces were computed, with the velocities
 // that the law saw.
-template <class Elastic, class Laws, class Rows>
+template <class Laws, class Rows>
 struct DepartureItem {
-  ContactViews<Rows> in;
-  Laws laws;
+  ContactWalk<Laws, Rows> walk;
   Vec3 gravity;
   OpenBox box;
   StartViews start;
 
   SCREE_HD void operator()(Index i) const {
     if (start.drifting[i]) return;
-    const Leaves<Rows> leaves{in, box};
-    const Vec4 p = in.position[i], u = in.velocity[i];
+    const Leaves<Rows> leaves{walk.in, box};
+    const auto self = walk.self(i);
+    const Real mass = self.u.w;
     if (leaves(i)) {
-      begin_from(i, u.w, u.w * gravity);
+      begin_from(i, mass, mass * gravity);
       if (start.loss_power != nullptr) start.loss_power[i] = 0;
       return;
     }
-    PairForce ended{};
-    Index contacts = 0;
-    in.rows.for_each_contact(
-        i, [&](Index j) { return touch(p, in.position[j]) && leaves(j); },
-        [&](Index j) { return pair_force<Elastic>(in, laws, p, u, in.material[i], j); },
-        [&](const PairForce& c) { ended.force += c.force, ended.loss += c.loss, ++contacts; });
-    if (contacts == 0) return;
-    begin_from(i, u.w, start.force[i] - ended.force);
-    if (start.loss_power != nullptr) start.loss_power[i] -= Real(0.5) * ended.loss;
+    Vec3 ended_force;
+    Real ended_loss = 0;
+    Index ended = 0;
+    walk.neighbors_if(self, leaves, LoadOf{}, [&](const auto& load, Index) {
+      ended_force += load.force, ended_loss += load.loss, ++ended;
+    });
+    if (ended == 0) return;
+    begin_from(i, mass, start.force[i] - ended_force);
+    if (start.loss_power != nullptr) start.loss_power[i] -= Real(0.5) * ended_loss;
   }
 
   SCREE_HD void begin_from(Index i, Real mass, Vec3 force) const {

@@ -114,12 +114,6 @@ struct MixedTouchTest {
   }
 };
 
-// What one contact adds to force [N] and dissipation [W].
-struct MixedPairForce {
-  Vec3f force;
-  float loss;  // of the whole contact
-};
-
 // From the double state of an open explicit step.
 struct ToMixedItem {
   const Vec4 *position, *velocity;
@@ -183,8 +177,50 @@ struct FromMixedItem {
   }
 };
 
+// The look at places on the grid: pairs of particles in single precision, walls, for which the whole position
+// is needed, in double.
+struct AtMixedInstant {
+  const MixedPlace* place;  // all items
+  const MixedMotion* motion;
+  const MixedFraction* fraction;
+  QuantumGrid grid;
+
+  struct Self {
+    Index i;
+    int material;
+    MixedPlace p;
+    MixedMotion u;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], place[i], motion[i]};
+  }
+  template <class Rows>
+  SCREE_HD MixedTouchTest test(const ContactViews<Rows>&, const Self& self) const {
+    return {self.p, place, static_cast<float>(grid.quantum)};
+  }
+  template <class Rows>
+  SCREE_HD PairStateOf<float, Vec3f> pair(const ContactViews<Rows>&, const Self& self, Index j) const {
+    const MixedPlace p = self.p, q = place[j];
+    const MixedMotion u = self.u, w = motion[j];
+    const Vec3f r = mixed_difference(static_cast<float>(grid.quantum), p, q);
+    return {sphere_pair(r, p.radius + q.radius),
+            {u.x - w.x, u.y - w.y, u.z - w.z},
+            {p.radius, q.radius, u.mass, w.mass}};
+  }
+  // in.position: as converted.
+  template <class Rows>
+  SCREE_HD PairState wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    const Vec4 from = in.position[self.i];
+    const Vec4 x = vec4(mixed_position(grid, from, self.p, fraction[self.i]), from.w);
+    const MixedMotion u = self.u;
+    return {wall_pair(x, plane), Vec3{u.x, u.y, u.z}, wall_size(from.w, u.mass)};
+  }
+  SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
+};
+
 // Closes a step and opens the next. Returns the square of the displacement.
-template <class Elastic, class Laws, class Rows>
+template <class Laws, class Rows>
 struct MixedAdvanceItem {
   ContactViews<Rows> in;  // position: as converted; velocity is not used
   Laws laws;
@@ -195,58 +231,26 @@ struct MixedAdvanceItem {
   Real h;
 
   SCREE_HD Real operator()(Index i) const {
-    const MixedPlace p = places()[i];
-    const MixedMotion u = motions()[i];
-    const Real mass = u.mass;
+    const ContactWalk<Laws, Rows, AtMixedInstant> walk{in, laws, {places(), motions(), state.fraction, grid}};
+    const auto self = walk.self(i);
+    const Real mass = self.u.mass;
     Vec3 f = mass * gravity;
     float loss = 0;
-    add_neighbors(i, p, u, f, loss);
-    if (in.wall_offsets[i] < in.wall_offsets[i + 1]) add_walls(i, p, u, f, loss);
-    return advance(i, p, u, reciprocal(mass) * f, loss);
+    walk.neighbors(self, LoadOf{}, [&](const auto& load, Index) {
+      f += in_double(load.force);
+      loss += 0.5f * load.loss;
+    });
+    walk.walls(self, LoadOf{}, [&](const auto& load, Index) {
+      f += load.force;
+      loss += static_cast<float>(load.loss);
+    });
+    return advance(i, self.p, self.u, reciprocal(mass) * f, loss);
   }
 
  private:
   // No indexing by parity: a GPU would copy the arrays of pointers to memory for it.
   SCREE_HD MixedPlace* places() const { return parity == 0 ? state.place[0] : state.place[1]; }
   SCREE_HD MixedMotion* motions() const { return parity == 0 ? state.motion[0] : state.motion[1]; }
-
-  SCREE_HD void add_neighbors(Index i, const MixedPlace& p, const MixedMotion& u, Vec3& f,
-                              float& loss) const {
-    const MixedPlace* from = places();
-    const MixedMotion* seen = motions();
-    const int material = in.material[i];
-    const auto quantum = static_cast<float>(grid.quantum);
-    in.rows.for_each_contact(
-        i, MixedTouchTest{p, from, quantum},
-        [&](Index j) {
-          const MixedPlace q = from[j];
-          const MixedMotion w = seen[j];
-          const Vec3f r = mixed_difference(quantum, p, q), relative{u.x - w.x, u.y - w.y, u.z - w.z};
-          const GapOf<float> gap = sphere_gap(dot(r, r), p.radius + q.radius);
-          const auto c = contact_force<Elastic>(in_single(laws.get(material, in.material[j])), gap.overlap,
-                                                approach_rate(r, gap.inverse_distance, relative));
-          return MixedPairForce{(c.force * gap.inverse_distance) * r, c.loss};
-        },
-        [&](const MixedPairForce& c) {
-          f += in_double(c.force);
-          loss += 0.5f * c.loss;
-        });
-  }
-
-  // The distance from a wall needs the whole position.
-  SCREE_HD void add_walls(Index i, const MixedPlace& p, const MixedMotion& u, Vec3& f, float& loss) const {
-    const Vec4 from = in.position[i];
-    const Vec4 x = vec4(mixed_position(grid, from, p, state.fraction[i]), from.w);
-    for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
-      const WallPlane& wall = in.planes[in.walls[k]];
-      const Overlap o = wall_overlap(x, wall);
-      if (o.overlap <= 0) continue;
-      const ContactForce c = contact_force<Elastic>(laws.get(in.material[i], wall.material), o.overlap,
-                                                    -dot(o.normal, Vec3{u.x, u.y, u.z}));
-      f += c.force * o.normal;
-      loss += static_cast<float>(c.loss);
-    }
-  }
 
   SCREE_HD Real advance(Index i, const MixedPlace& p, const MixedMotion& u, Vec3 a, float loss) const {
     const MixedRest rest = state.rest[i];

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/exact_sum.hpp"
-#include "dem/contact_items.hpp"
+#include "dem/system_items.hpp"
 
 namespace scree {
 
@@ -75,105 +75,107 @@ struct ShapePlaces {
 SCREE_HD Real shape_share(Index j, Index first_shape) { return j < first_shape ? Real(0) : Real(0.5); }
 
 // Contacts of a shape item over an implicit step.
-template <class Elastic, class Laws, class Rows>
+template <class Laws, class Rows>
 struct ShapeStepItem {
-  StepContacts<Laws, Rows> contacts;
+  StepWalk<Laws, Rows> walk;
   ShapeContact* out;  // [shape items], indexed from first_shape
 
   SCREE_HD void operator()(Index shape) const {
-    const Index i = contacts.in.first_shape + shape;
     ShapeContact sum;
-    const auto of = [&](const KelvinVoigt& law, const ContactPath& c) {
-      return step_contact<Elastic>(law, contacts.start, c);
-    };
-    const auto add = [&](const StepContact& c) {
+    const auto add = [&](const StepContact& c, Index) {
       sum.forces.step.add(c.step.force * c.normal);
       sum.forces.end.add(c.end_force * c.normal);
       sum.forces.stiffness.add(outer(c.step.stiffness, c.normal));
       sum.forces.damping.add(outer(c.step.damping, c.normal));
       ++sum.forces.contacts;
     };
-    contacts.neighbors(i, of, [&](const StepContact& c, Index) { add(c); });
-    contacts.walls(i, of, add);
+    const auto self = walk.self(walk.in.first_shape + shape);
+    const StepContactOf of{walk.look.start.resolve_events};
+    walk.neighbors(self, of, add);
+    walk.walls(self, of, add);
     store(ContactSpan::step, sum, out[shape]);
   }
 };
 
-// Of a row, the entries that are shapes.
-template <class Rows>
-struct ShapesOfRows {
-  Rows rows;
-  Index first_shape;
-
-  template <class Touches, class Evaluate, class Add>
-  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
-                                 const Add& add) const {
-    rows.for_each_contact(
-        i, [&](Index j) { return j >= first_shape && touches(j); }, evaluate, add);
-  }
-};
-
-template <class Rows>
-ContactViews<ShapesOfRows<Rows>> with_shapes_alone(const ContactViews<Rows>& in) {
-  return {in.position,     in.velocity, in.material, {in.rows, in.first_shape},
-          in.wall_offsets, in.walls,    in.planes,   in.first_shape};
-}
-
-// What a shape item's own share of its contacts adds to the energy ledger over an accepted step.
-template <class Elastic, class Laws, class Rows>
+// What a shape item's own share of its contacts adds to the energy ledger over an accepted step: of those
+// with other shapes and with walls.
+template <class Laws, class Rows>
 struct ShapeBooksItem {
-  StepContacts<Laws, ShapesOfRows<Rows>> contacts;
+  StepWalk<Laws, Rows> walk;
   ContactBooks* out;  // [shape items], indexed from first_shape
 
   SCREE_HD void operator()(Index shape) const {
-    const Index first_shape = contacts.in.first_shape;
-    out[shape] = books_of<Elastic>(contacts, first_shape + shape,
-                                   [&](Index j) { return shape_share(j, first_shape); });
+    const Index first_shape = walk.in.first_shape;
+    out[shape] = books_of(
+        walk, first_shape + shape, [&](Index j) { return walk.in.is_shape(j); },
+        [&](Index j) { return shape_share(j, first_shape); });
   }
 };
 
-// Contacts of a shape item at one instant. The shapes may be elsewhere than in the arrays of all items.
-template <class Elastic, class Laws, class Rows>
-struct ShapeContactItem {
-  ContactViews<Rows> in;
+// The look at one instant of shapes that may be elsewhere than in the arrays of all items.
+struct AtShapePlaces : AtInstant {
   ShapePlaces shapes;
-  Laws laws;
+
+  template <class Rows>
+  SCREE_HD Vec4 position(const ContactViews<Rows>& in, Index j) const {
+    return in.is_shape(j) ? shapes.position[j - in.first_shape] : in.position[j];
+  }
+  template <class Rows>
+  SCREE_HD Vec4 velocity(const ContactViews<Rows>& in, Index j) const {
+    return in.is_shape(j) ? shapes.velocity[j - in.first_shape] : in.velocity[j];
+  }
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], position(in, i), velocity(in, i)};
+  }
+  template <class Rows>
+  SCREE_HD auto test(const ContactViews<Rows>& in, const Self& self) const {
+    return [&in, &self, this](Index j) { return touch(self.p, position(in, j)); };
+  }
+  template <class Rows>
+  SCREE_HD PairState pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    return AtInstant::pair(self, position(in, j), velocity(in, j));
+  }
+};
+
+// What a contact does to a shape at an instant.
+struct ShapeLoad {
+  Vec3 force;   // [N]
+  Real loss;    // of the whole contact [W]
+  Real energy;  // elastic, of the whole contact [J]
+};
+
+struct ShapeLoadOf {
+  template <class Law>
+  SCREE_HD ShapeLoad operator()(const Law& law, const PairState& pair) const {
+    const auto normal_law = law.normal.of_pair(pair.size);
+    const Vec3 normal = pair.geometry.normal();
+    const Real overlap = pair.geometry.overlap;
+    const ContactForce c = contact_force(normal_law, overlap, -dot(normal, pair.velocity));
+    return {c.force * normal, c.loss, normal_law.energy(overlap)};
+  }
+};
+
+// Contacts of a shape item at one instant.
+template <class Laws, class Rows>
+struct ShapeContactItem {
+  ContactWalk<Laws, Rows, AtShapePlaces> walk;
   ShapeContact* out;  // [shape items], indexed from first_shape
 
-  SCREE_HD Vec4 position(Index j) const {
-    return j < in.first_shape ? in.position[j] : shapes.position[j - in.first_shape];
-  }
-  SCREE_HD Vec4 velocity(Index j) const {
-    return j < in.first_shape ? in.velocity[j] : shapes.velocity[j - in.first_shape];
-  }
-
-  SCREE_HD void add(ShapeContact& sum, const KelvinVoigt& law, const Overlap& o, Real rate,
-                    Real share) const {
-    const ContactForce c = contact_force<Elastic>(law, o.overlap, rate);
-    sum.forces.end.add(c.force * o.normal);
-    sum.loss += share * c.loss;
-    sum.energy += share * Elastic::energy(law, o.overlap);
-    sum.pairs += share;
-    ++sum.forces.contacts;
-  }
-
   SCREE_HD void operator()(Index shape) const {
-    const Index i = in.first_shape + shape;
-    const Vec4 p = position(i), u = velocity(i);
+    const Index first_shape = walk.in.first_shape;
     ShapeContact sum;
-    in.rows.for_each_contact(
-        i, [&](Index j) { return touch(p, position(j)); }, [](Index j) { return j; },
-        [&](Index j) {
-          const Vec4 q = position(j);
-          const Overlap o = sphere_overlap(xyz(p) - xyz(q), p.w + q.w);
-          const Real rate = -dot(o.normal, xyz(u) - xyz(velocity(j)));
-          add(sum, laws.get(in.material[i], in.material[j]), o, rate, shape_share(j, in.first_shape));
-        });
-    for (Index k = in.wall_offsets[i]; k < in.wall_offsets[i + 1]; ++k) {
-      const WallPlane& wall = in.planes[in.walls[k]];
-      const Overlap o = wall_overlap(p, wall);
-      if (o.overlap > 0) add(sum, laws.get(in.material[i], wall.material), o, -dot(o.normal, xyz(u)), 1);
-    }
+    const auto add = [&](const ShapeLoad& load, Real share) {
+      sum.forces.end.add(load.force);
+      sum.loss += share * load.loss;
+      sum.energy += share * load.energy;
+      sum.pairs += share;
+      ++sum.forces.contacts;
+    };
+    const auto self = walk.self(first_shape + shape);
+    walk.neighbors(self, ShapeLoadOf{},
+                   [&](const ShapeLoad& load, Index j) { add(load, shape_share(j, first_shape)); });
+    walk.walls(self, ShapeLoadOf{}, [&](const ShapeLoad& load, Index) { add(load, 1); });
     store(ContactSpan::instant, sum, out[shape]);
   }
 };

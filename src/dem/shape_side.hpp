@@ -50,7 +50,7 @@ class ShapeSide {
 
   // One entry per shape item, indexed from ItemLayout::first_shape.
   const std::vector<Vec4>& position() const { return position_; }  // x, y, z, radius
-  const std::vector<Vec4>& velocity() const { return velocity_; }  // x, y, z, 0
+  const std::vector<Vec4>& velocity() const { return velocity_; }  // x, y, z, infinite mass
   const std::vector<Vec3>& step() const { return step_; }          // displacement by the last place() [m]
   std::vector<ShapeContact>& contacts() { return contacts_; }      // filled by the backend
   // The same from memory that a device has written.

@@ -5,6 +5,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "dem/contact_items.hpp"
+#include "dem/system_items.hpp"
 #include "partition/subdomain.hpp"
 #include "physics/time_stepping.hpp"
 
@@ -229,35 +230,35 @@ struct VerletStartItem {
 
 // Closes a step: velocity and acceleration at its end from the force there. `state.velocity` is not the array
 // that the contacts read: other particles need the velocities as they were.
-template <class Elastic, class Laws, class Rows>
+template <class Laws, class Rows>
 struct VerletFinishItem {
-  ContactForceItem<Elastic, Laws, Rows> contacts;
+  ContactForceItem<Laws, Rows> forces;
   VerletViews state;
 
   // Returns |a|^2, so that a force that is not finite does not pass unseen.
   SCREE_HD Real operator()(Index i) const {
-    contacts(i);
-    const Vec4 v = contacts.in.velocity[i];
-    const Vec3 a = reciprocal(v.w) * contacts.force[i];
+    forces(i);
+    const Vec4 v = forces.walk.in.velocity[i];
+    const Vec3 a = reciprocal(v.w) * forces.force[i];
     state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
     state.acceleration[i] = a;
-    if (contacts.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * contacts.loss_power[i];
+    if (forces.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * forces.loss_power[i];
     return dot(a, a);
   }
 };
 
 // Closes a step and opens the next of the same length: the two items above in one pass over memory, bit for
 // bit.
-template <class Elastic, class Laws, class Rows>
+template <class Laws, class Rows>
 struct VerletAdvanceItem {
-  ContactForceItem<Elastic, Laws, Rows> contacts;
+  ContactForceItem<Laws, Rows> forces;
   VerletViews state;
 
-  SCREE_HD Real operator()(Index i) const { return advance(i, contacts.total(i)); }
+  SCREE_HD Real operator()(Index i) const { return advance(i, forces.total(i)); }
 
-  // With the force that contacts.total(i) has returned.
+  // With the force that forces.total(i) has returned.
   SCREE_HD Real advance(Index i, const TotalForce& total) const {
-    const Vec4 v = contacts.in.velocity[i];
+    const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * total.force;
     const Vec3 v1 = verlet_velocity(state.h, xyz(v), state.acceleration[i], a);
     state.acceleration[i] = a;
@@ -265,7 +266,7 @@ struct VerletAdvanceItem {
       state.contact_loss[i] += state.h / 2 * total.loss_power;
       state.contact_loss[i] += state.h / 2 * total.loss_power;
     }
-    return verlet_open(state, i, contacts.in.position[i], vec4(v1, v.w), a);
+    return verlet_open(state, i, forces.walk.in.position[i], vec4(v1, v.w), a);
   }
 };
 

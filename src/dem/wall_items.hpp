@@ -26,31 +26,39 @@ struct WallChoice {
   Vec3 min, period;  // of the space [m]
 };
 
-template <class Elastic, class Laws, class Rows>
+// What a wall sees of a contact: the force on the item, and from where its centre touches.
+struct WallLoad {
+  Vec3 force;    // [N]
+  Vec3 to_wall;  // from the item's centre to the point of contact [m]
+};
+
+struct WallLoadOf {
+  template <class Law>
+  SCREE_HD WallLoad operator()(const Law& law, const PairState& pair) const {
+    return {law.load(pair).force, -pair.geometry.distance * pair.geometry.direction};
+  }
+};
+
+template <class Laws, class Rows>
 struct WallContactItem {
-  ContactViews<Rows> in;
-  Laws laws;
+  ContactWalk<Laws, Rows> walk;
   WallChoice choice;
 
   SCREE_HD WallTerms operator()(Index k) const {
-    const Index i = k < choice.owned ? k : in.first_shape + (k - choice.owned);
+    const auto self = walk.self(k < choice.owned ? k : walk.in.first_shape + (k - choice.owned));
     WallTerms sum{};
-    for (Index slot = in.wall_offsets[i]; slot < in.wall_offsets[i + 1]; ++slot)
-      if (in.walls[slot] == choice.wall) add(i, in.planes[choice.wall], sum);
+    walk.walls(self, WallLoadOf{}, [&](const WallLoad& load, Index wall) {
+      if (wall == choice.wall) sum = terms(self.p, load);
+    });
     return sum;
   }
 
-  SCREE_HD void add(Index i, const WallPlane& wall, WallTerms& sum) const {
-    const Vec4 p = in.position[i];
-    const Overlap o = wall_overlap(p, wall);
-    if (o.overlap <= 0) return;
-    const ContactForce c = contact_force<Elastic>(laws.get(in.material[i], wall.material), o.overlap,
-                                                  -dot(o.normal, xyz(in.velocity[i])));
-    const Vec3 force = -c.force * o.normal;
+  SCREE_HD WallTerms terms(Vec4 p, const WallLoad& load) const {
+    const Vec3 force = -load.force;
     ImageCount unused;
-    const Vec3 point = wrap(choice.min, choice.period, xyz(p), unused) - o.distance * o.normal;
-    const Vec3 torque = cross(point - wall.point, force);
-    sum = {{force.x, force.y, force.z, torque.x, torque.y, torque.z, 1}};
+    const Vec3 point = wrap(choice.min, choice.period, xyz(p), unused) + load.to_wall;
+    const Vec3 torque = cross(point - walk.in.planes[choice.wall].point, force);
+    return {{force.x, force.y, force.z, torque.x, torque.y, torque.z, 1}};
   }
 };
 

@@ -103,6 +103,7 @@ std::vector<PairLimit> pair_limits(const Model& model) {
       const Real step_a = explicit_step(model, first, dense, law, stiffness);
       const Real step_b = explicit_step(model, second, dense, law, stiffness);
       limits.push_back({{a, b},
+                        law,
                         stiffness,
                         contact_time(stiffness, smallest_reduced_mass(first, second)),
                         step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b)});

@@ -31,6 +31,7 @@ inline Real resolved_error(ParticleIntegrator integrator) {
 
 struct PairLimit {
   int material[2] = {0, 0};
+  KelvinVoigt law;         // for its smallest partners
   Real stiffness = 0;      // [N/m], typical_stiffness()
   Real contact_time = 0;   // shortest, undamped and head-on [s]
   Real explicit_step = 0;  // stability limit of velocity-verlet in dense contact [s]; 0: no particles

@@ -10,7 +10,7 @@
 #include "base/vec3.hpp"
 #include "model/bodies.hpp"
 #include "model/particles.hpp"
-#include "physics/contact_law.hpp"
+#include "physics/normal_laws.hpp"
 
 namespace scree {
 

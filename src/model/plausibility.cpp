@@ -31,10 +31,6 @@ std::string pair_name(const Model& model, const PairLimit& limit) {
                      names[static_cast<std::size_t>(limit.material[1])]);
 }
 
-const KelvinVoigt& law_of(const Model& model, const PairLimit& limit) {
-  return model.contact.law(limit.material[0], limit.material[1]);
-}
-
 // Mass of the relative motion of the lightest pair [kg].
 Real lightest_mass(const PairLimit& limit) {
   const Real inverse_frequency = limit.contact_time / std::numbers::pi_v<Real>;
@@ -142,7 +138,7 @@ std::string gyration_beyond_extent(const Model& model) {
 }
 
 std::string overdamped(const Model& model, const PairLimit& limit) {
-  const Real mass = lightest_mass(limit), damping = law_of(model, limit).normal_damping,
+  const Real mass = lightest_mass(limit), damping = limit.law.normal_damping,
              ratio = damping_ratio(damping, limit.stiffness, mass);
   if (ratio <= 1) return "";
   return fmt::format(
@@ -166,7 +162,7 @@ std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
   const Real stack = std::clamp(static_cast<Real>(totals.count) / per_layer, Real(1),
                                 std::max(height(model) / diameter, Real(1)));
   const Real weight = stack * totals.smallest_mass * norm(model.gravity),
-             overlap = resting_overlap(law_of(model, limit), weight);
+             overlap = resting_overlap(limit.law, weight);
   if (overlap <= totals.smallest_radius) return "";
   return fmt::format(
       "contact {}: too soft for the weight on it: {:.3g} particles on top of each other weigh {:.3g} N, an "
@@ -190,7 +186,7 @@ std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
   const bool floor = a.walls + b.walls + a.shapes + b.shapes > 0;
   if (floor && a.particles + b.particles > 0)
     speed = std::hypot(speed, fall_speed(norm(model.gravity), height(model)));
-  const Real overlap = impact_overlap(law_of(model, limit), lightest_mass(limit), speed);
+  const Real overlap = impact_overlap(limit.law, lightest_mass(limit), speed);
   if (overlap <= radius) return "";
   return fmt::format(
       "contact {}: the stiffness is too low for impacts at {:.3g} m/s (speeds at t = 0, and a fall through "

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/hd.hpp"
-#include "physics/contact_law.hpp"
+#include "physics/step_contact.hpp"
 
 namespace scree {
 
@@ -26,38 +26,38 @@ SCREE_HD Real damper_work(Real damping, const ContactStep& c) {
 // step_contact_force() takes, too: over its part in contact the damper takes C d_dot times the way. A force
 // that is cut at zero (F = 0 while d > 0, from the overlap down at which K d^n = -C d_dot) loses the elastic
 // energy left then: the integral of -K d^n d_dot.
-template <class Elastic>
-SCREE_HD Real straight_dissipation(const KelvinVoigt& law, const ContactStep& c) {
+template <class NormalLaw>
+SCREE_HD Real straight_dissipation(const NormalLaw& law, const ContactStep& c) {
   const Real start = c.overlap0 > 0 ? c.overlap0 : 0, end = c.overlap1 > 0 ? c.overlap1 : 0;
   const Real pull = law.normal_damping / c.h * std::abs(c.overlap1 - c.overlap0);
   if (end >= start) return pull * (end - start);
   Real cut = end;  // the overlap from which on the force is cut
-  if (!law.tension && Elastic::force(law, start) <= pull)
+  if (!law.tension && law.elastic(start) <= pull)
     cut = start;
-  else if (!law.tension && Elastic::force(law, end) < pull)
-    cut = Elastic::overlap(law, pull);
+  else if (!law.tension && law.elastic(end) < pull)
+    cut = law.overlap(pull);
   if (!(cut > end)) return pull * (start - end);
   if (cut > start) cut = start;
-  return pull * (start - cut) + (Elastic::energy(law, cut) - Elastic::energy(law, end));
+  return pull * (start - cut) + (law.energy(cut) - law.energy(end));
 }
 
 // What the law dissipates over a step [J].
-template <class Elastic>
-SCREE_HD Real step_dissipation(const KelvinVoigt& law, const ContactStep& c) {
+template <class NormalLaw>
+SCREE_HD Real step_dissipation(const NormalLaw& law, const ContactStep& c) {
   const auto holds = [&](Real overlap, Real rate) {  // the contact is closed there and its force not cut
-    return overlap > 0 && (law.tension || contact_force<Elastic>(law, overlap, rate).force > 0);
+    return overlap > 0 && (law.tension || contact_force(law, overlap, rate).force > 0);
   };
   if (holds(c.overlap0, c.rate0) && holds(c.overlap1, c.rate1)) return damper_work(law.normal_damping, c);
-  return straight_dissipation<Elastic>(law, c);
+  return straight_dissipation(law, c);
 }
 
 // work: of the contact on its two partners, by the trapezoidal rule [J]. What of it is neither elastic energy
 // nor dissipation the integrator has taken out of the contact.
-template <class Elastic>
-SCREE_HD ContactBooks contact_books(const KelvinVoigt& law, const ContactStep& c, Real work) {
-  const Real before = c.overlap0 > 0 ? Elastic::energy(law, c.overlap0) : 0;
-  const Real after = c.overlap1 > 0 ? Elastic::energy(law, c.overlap1) : 0;
-  const Real dissipated = step_dissipation<Elastic>(law, c);
+template <class NormalLaw>
+SCREE_HD ContactBooks contact_books(const NormalLaw& law, const ContactStep& c, Real work) {
+  const Real before = c.overlap0 > 0 ? law.energy(c.overlap0) : 0;
+  const Real after = c.overlap1 > 0 ? law.energy(c.overlap1) : 0;
+  const Real dissipated = step_dissipation(law, c);
   return {dissipated, (before - after) - work - dissipated};
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/types.hpp"
-#include "physics/contact_law.hpp"
+#include "physics/normal_laws.hpp"
 
 namespace scree {
 

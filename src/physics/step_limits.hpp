@@ -6,7 +6,7 @@
 
 #include "base/hd.hpp"
 #include "base/types.hpp"
-#include "physics/contact_law.hpp"
+#include "physics/normal_laws.hpp"
 
 namespace scree {
 

@@ -104,7 +104,7 @@ std::string limit_lines(const Model& model) {
   std::string lines;
   const std::vector<std::string>& names = model.contact.material_names;
   for (const PairLimit& limit : pair_limits(model)) {
-    const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
+    const KelvinVoigt& law = limit.law;
     lines += fmt::format("contact        \"{}\" on \"{}\": K = {:.6g} N/m{}, C = {:.6g} N s/m, {}\n",
                          names[static_cast<std::size_t>(limit.material[0])],
                          names[static_cast<std::size_t>(limit.material[1])], law.normal_stiffness,

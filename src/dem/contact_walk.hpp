@@ -1,0 +1,249 @@
+// The one place that walks over what touches an item: the row of its neighbours, and its walls. One text for
+// the CPU and CUDA; what is done with a contact its visitors say.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "physics/contact_law.hpp"
+#include "physics/step_contact.hpp"
+
+namespace scree {
+
+// Half space in the form the items read.
+struct WallPlane {
+  Vec3 point, normal;
+  int material;
+};
+
+// The law of every contact: one pair of materials, or a table of them.
+template <class Law>
+struct OneLaw {
+  Law law;
+  SCREE_HD const Law& get(int, int) const { return law; }
+};
+
+template <class Law>
+struct LawTable {
+  const Law* laws;  // [materials * materials]
+  int materials;
+  SCREE_HD const Law& get(int i, int j) const { return laws[i * materials + j]; }
+};
+
+// Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend,
+// another type of the same form on a GPU.
+struct PackedRows {
+  const Index* offsets;  // [items + 1]
+  const Index* neighbors;
+
+  // Slot of the row's first entry, and from one entry to the next.
+  SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
+  SCREE_HD static constexpr int stride() { return 1; }
+  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. evaluate has
+  // no side effects: it may be called for others, too.
+  template <class Touches, class Evaluate, class Add>
+  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
+                                 const Add& add) const {
+    const Index end = offsets[i + 1];
+    for (Index k = offsets[i]; k < end; ++k)
+      if (const Index j = neighbors[k]; touches(j)) add(evaluate(j));
+  }
+};
+
+// Read-only views of items and neighbour list.
+template <class Rows>
+struct ContactViews {
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;  // x, y, z, mass; infinite for shapes of bodies
+  const int* material;
+  Rows rows;
+  const Index* wall_offsets;
+  const Index* walls;
+  const WallPlane* planes;
+  Index first_shape;  // items from here on are shapes of bodies
+
+  SCREE_HD bool is_shape(Index j) const { return j >= first_shape; }
+};
+
+SCREE_HD bool touch(Vec4 p, Vec4 q) {
+  const Vec3 r = xyz(p) - xyz(q);
+  const Real reach = p.w + q.w;
+  return dot(r, r) < reach * reach;
+}
+
+// Whether other items touch the one at p, or come within a margin of that [m].
+struct TouchTest {
+  Vec4 p;
+  const Vec4* position;  // all items
+  SCREE_HD bool operator()(Index j) const { return touch(p, position[j]); }
+  SCREE_HD bool near(Index j, Real margin) const {
+    const Vec4 q = position[j];
+    const Vec3 r = xyz(p) - xyz(q);
+    const Real reach = p.w + q.w + margin;
+    return dot(r, r) < reach * reach;
+  }
+};
+
+SCREE_HD ContactGeometry wall_pair(Vec4 p, const WallPlane& wall) {
+  return plane_pair(xyz(p), p.w, wall.point, wall.normal);
+}
+
+SCREE_HD PairSize wall_size(Real radius, Real mass) {
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  return {radius, kInfinity, mass, kInfinity};
+}
+
+// A look says what a walk sees of the items: what it reads of item i itself, which others touch it, and the
+// pair of the two. This is the look at one instant; the pair is a PairState.
+struct AtInstant {
+  struct Self {
+    Index i;
+    int material;
+    Vec4 p, u;  // x, y, z, radius; velocity, mass
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], in.position[i], in.velocity[i]};
+  }
+  template <class Rows>
+  SCREE_HD TouchTest test(const ContactViews<Rows>& in, const Self& self) const {
+    return {self.p, in.position};
+  }
+  template <class Rows>
+  SCREE_HD PairState pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    return pair(self, in.position[j], in.velocity[j]);
+  }
+  SCREE_HD static PairState pair(const Self& self, Vec4 q, Vec4 w) {
+    return {sphere_pair(xyz(self.p) - xyz(q), self.p.w + q.w),
+            xyz(self.u) - xyz(w),
+            {self.p.w, q.w, self.u.w, w.w}};
+  }
+  template <class Rows>
+  SCREE_HD PairState wall(const ContactViews<Rows>&, const Self& self, const WallPlane& plane) const {
+    return {wall_pair(self.p, plane), xyz(self.u), wall_size(self.p.w, self.u.w)};
+  }
+  template <class Pair>
+  SCREE_HD static bool closed(const Pair& pair) {
+    return pair.geometry.overlap > 0;
+  }
+};
+
+// Where a step started, all items, and whether contacts that open or close within it are resolved; else the
+// force at its end counts for the whole step, as in the paper.
+struct StepStart {
+  const Vec4* position;  // x, y, z, radius
+  const Vec4* velocity;
+  Real h;  // [s]
+  bool resolve_events;
+};
+
+// One contact over an implicit step, as it lies between its two partners.
+struct ContactPath {
+  ContactStep step;
+  Vec3 normal0, normal1;  // at its start and its end
+  Vec3 travel;            // of i relative to j [m]
+  PairSize size;
+};
+
+// The look over an implicit step: at what touches at its start or its end; the pair is a ContactPath.
+struct OverStep {
+  StepStart start;
+
+  struct Self {
+    Index i;
+    int material;
+    Vec4 p, p0;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], in.position[i], start.position[i]};
+  }
+  template <class Rows>
+  SCREE_HD auto test(const ContactViews<Rows>& in, const Self& self) const {
+    return [&in, &self, this](Index j) {
+      return touch(self.p, in.position[j]) || touch(self.p0, start.position[j]);
+    };
+  }
+  template <class Rows>
+  SCREE_HD ContactPath pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    const Index i = self.i;
+    const Vec4 q = in.position[j], u = in.velocity[i], w = in.velocity[j];
+    const Real reach = self.p.w + q.w;
+    const Vec3 r = xyz(self.p) - xyz(q), r0 = xyz(self.p0) - xyz(start.position[j]);
+    return path(sphere_pair(r, reach), xyz(u) - xyz(w), sphere_pair(r0, reach),
+                xyz(start.velocity[i]) - xyz(start.velocity[j]), r - r0, {self.p.w, q.w, u.w, w.w});
+  }
+  template <class Rows>
+  SCREE_HD ContactPath wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    const Vec4 u = in.velocity[self.i];
+    return path(wall_pair(self.p, plane), xyz(u), wall_pair(self.p0, plane), xyz(start.velocity[self.i]),
+                xyz(self.p) - xyz(self.p0), wall_size(self.p.w, u.w));
+  }
+  SCREE_HD static bool closed(const ContactPath& path) {
+    return path.step.overlap1 > 0 || path.step.overlap0 > 0;
+  }
+
+ private:
+  SCREE_HD ContactPath path(const ContactGeometry& end, Vec3 end_velocity, const ContactGeometry& begin,
+                            Vec3 begin_velocity, Vec3 travel, const PairSize& size) const {
+    const Vec3 normal0 = begin.normal(), normal1 = end.normal();
+    return {{begin.overlap, -dot(normal0, begin_velocity), end.overlap, -dot(normal1, end_velocity), start.h},
+            normal0,
+            normal1,
+            travel,
+            size};
+  }
+};
+
+// Visits what touches item i: visit(of(law, pair), j) with j the neighbour's item, or the wall's number. `of`
+// is pure: it may be called for neighbours that do not touch, and what it returns for them is dropped.
+template <class Laws, class Rows, class Look = AtInstant>
+struct ContactWalk {
+  ContactViews<Rows> in;
+  Laws laws;
+  [[no_unique_address]] Look look{};
+
+  using Self = typename Look::Self;
+  SCREE_HD Self self(Index i) const { return look.self(in, i); }
+
+  template <class Of, class Visit>
+  SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
+    walk(self, look.test(in, self), of, visit);
+  }
+  // Of the neighbours those of which only(j) holds.
+  template <class Only, class Of, class Visit>
+  SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
+    const auto test = look.test(in, self);
+    walk(
+        self, [&](Index j) { return only(j) && test(j); }, of, visit);
+  }
+  template <class Of, class Visit>
+  SCREE_HD void walls(const Self& self, const Of& of, const Visit& visit) const {
+    for (Index k = in.wall_offsets[self.i]; k < in.wall_offsets[self.i + 1]; ++k) {
+      const Index wall = in.walls[k];
+      const WallPlane& plane = in.planes[wall];
+      const auto pair = look.wall(in, self, plane);
+      if (Look::closed(pair)) visit(of(laws.get(self.material, plane.material), pair), wall);
+    }
+  }
+
+ private:
+  template <class Test, class Of, class Visit>
+  SCREE_HD void walk(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
+    struct Found {
+      decltype(of(laws.get(0, 0), look.pair(in, self, 0))) contact;
+      Index j;
+    };
+    in.rows.for_each_contact(
+        self.i, test,
+        [&](Index j) {
+          return Found{of(laws.get(self.material, in.material[j]), look.pair(in, self, j)), j};
+        },
+        [&](const Found& found) { visit(found.contact, found.j); });
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,74 @@
+// The law of a contact along its normal over an implicit step, in which it may open or close.
+#pragma once
+
+#include "base/hd.hpp"
+#include "physics/contact_law.hpp"
+
+namespace scree {
+
+// A contact over one time step: at its start (0) and its end (1). Overlaps may be negative: gaps.
+struct ContactStep {
+  Real overlap0, rate0;  // [m], [m/s]
+  Real overlap1, rate1;
+  Real h;  // [s]
+};
+
+// The force of a contact for a step, and its derivatives with respect to the overlap and its rate at the end.
+struct StepContactForce {
+  Real force;      // F [N]
+  Real stiffness;  // dF/d(overlap1) [N/m]
+  Real damping;    // dF/d(rate1) [N s/m]
+};
+
+// What the trapezoidal rule must find at the end of the step, in place of the force there, for the step's
+// impulse and work to be right although the contact opens or closes within the step:
+//   impulse h (F0 + F) / 2 = force summed over the part of the step that is spent in contact.
+// With that part from the straight line between the overlaps, the elastic work (F0 + F) / 2 (d1 - d0) is
+// exactly the change of the elastic energy: no step size creates energy at impacts. This is the discrete
+// gradient of LaBudde and Greenspan (1974) and of Simo, Tarnow and Wong (1992). F is continuous at d1 = 0,
+// where the force itself jumps by C d_dot: a Newton loop cannot cycle between open and closed. stiffness and
+// damping are cut at 0.
+
+// d0 <= 0 < d1: in contact over the share d1 / (d1 - d0), at the rate (d1 - d0) / h.
+template <class NormalLaw>
+SCREE_HD StepContactForce touching_force(const NormalLaw& law, const ContactStep& c) {
+  const Real travel = c.overlap1 - c.overlap0, twice_damping = 2 * law.normal_damping;
+  const Real elastic = 2 * law.energy(c.overlap1) / travel;
+  const Real slope = (2 * law.elastic(c.overlap1) - elastic) / travel + twice_damping / c.h;
+  return {elastic + twice_damping * c.overlap1 / c.h, slope, 0};
+}
+
+// d1 <= 0 < d0 with tension: in contact over the share d0 / (d0 - d1).
+template <class NormalLaw>
+SCREE_HD StepContactForce releasing_force(const NormalLaw& law, const ContactStep& c,
+                                          const ContactForce& start) {
+  const Real travel = c.overlap0 - c.overlap1, twice_damping = 2 * law.normal_damping;
+  const Real elastic = 2 * law.energy(c.overlap0) / travel;
+  return {elastic - twice_damping * c.overlap0 / c.h - start.force, elastic / travel, 0};
+}
+
+// d0 > 0 without tension, the law's force F1 at the end negative (end_force, beyond release along the slope
+// at the start): the force falls to zero in a straight line over the share F0 / (F0 - F1).
+SCREE_HD StepContactForce fading_force(const ContactForce& start, Real end_force) {
+  const Real share = end_force < 0 ? start.force / (start.force - end_force) : 1;
+  return {share * start.force - start.force, share * share * start.stiffness, share * share * start.damping};
+}
+
+// The contact over a step that may open or close within it.
+template <class NormalLaw>
+SCREE_HD StepContactForce step_contact_force(const NormalLaw& law, const ContactStep& c) {
+  if (c.overlap0 <= 0) return c.overlap1 > 0 ? touching_force(law, c) : StepContactForce{0, 0, 0};
+  const ContactForce start = contact_force(law, c.overlap0, c.rate0);
+  if (c.overlap1 > 0) {
+    const ContactForce end = contact_force(law, c.overlap1, c.rate1);
+    if (end.force > 0 || law.tension) return {end.force, end.stiffness, end.damping};
+  }
+  if (law.tension) return releasing_force(law, c, start);
+  const Real stiffness = c.overlap1 > 0 ? law.slope(c.overlap1) : law.slope(c.overlap0);
+  const Real elastic = c.overlap1 > 0 ? law.elastic(c.overlap1) : stiffness * c.overlap1;
+  const Real end_force = elastic + law.normal_damping * c.rate1;
+  if (end_force > 0) return {end_force, stiffness, law.normal_damping};
+  return fading_force(start, end_force);
+}
+
+}  // namespace scree
