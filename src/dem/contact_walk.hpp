@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "base/hd.hpp"
 #include "base/types.hpp"
@@ -91,10 +90,7 @@ SCREE_HD ContactGeometry wall_pair(Vec4 p, const WallPlane& wall) {
   return plane_pair(xyz(p), p.w, wall.point, wall.normal);
 }
 
-SCREE_HD PairSize wall_size(Real radius, Real mass) {
-  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
-  return {radius, kInfinity, mass, kInfinity};
-}
+SCREE_HD PairSize wall_size(Real radius, Real mass) { return {radius, kInfinity, mass, kInfinity}; }
 
 // A look says what a walk sees of the items: what it reads of item i itself, which others touch it, and the
 // pair of the two. This is the look at one instant; the pair is a PairState.
@@ -204,7 +200,7 @@ template <class Laws, class Rows, class Look = AtInstant>
 struct ContactWalk {
   ContactViews<Rows> in;
   Laws laws;
-  [[no_unique_address]] Look look{};
+  Look look{};
 
   using Self = typename Look::Self;
   SCREE_HD Self self(Index i) const { return look.self(in, i); }

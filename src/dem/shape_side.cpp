@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "partition/halo.hpp"
 
@@ -43,7 +42,7 @@ Real ShapeSide::place(const ItemLayout& layout) {
     step_[s] = position - xyz(position_[s]);
     squared = std::max(squared, dot(step_[s], step_[s]));
     position_[s] = vec4(position, source.radius);
-    velocity_[s] = vec4(point.velocity, std::numeric_limits<Real>::infinity());
+    velocity_[s] = vec4(point.velocity, kInfinity);
   }
   return std::sqrt(squared);
 }

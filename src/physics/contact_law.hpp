@@ -49,8 +49,8 @@ template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw 
 struct ContactLaw {
   using Normal = NormalLaw;
   NormalLaw normal;
-  [[no_unique_address]] TangentialLaw tangential{};
-  [[no_unique_address]] RollingLaw rolling{};
+  TangentialLaw tangential{};
+  RollingLaw rolling{};
 
   // The load of a closed contact. Pure: the same for both partners but for the sign of what is odd.
   template <class T, class Vector>

@@ -25,7 +25,7 @@ bool interact(const BodyShapes& shapes, const BruteItem& a, const BruteItem& b) 
 
 void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal,
                  std::size_t i) {
-  const ContactForce c = contact_force<PowerElastic>(law, overlap, rate);
+  const ContactForce c = contact_force(PowerLaw(law), overlap, rate);
   sum.force[i] += c.force * normal;
   sum.magnitude += std::abs(c.force);
   ++sum.contacts[i];
@@ -49,14 +49,14 @@ BruteContacts brute_contacts(const LoadedBox& box) {
         const Vec3 normal = (1 / norm(r)) * r;
         const KelvinVoigt& law = box.model.contact.law(a.material, b.material);
         add_contact(sum, law, overlap, -dot(normal, a.velocity - b.velocity), normal, i);
-        sum.elastic += PowerElastic::energy(law, overlap) / 2, pairs += 0.5;
+        sum.elastic += PowerLaw(law).energy(overlap) / 2, pairs += 0.5;
       });
     for (const Wall& wall : box.model.walls) {
       const Real overlap = a.radius - dot(a.position - wall.point, wall.normal);
       if (overlap <= 0) continue;
       const KelvinVoigt& law = box.model.contact.law(a.material, wall.material);
       add_contact(sum, law, overlap, -dot(wall.normal, a.velocity), wall.normal, i);
-      sum.elastic += PowerElastic::energy(law, overlap), pairs += 1;
+      sum.elastic += PowerLaw(law).energy(overlap), pairs += 1;
     }
   }
   sum.count = static_cast<int>(std::lround(pairs));

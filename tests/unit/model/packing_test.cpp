@@ -73,7 +73,7 @@ TEST_CASE("overlaps at rest and at impact") {
   CHECK(resting_overlap(linear, 10) == Approx(1e-3));
   CHECK(1e6 * std::pow(resting_overlap(hertz, 10), 1.5) == Approx(10));
   CHECK(impact_overlap(linear, 1, 2) == Approx(2 / std::sqrt(1e4)));
-  CHECK(PowerElastic::energy(hertz, impact_overlap(hertz, 3, 2)) == Approx(0.5 * 3 * 4));
+  CHECK(PowerLaw(hertz).energy(impact_overlap(hertz, 3, 2)) == Approx(0.5 * 3 * 4));
   CHECK(damping_ratio(2 * std::sqrt(1e4 * 0.5), 1e4, 0.5) == Approx(1));
   CHECK(fall_speed(9.8, 2) == Approx(std::sqrt(2 * 9.8 * 2)));
   CHECK(radius_of_gyration(0.005, 1) == Approx(std::sqrt(0.005)));

@@ -1,6 +1,7 @@
 // The contact law at one instant: geometry, derivatives, dissipation.
 #include "physics/contact_law.hpp"
 
+#include <limits>
 #include <string>
 
 #include "physics/particle_mass.hpp"
@@ -18,12 +19,18 @@ struct LawCase {
   Real (*energy)(const KelvinVoigt&, Real);
 };
 
+template <class Law>
+LawCase law_case(const char* name, const KelvinVoigt& law) {
+  return {name, law, [](const KelvinVoigt& p, Real d, Real d_dot) { return contact_force(Law(p), d, d_dot); },
+          [](const KelvinVoigt& p, Real d) { return Law(p).energy(d); }};
+}
+
 const LawCase kLaws[] = {
-    {"linear, cut", {1e4, 30, 1, false}, contact_force<LinearElastic>, LinearElastic::energy},
-    {"linear, tension", {1e4, 30, 1, true}, contact_force<LinearElastic>, LinearElastic::energy},
-    {"n = 1, cut", {1e4, 30, 1, false}, contact_force<PowerElastic>, PowerElastic::energy},
-    {"n = 1.5, cut", {1e6, 30, 1.5, false}, contact_force<PowerElastic>, PowerElastic::energy},
-    {"n = 1.5, tension", {1e6, 30, 1.5, true}, contact_force<PowerElastic>, PowerElastic::energy},
+    law_case<LinearLaw>("linear, cut", {1e4, 30, 1, false}),
+    law_case<LinearLaw>("linear, tension", {1e4, 30, 1, true}),
+    law_case<PowerLaw>("n = 1, cut", {1e4, 30, 1, false}),
+    law_case<PowerLaw>("n = 1.5, cut", {1e6, 30, 1.5, false}),
+    law_case<PowerLaw>("n = 1.5, tension", {1e6, 30, 1.5, true}),
 };
 
 constexpr Real kOverlap = 1e-3, kRates[] = {-0.9, -0.2, 0.0, 0.3};
@@ -31,11 +38,62 @@ constexpr Real kOverlap = 1e-3, kRates[] = {-0.9, -0.2, 0.0, 0.3};
 }  // namespace
 
 TEST_CASE("overlap and normal of two spheres") {
-  const Overlap o = sphere_overlap({3, 4, 0}, 6);
+  const ContactGeometry o = sphere_pair(Vec3{3, 4, 0}, Real(6));
   CHECK(o.distance == 5);
   CHECK(o.overlap == 1);
-  CHECK(norm(o.normal - Vec3{0.6, 0.8, 0}) <= 1e-15);
-  CHECK(sphere_overlap({0, 0, -2}, 1).overlap == -1);
+  CHECK(norm(o.normal() - Vec3{0.6, 0.8, 0}) <= 1e-15);
+  CHECK(sphere_pair(Vec3{0, 0, -2}, Real(1)).overlap == -1);
+}
+
+TEST_CASE("overlap and normal of a sphere and a plane") {
+  const ContactGeometry o = plane_pair({1, 3, 7}, 2, {5, 2, 0}, {0, 1, 0});
+  CHECK(o.overlap == 1);
+  CHECK(o.distance == 1);
+  CHECK(o.normal() == Vec3{0, 1, 0});
+  CHECK(o.rate({3, -2, 1}) == 2);
+}
+
+TEST_CASE("the sizes of a pair: a plane is flat and does not give way") {
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  CHECK(PairSize{2, 2, 3, 6}.effective_radius() == 1);
+  CHECK(PairSize{2, 2, 3, 6}.effective_mass() == 2);
+  CHECK(PairSize{2, kInfinity, 4, kInfinity}.effective_radius() == 2);
+  CHECK(PairSize{2, kInfinity, 4, kInfinity}.effective_mass() == 4);
+}
+
+namespace {
+
+// Laws of this test: drag against the sliding speed, and a torque on both sides.
+struct Drag {
+  static constexpr bool acts = true;
+  Real factor;
+  void add(const PairState& pair, Real normal_force, ContactLoadOf<Real, Vec3>& load) const {
+    const Vec3 n = pair.geometry.normal(), sliding = pair.velocity - dot(n, pair.velocity) * n;
+    load.force += -factor * normal_force * sliding;
+    load.loss += factor * normal_force * dot(sliding, sliding);
+  }
+};
+struct Twist {
+  static constexpr bool acts = true;
+  void add(const PairState& pair, Real normal_force, ContactLoadOf<Real, Vec3>& load) const {
+    load.torque_i = normal_force * pair.geometry.normal(), load.torque_j = -load.torque_i;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a law is composed of a normal, a tangential and a rolling law") {
+  const PairState pair{sphere_pair(Vec3{0, 2, 0}, Real(2.5)), {3, -1, 0}, {1, 1.5, 1, 1}};
+  const LinearLaw normal(100, 10, false);
+  const auto alone = ContactLaw<LinearLaw>{normal}.load(pair);
+  CHECK(alone.force == Vec3{0, 60, 0});  // 100 x 0.5 + 10 x 1
+  CHECK(alone.loss == 10);
+  CHECK(alone.torque_i == Vec3{});
+  const auto both = ContactLaw<LinearLaw, Drag, Twist>{normal, {0.5}, {}}.load(pair);
+  CHECK(both.force == Vec3{-90, 60, 0});
+  CHECK(both.loss == 280);
+  CHECK(both.torque_i == Vec3{0, 60, 0});
+  CHECK(both.torque_j == Vec3{0, -60, 0});
 }
 
 TEST_CASE("stiffness and damping are the derivatives of the force") {
