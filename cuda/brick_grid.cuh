@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "dem/neighbor_list.hpp"
@@ -62,12 +61,9 @@ inline std::pair<Index, Index> interior_along(const SearchCells& cells, int axis
   const Real low = of(cells.box.min) + margin, high = of(cells.box.max) - margin;
   // What lies beyond the grid belongs to its first and last cells.
   const auto begins = [&](Index brick) {
-    return brick == 0 ? -std::numeric_limits<Real>::infinity()
-                      : of(cells.own.origin) + edge * (brick << shift);
+    return brick == 0 ? -kInfinity : of(cells.own.origin) + edge * (brick << shift);
   };
-  const auto ends = [&](Index brick) {
-    return brick + 1 == bricks ? std::numeric_limits<Real>::infinity() : begins(brick + 1);
-  };
+  const auto ends = [&](Index brick) { return brick + 1 == bricks ? kInfinity : begins(brick + 1); };
   Index first = 0, last = bricks;
   while (first < last && begins(first) < low) ++first;
   while (last > first && ends(last - 1) > high) --last;

@@ -1,7 +1,6 @@
 // The memory of the host that this process can still get.
 #pragma once
 
-#include <limits>
 #include <string>
 
 #include "base/types.hpp"
@@ -10,7 +9,7 @@ namespace scree {
 
 // One bound, and what sets it, in words: "MemAvailable of /proc/meminfo".
 struct MemoryBound {
-  Real bytes = std::numeric_limits<Real>::infinity();
+  Real bytes = kInfinity;
   std::string set_by;
 };
 

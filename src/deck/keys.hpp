@@ -1,7 +1,6 @@
 // Declaration of the deck's keys. The reader and the manual (`scree keys`) both work from these declarations.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -39,7 +38,7 @@ struct Key {
   std::string name;
   ValueType type = ValueType::real;
   std::string unit;  // empty: dimensionless or not a number
-  Real min = -std::numeric_limits<Real>::infinity(), max = std::numeric_limits<Real>::infinity();
+  Real min = -kInfinity, max = kInfinity;
   bool min_excluded = false;
   std::size_t length = 0;            // number of entries of a list; 0: any
   std::vector<std::string> choices;  // of a text; empty: any

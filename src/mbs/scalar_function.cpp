@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "base/error.hpp"
 
@@ -106,7 +105,7 @@ Real ScalarFunction::monotone_rate(std::size_t point, Real parabola) const {
 // With r = rate: as the left end of a segment that rises, -4 r/d <= m <= (10 s - 8 r)/d; as its right end the
 // same with the other sign; on a segment that falls, both with the other sign.
 Real ScalarFunction::monotone_bend(std::size_t point, Real parabola) const {
-  Real low = -std::numeric_limits<Real>::infinity(), high = -low;  // 0 lies between them but for round-off
+  Real low = -kInfinity, high = -low;  // 0 lies between them but for round-off
   for (std::size_t segment = point == 0 ? 0 : point - 1; segment < std::min(point + 1, rates_.size() - 1);
        ++segment) {
     const Real length = function_.times[segment + 1] - function_.times[segment], s = slope(segment);

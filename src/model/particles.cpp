@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "physics/particle_mass.hpp"
 
@@ -11,14 +10,14 @@ namespace {
 
 // Extremes of this rank's values; what they are of all ranks is found by maxima of numbers >= 0.
 struct Extremes {
-  Real smallest = std::numeric_limits<Real>::infinity(), largest = 0;
+  Real smallest = kInfinity, largest = 0;
   void add(Real value) { smallest = std::min(smallest, value), largest = std::max(largest, value); }
 };
 
 // Numbers > 0 order as their bits do.
 Real smallest_of_all(const Share& share, Real value) {
   const Real smallest = std::bit_cast<Real>(share.min(std::bit_cast<std::int64_t>(value)));
-  return smallest < std::numeric_limits<Real>::infinity() ? smallest : 0;
+  return smallest < kInfinity ? smallest : 0;
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
   const std::vector<MaterialUse> uses = material_uses(model);
   const MaterialUse &a = uses[static_cast<std::size_t>(limit.material[0])],
                     &b = uses[static_cast<std::size_t>(limit.material[1])];
-  Real radius = std::numeric_limits<Real>::infinity(), speed = 0;
+  Real radius = kInfinity, speed = 0;
   for (const MaterialUse& use : {a, b})
     if (use.smallest_radius > 0) radius = std::min(radius, use.smallest_radius);
   if (a.particles + b.particles > 0)
@@ -197,8 +197,7 @@ std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
 
 std::string many_sizes(const Model& model) {
   const ParticleTotals& totals = model.particles.totals;
-  Real smallest = totals.count > 0 ? totals.smallest_radius : std::numeric_limits<Real>::infinity(),
-       largest = totals.largest_radius;
+  Real smallest = totals.count > 0 ? totals.smallest_radius : kInfinity, largest = totals.largest_radius;
   for (const Body& body : model.bodies)
     for (const Shape& shape : body.shapes)
       smallest = std::min(smallest, shape.radius), largest = std::max(largest, shape.radius);

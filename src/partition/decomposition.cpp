@@ -142,7 +142,6 @@ void Decomposition::add(const Node& node) {
 }
 
 DomainBox Decomposition::box(int rank, const Subdomain& subdomain) const {
-  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
   const CellBox& cells = boxes_[static_cast<std::size_t>(rank)];
   DomainBox box;
   for (int axis = 0; axis < 3; ++axis) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace scree {
 namespace {
@@ -17,7 +16,6 @@ Real rounding_constant(Real min, Real max) {
 }  // namespace
 
 Subdomain::Subdomain(const Space& space) : space_(space) {
-  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
   box_ = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
   const auto axis = [&](int side, Real Vec3::*along) {
     const Real min = space.min.*along, max = space.max.*along;

@@ -1,8 +1,6 @@
 // How two surfaces lie to each other at one instant: the geometry of a contact, once for every law.
 #pragma once
 
-#include <limits>
-
 #include "base/hd.hpp"
 #include "base/root.hpp"
 #include "base/vec3.hpp"
@@ -39,8 +37,6 @@ SCREE_HD ContactGeometry plane_pair(Vec3 center, Real radius, Vec3 point, Vec3 n
   const Real distance = dot(center - point, normal);
   return {radius - distance, distance, normal, 1};
 }
-
-inline constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 
 // What a law may want to know of the two partners. A wall has no curvature; walls and bodies count as
 // unmovable.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "base/types.hpp"
@@ -35,7 +34,7 @@ inline Real densest_fraction(int dimension) { return dimension == 2 ? 0.9069 : 0
 // (1965).
 inline Real fluid_exclusion(int dimension, const PackingSums& n, Real r) {
   constexpr Real pi = std::numbers::pi_v<Real>;
-  if (n.fraction >= 1) return std::numeric_limits<Real>::infinity();
+  if (n.fraction >= 1) return kInfinity;
   const Real free = 1 - n.fraction;
   if (dimension == 2)
     return -std::log(free) + n.surface * r / free +

@@ -13,7 +13,6 @@ namespace scree {
 
 namespace {
 
-constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
 
 Real sum_of(const std::vector<Real>& terms) {

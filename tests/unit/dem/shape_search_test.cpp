@@ -1,7 +1,6 @@
 // The neighbour lists of several ranks' boxes with very many shapes, against the list of one rank.
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -16,7 +15,6 @@ namespace {
 
 constexpr Real kSpacing = 0.1, kRadius = 0.05, kSkin = 0.02;
 constexpr int kRanks = 4;
-constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 
 // A flat lattice of discs that begins at x = start in a space of some width; each square of side by side of
 // them is a body. Particles lie half a spacing away from them, one per five, and in rows along the space.
