@@ -10,12 +10,6 @@ namespace scree {
 
 namespace {
 
-JointKind joint_kind(const std::string& type) {
-  if (type == "revolute") return JointKind::revolute;
-  if (type == "translational") return JointKind::translational;
-  return type == "fixed" ? JointKind::fixed : JointKind::distance;
-}
-
 // The body's centre where the other side is the ground, otherwise midway between the centres [m].
 Vec3 default_point(const Model& model, const Connection& connection) {
   const Vec3 a = start_position(model, connection.body[0]), b = start_position(model, connection.body[1]);
@@ -81,7 +75,7 @@ void check_joint_meets(const DeckTable& table, const Model& model, const Joint& 
 Joint build_joint(const DeckTable& table, const Model& model, const Connection& connection) {
   Joint joint;
   joint.name = connection.name;
-  joint.kind = joint_kind(table.text("type"));
+  joint.kind = table.choice<JointKind>("type");
   for (int side = 0; side < 2; ++side) joint.body[side] = connection.body[side];
   if (joint.kind == JointKind::distance) {
     find_end_points(table, model, connection, joint.point);

@@ -98,9 +98,18 @@ void check_single(const DeckTable& table, const std::string& key) {
 int constraint_count(const Model& model) {
   int count = static_cast<int>(model.drivers.size());
   for (const Joint& joint : model.joints) {
-    if (joint.kind == JointKind::fixed) count += 3;
-    if (joint.kind == JointKind::revolute || joint.kind == JointKind::translational) count += 2;
-    if (joint.kind == JointKind::distance) count += 1;
+    switch (joint.kind) {
+      case JointKind::fixed:
+        count += 3;
+        break;
+      case JointKind::revolute:
+      case JointKind::translational:
+        count += 2;
+        break;
+      case JointKind::distance:
+        count += 1;
+        break;
+    }
   }
   return count;
 }

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
+#include "deck/choices.hpp"
 #include "model/limits.hpp"
 #include "physics/plausible.hpp"
 
@@ -216,10 +218,16 @@ std::string many_sizes(const Model& model) {
 
 // Values of a distribution that it may take.
 std::vector<Real> values_of(const DeckTable& distribution) {
-  const std::string& kind = distribution.text("kind");
-  if (kind == "constant") return {distribution.real("value")};
-  if (kind == "table") return distribution.reals("values");
-  return {distribution.real("min"), distribution.real("max")};
+  switch (distribution.choice<DistributionKind>("kind")) {
+    case DistributionKind::constant:
+      return {distribution.real("value")};
+    case DistributionKind::uniform:
+    case DistributionKind::normal:
+      return {distribution.real("min"), distribution.real("max")};
+    case DistributionKind::table:
+      return distribution.reals("values");
+  }
+  throw std::logic_error("a distribution of no kind");
 }
 
 std::string odd_density(const DeckTable& deck) {
