@@ -27,7 +27,7 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
   planes_.upload(wall_planes(model), stream_);
   std::vector<Index> offsets{0}, connected;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    for (const int other : side_.shapes().connected(static_cast<int>(b))) connected.push_back(other);
+    for (const int other : side_.shapes().rule().kept_apart(static_cast<int>(b))) connected.push_back(other);
     offsets.push_back(static_cast<Index>(connected.size()));
   }
   connected_offsets_.upload(offsets, stream_), connected_.upload(connected, stream_);

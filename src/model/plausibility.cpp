@@ -11,6 +11,7 @@
 
 #include "deck/choices.hpp"
 #include "model/limits.hpp"
+#include "model/touching.hpp"
 #include "physics/plausible.hpp"
 
 namespace scree {
@@ -202,13 +203,8 @@ std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
 }
 
 std::string many_sizes(const Model& model) {
-  const ParticleTotals& totals = model.particles.totals;
-  Real smallest = totals.count > 0 ? totals.smallest_radius : std::numeric_limits<Real>::infinity(),
-       largest = totals.largest_radius;
-  for (const Body& body : model.bodies)
-    for (const Shape& shape : body.shapes)
-      smallest = std::min(smallest, shape.radius), largest = std::max(largest, shape.radius);
-  if (!(largest >= kMostSizes * smallest)) return "";
+  const auto [smallest, largest] = radius_range(model);
+  if (smallest == 0 || !(largest >= kMostSizes * smallest)) return "";
   return fmt::format(
       "radii from {:.3g} to {:.3g} m: the cells of the pair search are as wide as the largest, and the many "
       "small "

@@ -9,6 +9,7 @@
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/point_bins.hpp"
+#include "model/touching.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -135,15 +136,6 @@ std::vector<Vec3> image_shifts(const Space& space) {
   return shifts;
 }
 
-bool may_touch(const Model& model, const std::vector<std::pair<int, int>>& connected, int body_a,
-               int body_b) {
-  if (body_a == kGround || body_b == kGround) return true;
-  if (body_a == body_b) return false;
-  const std::pair<int, int> pair = std::minmax(body_a, body_b);
-  return model.contact.connected_bodies_touch ||
-         !std::binary_search(connected.begin(), connected.end(), pair);
-}
-
 struct Box {
   Vec3 min, max;  // [m]
 };
@@ -169,7 +161,7 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
                         WorstOverlap& worst) {
   if (items.empty()) return;
   const ItemNames names(model);
-  const std::vector<std::pair<int, int>> connected = connected_bodies(model);
+  const TouchRule rule(model);
   const Box box = box_around(items);
   const SortedBins bins(PointCells(box.min, box.max, reach, items.size()), items);
   for (const Vec3 shift : image_shifts(model.space)) {
@@ -182,7 +174,7 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
         if (other.number >= item.number || !(dot(apart, apart) < touching * touching)) return;
         const Real ratio = (touching - norm(apart)) / std::min(item.radius, other.radius);
         if (ratio >= worst.ratio && ratio > 0 &&
-            may_touch(model, connected, names.body(item.number), names.body(other.number)))
+            rule.may_touch(names.body(item.number), names.body(other.number)))
           worst.meet(ratio, other.number, item.number);
       });
     }
@@ -198,13 +190,6 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
       worst.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));
     }
   }
-}
-
-Real largest_radius(const Model& model) {
-  Real largest = model.particles.totals.largest_radius;
-  for (const Body& body : model.bodies)
-    for (const Shape& shape : body.shapes) largest = std::max(largest, shape.radius);
-  return largest;
 }
 
 // n = 1 has an exact limit, other exponents an estimate: an error and a warning.
@@ -296,7 +281,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   bring_into_periodic_box(model.space, items);
   WorstOverlap own;
   find_wall_overlaps(model, items, own);
-  const Real reach = 2 * largest_radius(model);
+  const Real reach = 2 * radius_range(model).largest;
   items = share.near_each_other(std::move(items), model.space, reach);
   share.together([&] { find_pair_overlaps(model, items, reach, own); });
   const WorstOverlap worst = worst_of_all(own, share);
