@@ -95,10 +95,17 @@ void check_single(const DeckTable& table, const std::string& key) {
   if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
 }
 
+std::vector<bool> driven_joints(const Model& model) {
+  std::vector<bool> driven(model.joints.size(), false);
+  for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
+  return driven;
+}
+
 int constraint_count(const Model& model) {
+  const std::vector<bool> driven = driven_joints(model);
   int count = static_cast<int>(model.drivers.size());
-  for (const Joint& joint : model.joints) {
-    switch (joint.kind) {
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    switch (model.joints[j].kind) {
       case JointKind::fixed:
         count += 3;
         break;
@@ -107,7 +114,7 @@ int constraint_count(const Model& model) {
         count += 2;
         break;
       case JointKind::distance:
-        count += 1;
+        count += driven[j] ? 0 : 1;  // the driver stands in the place of the joint's
         break;
     }
   }

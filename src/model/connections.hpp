@@ -37,6 +37,8 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
 // Refuses `key` together with chain or each: one global point cannot hold for several elements.
 void check_single(const DeckTable& table, const std::string& key);
 
+// Per joint, whether a driver prescribes it.
+std::vector<bool> driven_joints(const Model& model);
 // Of joints and drivers: the number of the multibody side's constraint equations.
 int constraint_count(const Model& model);
 // Pairs of bodies, smaller index first, that a joint or a force element connects; sorted, each once.
