@@ -55,9 +55,7 @@ void check_joint_meets(const DeckTable& table, const Model& model, const Joint& 
   const Vec3 b = to_global_point(model, joint.body[1], joint.point[1]);
   Vec3 ends = b - a;
   if (joint.kind == JointKind::translational) {
-    const Real c = std::cos(start_angle(model, joint.body[0])),
-               s = std::sin(start_angle(model, joint.body[0]));
-    const Vec3 axis{c * joint.axis.x - s * joint.axis.y, s * joint.axis.x + c * joint.axis.y, 0};
+    const Vec3 axis = to_global_direction(model, joint.body[0], joint.axis);
     ends = ends - dot(ends, axis) * axis;
   }
   const Real gap = joint_gap(joint, ends);

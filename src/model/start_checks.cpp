@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/rotation.hpp"
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
@@ -261,7 +262,7 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
     const std::int64_t count = row ? table.integer("count") : 1;
     for (const DeckTable& shape : table.tables("shapes")) {
       const Vec3 first = table.vector("position"), spacing = table.vector("spacing"),
-                 offset = rotate(shape.vector("offset"), table.real("angle"));
+                 offset = Rotation(table.real("angle")).turn(shape.vector("offset"));
       for (std::int64_t i = 0; i < count; ++i) {
         const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
         if (is_inside(space, p)) continue;
