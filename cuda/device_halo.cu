@@ -16,7 +16,7 @@ struct TargetItem {
 
   __device__ void operator()(Index i) const {
     const Vec3 p = xyz(position[i]);
-    if (box.reaches(p, -reach)) return;  // too far from every side to be a ghost
+    if (box.inside(p, reach)) return;  // too far from every side to be a ghost
     for (int t = 0; t < count; ++t) {
       const HaloTarget& target = targets[t];
       if (!target.box.reaches(p + target.shift, reach)) continue;

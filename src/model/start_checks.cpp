@@ -10,6 +10,7 @@
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/point_bins.hpp"
+#include "model/space_box.hpp"
 #include "model/touching.hpp"
 #include "physics/step_limits.hpp"
 
@@ -79,17 +80,6 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
   return items;
 }
 
-bool is_inside(const Space& space, Vec3 p) {
-  // Farther away its place in the periodic space would be lost to round-off.
-  constexpr Real kMostPeriods = 1e6;
-  const auto within = [&](Side side, Real x, Real min, Real max) {
-    const Real beyond = space.boundary[side] == Boundary::periodic ? kMostPeriods * (max - min) : 0;
-    return x >= min - beyond && x <= max + beyond;
-  };
-  return within(kXMin, p.x, space.min.x, space.max.x) && within(kYMin, p.y, space.min.y, space.max.y) &&
-         (space.dimension == 2 || within(kZMin, p.z, space.min.z, space.max.z));
-}
-
 [[noreturn]] void refuse_outside(const DeckTable& deck, const Space& space, const std::string& name, Vec3 p) {
   deck.table("space").fail(
       "max",
@@ -98,9 +88,10 @@ bool is_inside(const Space& space, Vec3 p) {
 }
 
 void check_particles_inside(const DeckTable& deck, const Model& model) {
+  const Box allowed = start_box(model.space);
   for (std::size_t i = 0; i < model.particles.size(); ++i) {
     const Vec3 p = model.particles.position[i];
-    if (!is_inside(model.space, p))
+    if (!allowed.inside(p))
       refuse_outside(deck, model.space,
                      fmt::format("particle {}", model.particles.first_id + static_cast<GlobalId>(i)), p);
   }
@@ -137,10 +128,6 @@ std::vector<Vec3> image_shifts(const Space& space) {
   return shifts;
 }
 
-struct Box {
-  Vec3 min, max;  // [m]
-};
-
 // Around all of them; there is at least one.
 Box box_around(const std::vector<StartItem>& items) {
   Box box{items.front().position, items.front().position};
@@ -150,11 +137,6 @@ Box box_around(const std::vector<StartItem>& items) {
     box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
   }
   return box;
-}
-
-bool is_within(const Box& box, Vec3 p, Real margin) {
-  return p.x >= box.min.x - margin && p.x <= box.max.x + margin && p.y >= box.min.y - margin &&
-         p.y <= box.max.y + margin && p.z >= box.min.z - margin && p.z <= box.max.z + margin;
 }
 
 // reach: two items farther away from each other than this do not overlap [m].
@@ -168,7 +150,7 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
   for (const Vec3 shift : image_shifts(model.space)) {
     for (const StartItem& item : bins.items()) {
       const Vec3 p = item.position + shift;
-      if (!is_within(box, p, reach)) continue;
+      if (!box.reaches(p, reach)) continue;
       bins.for_near(p, [&](const StartItem& other) {
         const Vec3 apart = p - other.position;
         const Real touching = item.radius + other.radius;
@@ -257,6 +239,7 @@ void check_speeds(const Model& model, Real step, Log& log) {
 }  // namespace
 
 void check_bodies_inside(const DeckTable& deck, const Space& space) {
+  const Box allowed = start_box(space);
   for (const DeckTable& table : deck.tables("bodies")) {
     const bool row = table.has("count");
     const std::int64_t count = row ? table.integer("count") : 1;
@@ -265,7 +248,7 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
                  offset = Rotation(table.real("angle")).turn(shape.vector("offset"));
       for (std::int64_t i = 0; i < count; ++i) {
         const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
-        if (is_inside(space, p)) continue;
+        if (allowed.inside(p)) continue;
         const std::string& name = table.text("name");
         refuse_outside(deck, space,
                        row ? fmt::format("body \"{}.{}\"", name, i) : fmt::format("body \"{}\"", name), p);

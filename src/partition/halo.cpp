@@ -49,7 +49,7 @@ void Halo::find_ghosts(std::span<const Vec4> position) {
   std::vector<std::vector<Ghost>> ghosts(plan_.neighbors().size());
   for (Index i = 0; i < static_cast<Index>(position.size()); ++i) {
     const Vec3 p = xyz(position[static_cast<std::size_t>(i)]);
-    if (plan_.box().reaches(p, -plan_.reach())) continue;  // too far from every side to be a ghost
+    if (plan_.box().inside(p, plan_.reach())) continue;  // too far from every side to be a ghost
     for (const HaloTarget& t : plan_.targets())
       if (t.box.reaches(p + t.shift, plan_.reach()))
         (t.neighbor == HaloTarget::kItself ? own_ : ghosts[static_cast<std::size_t>(t.neighbor)])
