@@ -30,6 +30,10 @@ Box open_box(const Space& space) {
   return box_of(space, [](Boundary side, Real) { return side == Boundary::periodic ? kFar : 0; });
 }
 
+Box periodic_box(const Space& space) {
+  return box_of(space, [](Boundary side, Real) { return side == Boundary::periodic ? 0 : kFar; });
+}
+
 Box wall_box(const Space& space) {
   return box_of(space, [](Boundary side, Real) { return side == Boundary::wall ? 0 : kFar; });
 }

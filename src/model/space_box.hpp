@@ -8,6 +8,8 @@ namespace scree {
 
 // The sides that are not periodic; the others, and z in 2D, are at infinity.
 Box open_box(const Space& space);
+// The sides that are periodic; the others are at infinity.
+Box periodic_box(const Space& space);
 // The sides that are walls; the others are at infinity.
 Box wall_box(const Space& space);
 // Where something may be at t = 0: as open_box, but with periodic sides so many periods away as a place in

@@ -142,6 +142,7 @@ void Decomposition::add(const Node& node) {
 }
 
 DomainBox Decomposition::box(int rank, const Subdomain& subdomain) const {
+  if (!exists()) return subdomain.periodic_box();
   constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
   const CellBox& cells = boxes_[static_cast<std::size_t>(rank)];
   DomainBox box;

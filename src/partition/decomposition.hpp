@@ -82,7 +82,7 @@ class Decomposition {
   // Per rank.
   const std::vector<CellBox>& boxes() const { return boxes_; }
   const DomainGrid& grid() const { return grid_; }
-  // The box of a rank, for a space with these periods.
+  // The box of a rank; without a decomposition, the space that a rank alone has.
   DomainBox box(int rank, const Subdomain& subdomain) const;
 
  private:

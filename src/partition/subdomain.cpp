@@ -17,7 +17,8 @@ Real rounding_constant(Real min, Real max) {
 
 }  // namespace
 
-Subdomain::Subdomain(const Space& space) : space_(space), box_(open_box(space)), walls_(wall_box(space)) {
+Subdomain::Subdomain(const Space& space)
+    : space_(space), box_(open_box(space)), periodic_(::scree::periodic_box(space)), walls_(wall_box(space)) {
   const auto axis = [&](int side, Real Vec3::*along) {
     if (space.boundary[static_cast<std::size_t>(side)] != Boundary::periodic) return;
     const Real min = space.min.*along, max = space.max.*along;

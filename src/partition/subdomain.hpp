@@ -68,6 +68,8 @@ class Subdomain {
   // Whether the point lies within the sides that are not periodic.
   bool inside(Vec3 p) const { return box_.inside(p); }
   const OpenBox& box() const { return box_; }
+  // The periodic sides of the space; the others are at infinity.
+  const Box& periodic_box() const { return periodic_; }
   // Whether the point lies beyond a side that is a wall.
   bool beyond_wall(Vec3 p) const { return walls_.beyond(p); }
   // The position inside the periodic box and the periods taken off it; exact.
@@ -76,7 +78,7 @@ class Subdomain {
  private:
   Space space_;
   OpenBox box_;
-  Box walls_;
+  Box periodic_, walls_;
   Vec3 period_, snap_;
 };
 

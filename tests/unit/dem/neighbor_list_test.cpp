@@ -27,8 +27,8 @@ struct Items {
     store.load(model.particles, records);
     layout.owned = kParticles, layout.active = kParticles - kDrifting, layout.shapes = shapes.size();
     const Real width = builder.cutoff(kSkin);
-    ghosts = periodic_images(subdomain, model.space,
-                             {store.position.data(), static_cast<std::size_t>(layout.active)}, width);
+    ghosts =
+        periodic_images(subdomain, {store.position.data(), static_cast<std::size_t>(layout.active)}, width);
     add_ghosts();
     layout.first_shape = static_cast<Index>(store.position.size());
     add_shapes(model, shapes, subdomain, width);
@@ -55,7 +55,7 @@ struct Items {
       store.position.push_back(centers.back());
       store.global_id.push_back(shape.global_id);
     }
-    layout.shape_images = periodic_images(subdomain, model.space, centers, width);
+    layout.shape_images = periodic_images(subdomain, centers, width);
     for (const Ghost& image : layout.shape_images) {
       const auto source = static_cast<std::size_t>(image.source);
       store.position.push_back(vec4(xyz(centers[source]) + image.shift, centers[source].w));
