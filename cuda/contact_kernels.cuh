@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -52,7 +51,7 @@ struct SystemRequest {
 // Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run
 // see `stop` and change nothing.
 struct VerletControl {
-  static constexpr Real kNoRows = std::numeric_limits<Real>::infinity();
+  static constexpr Real kNoRows = kInfinity;
   unsigned
       largest;  // bits of the single that is at least the largest squared displacement of this step [m^2]
   unsigned finished_blocks;

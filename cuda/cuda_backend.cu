@@ -26,7 +26,7 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
   planes_.upload(wall_planes(model), stream_);
   std::vector<Index> offsets{0}, connected;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    for (const int other : side_.shapes().connected(static_cast<int>(b))) connected.push_back(other);
+    for (const int other : side_.shapes().rule().kept_apart(static_cast<int>(b))) connected.push_back(other);
     offsets.push_back(static_cast<Index>(connected.size()));
   }
   connected_offsets_.upload(offsets, stream_), connected_.upload(connected, stream_);
@@ -244,15 +244,13 @@ void CudaBackend::reorder(const Index* order, Index n) {
 
 // Lays out all items, makes room for them, and names the ghosts among them.
 void CudaBackend::find_ghosts(Real width) {
-  if (!decomposition_.exists())
-    decomposition_ = Decomposition(ranks_, make_domain_grid(model_.space, width), {}, {});
   halo_.count(device(), HaloPlan(ranks_, decomposition_, subdomain_, width), now_.position.data(),
               layout_.active);
   layout_.shapes_meet = ranks_.is_root();
   ranks_.together([&] {
     layout_.first_shape =
         countable(static_cast<std::size_t>(owned_) + static_cast<std::size_t>(halo_.size()), kTooManyItems);
-    side_.lay_out(model_.space, width, layout_);
+    side_.lay_out(width, layout_);
     halo_.list(device(), now_.position.data(), layout_.active);
     const auto items = static_cast<std::size_t>(layout_.items), owned = static_cast<std::size_t>(owned_);
     now_.grow(items, owned, owned, stream_), other_.grow(items, owned, 0, stream_);

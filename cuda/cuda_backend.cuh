@@ -70,6 +70,7 @@ class CudaBackend : public Backend {
   void start_pack() override;
   ParticlePack pack_particles() override;
   ShapePack pack_shapes() override;
+  std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) const override;
   std::vector<ContactSum> body_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
   bool computes_asynchronously() const override { return true; }
@@ -272,6 +273,8 @@ class CudaBackend : public Backend {
   // Output.
   RecordItem record_item(Index first) const;
   mutable DeviceArray<ParticleRecord> records_;  // on their way to the host
+  mutable DeviceArray<GlobalId> traced_ids_;
+  mutable DeviceArray<TracedParticle> traced_;
   struct PackArrays;
   std::unique_ptr<PackArrays> pack_;
 };

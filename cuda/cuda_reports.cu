@@ -218,6 +218,23 @@ ShapePack CudaBackend::pack_shapes() {
   return side_.pack(layout_, ranks_);
 }
 
+std::vector<TracedParticle> CudaBackend::traced(std::span<const GlobalId> wanted) const {
+  if (wanted.empty()) return {};
+  std::vector<GlobalId> ids(wanted.begin(), wanted.end());
+  std::sort(ids.begin(), ids.end());
+  traced_ids_.upload(ids, stream_);
+  // An id that no particle has stands where none of this rank's was found.
+  traced_.resize(ids.size());
+  require_cuda(cudaMemsetAsync(traced_.data(), 0xff, ids.size() * sizeof(TracedParticle), stream_),
+               "cudaMemsetAsync");
+  for_each(device(), owned_,
+           TraceItem{views_of(now_), traced_ids_.data(), static_cast<Index>(ids.size()), model_.space.min,
+                     subdomain_.period(), traced_.data()});
+  std::vector<TracedParticle> found = traced_.download(stream_);
+  std::erase_if(found, [](const TracedParticle& t) { return t.global_id < 0; });
+  return found;
+}
+
 std::vector<ContactSum> CudaBackend::body_contacts() {
   find_shape_contacts();
   return side_.body_contacts(layout_, ranks_);

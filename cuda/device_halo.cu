@@ -15,14 +15,10 @@ struct TargetItem {
   Ghost* ghosts;             // null: only count
 
   __device__ void operator()(Index i) const {
-    const Vec3 p = xyz(position[i]);
-    if (box.reaches(p, -reach)) return;  // too far from every side to be a ghost
-    for (int t = 0; t < count; ++t) {
-      const HaloTarget& target = targets[t];
-      if (!target.box.reaches(p + target.shift, reach)) continue;
-      const unsigned long long entry = atomicAdd(&next[t], 1ull);
+    for_each_target(box, reach, targets, count, xyz(position[i]), [&](const HaloTarget& target) {
+      const unsigned long long entry = atomicAdd(&next[&target - targets], 1ull);
       if (ghosts != nullptr) ghosts[entry] = {i, target.image, {}, target.shift};
-    }
+    });
   }
 };
 

@@ -108,7 +108,7 @@ struct PrunedRows {
   }
 };
 
-// Which bodies' shapes may touch: BodyShapes::may_touch for the device.
+// TouchRule::may_touch for the shape items on the device, from its lists.
 struct ShapeBodies {
   const Index* body;                           // [shape items]
   const Index *connected_offsets, *connected;  // bodies that body b must not touch besides itself

@@ -147,21 +147,21 @@ std::string cuda_aware_trouble(const Ranks& ranks) {
 
 std::unique_ptr<HaloTransport> make_halo_transport(const Ranks& ranks, Transport wanted) {
   const std::string no_nccl = nccl_trouble(gpus_are_shared(ranks)), no_mpi = cuda_aware_trouble(ranks);
-  const auto refuse = [&](const std::string& key, const std::string& why) {
+  const auto refuse = [&](Transport refused, const std::string& why) {
     std::string allowed = "\"auto\"";
     if (no_mpi.empty()) allowed += ", \"cuda-aware\"";
     if (no_nccl.empty()) allowed += ", \"nccl\"";
-    throw TransportError("parallel.transport = \"" + key + "\": " + why + "; allowed here: " + allowed +
-                         ", \"staged\"");
+    throw TransportError("parallel.transport = \"" + word_of(refused) + "\": " + why +
+                         "; allowed here: " + allowed + ", \"staged\"");
   };
   if (wanted == Transport::automatic)
     wanted = no_mpi.empty() ? Transport::cuda_aware : no_nccl.empty() ? Transport::nccl : Transport::staged;
   if (wanted == Transport::cuda_aware) {
-    if (!no_mpi.empty()) refuse("cuda-aware", no_mpi);
+    if (!no_mpi.empty()) refuse(wanted, no_mpi);
     return std::make_unique<CudaAwareTransport>(ranks);
   }
   if (wanted == Transport::nccl) {
-    if (!no_nccl.empty()) refuse("nccl", no_nccl);
+    if (!no_nccl.empty()) refuse(wanted, no_nccl);
 #ifdef SCREE_NCCL
     return std::make_unique<NcclTransport>(ranks);
 #endif

@@ -1,8 +1,9 @@
-// What one particle puts into a snapshot.
+// What one particle puts into a snapshot, or into the history.
 #pragma once
 
 #include "base/hd.hpp"
 #include "base/vec3.hpp"
+#include "dem/backend.hpp"
 #include "particle_arrays.cuh"
 
 namespace scree {
@@ -27,6 +28,27 @@ struct PackItem {
     const Vec4 x = in.position[i], v = in.velocity[i];
     out[k] = {id_of(in.row_key[i]),        x.w,        wrap(box_min, period, xyz(x), unused), xyz(v),
               in.force[i] - v.w * gravity, contacts[i]};
+  }
+};
+
+// Writes a particle to the place that its id has among the sorted ids; the others write nothing.
+struct TraceItem {
+  ParticleViews in;
+  const GlobalId* ids;
+  Index count;
+  Vec3 box_min, period;
+  TracedParticle* out;
+
+  SCREE_HD void operator()(Index i) const {
+    const GlobalId id = id_of(in.row_key[i]);
+    Index low = 0, high = count;  // its place is in [low, high)
+    while (high - low > 1) {
+      const Index middle = low + (high - low) / 2;
+      (ids[middle] <= id ? low : high) = middle;
+    }
+    if (ids[low] != id) return;
+    ImageCount unused;
+    out[low] = {id, wrap(box_min, period, xyz(in.position[i]), unused), xyz(in.velocity[i])};
   }
 };
 

@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "base/version.hpp"
+#include "deck/choices.hpp"
 #include "deck/deck.hpp"
 #include "mbs/multibody.hpp"
 #include "mbs/petsc_session.hpp"
@@ -58,7 +59,7 @@ CommandLine split(int count, char** values) {
 }
 
 struct Arguments {
-  std::string deck, output, backend = "auto", restart;
+  std::string deck, output, backend = word_of(BackendChoice::automatic), restart;
   bool overwrite = false;
   bool allow_changes = false;
   std::vector<std::string> overrides;
@@ -181,7 +182,7 @@ ExitCode dispatch(const CommandLine& line) {
           "--backend", arguments.backend,
           "cpu; cuda: the GPU; auto: the GPU if there is one and the particles are enough to gain by it "
           "(default: auto)")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+      ->check(CLI::IsMember(words_of<BackendChoice>()));
   CLI::Option* restart =
       run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")
           ->type_name("FILE");

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "model/limits.hpp"
+#include "model/touching.hpp"
 
 namespace scree {
 namespace {
@@ -41,11 +42,8 @@ CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, S
       backend_(backend),
       link_(link),
       timers_(timers),
-      something_touches_(model.particles.totals.count > 0 || !pair_limits(model).empty()) {
-  largest_radius_ = model.particles.totals.largest_radius;
-  for (const Body& body : model.bodies)
-    for (const Shape& shape : body.shapes) largest_radius_ = std::max(largest_radius_, shape.radius);
-}
+      something_touches_(model.particles.totals.count > 0 || !pair_limits(model).empty()),
+      largest_radius_(radius_range(model).largest) {}
 
 void CoupledStep::rebuild_list(Real skin) { backend_.build_list(skin, timers_); }
 

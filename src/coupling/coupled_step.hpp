@@ -69,7 +69,7 @@ class CoupledStep {
   BodyLink& link_;
   StageTimers& timers_;
   const bool something_touches_;  // without, nothing is looked for
-  Real largest_radius_ = 0;       // of particles and shapes [m]
+  const Real largest_radius_;     // of particles and shapes [m]
   StepCounts counts_;
   std::vector<BodyWrench> wrench_sum_;  // over the substeps of an explicit step
 };

@@ -21,6 +21,13 @@ const DeckValue& DeckTable::value(const std::string& key) const {
   return found->second;
 }
 
+const std::string& DeckTable::word(const std::string& key, const std::type_info& choice_of) const {
+  for (const Key& declared : keys_->keys)
+    if (declared.name == key && declared.choice_of != nullptr && *declared.choice_of == choice_of)
+      return text(key);
+  throw std::logic_error("deck: " + path_ + "." + key + " is not this choice");
+}
+
 void DeckTable::fail(const std::string& key, const std::string& problem) const {
   const std::string full = path_.empty() ? key : path_ + "." + key;
   const auto found = values_.find(key);

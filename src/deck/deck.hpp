@@ -38,6 +38,11 @@ class DeckTable {
   std::int64_t integer(const std::string& key) const { return get<std::int64_t>(key); }
   Real real(const std::string& key) const { return get<Real>(key); }
   const std::string& text(const std::string& key) const { return get<std::string>(key); }
+  // What the key's word stands for. Value: the enum that the key was declared with.
+  template <class Value>
+  Value choice(const std::string& key) const {
+    return value_of<Value>(word(key, typeid(Value)));
+  }
   Vec3 vector(const std::string& key) const { return get<Vec3>(key); }
   const std::vector<Real>& reals(const std::string& key) const { return get<std::vector<Real>>(key); }
   const std::vector<std::int64_t>& integers(const std::string& key) const {
@@ -66,6 +71,7 @@ class DeckTable {
 
  private:
   const DeckValue& value(const std::string& key) const;
+  const std::string& word(const std::string& key, const std::type_info& choice_of) const;
   template <class T>
   const T& get(const std::string& key) const {
     return std::get<T>(value(key).data);

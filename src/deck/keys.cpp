@@ -29,18 +29,8 @@ Key& Key::entries(std::size_t count) {
   return *this;
 }
 
-Key& Key::one_of(std::vector<std::string> texts) {
-  choices = std::move(texts);
-  return *this;
-}
-
 Key& Key::required() {
   is_required = true;
-  return *this;
-}
-
-Key& Key::required_for(std::vector<std::string> selector_values) {
-  required_kinds = std::move(selector_values);
   return *this;
 }
 
@@ -49,19 +39,8 @@ Key& Key::otherwise(const std::string& toml_text) {
   return *this;
 }
 
-Key& Key::otherwise_where(const std::string& key_path, const std::string& value,
-                          const std::string& toml_text) {
-  where_key = key_path, where_value = value, default_there = toml_text;
-  return *this;
-}
-
 Key& Key::left_out(const std::string& meaning) {
   default_note = meaning;
-  return *this;
-}
-
-Key& Key::only_for(std::vector<std::string> selector_values) {
-  kinds = std::move(selector_values);
   return *this;
 }
 
@@ -103,6 +82,13 @@ Key boolean(const std::string& name) { return make_key(name, ValueType::boolean)
 Key integer(const std::string& name) { return make_key(name, ValueType::integer); }
 Key real(const std::string& name, const std::string& unit) { return make_key(name, ValueType::real, unit); }
 Key text(const std::string& name) { return make_key(name, ValueType::text); }
+Key choice_of_words(const std::string& name, std::vector<std::string> words,
+                    const std::type_info& choice_of) {
+  Key key = make_key(name, ValueType::choice);
+  key.words = std::move(words);
+  key.choice_of = &choice_of;
+  return key;
+}
 Key name_key() { return make_key("name", ValueType::name); }
 Key file(const std::string& name) { return make_key(name, ValueType::file); }
 Key vector(const std::string& name, const std::string& unit) {
@@ -135,7 +121,9 @@ std::string allowed_values(const Key& key, int dimension) {
     case ValueType::real:
       return "a number" + range_text(key) + unit;
     case ValueType::text:
-      return key.choices.empty() ? "a text" : fmt::format("one of \"{}\"", fmt::join(key.choices, "\", \""));
+      return "a text";
+    case ValueType::choice:
+      return fmt::format("one of \"{}\"", fmt::join(key.words, "\", \""));
     case ValueType::name:
       return fmt::format(
           "a name of 1 to {} bytes, without \"/\" and control characters, and not \".\" or \"..\"",

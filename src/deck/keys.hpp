@@ -1,10 +1,13 @@
 // Declaration of the deck's keys. The reader and the manual (`scree keys`) both work from these declarations.
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 #include "base/types.hpp"
+#include "deck/choice.hpp"
 
 namespace scree {
 
@@ -13,6 +16,7 @@ enum class ValueType {
   integer,
   real,
   text,
+  choice,    // one of the words of an enum (deck/choices.hpp)
   name,      // text that others refer to, and that results are called by
   file,      // path, relative to the deck's folder
   vector,    // as many numbers as space.dimension
@@ -40,8 +44,9 @@ struct Key {
   std::string unit;  // empty: dimensionless or not a number
   Real min = -kInfinity, max = kInfinity;
   bool min_excluded = false;
-  std::size_t length = 0;            // number of entries of a list; 0: any
-  std::vector<std::string> choices;  // of a text; empty: any
+  std::size_t length = 0;                     // number of entries of a list; 0: any
+  std::vector<std::string> words;             // of a choice
+  const std::type_info* choice_of = nullptr;  // its enum
   bool is_required = false;
   std::string default_value;  // TOML text, "zero" for a vector of zeros; empty: none
   std::string default_note;   // what holds when the key is left out and default_value is empty
@@ -56,13 +61,30 @@ struct Key {
   Key& at_least(Real limit);  // numbers >= limit
   Key& within(Real low, Real high);
   Key& entries(std::size_t count);
-  Key& one_of(std::vector<std::string> texts);
   Key& required();
-  Key& required_for(std::vector<std::string> selector_values);
+  // Of the table's selector, a choice.
+  template <class Value>
+  Key& required_for(std::initializer_list<Value> selector_values) {
+    for (const Value value : selector_values) required_kinds.push_back(word_of(value));
+    return *this;
+  }
   Key& otherwise(const std::string& toml_text);
-  Key& otherwise_where(const std::string& key_path, const std::string& value, const std::string& toml_text);
+  template <class Value>
+  Key& otherwise_choice(Value value) {
+    return otherwise('"' + word_of(value) + '"');
+  }
+  // The choice `there` where the deck gives the choice `value` for the key at the path.
+  template <class Where, class Value>
+  Key& otherwise_where(const std::string& key_path, Where value, Value there) {
+    where_key = key_path, where_value = word_of(value), default_there = '"' + word_of(there) + '"';
+    return *this;
+  }
   Key& left_out(const std::string& meaning);
-  Key& only_for(std::vector<std::string> selector_values);
+  template <class Value>
+  Key& only_for(std::initializer_list<Value> selector_values) {
+    for (const Value value : selector_values) kinds.push_back(word_of(value));
+    return *this;
+  }
   Key& about(const std::string& text);
 };
 
@@ -76,6 +98,12 @@ Key boolean(const std::string& name);
 Key integer(const std::string& name);
 Key real(const std::string& name, const std::string& unit);
 Key text(const std::string& name);
+Key choice_of_words(const std::string& name, std::vector<std::string> words, const std::type_info& choice_of);
+// One of the words of an enum; DeckTable::choice reads it.
+template <class Value>
+Key choice(const std::string& name) {
+  return choice_of_words(name, words_of<Value>(), typeid(Value));
+}
 Key name_key();  // "name"
 Key file(const std::string& name);
 Key vector(const std::string& name, const std::string& unit);

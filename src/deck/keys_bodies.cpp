@@ -1,4 +1,5 @@
 // Keys of bodies, joints, drivers and force elements.
+#include "deck/choices.hpp"
 #include "deck/keys.hpp"
 
 namespace scree {
@@ -62,32 +63,29 @@ const TableKeys& body_keys() {
 }
 
 const TableKeys& joint_keys() {
-  static const std::vector<std::string> pointed = {"revolute", "translational", "fixed"};
+  static constexpr auto pointed = {JointKind::revolute, JointKind::translational, JointKind::fixed};
   static const TableKeys keys = with_connection(
       "Joints between two bodies, or a body and the ground.",
-      {text("type")
-           .one_of({"revolute", "translational", "fixed", "distance"})
-           .required()
-           .about(
-               "Revolute: the two points coincide. Translational: the second body's point stays on the first "
-               "body's axis, no relative rotation. Fixed: no relative motion. Distance: the two points keep "
-               "their distance."),
+      {choice<JointKind>("type").required().about(
+           "Revolute: the two points coincide. Translational: the second body's point stays on the first "
+           "body's axis, no relative rotation. Fixed: no relative motion. Distance: the two points keep "
+           "their distance."),
        vector("point", "m")
            .only_for(pointed)
            .left_out("the body's centre (with the ground), or midway between the two centres")
            .about("The joint's point at t = 0 in the global frame."),
        vectors("points", "m")
-           .only_for({"distance"})
+           .only_for({JointKind::distance})
            .entries(2)
            .left_out("the two bodies' centres")
            .about("The two end points at t = 0 in the global frame."),
        local_points(),
        vector("axis", "")
-           .only_for({"translational"})
+           .only_for({JointKind::translational})
            .left_out("[1, 0] or [1, 0, 0]")
            .about("Direction of the axis at t = 0 in the global frame, of any length but 0."),
        real("distance", "m")
-           .only_for({"distance"})
+           .only_for({JointKind::distance})
            .above(0)
            .left_out("the distance at t = 0")
            .about("Distance that is kept.")},
@@ -160,34 +158,32 @@ const TableKeys& applied_force_keys() {
 }
 
 const TableKeys& time_function_keys() {
-  static const std::vector<std::string> started = {"constant", "ramp", "sine", "step"};
+  using Kind = TimeFunctionKind;
+  static constexpr auto started = {Kind::constant, Kind::ramp, Kind::sine, Kind::step};
   static const TableKeys keys{
       "A function of time: a number, or a table such as { kind = \"ramp\", rate = 2.0 }.",
-      {text("kind")
-           .one_of({"constant", "ramp", "sine", "step", "table"})
-           .required()
-           .about("Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
-                  "phase). Step: value up to start, end_value from end on, and between them value + "
-                  "(end_value - "
-                  "value) (10 s^3 - 15 s^4 + 6 s^5), s = (t - start) / (end - start), of class C2. Table: a "
-                  "curve "
-                  "through the points."),
+      {choice<Kind>("kind").required().about(
+           "Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
+           "phase). Step: value up to start, end_value from end on, and between them value + "
+           "(end_value - "
+           "value) (10 s^3 - 15 s^4 + 6 s^5), s = (t - start) / (end - start), of class C2. Table: a "
+           "curve "
+           "through the points."),
        real("value", kQuantityUnit)
            .only_for(started)
            .otherwise("0.0")
            .about("Constant part; of a step, the value before it."),
-       real("end_value", kQuantityUnit).only_for({"step"}).required().about("Value after the step."),
-       real("start", "s").only_for({"step"}).required().about("When the step begins."),
-       real("end", "s").only_for({"step"}).required().about("When it is done, after start."),
-       real("rate", kQuantityUnit + "/s").only_for({"ramp"}).required().about("Slope."),
-       real("amplitude", kQuantityUnit).only_for({"sine"}).required().about("Amplitude."),
-       real("frequency", "Hz").only_for({"sine"}).above(0).required().about("Frequency."),
-       real("phase", "rad").only_for({"sine"}).otherwise("0.0").about("Phase."),
-       reals("times", "s").only_for({"table"}).required().about("Instants, increasing, two at least."),
-       reals("values", kQuantityUnit).only_for({"table"}).required().about("Value at each instant."),
-       text("interpolation")
-           .only_for({"table"})
-           .one_of({"natural", "clamped", "monotone", "linear"})
+       real("end_value", kQuantityUnit).only_for({Kind::step}).required().about("Value after the step."),
+       real("start", "s").only_for({Kind::step}).required().about("When the step begins."),
+       real("end", "s").only_for({Kind::step}).required().about("When it is done, after start."),
+       real("rate", kQuantityUnit + "/s").only_for({Kind::ramp}).required().about("Slope."),
+       real("amplitude", kQuantityUnit).only_for({Kind::sine}).required().about("Amplitude."),
+       real("frequency", "Hz").only_for({Kind::sine}).above(0).required().about("Frequency."),
+       real("phase", "rad").only_for({Kind::sine}).otherwise("0.0").about("Phase."),
+       reals("times", "s").only_for({Kind::table}).required().about("Instants, increasing, two at least."),
+       reals("values", kQuantityUnit).only_for({Kind::table}).required().about("Value at each instant."),
+       choice<Interpolation>("interpolation")
+           .only_for({Kind::table})
            .left_out("\"natural\" for the motion of a driver, \"linear\" for forces and torques")
            .about(
                "Natural: the cubic spline of class C2 whose second derivative is 0 at both ends; it "
@@ -197,7 +193,7 @@ const TableKeys& time_function_keys() {
                "no others but the next on either side: for motions that hold and then move. Linear: "
                "straight lines; for forces and torques only, as the velocity of a motion would jump."),
        reals("end_rates", kQuantityUnit + "/s")
-           .only_for({"table"})
+           .only_for({Kind::table})
            .entries(2)
            .left_out("0 at both ends")
            .about("Rates at the first and the last instant, with interpolation = \"clamped\".")},

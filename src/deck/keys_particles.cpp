@@ -1,25 +1,25 @@
 // Keys of particles.
+#include "deck/choices.hpp"
 #include "deck/keys.hpp"
 
 namespace scree {
 
 const TableKeys& particle_keys() {
-  static const std::vector<std::string> spaced = {"row", "lattice"};
+  using Kind = GroupKind;
+  static constexpr auto spaced = {Kind::row, Kind::lattice};
   static const TableKeys keys{
       "Groups of particles; their numbers count on from group to group in the deck's order.",
       {name_key().left_out("none").about("Name for messages and for --set particles.NAME.key=value."),
-       text("kind")
-           .one_of({"list", "row", "lattice", "random", "file"})
-           .required()
-           .about("List: given positions. Row: equally spaced. Lattice: layer by layer, row by row. Random: "
-                  "random places without overlap in a box. File: read from a file."),
-       vectors("positions", "m").only_for({"list"}).required().about("Centres."),
+       choice<Kind>("kind").required().about(
+           "List: given positions. Row: equally spaced. Lattice: layer by layer, row by row. Random: "
+           "random places without overlap in a box. File: read from a file."),
+       vectors("positions", "m").only_for({Kind::list}).required().about("Centres."),
        vector("origin", "m")
            .only_for(spaced)
            .left_out("center is given")
            .about("Centre of the first particle."),
        vector("center", "m")
-           .only_for({"lattice"})
+           .only_for({Kind::lattice})
            .left_out("origin is given")
            .about("Centre of the whole lattice, also if count leaves some of its places empty."),
        vector("spacing", "m")
@@ -27,33 +27,36 @@ const TableKeys& particle_keys() {
            .required()
            .about("Row: from each particle to the next. Lattice: distance along each axis."),
        integers("size")
-           .only_for({"lattice"})
+           .only_for({Kind::lattice})
            .at_least(1)
            .required()
            .about("Places along each axis; filled along x first, then y, then z."),
        integer("count")
-           .only_for({"row", "lattice", "random"})
+           .only_for({Kind::row, Kind::lattice, Kind::random})
            .within(1, 1000000000)
            .left_out("lattice: all its places")
            .about("Number of particles; a lattice fills the first count places."),
        vector("min", "m")
-           .only_for({"random"})
+           .only_for({Kind::random})
            .required()
            .about("Lower corner of the box that holds the discs."),
-       vector("max", "m").only_for({"random"}).required().about("Upper corner of the box."),
+       vector("max", "m").only_for({Kind::random}).required().about("Upper corner of the box."),
        real("gap", "m")
-           .only_for({"random"})
+           .only_for({Kind::random})
            .at_least(0)
            .otherwise("0.0")
            .about("Smallest distance between the surfaces of two particles."),
        integer("tries")
-           .only_for({"random"})
+           .only_for({Kind::random})
            .within(1, 1000000000)
            .otherwise("10000")
            .about("Random places that are tried for one particle before the deck is refused."),
-       file("file").only_for({"file"}).required().about(
-           "CSV with a header line, or HDF5 (.h5, .hdf5) with one dataset per column: x, y, z (3D) [m]; "
-           "optional vx, vy, vz [m/s], radius [m], mass [kg]."),
+       file("file")
+           .only_for({Kind::file})
+           .required()
+           .about(
+               "CSV with a header line, or HDF5 (.h5, .hdf5) with one dataset per column: x, y, z (3D) [m]; "
+               "optional vx, vy, vz [m/s], radius [m], mass [kg]."),
        quantity("radius", "m", distribution_keys())
            .left_out("the file has a column radius")
            .about("Radius, or a distribution to draw it from."),
@@ -78,26 +81,36 @@ const TableKeys& particle_keys() {
 }
 
 const TableKeys& distribution_keys() {
+  using Kind = DistributionKind;
   static const TableKeys keys{
       "A positive quantity per particle: a number, or a table such as { kind = \"uniform\", min = 0.01, max "
       "= 0.02 }.",
-      {text("kind")
-           .one_of({"constant", "uniform", "normal", "table"})
-           .required()
-           .about(
-               "Constant: value. Uniform: between min and max. Normal: mean and sd, drawn again outside min "
-               "and max. Table: one of values, with probabilities in proportion to weights."),
-       real("value", kQuantityUnit).only_for({"constant"}).above(0).required().about("Value."),
-       real("mean", kQuantityUnit).only_for({"normal"}).above(0).required().about("Mean before the cut."),
+      {choice<Kind>("kind").required().about(
+           "Constant: value. Uniform: between min and max. Normal: mean and sd, drawn again outside min "
+           "and max. Table: one of values, with probabilities in proportion to weights."),
+       real("value", kQuantityUnit).only_for({Kind::constant}).above(0).required().about("Value."),
+       real("mean", kQuantityUnit).only_for({Kind::normal}).above(0).required().about("Mean before the cut."),
        real("sd", kQuantityUnit)
-           .only_for({"normal"})
+           .only_for({Kind::normal})
            .above(0)
            .required()
            .about("Standard deviation before the cut."),
-       real("min", kQuantityUnit).only_for({"uniform", "normal"}).above(0).required().about("Smallest."),
-       real("max", kQuantityUnit).only_for({"uniform", "normal"}).above(0).required().about("Largest."),
-       reals("values", kQuantityUnit).only_for({"table"}).above(0).required().about("Possible values."),
-       reals("weights", "").only_for({"table"}).above(0).left_out("equal").about("Weight of each value.")},
+       real("min", kQuantityUnit)
+           .only_for({Kind::uniform, Kind::normal})
+           .above(0)
+           .required()
+           .about("Smallest."),
+       real("max", kQuantityUnit)
+           .only_for({Kind::uniform, Kind::normal})
+           .above(0)
+           .required()
+           .about("Largest."),
+       reals("values", kQuantityUnit).only_for({Kind::table}).above(0).required().about("Possible values."),
+       reals("weights", "")
+           .only_for({Kind::table})
+           .above(0)
+           .left_out("equal")
+           .about("Weight of each value.")},
       "kind"};
   return keys;
 }

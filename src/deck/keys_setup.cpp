@@ -1,4 +1,5 @@
 // Keys of everything but the bodies and the particles.
+#include "deck/choices.hpp"
 #include "deck/keys.hpp"
 
 namespace scree {
@@ -6,9 +7,8 @@ namespace scree {
 namespace {
 
 Key boundary(const std::string& name, const std::string& side) {
-  return text(name)
-      .one_of({"open", "wall", "periodic"})
-      .otherwise("\"open\"")
+  return choice<Boundary>(name)
+      .otherwise_choice(Boundary::open)
       .about("Boundary on the side of " + side + "; \"periodic\" must stand on both sides of an axis.");
 }
 
@@ -20,9 +20,8 @@ const TableKeys& deck_keys() {
       {text("title").otherwise("\"\"").about("Name of the case, written into the results."),
        table("space", space_keys()).required(),
        vector("gravity", "m/s^2").otherwise("zero").about("Acceleration of gravity."),
-       text("velocities")
-           .one_of({"given", "consistent"})
-           .otherwise("\"given\"")
+       choice<StartVelocities>("velocities")
+           .otherwise_choice(StartVelocities::given)
            .about(
                "Of the bodies at t = 0. Given: as the bodies' keys say; the run is refused where a joint or "
                "driver contradicts them, and told which keys to set to what. Consistent: changed so that "
@@ -48,9 +47,8 @@ const TableKeys& space_keys() {
        boundary("x_max", "largest x"), boundary("y_min", "smallest y"), boundary("y_max", "largest y"),
        boundary("z_min", "smallest z (3D)"), boundary("z_max", "largest z (3D)"),
        text("wall_material").left_out("the only material").about("Material of the sides that are walls."),
-       text("leaving")
-           .one_of({"error", "remove", "drift"})
-           .otherwise("\"error\"")
+       choice<Leaving>("leaving")
+           .otherwise_choice(Leaving::error)
            .about("What happens to a particle whose centre leaves through an open side: the run fails; it is "
                   "removed and counted; it is counted and drifts on under gravity alone.")},
       ""};
@@ -63,13 +61,12 @@ const TableKeys& time_keys() {
       {real("end", "s").above(0).required().about("The simulation runs from 0 to this time."),
        real("step", "s")
            .above(0)
-           .required_for({"fixed"})
+           .required_for({StepControl::fixed})
            .left_out("1/20 of the shortest contact time or end / 1000, whichever is shorter")
            .about("Step size; the first one if control is \"adaptive\"."),
-       text("control")
-           .one_of({"fixed", "adaptive"})
-           .otherwise("\"adaptive\"")
-           .otherwise_where("integrator.particles", "velocity-verlet", "\"fixed\"")
+       choice<StepControl>("control")
+           .otherwise_choice(StepControl::adaptive)
+           .otherwise_where("integrator.particles", ParticleIntegrator::velocity_verlet, StepControl::fixed)
            .about(
                "Fixed step, or steps that keep the estimated local error within tolerance; velocity-verlet "
                "has no error estimate."),
@@ -78,13 +75,13 @@ const TableKeys& time_keys() {
            .left_out("step / 1e3 if fixed; step / 1e6 if adaptive")
            .about("The run fails where a step would have to be smaller, also when a step is retried."),
        real("max_step", "s")
-           .only_for({"adaptive"})
+           .only_for({StepControl::adaptive})
            .above(0)
            .left_out("end / 100 or, if shorter, the time in which a particle that fell through the space "
                      "would go half of the smallest radius; but at least step")
            .about("Largest step."),
        real("tolerance", "")
-           .only_for({"adaptive"})
+           .only_for({StepControl::adaptive})
            .within(0, 1)
            .above(0)
            .otherwise("2e-8")
@@ -103,22 +100,19 @@ const TableKeys& integrator_keys() {
            .about("HHT's numerical damping of bodies and particles. With adaptive steps it costs impacts no "
                   "accuracy; with fixed ones far above a tenth of a contact 0, which has none, errs least at "
                   "weak contact damping. Without it long runs of chains of joints fail."),
-       text("particles")
-           .one_of({"hht", "velocity-verlet"})
-           .otherwise("\"hht\"")
+       choice<ParticleIntegrator>("particles")
+           .otherwise_choice(ParticleIntegrator::hht)
            .about("Integrator of the particles: implicit, or explicit. Bodies always use HHT."),
-       text("contact_events")
-           .one_of({"resolved", "end-of-step"})
-           .otherwise("\"resolved\"")
+       choice<ContactEvents>("contact_events")
+           .otherwise_choice(ContactEvents::resolved)
            .about("Hht: a contact that opens or closes within a step acts over its part of the step, or (the "
                   "paper) with the force at the step's end over all of it."),
        integer("substeps")
            .within(1, 1000000)
            .otherwise("1")
            .about("Velocity-verlet steps of the particles per step of the bodies."),
-       text("precision")
-           .one_of({"double", "mixed"})
-           .otherwise("\"double\"")
+       choice<Precision>("precision")
+           .otherwise_choice(Precision::full)
            .about("GPU, velocity-verlet: mixed keeps state and sums at about double precision and computes "
                   "contact forces in single; the CPU computes in double either way."),
        real("residual_tolerance", "")
@@ -176,9 +170,8 @@ const TableKeys& parallel_keys() {
            .about(
                "The ranks' boxes are cut anew where the largest work of a rank is more than this share above "
                "the mean."),
-       text("transport")
-           .one_of({"auto", "cuda-aware", "nccl", "staged"})
-           .otherwise("\"auto\"")
+       choice<Transport>("transport")
+           .otherwise_choice(Transport::automatic)
            .about("How ghosts travel between GPUs: by an MPI library that takes device memory, by NCCL, or "
                   "through host memory. auto: the first of these that works here; another that does not work "
                   "here ends a run that would take GPUs on several ranks.")},

@@ -169,6 +169,7 @@ DeckValue Reader::read_value(const toml::node& node, const Context& context) con
       value.data = number(node, node, context);
       break;
     case ValueType::text:
+    case ValueType::choice:
     case ValueType::name:
     case ValueType::file:
       value.data = text(node, context);
@@ -253,8 +254,8 @@ std::int64_t Reader::integer(const toml::node& node, const toml::node& whole, co
 std::string Reader::text(const toml::node& node, const Context& context) const {
   if (!node.is_string()) fail(node, context);
   const std::string value = node.as_string()->get();
-  const std::vector<std::string>& choices = context.key.choices;
-  if (!choices.empty() && std::find(choices.begin(), choices.end(), value) == choices.end())
+  const std::vector<std::string>& words = context.key.words;
+  if (context.key.type == ValueType::choice && std::find(words.begin(), words.end(), value) == words.end())
     fail(node, context);
   if (value.find('\0') != std::string::npos) fail(node, context, " without the character \\u0000");
   if (context.key.type == ValueType::name && !is_name(value)) fail(node, context);

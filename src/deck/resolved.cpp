@@ -102,6 +102,7 @@ std::string Writer::value_text(const DeckTable& table, const Key& key) const {
     case ValueType::real:
       return number_text(table.real(name));
     case ValueType::text:
+    case ValueType::choice:
     case ValueType::name:
       return quoted(table.text(name));
     case ValueType::file:

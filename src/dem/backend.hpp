@@ -74,6 +74,12 @@ struct ParticlePack {
   std::vector<int> contacts;
 };
 
+// A particle whose motion is recorded.
+struct TracedParticle {
+  GlobalId global_id;
+  Vec3 position, velocity;  // position inside the periodic box [m], [m/s]
+};
+
 // How far Backend::verlet_run came.
 struct VerletRun {
   Index closed = 0;   // steps
@@ -81,7 +87,8 @@ struct VerletRun {
 };
 
 // The particles of one rank on their machine. With several ranks, each has a backend, and all functions but
-// the simple getters (description, records, shape_losses, list_entries, list_builds, balance, pack_particles)
+// the simple getters (description, records, shape_losses, list_entries, list_builds, balance, pack_particles,
+// traced)
 // are collective: every rank calls them in the same order, and what they return is the same on every rank,
 // except where a comment says otherwise. So are the errors.
 class Backend {
@@ -146,6 +153,8 @@ class Backend {
   virtual void start_pack() = 0;
   virtual ParticlePack pack_particles() = 0;
   virtual ShapePack pack_shapes() = 0;  // complete on rank 0
+  // Those of these particles that this rank owns, where they are now, in any order.
+  virtual std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) const = 0;
   // What touches each body, and each of these walls (indices into Model::walls), where all are now; the
   // bodies' on rank 0.
   virtual std::vector<ContactSum> body_contacts() = 0;

@@ -8,6 +8,7 @@
 #include "base/vec3.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
+#include "model/touching.hpp"
 
 namespace scree {
 
@@ -26,15 +27,11 @@ class BodyShapes {
 
   const std::vector<ShapeItem>& items() const { return items_; }
   Index size() const { return static_cast<Index>(items_.size()); }
-  // Whether shapes of these two bodies may touch: not of one body, nor of two that a joint or a force element
-  // connects unless the deck says so.
-  bool may_touch(int body_a, int body_b) const;
-  // The bodies whose shapes those of this one must not touch, besides its own.
-  const std::vector<int>& connected(int body) const { return connected_[static_cast<std::size_t>(body)]; }
+  const TouchRule& rule() const { return rule_; }
 
  private:
   std::vector<ShapeItem> items_;
-  std::vector<std::vector<int>> connected_;  // per body, sorted
+  TouchRule rule_;
 };
 
 }  // namespace scree

@@ -57,6 +57,7 @@ class CpuBackend : public Backend {
   void start_pack() override;
   ParticlePack pack_particles() override { return std::move(pack_); }
   ShapePack pack_shapes() override;
+  std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) const override;
   std::vector<ContactSum> body_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
 

@@ -73,14 +73,14 @@ void CpuBackend::sort_cells(Real skin) {
 void CpuBackend::lay_out_items(Real skin) {
   layout_.owned = store_.owned, layout_.active = store_.active;
   const Real width = builder_.cutoff(skin);
-  halo_.exchange(ranks_, decomposition_, subdomain_, model_.space,
+  halo_.exchange(ranks_, decomposition_, subdomain_,
                  {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
   layout_.ghost_images = halo_.images();
   layout_.first_shape = countable(
       static_cast<std::size_t>(layout_.owned) + static_cast<std::size_t>(halo_.size()), kTooManyItems);
   layout_.shapes_meet = ranks_.is_root();
 
-  side_.lay_out(model_.space, width, layout_);
+  side_.lay_out(width, layout_);
 
   store_.position.resize(layout_.items), store_.velocity.resize(layout_.items);
   store_.material.resize(layout_.items), store_.global_id.resize(layout_.items);

@@ -110,6 +110,19 @@ ShapePack CpuBackend::pack_shapes() {
   return side_.pack(layout_, ranks_);
 }
 
+std::vector<TracedParticle> CpuBackend::traced(std::span<const GlobalId> wanted) const {
+  std::vector<GlobalId> ids(wanted.begin(), wanted.end());
+  std::sort(ids.begin(), ids.end());
+  std::vector<TracedParticle> found;
+  for (Index i = 0; i < store_.owned; ++i) {
+    if (!std::binary_search(ids.begin(), ids.end(), store_.global_id[i])) continue;
+    ImageCount unused;
+    found.push_back(
+        {store_.global_id[i], subdomain_.wrap(xyz(store_.position[i]), unused), xyz(store_.velocity[i])});
+  }
+  return found;
+}
+
 std::vector<ContactSum> CpuBackend::body_contacts() {
   find_shape_contacts(views());
   return side_.body_contacts(layout_, ranks_);

@@ -68,8 +68,8 @@ Sizes sizes_of(const Model& model) {
   ParticleStore store;  // only where it is needed: it is as large as the model
   if (periodic || !equal) store.load(model.particles, initial_records(model.particles, subdomain));
   if (periodic)
-    sizes.ghosts = static_cast<double>(
-        periodic_images(subdomain, model.space, store.position, builder.cutoff(skin)).size());
+    sizes.ghosts =
+        static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
   sizes.items = sizes.particles + sizes.ghosts + static_cast<double>(shapes.size());
   const auto counted = static_cast<Index>(model.particles.size()) + shapes.size();
   sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, counted).count());

@@ -9,10 +9,7 @@
 namespace scree {
 
 NeighborBuilder::NeighborBuilder(const Model& model, const BodyShapes& shapes)
-    : model_(model), shapes_(shapes) {
-  largest_radius_ = model.particles.totals.largest_radius;
-  for (const ShapeItem& s : shapes.items()) largest_radius_ = std::max(largest_radius_, s.radius);
-}
+    : model_(model), shapes_(shapes), largest_radius_(radius_range(model).largest) {}
 
 namespace {
 
@@ -89,8 +86,8 @@ bool NeighborBuilder::excluded(const ItemLayout& layout, Index i, Index j) const
   if (i < layout.first_shape) return false;
   if (j < layout.owned) return false;
   if (j < layout.first_shape || layout.is_shape_image(i) || !layout.shapes_meet) return true;
-  return !shapes_.may_touch(shapes_.items()[layout.shape_of(i)].body,
-                            shapes_.items()[layout.shape_of(j)].body);
+  return !shapes_.rule().may_touch(shapes_.items()[layout.shape_of(i)].body,
+                                   shapes_.items()[layout.shape_of(j)].body);
 }
 
 void NeighborBuilder::collect_row(const ParticleStore& store, const ItemLayout& layout,

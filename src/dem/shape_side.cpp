@@ -13,7 +13,7 @@ ShapeSide::ShapeSide(const Model& model, const Subdomain& subdomain)
       motion_(model.bodies.size()),
       image_(static_cast<std::size_t>(shapes_.size())) {}
 
-void ShapeSide::lay_out(const Space& space, Real width, ItemLayout& layout) {
+void ShapeSide::lay_out(Real width, ItemLayout& layout) {
   layout.shapes = shapes_.size();
   std::vector<Vec4> centers(shapes_.items().size());
   for (Index s = 0; s < layout.shapes; ++s) {
@@ -22,7 +22,7 @@ void ShapeSide::lay_out(const Space& space, Real width, ItemLayout& layout) {
     image_[s] = {};
     centers[s] = vec4(subdomain_.wrap(p, image_[s]), shape.radius);
   }
-  layout.shape_images = periodic_images(subdomain_, space, centers, width);
+  layout.shape_images = periodic_images(subdomain_, centers, width);
   layout.items = layout.first_shape + layout.shapes + static_cast<Index>(layout.shape_images.size());
   const auto items = static_cast<std::size_t>(layout.items - layout.first_shape);
   position_.resize(items), velocity_.resize(items), contacts_.resize(items);

@@ -44,7 +44,7 @@ class ShapeSide {
   void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
   // Brings each shape into the periodic box and finds its images; fills the shapes' part of the layout, whose
   // owned particles and ghosts are known.
-  void lay_out(const Space& space, Real width, ItemLayout& layout);
+  void lay_out(Real width, ItemLayout& layout);
   // Moves the shape items to where the bodies are; returns the largest displacement of one [m].
   Real place(const ItemLayout& layout);
 

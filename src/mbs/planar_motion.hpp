@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/rotation.hpp"
 #include "base/types.hpp"
 #include "model/bodies.hpp"
 
@@ -27,10 +28,11 @@ inline Vec2 planar(Vec3 a) { return {a.x, a.y}; }
 // Motion of one body; the ground's is the default. Position [m], velocity [m/s], angle [rad], spin [rad/s].
 struct PlanarPose {
   Vec2 position, velocity;
-  Real angle = 0, spin = 0, cosine = 1, sine = 0;
+  Real angle = 0, spin = 0;
+  Rotation rotation;
 
   // A s: a body-fixed vector in the global frame.
-  Vec2 turn(Vec2 s) const { return {cosine * s.x - sine * s.y, sine * s.x + cosine * s.y}; }
+  Vec2 turn(Vec2 s) const { return planar(rotation.turn({s.x, s.y, 0})); }
 };
 
 // Poses of all bodies at one instant; index kGround is the ground.
@@ -46,7 +48,7 @@ class PlanarMotion {
       // Many instants in a row are the same one, and the angle of many bodies stays.
       const Real angle = q[2];
       if (std::bit_cast<std::uint64_t>(angle) == std::bit_cast<std::uint64_t>(pose.angle)) continue;
-      pose.angle = angle, pose.cosine = std::cos(angle), pose.sine = std::sin(angle);
+      pose.angle = angle, pose.rotation = Rotation(angle);
     }
   }
   const PlanarPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "model/connections.hpp"
 
 namespace scree {
 
@@ -65,8 +66,7 @@ PlanarSystem::PlanarSystem(const Model& model)
     constant_force_scale_ =
         std::max(constant_force_scale_, length_scale_ * body.mass * norm(planar(gravity_)));
   }
-  std::vector<bool> driven(model.joints.size(), false);
-  for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
+  const std::vector<bool> driven = driven_joints(model);
   for (std::size_t i = 0; i < model.joints.size(); ++i) add_joint(model.joints[i], driven[i]);
   for (const Driver& driver : model.drivers) {
     add_driver(driver, model.joints[static_cast<std::size_t>(driver.joint)], model.time.end);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "base/error.hpp"
 
@@ -163,11 +164,12 @@ TimeValue ScalarFunction::moving_value(Real t) const {
       return sine_function(function_.value, function_.amplitude, function_.frequency, function_.phase, t);
     case TimeFunction::Kind::step:
       return step_function(function_.value, function_.end_value, function_.start, function_.end, t);
-    case TimeFunction::Kind::constant:
     case TimeFunction::Kind::table:
-      break;
+      return table_value(t);
+    case TimeFunction::Kind::constant:
+      return {function_.value, 0, 0};
   }
-  return table_value(t);
+  throw std::logic_error("a function of time of no kind");
 }
 
 }  // namespace scree

@@ -7,6 +7,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "deck/choices.hpp"
 
 namespace scree {
 
@@ -32,13 +33,6 @@ struct Body {
   std::vector<Shape> shapes;
 };
 
-enum class JointKind {
-  revolute,       // the two points coincide
-  translational,  // body 2's point stays on body 1's axis, no relative rotation
-  fixed,          // the two points coincide, no relative rotation
-  distance        // the two points keep their distance
-};
-
 // Between body[0] and body[1]; either may be the ground. Points and axis are in the body frames.
 struct Joint {
   std::string name;
@@ -50,17 +44,10 @@ struct Joint {
   Real angle_offset = 0;  // fixed, translational: angle of body[1] minus angle of body[0] at t = 0 [rad]
 };
 
-// How a table is read between its points.
-enum class Interpolation {
-  natural,   // cubic spline, class C2; second derivative 0 at both ends
-  clamped,   // cubic spline, class C2; the given rates at both ends
-  monotone,  // quintic, class C2; rises, falls and stands still only where the points do, and is local
-  linear     // class C0: its rate jumps, so no motion can follow it
-};
-
 // A scalar function of time with two continuous derivatives where a driver needs them.
 struct TimeFunction {
-  enum class Kind { constant, ramp, sine, step, table } kind = Kind::constant;
+  using Kind = TimeFunctionKind;
+  Kind kind = Kind::constant;
   Real value = 0;                   // constant, and the start of ramp, sine and step
   Real rate = 0;                    // ramp: value + rate t [1/s]
   Real amplitude = 0;               // sine: value + amplitude sin(2 pi frequency t + phase)

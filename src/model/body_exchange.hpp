@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <vector>
 
+#include "base/rotation.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 
@@ -25,10 +25,8 @@ struct PointMotion {
 
 inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
   if (offset.x == 0 && offset.y == 0) return {body.position + offset, body.velocity};  // most shapes
-  const Real c = std::cos(body.angle), s = std::sin(body.angle);
-  const Vec3 arm{c * offset.x - s * offset.y, s * offset.x + c * offset.y, offset.z};
-  const Vec3 spin{-body.angular_velocity * arm.y, body.angular_velocity * arm.x, 0};
-  return {body.position + arm, body.velocity + spin};
+  const Vec3 arm = Rotation(body.angle).turn(offset);
+  return {body.position + arm, body.velocity + turning_velocity(body.angular_velocity, arm)};
 }
 
 // Contact wrench on one body.

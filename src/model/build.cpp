@@ -17,17 +17,10 @@ namespace {
 // More cannot be meant, and counts of them must stay exact.
 constexpr Real kMostSteps = 1e12, kMostOutputs = 1e9;
 
-// One side of the space; axis 0, 1, 2.
-Boundary boundary_of(const DeckTable& space, const std::string& key) {
-  const std::string& text = space.text(key);
-  if (text == "wall") return Boundary::wall;
-  return text == "periodic" ? Boundary::periodic : Boundary::open;
-}
-
 constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
 void build_boundaries(const DeckTable& table, Space& space) {
-  for (int side = 0; side < kSides; ++side) space.boundary[side] = boundary_of(table, kSideNames[side]);
+  for (int side = 0; side < kSides; ++side) space.boundary[side] = table.choice<Boundary>(kSideNames[side]);
   for (int side = kXMin; side < kSides; side += 2) {
     const bool first = space.boundary[side] == Boundary::periodic;
     const bool second = space.boundary[side + 1] == Boundary::periodic;
@@ -82,7 +75,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   ModelNames names;
   model.title = root.text("title");
   model.gravity = root.vector("gravity");
-  model.consistent_velocities = root.text("velocities") == "consistent";
+  model.consistent_velocities = root.choice<StartVelocities>("velocities") == StartVelocities::consistent;
   build_materials(root, model, names);
   build_space(root, names, model);
   build_time(root, model);
@@ -117,10 +110,7 @@ void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
     table.fail("max", "must be larger than space.min in every component");
   }
   build_boundaries(table, space);
-  const std::string& leaving = table.text("leaving");
-  space.leaving = leaving == "remove"  ? Leaving::remove
-                  : leaving == "drift" ? Leaving::drift
-                                       : Leaving::error;
+  space.leaving = table.choice<Leaving>("leaving");
   for (const DeckTable& entry : deck.tables("walls")) {
     const auto side = std::find(kSideNames.begin(), kSideNames.end(), entry.text("name"));
     if (side != kSideNames.end() &&
@@ -143,18 +133,17 @@ void build_time(const DeckTable& deck, Model& model) {
   const DeckTable& table = deck.table("time");
   TimeControl& time = model.time;
   time.end = table.real("end");
-  time.control = table.text("control") == "adaptive" ? StepControl::adaptive : StepControl::fixed;
+  time.control = table.choice<StepControl>("control");
   const bool adaptive = time.control == StepControl::adaptive;
   if (adaptive) time.tolerance = table.real("tolerance");
 
   const DeckTable& method = deck.table("integrator");
   Integrator& integrator = model.integrator;
   integrator.hht_alpha = method.real("hht_alpha");
-  integrator.particles =
-      method.text("particles") == "hht" ? ParticleIntegrator::hht : ParticleIntegrator::velocity_verlet;
-  integrator.resolve_events = method.text("contact_events") == "resolved";
+  integrator.particles = method.choice<ParticleIntegrator>("particles");
+  integrator.resolve_events = method.choice<ContactEvents>("contact_events") == ContactEvents::resolved;
   integrator.substeps = static_cast<int>(method.integer("substeps"));
-  integrator.precision = method.text("precision") == "mixed" ? Precision::mixed : Precision::full;
+  integrator.precision = method.choice<Precision>("precision");
   integrator.residual_tolerance = method.real("residual_tolerance");
   integrator.correction_tolerance = method.real("correction_tolerance");
   integrator.max_iterations = static_cast<int>(method.integer("max_iterations"));
@@ -192,11 +181,7 @@ void build_steps(const DeckTable& deck, Model& model) {
 void build_parallel(const DeckTable& deck, Model& model) {
   const DeckTable& table = deck.table("parallel");
   model.parallel.imbalance = table.real("imbalance");
-  const std::string transport = table.text("transport");
-  model.parallel.transport = transport == "cuda-aware" ? Transport::cuda_aware
-                             : transport == "nccl"     ? Transport::nccl
-                             : transport == "staged"   ? Transport::staged
-                                                       : Transport::automatic;
+  model.parallel.transport = table.choice<Transport>("transport");
 }
 
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model) {

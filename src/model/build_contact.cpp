@@ -5,6 +5,7 @@
 
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
+#include "model/touching.hpp"
 
 namespace scree {
 
@@ -48,19 +49,6 @@ void check_pairs(const DeckTable& table, const Model& model, const std::vector<b
                              model.contact.material_names[static_cast<std::size_t>(b)]));
     }
   }
-}
-
-// Smallest and largest radius of particles and shapes [m]; 0 where there are none.
-std::pair<Real, Real> radius_range(const Model& model) {
-  const ParticleTotals& particles = model.particles.totals;
-  std::vector<Real> radii;
-  if (particles.count > 0) radii = {particles.smallest_radius, particles.largest_radius};
-  for (const Body& body : model.bodies) {
-    for (const Shape& shape : body.shapes) radii.push_back(shape.radius);
-  }
-  if (radii.empty()) return {0, 0};
-  const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
-  return {*smallest, *largest};
 }
 
 // Two items must not meet through both sides of a periodic axis at once.

@@ -10,12 +10,6 @@ namespace scree {
 
 namespace {
 
-JointKind joint_kind(const std::string& type) {
-  if (type == "revolute") return JointKind::revolute;
-  if (type == "translational") return JointKind::translational;
-  return type == "fixed" ? JointKind::fixed : JointKind::distance;
-}
-
 // The body's centre where the other side is the ground, otherwise midway between the centres [m].
 Vec3 default_point(const Model& model, const Connection& connection) {
   const Vec3 a = start_position(model, connection.body[0]), b = start_position(model, connection.body[1]);
@@ -61,9 +55,7 @@ void check_joint_meets(const DeckTable& table, const Model& model, const Joint& 
   const Vec3 b = to_global_point(model, joint.body[1], joint.point[1]);
   Vec3 ends = b - a;
   if (joint.kind == JointKind::translational) {
-    const Real c = std::cos(start_angle(model, joint.body[0])),
-               s = std::sin(start_angle(model, joint.body[0]));
-    const Vec3 axis{c * joint.axis.x - s * joint.axis.y, s * joint.axis.x + c * joint.axis.y, 0};
+    const Vec3 axis = to_global_direction(model, joint.body[0], joint.axis);
     ends = ends - dot(ends, axis) * axis;
   }
   const Real gap = joint_gap(joint, ends);
@@ -81,7 +73,7 @@ void check_joint_meets(const DeckTable& table, const Model& model, const Joint& 
 Joint build_joint(const DeckTable& table, const Model& model, const Connection& connection) {
   Joint joint;
   joint.name = connection.name;
-  joint.kind = joint_kind(table.text("type"));
+  joint.kind = table.choice<JointKind>("type");
   for (int side = 0; side < 2; ++side) joint.body[side] = connection.body[side];
   if (joint.kind == JointKind::distance) {
     find_end_points(table, model, connection, joint.point);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 
+#include "deck/choices.hpp"
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
 #include "model/generators.hpp"
@@ -24,13 +26,13 @@ class Group {
       : table_(table),
         model_(model),
         random_(static_cast<std::uint64_t>(table.integer("seed"))),
-        kind_(table.text("kind")),
+        kind_(table.choice<GroupKind>("kind")),
         material_(find_material(names, table, "material")),
         density_(names.densities[static_cast<std::size_t>(material_)]),
         count_(count_of()) {}
 
   std::int64_t count() const { return count_; }
-  bool is_random() const { return kind_ == "random"; }
+  bool is_random() const { return kind_ == GroupKind::random; }
   void note_thickness(DiscThickness& discs) const;
   void warn_if_empty(Log& log) const;
   // Adds the particles of `part`, counted in the group. placed: what stands there already, for a random
@@ -39,7 +41,10 @@ class Group {
 
  private:
   std::int64_t count_of();
+  std::int64_t lattice_count() const;
   void place_regular();
+  void place_row();
+  void place_lattice();
   void place_random(const std::vector<StartItem>& placed, RandomNumbers before_radii);
   std::vector<Real> radii();
   std::vector<Real> masses(const std::vector<Real>& radius);
@@ -56,7 +61,7 @@ class Group {
   const DeckTable& table_;
   const Model& model_;
   RandomNumbers random_;
-  std::string kind_;
+  GroupKind kind_;
   int material_;
   Real density_;
   std::optional<ParticleFile> file_;
@@ -68,11 +73,22 @@ class Group {
 
 // Of the whole group.
 std::int64_t Group::count_of() {
-  const bool counted = kind_ == "row" || kind_ == "random";
-  if (counted && !table_.has("count")) table_.fail("count", "missing; it must be an integer of at least 1");
-  if (counted) return table_.integer("count");
-  if (kind_ == "list") return std::ssize(table_.vectors("positions"));
-  if (kind_ == "file") return file_.emplace(table_.text("file"), model_.space.dimension).count();
+  switch (kind_) {
+    case GroupKind::list:
+      return std::ssize(table_.vectors("positions"));
+    case GroupKind::row:
+    case GroupKind::random:
+      if (!table_.has("count")) table_.fail("count", "missing; it must be an integer of at least 1");
+      return table_.integer("count");
+    case GroupKind::lattice:
+      return lattice_count();
+    case GroupKind::file:
+      return file_.emplace(table_.text("file"), model_.space.dimension).count();
+  }
+  throw std::logic_error("a group of particles of no kind");
+}
+
+std::int64_t Group::lattice_count() const {
   const std::array<std::int64_t, 3> size = lattice_size();
   const std::int64_t places = size[0] * size[1] * size[2];
   const std::int64_t count = table_.has("count") ? table_.integer("count") : places;
@@ -85,7 +101,7 @@ void Group::warn_if_empty(Log& log) const {
   if (file_ && count_ == 0)
     log.warning(fmt::format("{}.file = \"{}\": the file has no rows; the group has no particles",
                             table_.path(), table_.text("file")));
-  if (kind_ == "list" && count_ == 0)
+  if (kind_ == GroupKind::list && count_ == 0)
     log.warning(fmt::format("{}.positions = []: the group has no particles", table_.path()));
 }
 
@@ -137,25 +153,38 @@ Vec3 Group::lattice_origin() const {
 }
 
 void Group::place_regular() {
-  if (kind_ == "file") {
-    position_ = vectors_of("");
-    return;
+  switch (kind_) {
+    case GroupKind::list:
+      position_.assign(table_.vectors("positions").begin() + part_.first,
+                       table_.vectors("positions").begin() + part_.last);
+      return;
+    case GroupKind::row:
+      return place_row();
+    case GroupKind::lattice:
+      return place_lattice();
+    case GroupKind::file:
+      position_ = vectors_of("");
+      return;
+    case GroupKind::random:
+      break;  // place_random
   }
+  throw std::logic_error("a group of particles without an order");
+}
+
+void Group::place_row() {
+  if (!table_.has("origin")) table_.fail("origin", "missing; it must be the centre of the first particle");
+  const Vec3 origin = table_.vector("origin"), spacing = table_.vector("spacing");
   position_.reserve(static_cast<std::size_t>(part_.size()));
-  if (kind_ == "list") {
-    const std::vector<Vec3>& all = table_.vectors("positions");
-    position_.assign(all.begin() + part_.first, all.begin() + part_.last);
-  } else if (kind_ == "row") {
-    if (!table_.has("origin")) table_.fail("origin", "missing; it must be the centre of the first particle");
-    const Vec3 origin = table_.vector("origin"), spacing = table_.vector("spacing");
-    for (std::int64_t i = part_.first; i < part_.last; ++i)
-      position_.push_back(origin + static_cast<Real>(i) * spacing);
-  } else {
-    const std::array<std::int64_t, 3> size = lattice_size();
-    const Vec3 origin = lattice_origin(), spacing = table_.vector("spacing");
-    for (std::int64_t i = part_.first; i < part_.last; ++i)
-      position_.push_back(lattice_position(origin, spacing, size, i));
-  }
+  for (std::int64_t i = part_.first; i < part_.last; ++i)
+    position_.push_back(origin + static_cast<Real>(i) * spacing);
+}
+
+void Group::place_lattice() {
+  const std::array<std::int64_t, 3> size = lattice_size();
+  const Vec3 origin = lattice_origin(), spacing = table_.vector("spacing");
+  position_.reserve(static_cast<std::size_t>(part_.size()));
+  for (std::int64_t i = part_.first; i < part_.last; ++i)
+    position_.push_back(lattice_position(origin, spacing, size, i));
 }
 
 // Each place depends on all before it: every rank finds all places, and keeps its part of them.

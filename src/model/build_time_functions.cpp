@@ -19,20 +19,12 @@ void check_points(const DeckTable& table) {
   }
 }
 
-Interpolation interpolation_of(const DeckTable& table, Interpolation otherwise) {
-  if (!table.has("interpolation")) return otherwise;
-  const std::string& text = table.text("interpolation");
-  if (text == "natural") return Interpolation::natural;
-  if (text == "clamped") return Interpolation::clamped;
-  return text == "monotone" ? Interpolation::monotone : Interpolation::linear;
-}
-
 void build_table(const DeckTable& table, Interpolation otherwise, TimeFunction& function) {
   check_points(table);
-  function.kind = TimeFunction::Kind::table;
   function.times = table.reals("times");
   function.values = table.reals("values");
-  function.interpolation = interpolation_of(table, otherwise);
+  function.interpolation =
+      table.has("interpolation") ? table.choice<Interpolation>("interpolation") : otherwise;
   if (!table.has("end_rates")) return;
   if (function.interpolation != Interpolation::clamped)
     table.fail("end_rates", "used only with interpolation = \"clamped\"");
@@ -40,7 +32,6 @@ void build_table(const DeckTable& table, Interpolation otherwise, TimeFunction& 
 }
 
 void build_step(const DeckTable& table, TimeFunction& function) {
-  function.kind = TimeFunction::Kind::step;
   function.end_value = table.real("end_value");
   function.start = table.real("start");
   function.end = table.real("end");
@@ -51,22 +42,25 @@ void build_step(const DeckTable& table, TimeFunction& function) {
 // otherwise: how a table is read that does not say it.
 TimeFunction build_function(const DeckTable& table, Interpolation otherwise) {
   TimeFunction function;
-  const std::string& kind = table.text("kind");
-  if (kind == "table") {
-    build_table(table, otherwise, function);
-    return function;
-  }
-  function.value = table.real("value");
-  if (kind == "ramp") {
-    function.kind = TimeFunction::Kind::ramp;
-    function.rate = table.real("rate");
-  } else if (kind == "sine") {
-    function.kind = TimeFunction::Kind::sine;
-    function.amplitude = table.real("amplitude");
-    function.frequency = table.real("frequency");
-    function.phase = table.real("phase");
-  } else if (kind == "step") {
-    build_step(table, function);
+  function.kind = table.choice<TimeFunctionKind>("kind");
+  if (function.kind != TimeFunctionKind::table) function.value = table.real("value");
+  switch (function.kind) {
+    case TimeFunctionKind::constant:
+      break;
+    case TimeFunctionKind::ramp:
+      function.rate = table.real("rate");
+      break;
+    case TimeFunctionKind::sine:
+      function.amplitude = table.real("amplitude");
+      function.frequency = table.real("frequency");
+      function.phase = table.real("phase");
+      break;
+    case TimeFunctionKind::step:
+      build_step(table, function);
+      break;
+    case TimeFunctionKind::table:
+      build_table(table, otherwise, function);
+      break;
   }
   return function;
 }

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+
+#include "base/rotation.hpp"
 
 namespace scree {
 
@@ -29,11 +30,6 @@ Connection named_pair(const DeckTable& table, const ModelNames& names) {
 }
 
 }  // namespace
-
-Vec3 rotate(Vec3 v, Real angle) {
-  const Real c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
-}
 
 std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names) {
   if (table.has("bodies") + table.has("chain") + table.has("each") != 1) {
@@ -65,11 +61,15 @@ Vec3 to_body_point(const Model& model, int body, Vec3 global) {
 }
 
 Vec3 to_global_point(const Model& model, int body, Vec3 local) {
-  return start_position(model, body) + rotate(local, start_angle(model, body));
+  return start_position(model, body) + to_global_direction(model, body, local);
 }
 
 Vec3 to_body_direction(const Model& model, int body, Vec3 global) {
-  return rotate(global, -start_angle(model, body));
+  return Rotation(-start_angle(model, body)).turn(global);
+}
+
+Vec3 to_global_direction(const Model& model, int body, Vec3 local) {
+  return Rotation(start_angle(model, body)).turn(local);
 }
 
 void find_end_points(const DeckTable& table, const Model& model, const Connection& connection,
@@ -95,12 +95,28 @@ void check_single(const DeckTable& table, const std::string& key) {
   if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
 }
 
+std::vector<bool> driven_joints(const Model& model) {
+  std::vector<bool> driven(model.joints.size(), false);
+  for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
+  return driven;
+}
+
 int constraint_count(const Model& model) {
+  const std::vector<bool> driven = driven_joints(model);
   int count = static_cast<int>(model.drivers.size());
-  for (const Joint& joint : model.joints) {
-    if (joint.kind == JointKind::fixed) count += 3;
-    if (joint.kind == JointKind::revolute || joint.kind == JointKind::translational) count += 2;
-    if (joint.kind == JointKind::distance) count += 1;
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    switch (model.joints[j].kind) {
+      case JointKind::fixed:
+        count += 3;
+        break;
+      case JointKind::revolute:
+      case JointKind::translational:
+        count += 2;
+        break;
+      case JointKind::distance:
+        count += driven[j] ? 0 : 1;  // the driver stands in the place of the joint's
+        break;
+    }
   }
   return count;
 }

@@ -17,19 +17,17 @@ struct Connection {
   int body[2] = {kGround, kGround};
 };
 
-// About z [rad].
-Vec3 rotate(Vec3 v, Real angle);
-
 // From the keys bodies, chain or each. Throws InputError.
 std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names);
 
 // Position at t = 0 of a body's centre; the origin for the ground [m].
 Vec3 start_position(const Model& model, int body);
 Real start_angle(const Model& model, int body);  // [rad]
-// A direction or point between the global frame and a body's, at t = 0 [m].
+// A direction, or a point [m], between the global frame and a body's, at t = 0.
 Vec3 to_body_point(const Model& model, int body, Vec3 global);
 Vec3 to_global_point(const Model& model, int body, Vec3 local);
 Vec3 to_body_direction(const Model& model, int body, Vec3 global);
+Vec3 to_global_direction(const Model& model, int body, Vec3 local);
 
 // Fills the two local points from local_points, points or the bodies' centres. Throws InputError where the
 // ground needs a point that is not given.
@@ -37,6 +35,8 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
 // Refuses `key` together with chain or each: one global point cannot hold for several elements.
 void check_single(const DeckTable& table, const std::string& key);
 
+// Per joint, whether a driver prescribes it.
+std::vector<bool> driven_joints(const Model& model);
 // Of joints and drivers: the number of the multibody side's constraint equations.
 int constraint_count(const Model& model);
 // Pairs of bodies, smaller index first, that a joint or a force element connects; sorted, each once.

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <stdexcept>
 
+#include "deck/choices.hpp"
 #include "model/point_bins.hpp"
 #include "physics/random_packing.hpp"
 
@@ -49,11 +51,12 @@ Real expected_failures(const PackingBox& box, const std::vector<Real>& radius, R
 }
 
 void check_distribution(const DeckTable& table) {
-  const std::string& kind = table.text("kind");
-  if ((kind == "uniform" || kind == "normal") && table.real("min") > table.real("max")) {
+  const auto kind = table.choice<DistributionKind>("kind");
+  if ((kind == DistributionKind::uniform || kind == DistributionKind::normal) &&
+      table.real("min") > table.real("max")) {
     table.fail("max", fmt::format("must be at least min = {}", table.real("min")));
   }
-  if (kind != "table") return;
+  if (kind != DistributionKind::table) return;
   const std::size_t count = table.reals("values").size();
   if (count == 0) table.fail("values", "must have an entry");
   if (table.has("weights") && table.reals("weights").size() != count) {
@@ -64,20 +67,30 @@ void check_distribution(const DeckTable& table) {
 // A distribution's numbers, looked up once: there may be many values to draw.
 class Distribution {
  public:
-  explicit Distribution(const DeckTable& table) : table_(table), kind_(table.text("kind")) {
+  explicit Distribution(const DeckTable& table)
+      : table_(table), kind_(table.choice<DistributionKind>("kind")) {
     check_distribution(table);
-    if (kind_ == "constant") constant_ = table.real("value");
-    if (kind_ == "uniform" || kind_ == "normal") min_ = table.real("min"), max_ = table.real("max");
-    if (kind_ == "normal") mean_ = table.real("mean"), sd_ = table.real("sd");
-    if (kind_ != "table") return;
+    if (kind_ == DistributionKind::constant) constant_ = table.real("value");
+    if (kind_ == DistributionKind::uniform || kind_ == DistributionKind::normal)
+      min_ = table.real("min"), max_ = table.real("max");
+    if (kind_ == DistributionKind::normal) mean_ = table.real("mean"), sd_ = table.real("sd");
+    if (kind_ != DistributionKind::table) return;
     values_ = table.reals("values");
     weights_ = table.has("weights") ? table.reals("weights") : std::vector<Real>(values_.size(), 1);
   }
-  bool is_constant() const { return kind_ == "constant"; }
+  bool is_constant() const { return kind_ == DistributionKind::constant; }
   Real draw(RandomNumbers& random) const {
-    if (is_constant()) return constant_;
-    if (kind_ == "uniform") return random.uniform(min_, max_);
-    return kind_ == "normal" ? draw_normal(random) : draw_table(random);
+    switch (kind_) {
+      case DistributionKind::constant:
+        return constant_;
+      case DistributionKind::uniform:
+        return random.uniform(min_, max_);
+      case DistributionKind::normal:
+        return draw_normal(random);
+      case DistributionKind::table:
+        return draw_table(random);
+    }
+    throw std::logic_error("a distribution of no kind");
   }
 
  private:
@@ -100,7 +113,7 @@ class Distribution {
   }
 
   const DeckTable& table_;
-  std::string kind_;
+  DistributionKind kind_;
   Real constant_ = 0, min_ = 0, max_ = 0, mean_ = 0, sd_ = 0;
   std::vector<Real> values_, weights_;
 };

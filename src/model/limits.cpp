@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "model/connections.hpp"
+#include "model/touching.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -42,19 +42,6 @@ Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const
   return verlet_step_limit(frequency, stiffness, law.normal_damping);
 }
 
-// Whether two shapes of different bodies may collide.
-bool bodies_can_meet(const Model& model) {
-  const auto shaped = static_cast<std::size_t>(std::count_if(
-      model.bodies.begin(), model.bodies.end(), [](const Body& body) { return !body.shapes.empty(); }));
-  if (shaped < 2 || model.contact.connected_bodies_touch) return shaped >= 2;
-  const std::vector<std::pair<int, int>> connected = connected_bodies(model);
-  const auto both = std::count_if(connected.begin(), connected.end(), [&](const std::pair<int, int>& pair) {
-    return !model.bodies[static_cast<std::size_t>(pair.first)].shapes.empty() &&
-           !model.bodies[static_cast<std::size_t>(pair.second)].shapes.empty();
-  });
-  return static_cast<std::size_t>(both) < shaped * (shaped - 1) / 2;
-}
-
 }  // namespace
 
 std::vector<MaterialUse> material_uses(const Model& model) {
@@ -86,7 +73,7 @@ bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, i
   if (first.particles > 0 && second.shapes > 0) return true;
   if (second.particles > 0 && first.shapes > 0) return true;
   if (a == b ? first.particles > 1 : first.particles > 0 && second.particles > 0) return true;
-  return first.shapes > 0 && second.shapes > 0 && bodies_can_meet(model);
+  return first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch();
 }
 
 std::vector<PairLimit> pair_limits(const Model& model) {

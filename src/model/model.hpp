@@ -8,20 +8,12 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "deck/choices.hpp"
 #include "model/bodies.hpp"
 #include "model/particles.hpp"
 #include "physics/normal_laws.hpp"
 
 namespace scree {
-
-enum class Boundary { open, wall, periodic };
-
-// What happens to a particle whose centre leaves through an open side.
-enum class Leaving {
-  error,   // the simulation fails and names it
-  remove,  // taken out of the simulation, counted, its energy booked as carried out
-  drift    // counted; goes on under gravity alone, kept out of the pair search
-};
 
 enum Side { kXMin, kXMax, kYMin, kYMax, kZMin, kZMax, kSides };
 
@@ -50,14 +42,6 @@ struct Contact {
 
   int materials() const { return static_cast<int>(material_names.size()); }
   const KelvinVoigt& law(int i, int j) const { return laws[static_cast<std::size_t>(i * materials() + j)]; }
-};
-
-enum class StepControl { fixed, adaptive };
-enum class ParticleIntegrator { hht, velocity_verlet };
-// Of the particles on a GPU. The CPU always computes in full precision.
-enum class Precision {
-  full,  // double throughout
-  mixed  // state and sums at about double, contact forces in single
 };
 
 struct TimeControl {
@@ -107,9 +91,6 @@ struct Output {
 struct DiscThickness {
   Real smallest = 0, largest = 0;  // [m]
 };
-
-// How ghosts travel between the GPUs of several ranks.
-enum class Transport { automatic, cuda_aware, nccl, staged };
 
 // How the particles are spread over the ranks; no result depends on it.
 struct Parallel {

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
+#include "deck/choices.hpp"
 #include "model/limits.hpp"
+#include "model/touching.hpp"
 #include "physics/plausible.hpp"
 
 namespace scree {
@@ -196,12 +199,8 @@ std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
 }
 
 std::string many_sizes(const Model& model) {
-  const ParticleTotals& totals = model.particles.totals;
-  Real smallest = totals.count > 0 ? totals.smallest_radius : kInfinity, largest = totals.largest_radius;
-  for (const Body& body : model.bodies)
-    for (const Shape& shape : body.shapes)
-      smallest = std::min(smallest, shape.radius), largest = std::max(largest, shape.radius);
-  if (!(largest >= kMostSizes * smallest)) return "";
+  const auto [smallest, largest] = radius_range(model);
+  if (smallest == 0 || !(largest >= kMostSizes * smallest)) return "";
   return fmt::format(
       "radii from {:.3g} to {:.3g} m: the cells of the pair search are as wide as the largest, and the many "
       "small "
@@ -211,10 +210,16 @@ std::string many_sizes(const Model& model) {
 
 // Values of a distribution that it may take.
 std::vector<Real> values_of(const DeckTable& distribution) {
-  const std::string& kind = distribution.text("kind");
-  if (kind == "constant") return {distribution.real("value")};
-  if (kind == "table") return distribution.reals("values");
-  return {distribution.real("min"), distribution.real("max")};
+  switch (distribution.choice<DistributionKind>("kind")) {
+    case DistributionKind::constant:
+      return {distribution.real("value")};
+    case DistributionKind::uniform:
+    case DistributionKind::normal:
+      return {distribution.real("min"), distribution.real("max")};
+    case DistributionKind::table:
+      return distribution.reals("values");
+  }
+  throw std::logic_error("a distribution of no kind");
 }
 
 std::string odd_density(const DeckTable& deck) {

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/rotation.hpp"
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/point_bins.hpp"
+#include "model/space_box.hpp"
+#include "model/touching.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -77,17 +80,6 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
   return items;
 }
 
-bool is_inside(const Space& space, Vec3 p) {
-  // Farther away its place in the periodic space would be lost to round-off.
-  constexpr Real kMostPeriods = 1e6;
-  const auto within = [&](Side side, Real x, Real min, Real max) {
-    const Real beyond = space.boundary[side] == Boundary::periodic ? kMostPeriods * (max - min) : 0;
-    return x >= min - beyond && x <= max + beyond;
-  };
-  return within(kXMin, p.x, space.min.x, space.max.x) && within(kYMin, p.y, space.min.y, space.max.y) &&
-         (space.dimension == 2 || within(kZMin, p.z, space.min.z, space.max.z));
-}
-
 [[noreturn]] void refuse_outside(const DeckTable& deck, const Space& space, const std::string& name, Vec3 p) {
   deck.table("space").fail(
       "max",
@@ -96,9 +88,10 @@ bool is_inside(const Space& space, Vec3 p) {
 }
 
 void check_particles_inside(const DeckTable& deck, const Model& model) {
+  const Box allowed = start_box(model.space);
   for (std::size_t i = 0; i < model.particles.size(); ++i) {
     const Vec3 p = model.particles.position[i];
-    if (!is_inside(model.space, p))
+    if (!allowed.inside(p))
       refuse_outside(deck, model.space,
                      fmt::format("particle {}", model.particles.first_id + static_cast<GlobalId>(i)), p);
   }
@@ -135,19 +128,6 @@ std::vector<Vec3> image_shifts(const Space& space) {
   return shifts;
 }
 
-bool may_touch(const Model& model, const std::vector<std::pair<int, int>>& connected, int body_a,
-               int body_b) {
-  if (body_a == kGround || body_b == kGround) return true;
-  if (body_a == body_b) return false;
-  const std::pair<int, int> pair = std::minmax(body_a, body_b);
-  return model.contact.connected_bodies_touch ||
-         !std::binary_search(connected.begin(), connected.end(), pair);
-}
-
-struct Box {
-  Vec3 min, max;  // [m]
-};
-
 // Around all of them; there is at least one.
 Box box_around(const std::vector<StartItem>& items) {
   Box box{items.front().position, items.front().position};
@@ -159,30 +139,25 @@ Box box_around(const std::vector<StartItem>& items) {
   return box;
 }
 
-bool is_within(const Box& box, Vec3 p, Real margin) {
-  return p.x >= box.min.x - margin && p.x <= box.max.x + margin && p.y >= box.min.y - margin &&
-         p.y <= box.max.y + margin && p.z >= box.min.z - margin && p.z <= box.max.z + margin;
-}
-
 // reach: two items farther away from each other than this do not overlap [m].
 void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items, Real reach,
                         WorstOverlap& worst) {
   if (items.empty()) return;
   const ItemNames names(model);
-  const std::vector<std::pair<int, int>> connected = connected_bodies(model);
+  const TouchRule rule(model);
   const Box box = box_around(items);
   const SortedBins bins(PointCells(box.min, box.max, reach, items.size()), items);
   for (const Vec3 shift : image_shifts(model.space)) {
     for (const StartItem& item : bins.items()) {
       const Vec3 p = item.position + shift;
-      if (!is_within(box, p, reach)) continue;
+      if (!box.reaches(p, reach)) continue;
       bins.for_near(p, [&](const StartItem& other) {
         const Vec3 apart = p - other.position;
         const Real touching = item.radius + other.radius;
         if (other.number >= item.number || !(dot(apart, apart) < touching * touching)) return;
         const Real ratio = (touching - norm(apart)) / std::min(item.radius, other.radius);
         if (ratio >= worst.ratio && ratio > 0 &&
-            may_touch(model, connected, names.body(item.number), names.body(other.number)))
+            rule.may_touch(names.body(item.number), names.body(other.number)))
           worst.meet(ratio, other.number, item.number);
       });
     }
@@ -198,13 +173,6 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
       worst.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));
     }
   }
-}
-
-Real largest_radius(const Model& model) {
-  Real largest = model.particles.totals.largest_radius;
-  for (const Body& body : model.bodies)
-    for (const Shape& shape : body.shapes) largest = std::max(largest, shape.radius);
-  return largest;
 }
 
 // n = 1 has an exact limit, other exponents an estimate: an error and a warning.
@@ -271,15 +239,16 @@ void check_speeds(const Model& model, Real step, Log& log) {
 }  // namespace
 
 void check_bodies_inside(const DeckTable& deck, const Space& space) {
+  const Box allowed = start_box(space);
   for (const DeckTable& table : deck.tables("bodies")) {
     const bool row = table.has("count");
     const std::int64_t count = row ? table.integer("count") : 1;
     for (const DeckTable& shape : table.tables("shapes")) {
       const Vec3 first = table.vector("position"), spacing = table.vector("spacing"),
-                 offset = rotate(shape.vector("offset"), table.real("angle"));
+                 offset = Rotation(table.real("angle")).turn(shape.vector("offset"));
       for (std::int64_t i = 0; i < count; ++i) {
         const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
-        if (is_inside(space, p)) continue;
+        if (allowed.inside(p)) continue;
         const std::string& name = table.text("name");
         refuse_outside(deck, space,
                        row ? fmt::format("body \"{}.{}\"", name, i) : fmt::format("body \"{}\"", name), p);
@@ -296,7 +265,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   bring_into_periodic_box(model.space, items);
   WorstOverlap own;
   find_wall_overlaps(model, items, own);
-  const Real reach = 2 * largest_radius(model);
+  const Real reach = 2 * radius_range(model).largest;
   items = share.near_each_other(std::move(items), model.space, reach);
   share.together([&] { find_pair_overlaps(model, items, reach, own); });
   const WorstOverlap worst = worst_of_all(own, share);

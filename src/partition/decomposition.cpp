@@ -142,6 +142,7 @@ void Decomposition::add(const Node& node) {
 }
 
 DomainBox Decomposition::box(int rank, const Subdomain& subdomain) const {
+  if (!exists()) return subdomain.periodic_box();
   const CellBox& cells = boxes_[static_cast<std::size_t>(rank)];
   DomainBox box;
   for (int axis = 0; axis < 3; ++axis) {

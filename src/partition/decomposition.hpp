@@ -46,15 +46,7 @@ struct CellBox {
   bool operator==(const CellBox&) const = default;
 };
 
-// A box of cells in space; infinite where the space ends and is not periodic.
-struct DomainBox {
-  Vec3 min, max;  // [m]
-  // Whether p lies inside, or outside by at most `width` [m].
-  SCREE_HD bool reaches(Vec3 p, Real width) const {
-    return p.x >= min.x - width && p.x <= max.x + width && p.y >= min.y - width && p.y <= max.y + width &&
-           p.z >= min.z - width && p.z <= max.z + width;
-  }
-};
+using DomainBox = Box;  // of cells; infinite where the space ends and is not periodic
 
 // The sides of boxes come from a product and a sum: this share more of a width covers their round-off.
 inline constexpr Real kBoxRoundOff = 1e-9;
@@ -90,7 +82,7 @@ class Decomposition {
   // Per rank.
   const std::vector<CellBox>& boxes() const { return boxes_; }
   const DomainGrid& grid() const { return grid_; }
-  // The box of a rank, for a space with these periods.
+  // The box of a rank; without a decomposition, the space that a rank alone has.
   DomainBox box(int rank, const Subdomain& subdomain) const;
 
  private:

@@ -1,41 +1,27 @@
 #include "partition/halo.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/for_each.hpp"
 
 namespace scree {
 
-std::vector<Ghost> periodic_images(const Subdomain& subdomain, const Space& space,
-                                   std::span<const Vec4> position, Real width) {
+std::vector<Ghost> periodic_images(const Subdomain& subdomain, std::span<const Vec4> position, Real width) {
+  const HaloPlan plan({}, {}, subdomain, width);
   std::vector<Ghost> ghosts;
-  const Vec3 period = subdomain.period();
-  if (period == Vec3{}) return ghosts;
-  const HaloBox box{space.min, space.max, period, width};
   for (Index i = 0; i < static_cast<Index>(position.size()); ++i)
-    for_each_ghost(box, xyz(position[static_cast<std::size_t>(i)]), [&](Vec3 shift, std::int8_t image) {
-      ghosts.push_back({i, image, {}, shift});
+    plan.for_each_target(xyz(position[static_cast<std::size_t>(i)]), [&](const HaloTarget& t) {
+      ghosts.push_back({i, t.image, {}, t.shift});
     });
   return ghosts;
 }
 
-Halo::Halo(std::vector<Ghost> own) : own_(std::move(own)) {
-  for (const Ghost& ghost : own_) images_.push_back(ghost.image);
-}
-
 void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
-                    const Space& space, std::span<const Vec4> position, Real width) {
-  plan_ = {}, sent_.clear();
-  if (ranks.alone()) {
-    own_ = periodic_images(subdomain, space, position, width);
-  } else {
-    plan_ = HaloPlan(ranks, decomposition, subdomain, width);
-    find_ghosts(position);
-  }
+                    std::span<const Vec4> position, Real width) {
+  plan_ = HaloPlan(ranks, decomposition, subdomain, width);
+  find_ghosts(position);
   images_.clear();
   for (const Ghost& ghost : own_) images_.push_back(ghost.image);
-  if (ranks.alone()) return;
   images_.resize(static_cast<std::size_t>(plan_.ghosts()));
   for (std::vector<Vec4>& buffer : buffer_) buffer.resize(sent_.size());
   std::vector<std::int8_t> sent(sent_.size());
@@ -45,16 +31,13 @@ void Halo::exchange(const Ranks& ranks, const Decomposition& decomposition, cons
 }
 
 void Halo::find_ghosts(std::span<const Vec4> position) {
-  own_.clear();
+  own_.clear(), sent_.clear();
   std::vector<std::vector<Ghost>> ghosts(plan_.neighbors().size());
-  for (Index i = 0; i < static_cast<Index>(position.size()); ++i) {
-    const Vec3 p = xyz(position[static_cast<std::size_t>(i)]);
-    if (plan_.box().reaches(p, -plan_.reach())) continue;  // too far from every side to be a ghost
-    for (const HaloTarget& t : plan_.targets())
-      if (t.box.reaches(p + t.shift, plan_.reach()))
-        (t.neighbor == HaloTarget::kItself ? own_ : ghosts[static_cast<std::size_t>(t.neighbor)])
-            .push_back({i, t.image, {}, t.shift});
-  }
+  for (Index i = 0; i < static_cast<Index>(position.size()); ++i)
+    plan_.for_each_target(xyz(position[static_cast<std::size_t>(i)]), [&](const HaloTarget& t) {
+      (t.neighbor == HaloTarget::kItself ? own_ : ghosts[static_cast<std::size_t>(t.neighbor)])
+          .push_back({i, t.image, {}, t.shift});
+    });
   std::vector<std::size_t> counts;
   for (const std::vector<Ghost>& list : ghosts) {
     counts.push_back(list.size());

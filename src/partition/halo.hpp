@@ -25,40 +25,6 @@ struct Ghost {
 };
 static_assert(sizeof(Ghost) == sizeof(Index) + 4 + sizeof(Vec3));
 
-// What decides which images of a point lie near the box.
-struct HaloBox {
-  Vec3 min, max;  // of the space [m]
-  Vec3 period;    // [m], 0 along axes that are not periodic
-  Real width;     // [m]
-};
-
-// Shifts by 0, +1 and -1 periods along one axis that bring x to within width of [min, max]; returns how many.
-SCREE_HD int axis_shifts(Real x, Real min, Real max, Real period, Real width, int (&out)[3]) {
-  int n = 0;
-  out[n++] = 0;
-  if (period == 0) return n;
-  if (x + period <= max + width) out[n++] = 1;
-  if (x - period >= min - width) out[n++] = -1;
-  return n;
-}
-
-// Calls visit(shift [m], image) for each image of p but p itself that lies within the width of the box.
-template <class Visit>
-SCREE_HD void for_each_ghost(const HaloBox& box, Vec3 p, const Visit& visit) {
-  int sx[3], sy[3], sz[3];
-  const int nx = axis_shifts(p.x, box.min.x, box.max.x, box.period.x, box.width, sx);
-  const int ny = axis_shifts(p.y, box.min.y, box.max.y, box.period.y, box.width, sy);
-  const int nz = axis_shifts(p.z, box.min.z, box.max.z, box.period.z, box.width, sz);
-  for (int a = 0; a < nz; ++a)
-    for (int b = 0; b < ny; ++b)
-      for (int c = 0; c < nx; ++c) {
-        const int image = (sz[a] + 1) * 9 + (sy[b] + 1) * 3 + sx[c] + 1;
-        if (image == kNoShift) continue;
-        visit(Vec3{sx[c] * box.period.x, sy[b] * box.period.y, sz[a] * box.period.z},
-              static_cast<std::int8_t>(image));
-      }
-}
-
 // Refreshes one ghost's copy of a field; ghosts stand at field[first_ghost ...].
 template <class T>
 struct HaloItem {
@@ -84,21 +50,17 @@ struct HaloPositionItem {
 };
 
 // The images across periodic sides that lie within `width` [m] of the space, for originals at `position`.
-std::vector<Ghost> periodic_images(const Subdomain& subdomain, const Space& space,
-                                   std::span<const Vec4> position, Real width);
+std::vector<Ghost> periodic_images(const Subdomain& subdomain, std::span<const Vec4> position, Real width);
 
 // Where the halo comes from. Ghosts stand behind the owned items: those that are images of this rank's own
 // particles first, then those of each neighbour, a contiguous range per neighbour.
 class Halo {
  public:
-  Halo() = default;
-  // Of one rank alone, whose ghosts are known.
-  explicit Halo(std::vector<Ghost> own);
-
   // exchange_halo: finds who is a ghost where, for originals at `position` (the first of the owned items),
-  // and tells the neighbours. width: reach of the halo past the box [m]. Collective.
+  // and tells the neighbours. decomposition: as HaloPlan needs it. width: reach of the halo past the box [m].
+  // Collective.
   void exchange(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain,
-                const Space& space, std::span<const Vec4> position, Real width);
+                std::span<const Vec4> position, Real width);
 
   Index size() const { return static_cast<Index>(images_.size()); }
   // Entries that one update sends, and the ranks that get some.

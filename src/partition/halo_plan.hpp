@@ -44,16 +44,33 @@ struct HaloMessage {
   std::size_t element;
 };
 
+// Calls visit(target) for the targets that a particle at p is a ghost of. box: of this rank; reach: of the
+// halo past the boxes [m].
+template <class Visit>
+SCREE_HD void for_each_target(const DomainBox& box, Real reach, const HaloTarget* targets, int count, Vec3 p,
+                              const Visit& visit) {
+  if (box.inside(p, reach)) return;  // too far from every side to be a ghost
+  for (int t = 0; t < count; ++t)
+    if (targets[t].box.reaches(p + targets[t].shift, reach)) visit(targets[t]);
+}
+
 class HaloPlan {
  public:
   HaloPlan() = default;
-  // width: how far the halo reaches past the boxes [m]. All ranks come to plans that fit each other.
+  // decomposition: of the space over the ranks; a rank alone needs none, its only neighbour is itself across
+  // periodic sides. width: how far the halo reaches past the boxes [m]. All ranks come to plans that fit each
+  // other.
   HaloPlan(const Ranks& ranks, const Decomposition& decomposition, const Subdomain& subdomain, Real width);
 
   // Those of the rank itself first, then those of one neighbour after the other.
   const std::vector<HaloTarget>& targets() const { return targets_; }
   const DomainBox& box() const { return box_; }  // of this rank
   Real reach() const { return reach_; }          // the width, and what covers its round-off [m]
+  // Those of a particle at p.
+  template <class Visit>
+  void for_each_target(Vec3 p, const Visit& visit) const {
+    ::scree::for_each_target(box_, reach_, targets_.data(), static_cast<int>(targets_.size()), p, visit);
+  }
   const std::vector<HaloNeighbor>& neighbors() const { return neighbors_; }
 
   // Once the ghosts are known, tells the neighbours how many come, and learns how many come from them. own:

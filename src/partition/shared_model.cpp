@@ -7,11 +7,6 @@
 namespace scree {
 namespace {
 
-bool is_near(const DomainBox& box, Vec3 p, Real reach) {
-  return p.x >= box.min.x - reach && p.x <= box.max.x + reach && p.y >= box.min.y - reach &&
-         p.y <= box.max.y + reach && p.z >= box.min.z - reach && p.z <= box.max.z + reach;
-}
-
 // Which ranks get an item: the one whose box it is in, and those whose boxes an image of it is near.
 class Receivers {
  public:
@@ -27,7 +22,7 @@ class Receivers {
     const int owner = decomposition_.owner(p);
     visit(owner);
     // Far inside its box: periodic boxes end where the space does.
-    if (is_near(boxes_[static_cast<std::size_t>(owner)], p, -reach_)) return;
+    if (boxes_[static_cast<std::size_t>(owner)].inside(p, reach_)) return;
     for (int r = 0; r < static_cast<int>(boxes_.size()); ++r)
       if (r != owner && any_image_near(boxes_[static_cast<std::size_t>(r)], p)) visit(r);
   }
@@ -37,7 +32,7 @@ class Receivers {
     for (int z = -steps(period_.z); z <= steps(period_.z); ++z)
       for (int y = -steps(period_.y); y <= steps(period_.y); ++y)
         for (int x = -steps(period_.x); x <= steps(period_.x); ++x)
-          if (is_near(box, p + Vec3{x * period_.x, y * period_.y, z * period_.z}, reach_)) return true;
+          if (box.reaches(p + Vec3{x * period_.x, y * period_.y, z * period_.z}, reach_)) return true;
     return false;
   }
   static int steps(Real period) { return period > 0 ? 1 : 0; }

@@ -1,6 +1,7 @@
 // Who owns which cells. One rank owns them all; the vocabulary is that of many.
 #pragma once
 
+#include "base/box.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/model.hpp"
@@ -52,15 +53,7 @@ SCREE_HD bool wrap_if_sound(Vec3 min, Vec3 period, bool drifts, Vec3& p, ImageCo
          sound(p.z, min.z, period.z, image.z - before.z);
 }
 
-// The sides of the space that are not periodic; the others, and z in 2D, are at infinity.
-struct OpenBox {
-  Vec3 min, max;  // [m]
-  // Whether p lies within by at least `margin` [m]. A NaN does not.
-  SCREE_HD bool inside(Vec3 p, Real margin = 0) const {
-    return p.x - margin >= min.x && p.x + margin <= max.x && p.y - margin >= min.y && p.y + margin <= max.y &&
-           p.z - margin >= min.z && p.z + margin <= max.z;
-  }
-};
+using OpenBox = Box;  // of the sides of the space that are not periodic
 
 // The space in the form that ownership and halo need. Positions along periodic axes lie on a grid of quanta
 // that the period is a multiple of: moving a particle by a period is then exact, and results do not depend on
@@ -75,14 +68,17 @@ class Subdomain {
   // Whether the point lies within the sides that are not periodic.
   bool inside(Vec3 p) const { return box_.inside(p); }
   const OpenBox& box() const { return box_; }
+  // The periodic sides of the space; the others are at infinity.
+  const Box& periodic_box() const { return periodic_; }
   // Whether the point lies beyond a side that is a wall.
-  bool beyond_wall(Vec3 p) const;
+  bool beyond_wall(Vec3 p) const { return walls_.beyond(p); }
   // The position inside the periodic box and the periods taken off it; exact.
   Vec3 wrap(Vec3 p, ImageCount& image) const { return ::scree::wrap(space_.min, period_, p, image); }
 
  private:
   Space space_;
   OpenBox box_;
+  Box periodic_, walls_;
   Vec3 period_, snap_;
 };
 

@@ -12,12 +12,6 @@ namespace {
 
 constexpr std::int64_t kGpuParticles = 2000;  // --backend auto: from so many on a GPU is faster (table4.py)
 
-const char* key_of(Transport transport) {
-  if (transport == Transport::cuda_aware) return "cuda-aware";
-  if (transport == Transport::nccl) return "nccl";
-  return transport == Transport::staged ? "staged" : "auto";
-}
-
 std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   std::unique_ptr<Backend> backend = make_cuda_backend(model, ranks);
   log.info("backend cuda: " + why + "; " + device_name());
@@ -35,7 +29,7 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   if (model.parallel.transport != Transport::automatic)
     log.info(fmt::format("parallel.transport = \"{}\" is for GPUs: ranks on the CPU exchange halos by MPI",
-                         key_of(model.parallel.transport)));
+                         word_of(model.parallel.transport)));
   return make_cpu_backend(model, ranks);
 }
 
@@ -45,22 +39,24 @@ std::unique_ptr<Backend> choose_backend(const Model& model, const Ranks& ranks, 
                                         Log& log) {
   const std::int64_t particles = model.particles.totals.count / ranks.size();
   const bool few = particles < kGpuParticles;
-  const std::string why = name != "auto" ? "chosen by --backend"
-                                         : fmt::format("{} particles{} are {} {}, from which a GPU is faster",
-                                                       particles, ranks.alone() ? "" : " per rank",
-                                                       few ? "fewer than" : "at least", kGpuParticles);
-  if (name == "cpu" || (name == "auto" && few)) return make_cpu(model, ranks, why, log);
+  const auto choice = value_of<BackendChoice>(name);
+  const bool free = choice == BackendChoice::automatic;
+  const std::string why =
+      !free ? "chosen by --backend"
+            : fmt::format("{} particles{} are {} {}, from which a GPU is faster", particles,
+                          ranks.alone() ? "" : " per rank", few ? "fewer than" : "at least", kGpuParticles);
+  if (choice == BackendChoice::cpu || (free && few)) return make_cpu(model, ranks, why, log);
   try {
     return make_gpu(model, ranks, why, log);
   } catch (const TransportError&) {
     throw;
   } catch (const InputError& error) {
-    if (name == "cuda")
+    if (choice == BackendChoice::cuda)
       throw InputError(fmt::format("--backend cuda: {}; allowed here: auto, cpu", error.what()));
     if (model.parallel.transport != Transport::automatic && !ranks.alone())
       throw InputError(
           fmt::format("parallel.transport = \"{}\" is for GPUs: {}; allowed here: \"auto\", or --backend cpu",
-                      key_of(model.parallel.transport), error.what()));
+                      word_of(model.parallel.transport), error.what()));
     return make_cpu(model, ranks, error.what(), log);
   }
 }

@@ -10,6 +10,7 @@
 #include "model/model.hpp"
 #include "output/history.hpp"
 #include "output/snapshot.hpp"
+#include "run/history_columns.hpp"
 #include "run/state.hpp"
 
 namespace scree {
@@ -47,15 +48,14 @@ class Recorder {
   };
 
   bool writes_late() const;
-  void energy_row(State& state, std::vector<Real>& row);
-  void reaction_row(const State& state, std::vector<Real>& row) const;
-  void body_row(const State& state, std::vector<Real>& row) const;
-  void particle_row(std::vector<Real>& row);
+  HistorySample take_sample(State& state, Real h) const;  // collective; updates the balance in the state
+  void balance(State& state, HistorySample& sample) const;
 
   const Model& model_;
   Backend& backend_;
   const BodyLink& link_;
-  std::optional<HistoryWriter> history_;  // on rank 0
+  std::vector<RecordedColumn> columns_;   // on rank 0
+  std::optional<HistoryWriter> history_;  // likewise
   std::optional<SnapshotWriter> snapshots_;
   std::optional<PendingSnapshot> pending_;
 };

@@ -198,7 +198,7 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
       for (const std::int64_t i : id) velocity.push_back({static_cast<Real>(i), 0, 0, 1});
       Halo halo;
       const auto owned = static_cast<Index>(position.size());
-      halo.exchange(ranks, boxes, subdomain, space, position, width);
+      halo.exchange(ranks, boxes, subdomain, position, width);
       const auto items = static_cast<std::size_t>(owned + halo.size());
       position.resize(items), velocity.resize(items), id.resize(items);
       halo.update(std::span<std::int64_t>(id), owned);
@@ -255,7 +255,7 @@ TEST_CASE("a message between two ranks may be longer than 2 GiB", "[.][large]") 
   // All of rank 0's particles are near rank 1's box.
   std::vector<Vec4> field(ranks.is_root() ? kGhosts : 0, Vec4{0.99, 0.5, 0, 0});
   Halo halo;
-  halo.exchange(ranks, boxes, Subdomain(space), space, field, 0.1);
+  halo.exchange(ranks, boxes, Subdomain(space), field, 0.1);
   CHECK(halo.size() == (ranks.is_root() ? 0 : kGhosts));
   for (std::size_t i = 0; i < field.size(); ++i) field[i].w = static_cast<Real>(i);
   if (!ranks.is_root()) field.resize(kGhosts);

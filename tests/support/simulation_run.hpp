@@ -7,8 +7,8 @@
 
 #include "base/error.hpp"
 #include "coupling/ledger.hpp"
-#include "run/contact_columns.hpp"
 #include "run/state.hpp"
+#include "run/target_contacts.hpp"
 #include "support/backends.hpp"
 #include "support/petsc_run.hpp"
 
@@ -76,7 +76,9 @@ class SimulationRun {
   // What a history row holds of the contacts that the model records.
   std::vector<Real> contact_values() {
     std::vector<Real> values;
-    add_contact_values(model_, link_, state_, *backend_, values);
+    for (const ContactSum& sum : target_contacts(model_, link_, state_, *backend_))
+      values.insert(values.end(), {sum.force.x, sum.force.y, sum.force.z, sum.torque.x, sum.torque.y,
+                                   sum.torque.z, static_cast<Real>(sum.contacts)});
     return values;
   }
   // Of the samples so far: what the ledger fails to account for, and what has changed its place [J].

@@ -20,7 +20,7 @@ struct BruteContacts {
 };
 
 bool interact(const BodyShapes& shapes, const BruteItem& a, const BruteItem& b) {
-  return a.body < 0 || b.body < 0 || shapes.may_touch(a.body, b.body);
+  return shapes.rule().may_touch(a.body, b.body);
 }
 
 void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal,

@@ -27,8 +27,8 @@ struct Items {
     store.load(model.particles, records);
     layout.owned = kParticles, layout.active = kParticles - kDrifting, layout.shapes = shapes.size();
     const Real width = builder.cutoff(kSkin);
-    ghosts = periodic_images(subdomain, model.space,
-                             {store.position.data(), static_cast<std::size_t>(layout.active)}, width);
+    ghosts =
+        periodic_images(subdomain, {store.position.data(), static_cast<std::size_t>(layout.active)}, width);
     add_ghosts();
     layout.first_shape = static_cast<Index>(store.position.size());
     add_shapes(model, shapes, subdomain, width);
@@ -55,7 +55,7 @@ struct Items {
       store.position.push_back(centers.back());
       store.global_id.push_back(shape.global_id);
     }
-    layout.shape_images = periodic_images(subdomain, model.space, centers, width);
+    layout.shape_images = periodic_images(subdomain, centers, width);
     for (const Ghost& image : layout.shape_images) {
       const auto source = static_cast<std::size_t>(image.source);
       store.position.push_back(vec4(xyz(centers[source]) + image.shift, centers[source].w));
@@ -89,7 +89,7 @@ std::vector<Entry> expected_row(const Items& items, const BodyShapes& shapes, Ve
   const auto sees = [&](Index j, int image) {
     if (j < layout.active) return !is_shape ? !(j == i && image == kNoShift) : image == kNoShift;
     if (!is_shape) return true;
-    return !layout.is_shape_image(i) && shapes.may_touch(body(i), body(j));
+    return !layout.is_shape_image(i) && shapes.rule().may_touch(body(i), body(j));
   };
   const auto add = [&](Index j) {
     for_each_image(period, [&](Vec3 shift, int image) {
@@ -201,23 +201,6 @@ TEST_CASE("the wall list holds every wall in reach of a particle or a shape") {
       CHECK(found_walls(built.list, i) == expected);
     }
   }
-}
-
-TEST_CASE("shapes of one body and of connected bodies may not touch unless the deck says so") {
-  Model model = random_box(kBoxes[2], 1, 1);
-  const BodyShapes shapes(model);
-  CHECK(shapes.size() == 8);
-  CHECK(shapes.items()[0].global_id == 1);  // after the one particle
-  for (int b = 0; b < 5; ++b) CHECK_FALSE(shapes.may_touch(b, b));
-  for (int a = 0; a < 5; ++a)
-    for (int b = 0; b < 5; ++b) {
-      const bool connected = (a < 2 && b < 2) || (std::min(a, b) == 1 && std::max(a, b) == 2);
-      if (a != b) CHECK(shapes.may_touch(a, b) == !connected);
-    }
-  model.contact.connected_bodies_touch = true;
-  const BodyShapes touching(model);
-  CHECK(touching.may_touch(0, 1));
-  CHECK_FALSE(touching.may_touch(3, 3));
 }
 
 }  // namespace scree

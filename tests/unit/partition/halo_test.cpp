@@ -22,7 +22,7 @@ Space periodic_space(int dimension) {
 }
 
 std::vector<Ghost> ghosts_of(const Space& s, const std::vector<Vec4>& points) {
-  return periodic_images(Subdomain(s), s, points, kWidth);
+  return periodic_images(Subdomain(s), points, kWidth);
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ TEST_CASE("an update copies fields and moves positions by the shift") {
   position.resize(5);
   std::vector<Vec4> field{{1, 2, 3, 4}, {5, 6, 7, 8}, {}, {}, {}};
   Halo halo;
-  halo.exchange(Ranks(), {}, Subdomain(s), s, {position.data(), 2}, kWidth);
+  halo.exchange(Ranks(), {}, Subdomain(s), {position.data(), 2}, kWidth);
   std::vector<Vec4> velocity{{1, 2, 3, 4}, {-5, 6, 7, 8}, {}, {}, {}};
   halo.update(std::span<Vec4>(field), 2);
   halo.update_motion(position, velocity, 2);

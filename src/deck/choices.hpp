@@ -1,0 +1,145 @@
+// Every choice of the deck, once: the enum that the model keeps, and its words.
+#pragma once
+
+#include "deck/choice.hpp"
+
+namespace scree {
+
+// ---- the space
+// -----------------------------------------------------------------------------------------------
+
+enum class Boundary { open, wall, periodic };
+template <>
+inline constexpr auto kWords<Boundary> = std::to_array<Word<Boundary>>({{"open", Boundary::open},
+                                                                        {"wall", Boundary::wall},
+                                                                        {"periodic", Boundary::periodic}});
+
+// What happens to a particle whose centre leaves through an open side.
+enum class Leaving {
+  error,   // the simulation fails and names it
+  remove,  // taken out of the simulation, counted, its energy booked as carried out
+  drift    // counted; goes on under gravity alone, kept out of the pair search
+};
+template <>
+inline constexpr auto kWords<Leaving> = std::to_array<Word<Leaving>>({{"error", Leaving::error},
+                                                                      {"remove", Leaving::remove},
+                                                                      {"drift", Leaving::drift}});
+
+// ---- time
+// ----------------------------------------------------------------------------------------------------
+
+enum class StepControl { fixed, adaptive };
+template <>
+inline constexpr auto kWords<StepControl> =
+    std::to_array<Word<StepControl>>({{"fixed", StepControl::fixed}, {"adaptive", StepControl::adaptive}});
+
+enum class ParticleIntegrator { hht, velocity_verlet };
+template <>
+inline constexpr auto kWords<ParticleIntegrator> = std::to_array<Word<ParticleIntegrator>>(
+    {{"hht", ParticleIntegrator::hht}, {"velocity-verlet", ParticleIntegrator::velocity_verlet}});
+
+// How an implicit step meets a contact that opens or closes within it.
+enum class ContactEvents {
+  resolved,    // it acts over the part of the step that it is closed
+  end_of_step  // the force at the end of the step stands for all of it, as in the paper
+};
+template <>
+inline constexpr auto kWords<ContactEvents> = std::to_array<Word<ContactEvents>>(
+    {{"resolved", ContactEvents::resolved}, {"end-of-step", ContactEvents::end_of_step}});
+
+// Of the particles on a GPU. The CPU always computes in full precision.
+enum class Precision {
+  full,  // double throughout
+  mixed  // state and sums at about double, contact forces in single
+};
+template <>
+inline constexpr auto kWords<Precision> = std::to_array<Word<Precision>>({{"double", Precision::full},
+                                                                          {"mixed", Precision::mixed}});
+
+// The bodies' velocities at t = 0.
+enum class StartVelocities {
+  given,      // the run is refused where they contradict joints and drivers
+  consistent  // changed to agree with them
+};
+template <>
+inline constexpr auto kWords<StartVelocities> = std::to_array<Word<StartVelocities>>(
+    {{"given", StartVelocities::given}, {"consistent", StartVelocities::consistent}});
+
+// ---- bodies
+// --------------------------------------------------------------------------------------------------
+
+enum class JointKind {
+  revolute,       // the two points coincide
+  translational,  // body 2's point stays on body 1's axis, no relative rotation
+  fixed,          // the two points coincide, no relative rotation
+  distance        // the two points keep their distance
+};
+template <>
+inline constexpr auto kWords<JointKind> = std::to_array<Word<JointKind>>({{"revolute", JointKind::revolute},
+                                                                          {"translational",
+                                                                           JointKind::translational},
+                                                                          {"fixed", JointKind::fixed},
+                                                                          {"distance", JointKind::distance}});
+
+enum class TimeFunctionKind { constant, ramp, sine, step, table };
+template <>
+inline constexpr auto kWords<TimeFunctionKind> =
+    std::to_array<Word<TimeFunctionKind>>({{"constant", TimeFunctionKind::constant},
+                                           {"ramp", TimeFunctionKind::ramp},
+                                           {"sine", TimeFunctionKind::sine},
+                                           {"step", TimeFunctionKind::step},
+                                           {"table", TimeFunctionKind::table}});
+
+// How a table is read between its points.
+enum class Interpolation {
+  natural,   // cubic spline, class C2; second derivative 0 at both ends
+  clamped,   // cubic spline, class C2; the given rates at both ends
+  monotone,  // quintic, class C2; rises, falls and stands still only where the points do, and is local
+  linear     // class C0: its rate jumps, so no motion can follow it
+};
+template <>
+inline constexpr auto kWords<Interpolation> =
+    std::to_array<Word<Interpolation>>({{"natural", Interpolation::natural},
+                                        {"clamped", Interpolation::clamped},
+                                        {"monotone", Interpolation::monotone},
+                                        {"linear", Interpolation::linear}});
+
+// ---- particles
+// -----------------------------------------------------------------------------------------------
+
+// Where a group of particles comes from.
+enum class GroupKind { list, row, lattice, random, file };
+template <>
+inline constexpr auto kWords<GroupKind> = std::to_array<Word<GroupKind>>({{"list", GroupKind::list},
+                                                                          {"row", GroupKind::row},
+                                                                          {"lattice", GroupKind::lattice},
+                                                                          {"random", GroupKind::random},
+                                                                          {"file", GroupKind::file}});
+
+enum class DistributionKind { constant, uniform, normal, table };
+template <>
+inline constexpr auto kWords<DistributionKind> =
+    std::to_array<Word<DistributionKind>>({{"constant", DistributionKind::constant},
+                                           {"uniform", DistributionKind::uniform},
+                                           {"normal", DistributionKind::normal},
+                                           {"table", DistributionKind::table}});
+
+// ---- ranks and devices
+// ---------------------------------------------------------------------------------------
+
+// How ghosts travel between the GPUs of several ranks.
+enum class Transport { automatic, cuda_aware, nccl, staged };
+template <>
+inline constexpr auto kWords<Transport> = std::to_array<Word<Transport>>({{"auto", Transport::automatic},
+                                                                          {"cuda-aware",
+                                                                           Transport::cuda_aware},
+                                                                          {"nccl", Transport::nccl},
+                                                                          {"staged", Transport::staged}});
+
+// Where the particles of a run are computed: --backend of the command line.
+enum class BackendChoice { automatic, cpu, cuda };
+template <>
+inline constexpr auto kWords<BackendChoice> = std::to_array<Word<BackendChoice>>(
+    {{"auto", BackendChoice::automatic}, {"cpu", BackendChoice::cpu}, {"cuda", BackendChoice::cuda}});
+
+}  // namespace scree

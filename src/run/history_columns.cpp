@@ -1,0 +1,154 @@
+#include "run/history_columns.hpp"
+
+#include <utility>
+
+namespace scree {
+namespace {
+
+using Sample = HistorySample;
+
+// Adds the columns of one group of datasets.
+class Group {
+ public:
+  Group(std::string name, std::vector<RecordedColumn>& out) : name_(std::move(name)), out_(out) {}
+
+  void add(const std::string& name, const char* unit, const std::string& text,
+           std::function<Real(const Sample&)> value) {
+    out_.push_back({{name_, name, unit, text}, std::move(value)});
+  }
+  // PREFIXx, PREFIXy, PREFIXz
+  void add_vector(const std::string& prefix, const char* unit, const std::string& text,
+                  const std::function<Vec3(const Sample&)>& value) {
+    add(prefix + "x", unit, text, [value](const Sample& s) { return value(s).x; });
+    add(prefix + "y", unit, text, [value](const Sample& s) { return value(s).y; });
+    add(prefix + "z", unit, text, [value](const Sample& s) { return value(s).z; });
+  }
+  void add_count(const char* name, const char* text,
+                 const std::function<std::int64_t(const Sample&)>& value) {
+    add(name, "1", text, [value](const Sample& s) { return static_cast<Real>(value(s)); });
+  }
+
+ private:
+  std::string name_;
+  std::vector<RecordedColumn>& out_;
+};
+
+void step_columns(Group step) {
+  step.add("time", "s", "simulated time", [](const Sample& s) { return s.time; });
+  step.add("length", "s", "length of the last step", [](const Sample& s) { return s.step; });
+  step.add_count("steps", "accepted steps so far", [](const Sample& s) { return s.counts.steps; });
+  step.add_count("newton_iterations", "Newton iterations so far",
+                 [](const Sample& s) { return s.counts.newton_iterations; });
+  step.add_count("linear_iterations", "iterations of the particles' linear solve so far",
+                 [](const Sample& s) { return s.counts.linear_iterations; });
+  step.add_count("rejected_error", "steps rejected for their local error so far",
+                 [](const Sample& s) { return s.counts.rejected_error; });
+  step.add_count("rejected_newton", "steps rejected for want of convergence so far",
+                 [](const Sample& s) { return s.counts.rejected_newton; });
+  step.add_count("contacts", "touching pairs, walls and body shapes included",
+                 [](const Sample& s) { return s.particles.contacts; });
+  step.add_count("left", "particles that have left the space so far", [](const Sample& s) { return s.left; });
+  step.add_count("bodies_outside", "bodies whose centre is outside the space",
+                 [](const Sample& s) { return s.bodies_outside; });
+}
+
+void energy_columns(Group energy) {
+  const auto entry = [&](const char* name, const char* text, Real Ledger::*value) {
+    energy.add(name, "J", text, [value](const Sample& s) { return s.ledger.*value; });
+  };
+  entry("kinetic", "kinetic energy of particles and bodies", &Ledger::kinetic);
+  entry("gravitational", "gravitational energy, zero at the origin", &Ledger::gravitational);
+  entry("elastic_force_elements", "elastic energy of force elements", &Ledger::elastic_force_elements);
+  entry("elastic_contacts", "elastic energy of contacts", &Ledger::elastic_contacts);
+  entry("dissipated_force_elements", "dissipated in force elements since t = 0",
+        &Ledger::dissipated_force_elements);
+  entry("dissipated_contacts", "dissipated in contacts since t = 0", &Ledger::dissipated_contacts);
+  entry("dissipated_integrator", "taken out by the time integration since t = 0",
+        &Ledger::dissipated_integrator);
+  entry("driver_work", "work of drivers, actuators and applied forces since t = 0", &Ledger::driver_work);
+  entry(
+      "carried_out",
+      "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended as a "
+      "particle left",
+      &Ledger::carried_out);
+  energy.add("total", "J", "kinetic, gravitational and elastic energy",
+             [](const Sample& s) { return s.ledger.mechanical(); });
+  energy.add(
+      "balance_error", "J",
+      "total + dissipated + carried out - driver work, less its value at t = 0; with velocity-Verlet what "
+      "its steps did to contacts",
+      [](const Sample& s) { return s.balance_error; });
+  energy.add("exchanged", "J", "energy that changed its place since t = 0, from row to row",
+             [](const Sample& s) { return s.exchanged; });
+}
+
+void momentum_columns(Group momentum) {
+  momentum.add_vector("linear_", "kg m/s", "momentum of the particles",
+                      [](const Sample& s) { return s.particles.momentum; });
+  momentum.add_vector("angular_", "kg m^2/s", "angular momentum of the particles about the origin",
+                      [](const Sample& s) { return s.particles.angular_momentum; });
+}
+
+// k: number of the reaction.
+void reaction_columns(Group joint, std::size_t k) {
+  const char* text = "reaction on the joint's second body at its joint point";
+  joint.add("fx", "N", text, [k](const Sample& s) { return s.reactions[k].force.x; });
+  joint.add("fy", "N", text, [k](const Sample& s) { return s.reactions[k].force.y; });
+  joint.add("torque", "N m", "reaction torque on the joint's second body",
+            [k](const Sample& s) { return s.reactions[k].torque; });
+}
+
+std::string torque_text(const ContactTarget& target) {
+  if (target.wall >= 0) return "torque of these forces about the wall's point";
+  return target.row ? "torque of these forces about the origin"
+                    : "torque of these forces about the body's centre";
+}
+
+// k: number of the target.
+void contact_columns(Group contacts, const ContactTarget& target, std::size_t k) {
+  const std::string what = target.wall >= 0 ? "the wall" : target.row ? "the row's bodies" : "the body";
+  contacts.add_vector("f", "N", "contact force on " + what,
+                      [k](const Sample& s) { return s.contacts[k].force; });
+  contacts.add_vector("torque_", "N m", torque_text(target),
+                      [k](const Sample& s) { return s.contacts[k].torque; });
+  contacts.add("contacts", "1",
+               "contacts of " + what + " with particles, bodies" + (target.wall >= 0 ? "" : " and walls"),
+               [k](const Sample& s) { return static_cast<Real>(s.contacts[k].contacts); });
+}
+
+void body_columns(Group body, std::size_t b) {
+  body.add_vector("", "m", "position", [b](const Sample& s) { return s.bodies[b].position; });
+  body.add_vector("v", "m/s", "velocity", [b](const Sample& s) { return s.bodies[b].velocity; });
+  body.add("angle", "rad", "angle about z", [b](const Sample& s) { return s.bodies[b].angle; });
+  body.add("angular_velocity", "rad/s", "angular velocity about z",
+           [b](const Sample& s) { return s.bodies[b].angular_velocity; });
+}
+
+// k: number of the particle among those that are traced.
+void particle_columns(Group particle, std::size_t k) {
+  particle.add_vector("", "m", "position", [k](const Sample& s) { return s.traced[k].position; });
+  particle.add_vector("v", "m/s", "velocity", [k](const Sample& s) { return s.traced[k].velocity; });
+}
+
+}  // namespace
+
+std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions) {
+  std::vector<RecordedColumn> out;
+  const Output& output = model.output;
+  step_columns({"step", out});
+  energy_columns({"energy", out});
+  momentum_columns({"momentum", out});
+  for (std::size_t k = 0; k < reactions.size(); ++k)
+    reaction_columns({"reactions/" + reactions[k].joint, out}, k);
+  for (std::size_t k = 0; k < output.history_contacts.size(); ++k)
+    contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
+  for (const int body : output.history_bodies) {
+    const auto b = static_cast<std::size_t>(body);
+    body_columns({"bodies/" + model.bodies[b].name, out}, b);
+  }
+  for (std::size_t k = 0; k < output.history_particles.size(); ++k)
+    particle_columns({"particles/" + std::to_string(output.history_particles[k]), out}, k);
+  return out;
+}
+
+}  // namespace scree

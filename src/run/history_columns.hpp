@@ -1,0 +1,40 @@
+// The columns of the history: name, unit, sentence and value of each in one place, and what the values are
+// taken from.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "coupling/coupled_step.hpp"
+#include "coupling/ledger.hpp"
+#include "dem/backend.hpp"
+#include "mbs/multibody.hpp"
+#include "model/model.hpp"
+#include "output/history.hpp"
+
+namespace scree {
+
+// One instant, complete on rank 0.
+struct HistorySample {
+  Real time = 0, step = 0;  // step: length of the one just taken [s]
+  StepCounts counts;
+  ParticleLedger particles;
+  Ledger ledger;
+  Real balance_error = 0, exchanged = 0;      // [J]
+  std::int64_t left = 0, bodies_outside = 0;  // particles, bodies
+  std::vector<Reaction> reactions;            // of the joints and drivers that are recorded
+  std::vector<ContactSum> contacts;           // per entry of Output::history_contacts
+  std::vector<BodyMotion> bodies;             // all of them, where some are recorded
+  std::vector<TracedParticle> traced;         // per entry of Output::history_particles; NaN: removed
+};
+
+struct RecordedColumn {
+  HistoryColumn head;
+  std::function<Real(const HistorySample&)> value;
+};
+
+// reactions: of any sample; it names the joints.
+std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions);
+
+}  // namespace scree

@@ -1,0 +1,23 @@
+// The model's number of constraint equations, which checkpoints are compared with, is that of the system.
+#include "mbs/planar_system.hpp"
+#include "model/connections.hpp"
+#include "support/catch.hpp"
+#include "support/multibody_run.hpp"
+
+namespace scree {
+
+TEST_CASE("constraints are counted as the system has them, driven or not") {
+  for (const Word<JointKind>& kind : kWords<JointKind>)
+    for (const bool driven : {false, true}) {
+      if (driven && kind.value == JointKind::fixed) continue;  // nothing to drive
+      CAPTURE(kind.text, driven);
+      Model model = empty_model();
+      model.bodies.push_back(paper_disc("a", 1, 0));
+      model.joints.push_back(ground_pin("joint", 0, {}, {}));
+      model.joints[0].kind = kind.value, model.joints[0].distance = 1;
+      if (driven) model.drivers.push_back({"driver", 0, {}});
+      CHECK(constraint_count(model) == PlanarSystem(model).constraints());
+    }
+}
+
+}  // namespace scree

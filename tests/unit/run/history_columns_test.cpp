@@ -1,0 +1,116 @@
+// Each column of the history shows its own value.
+#include "run/history_columns.hpp"
+
+#include <map>
+
+#include "support/catch.hpp"
+
+namespace scree {
+
+namespace {
+
+Model recorded_model() {
+  Model model;
+  model.bodies.resize(2);
+  model.bodies[1].name = "arm";
+  model.output.history_bodies = {1};
+  model.output.history_particles = {8};
+  model.output.history_contacts = {{"arm", {1}, false, -1}, {"floor", {}, false, 0}};
+  return model;
+}
+
+// Every number another one.
+HistorySample distinct_sample() {
+  HistorySample s;
+  s.time = 1, s.step = 2;
+  s.counts.steps = 3, s.counts.newton_iterations = 4, s.counts.linear_iterations = 5;
+  s.counts.rejected_error = 6, s.counts.rejected_newton = 7;
+  s.particles.contacts = 8, s.left = 9, s.bodies_outside = 10;
+  s.ledger.kinetic = 11, s.ledger.gravitational = 12, s.ledger.elastic_force_elements = 13;
+  s.ledger.elastic_contacts = 14, s.ledger.dissipated_force_elements = 15;
+  s.ledger.dissipated_contacts = 16, s.ledger.dissipated_integrator = 17;
+  s.ledger.driver_work = 18, s.ledger.carried_out = 19;
+  s.balance_error = 21, s.exchanged = 22;
+  s.particles.momentum = {23, 24, 25}, s.particles.angular_momentum = {26, 27, 28};
+  s.reactions = {{"pin", {29, 30, 0}, 31}};
+  s.contacts = {{{32, 33, 34}, {35, 36, 37}, 38}, {{39, 40, 41}, {42, 43, 44}, 45}};
+  s.bodies = {{}, {{46, 47, 48}, {49, 51, 52}, 53, 54}};
+  s.traced = {{8, {55, 56, 57}, {58, 59, 60}}};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("a column's value is that of its name") {
+  const HistorySample sample = distinct_sample();
+  std::map<std::string, Real> found;
+  for (const RecordedColumn& column : history_columns(recorded_model(), sample.reactions)) {
+    const std::string path = column.head.group + "/" + column.head.name;
+    CAPTURE(path);
+    CHECK(found.emplace(path, column.value(sample)).second);
+    CHECK_FALSE(column.head.unit.empty());
+    CHECK_FALSE(column.head.description.empty());
+  }
+  const std::map<std::string, Real> expected{{"step/time", 1},
+                                             {"step/length", 2},
+                                             {"step/steps", 3},
+                                             {"step/newton_iterations", 4},
+                                             {"step/linear_iterations", 5},
+                                             {"step/rejected_error", 6},
+                                             {"step/rejected_newton", 7},
+                                             {"step/contacts", 8},
+                                             {"step/left", 9},
+                                             {"step/bodies_outside", 10},
+                                             {"energy/kinetic", 11},
+                                             {"energy/gravitational", 12},
+                                             {"energy/elastic_force_elements", 13},
+                                             {"energy/elastic_contacts", 14},
+                                             {"energy/dissipated_force_elements", 15},
+                                             {"energy/dissipated_contacts", 16},
+                                             {"energy/dissipated_integrator", 17},
+                                             {"energy/driver_work", 18},
+                                             {"energy/carried_out", 19},
+                                             {"energy/total", 11 + 12 + 13 + 14},
+                                             {"energy/balance_error", 21},
+                                             {"energy/exchanged", 22},
+                                             {"momentum/linear_x", 23},
+                                             {"momentum/linear_y", 24},
+                                             {"momentum/linear_z", 25},
+                                             {"momentum/angular_x", 26},
+                                             {"momentum/angular_y", 27},
+                                             {"momentum/angular_z", 28},
+                                             {"reactions/pin/fx", 29},
+                                             {"reactions/pin/fy", 30},
+                                             {"reactions/pin/torque", 31},
+                                             {"contacts/arm/fx", 32},
+                                             {"contacts/arm/fy", 33},
+                                             {"contacts/arm/fz", 34},
+                                             {"contacts/arm/torque_x", 35},
+                                             {"contacts/arm/torque_y", 36},
+                                             {"contacts/arm/torque_z", 37},
+                                             {"contacts/arm/contacts", 38},
+                                             {"contacts/floor/fx", 39},
+                                             {"contacts/floor/fy", 40},
+                                             {"contacts/floor/fz", 41},
+                                             {"contacts/floor/torque_x", 42},
+                                             {"contacts/floor/torque_y", 43},
+                                             {"contacts/floor/torque_z", 44},
+                                             {"contacts/floor/contacts", 45},
+                                             {"bodies/arm/x", 46},
+                                             {"bodies/arm/y", 47},
+                                             {"bodies/arm/z", 48},
+                                             {"bodies/arm/vx", 49},
+                                             {"bodies/arm/vy", 51},
+                                             {"bodies/arm/vz", 52},
+                                             {"bodies/arm/angle", 53},
+                                             {"bodies/arm/angular_velocity", 54},
+                                             {"particles/8/x", 55},
+                                             {"particles/8/y", 56},
+                                             {"particles/8/z", 57},
+                                             {"particles/8/vx", 58},
+                                             {"particles/8/vy", 59},
+                                             {"particles/8/vz", 60}};
+  CHECK(found == expected);
+}
+
+}  // namespace scree
