@@ -14,8 +14,9 @@ inline constexpr std::uint8_t kGone = 2;
 
 // Arrays of a snapshot on their way out.
 struct CudaBackend::PackArrays {
-  DeviceArray<PackedParticle> packed;
-  PinnedArray<PackedParticle> h_packed;
+  SnapshotArrays<DeviceArray> packed;
+  SnapshotArrays<PinnedArray> h_packed;
+  PinnedArray<unsigned long long> h_ids;
   DeviceArray<Real> elastic, pairs;
   DeviceArray<Index> contacts;
   DeviceArray<unsigned long long> ids, sorted_ids;

@@ -47,21 +47,17 @@ DeviceViews CudaBackend::views(const Vec4* position, const Vec4* velocity) const
           list_.walls(), planes_.data(), layout_.first_shape};
 }
 
-void CudaBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
+void CudaBackend::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
   side_.losses() = ranks_.is_root() ? shapes : ShapeLosses{};
-  const std::size_t n = records.size();
-  ParticleStore store;
-  store.load(model_.particles, records);
-  owned_ = store.owned;
-  std::vector<std::int64_t> keys(n);
-  for (std::size_t i = 0; i < n; ++i) keys[i] = row_key(store.global_id[i], kNoShift);
-  now_.grow(n, n, 0, stream_);
-  now_.position.upload(store.position, stream_), now_.velocity.upload(store.velocity, stream_);
-  now_.material.upload(store.material, stream_), now_.row_key.upload(keys, stream_);
-  now_.acceleration.upload(store.acceleration, stream_), now_.force.upload(store.force, stream_);
-  now_.contact_loss.upload(store.contact_loss, stream_), now_.loss_power.upload(store.loss_power, stream_);
-  now_.integrator_loss.upload(store.integrator_loss, stream_), now_.image.upload(store.image, stream_);
-  now_.drifting.upload(store.drifting, stream_);
+  owned_ = count_on_rank(records.size(), model_.particles.totals);
+  now_.grow(records.size(), records.size(), 0, stream_);
+  const auto at_once = static_cast<Index>(records_.size());
+  for (Index first = 0; first < owned_; first += at_once) {
+    const Index n = std::min(at_once, owned_ - first);
+    copy_async(records_.data(), records.data() + first, static_cast<std::size_t>(n), stream_);
+    for_each(device(), n, ArrivalItem{records_.data(), views_of(now_), first});
+  }
+  wait_for(stream_);
   layout_changed_ = true;
   // records() must work where no memory is left, and a kernel takes some when it is launched first.
   for_each(device(), std::min<Index>(owned_, 1), record_item(0));
@@ -71,9 +67,9 @@ RecordItem CudaBackend::record_item(Index first) const {
   return {views_of(now_), first, model_.space.min, subdomain_.period(), records_.data()};
 }
 
-std::vector<ParticleRecord> CudaBackend::records() const {
+std::vector<Particle> CudaBackend::records() const {
   if (migrating_) throw DeviceError("particles were on their way between ranks");
-  std::vector<ParticleRecord> out(static_cast<std::size_t>(owned_));
+  std::vector<Particle> out(static_cast<std::size_t>(owned_));
   const auto at_once = static_cast<Index>(records_.size());
   for (Index first = 0; first < owned_; first += at_once) {
     const Index n = std::min(at_once, owned_ - first);
@@ -165,14 +161,15 @@ struct CellKeyItem {
   }
 };
 
-// What the ghosts need once: material and key.
+// What the ghosts need once: their keys, and the fields that are copied.
 struct GhostNameItem {
   const Ghost* ghosts;
-  GhostField<int> material;
-  GhostField<std::int64_t> key;
+  FieldArrays<GhostField> fields;
   SCREE_HD void operator()(Index entry) const {
     const Ghost ghost = ghosts[entry];
-    material.put(entry, material.field[ghost.source]);
+    for_each_array<kGhostCopies>([&](const auto& copy) { copy.put(entry, copy.field[ghost.source]); },
+                                 fields);
+    const GhostField<std::int64_t>& key = fields.row_key;
     key.put(entry, row_key(id_of(key.field[ghost.source]), ghost.image));
   }
 };
@@ -255,10 +252,21 @@ void CudaBackend::find_ghosts(Real width) {
     const auto items = static_cast<std::size_t>(layout_.items), owned = static_cast<std::size_t>(owned_);
     now_.grow(items, owned, owned, stream_), other_.grow(items, owned, 0, stream_);
   });
-  const GhostNameItem item{halo_.ghosts(), halo_.field(0, now_.material.data(), owned_),
-                           halo_.field(1, now_.row_key.data(), owned_)};
+  name_ghosts();
+}
+
+void CudaBackend::name_ghosts() {
+  constexpr unsigned kKinds = kNames | kGhostCopies;
+  GhostNameItem item{halo_.ghosts(), {}};
+  std::vector<HaloMessage> messages;
+  for_each_array<kKinds>(
+      [&](auto& copy, auto& array) {
+        copy = halo_.field(static_cast<int>(messages.size()), array.data(), owned_);
+        messages.push_back(copy.message());
+      },
+      item.fields, now_);
   for_each(device(), halo_.entries(), item);
-  halo_.exchange(device(), item.material, item.key);
+  halo_.exchange(device(), messages);
 }
 
 void CudaBackend::lay_out_items(Real skin) {
@@ -268,11 +276,8 @@ void CudaBackend::lay_out_items(Real skin) {
   std::vector<std::int64_t> keys;
   for (Index item = layout_.first_shape; item < layout_.items; ++item) {
     const ShapeItem& shape = side_.shapes().items()[layout_.shape_of(item)];
-    const std::int8_t image = layout_.is_shape_image(item)
-                                  ? layout_.shape_images[item - layout_.first_shape - layout_.shapes].image
-                                  : kNoShift;
     material.push_back(shape.material), body.push_back(shape.body);
-    keys.push_back(row_key(shape.global_id, image));
+    keys.push_back(side_.row_key_of(layout_, item));
   }
   if (n > 0) {
     require_cuda(cudaMemcpyAsync(now_.material.data() + layout_.first_shape, material.data(), n * sizeof(int),

@@ -36,8 +36,8 @@ class CudaBackend : public Backend {
   ~CudaBackend() override;
   std::string description() const override;
 
-  void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) override;
-  std::vector<ParticleRecord> records() const override;
+  void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
+  std::vector<Particle> records() const override;
   ShapeLosses shape_losses() const override { return side_.losses(); }
 
   void place_bodies(std::span<const BodyMotion> motion) override;
@@ -124,11 +124,12 @@ class CudaBackend : public Backend {
   void wrap_positions();
   void migrate();
   void decompose();
-  std::vector<Migrant> pack_migrants(Index* leaving, Index count);
-  void add_migrants(const std::vector<Migrant>& arriving);
+  std::vector<Particle> pack_migrants(Index* leaving, Index count);
+  void add_migrants(const std::vector<Particle>& arriving);
   void sort_cells(Real skin, std::int64_t particles);
   void reorder(const Index* order, Index n);
   void find_ghosts(Real width);
+  void name_ghosts();
   void lay_out_items(Real skin);
   void index_others();
   void search(Real skin);
@@ -272,7 +273,7 @@ class CudaBackend : public Backend {
 
   // Output.
   RecordItem record_item(Index first) const;
-  mutable DeviceArray<ParticleRecord> records_;  // on their way to the host
+  mutable DeviceArray<Particle> records_;  // on their way to the host
   mutable DeviceArray<GlobalId> traced_ids_;
   mutable DeviceArray<TracedParticle> traced_;
   struct PackArrays;

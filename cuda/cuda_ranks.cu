@@ -23,43 +23,12 @@ struct LeavesItem {
 struct MigrantItem {
   ParticleViews in;
   const Index* leaving;
-  Migrant* out;
+  Particle* out;
 
   SCREE_HD void operator()(Index k) const {
     const Index i = leaving[k];
-    const Vec4 x = in.position[i], v = in.velocity[i];
-    Migrant m;
-    m.state = {id_of(in.row_key[i]),
-               xyz(x),
-               xyz(v),
-               in.acceleration[i],
-               in.force[i],
-               in.contact_loss[i],
-               in.loss_power[i],
-               in.integrator_loss[i],
-               in.image[i],
-               in.drifting[i] != 0};
-    m.radius = x.w, m.mass = v.w, m.material = in.material[i];
-    out[k] = m;
+    out[k] = particle_at(in, i);
     in.drifting[i] = kGone;
-  }
-};
-
-struct ArrivalItem {
-  const Migrant* arriving;
-  ParticleViews out;
-  Index first;
-
-  SCREE_HD void operator()(Index k) const {
-    const Index i = first + k;
-    const Migrant& m = arriving[k];
-    const ParticleRecord& r = m.state;
-    out.position[i] = vec4(r.position, m.radius), out.velocity[i] = vec4(r.velocity, m.mass);
-    out.material[i] = static_cast<int>(m.material), out.row_key[i] = row_key(r.global_id, kNoShift);
-    out.acceleration[i] = r.acceleration, out.force[i] = r.force;
-    out.contact_loss[i] = r.contact_loss, out.loss_power[i] = r.loss_power;
-    out.integrator_loss[i] = r.integrator_loss;
-    out.image[i] = r.image, out.drifting[i] = r.drifting;
   }
 };
 
@@ -104,24 +73,24 @@ void CudaBackend::migrate() {
   migrating_ = parts > 0;
   for (Index part = 0; part < parts; ++part) {
     const Index first = std::min(part * kAtOnce, count), n = std::min(kAtOnce, count - first);
-    std::vector<std::vector<Migrant>> to(static_cast<std::size_t>(ranks_.size()));
-    for (const Migrant& m : pack_migrants(leaving + first, n))
-      to[static_cast<std::size_t>(decomposition_.owner(m.state.position))].push_back(m);
+    std::vector<std::vector<Particle>> to(static_cast<std::size_t>(ranks_.size()));
+    for (const Particle& p : pack_migrants(leaving + first, n))
+      to[static_cast<std::size_t>(decomposition_.owner(p.position))].push_back(p);
     add_migrants(ranks_.deal_out(to));
   }
 }
 
-std::vector<Migrant> CudaBackend::pack_migrants(Index* leaving, Index count) {
+std::vector<Particle> CudaBackend::pack_migrants(Index* leaving, Index count) {
   if (count == 0) return {};
-  DeviceArray<Migrant> packed;
+  DeviceArray<Particle> packed;
   packed.resize_clean(static_cast<std::size_t>(count), stream_);
   for_each(device(), count, MigrantItem{views_of(now_), leaving, packed.data()});
   return packed.download(stream_);
 }
 
-void CudaBackend::add_migrants(const std::vector<Migrant>& arriving) {
+void CudaBackend::add_migrants(const std::vector<Particle>& arriving) {
   if (arriving.empty()) return;
-  DeviceArray<Migrant> unpacked;
+  DeviceArray<Particle> unpacked;
   unpacked.upload(arriving, stream_);
   const auto before = static_cast<std::size_t>(owned_), n = before + arriving.size();
   const Index owned = countable(n, kTooManyParticles);

@@ -178,7 +178,9 @@ void CudaBackend::start_pack() {
   const auto n = static_cast<std::size_t>(owned_);
   p.ready.wait();  // for the last pack, whose arrays are written now
   p.n = n;
-  p.packed.resize_clean(n, stream_), p.h_packed.resize(n);
+  for_each_column([&](auto& on_device, auto& on_host) { on_device.resize(n), on_host.resize(n); }, p.packed,
+                  p.h_packed);
+  p.h_ids.resize(n);
   p.elastic.resize(n), p.pairs.resize(n), p.contacts.resize(n);
   p.ids.resize(n), p.sorted_ids.resize(n), p.order.resize(n), p.sorted_order.resize(n);
   kernels_->energies(device(), views(), owned_, {p.elastic.data(), p.contacts.data(), p.pairs.data()});
@@ -190,12 +192,20 @@ void CudaBackend::start_pack() {
         "sort");
   };
   if (n > 0) with_space(space_, sort);
-  for_each(device(), owned_,
-           PackItem{views_of(now_), p.sorted_order.data(), p.contacts.data(), model_.gravity,
-                    model_.space.min, subdomain_.period(), p.packed.data()});
+  PackItem item{views_of(now_),
+                p.sorted_order.data(),
+                p.contacts.data(),
+                model_.gravity,
+                model_.space.min,
+                subdomain_.period(),
+                {}};
+  for_each_column([](auto*& to, auto& array) { to = array.data(); }, item.out, p.packed);
+  for_each(device(), owned_, item);
   step_queued_.record(stream_);
   step_queued_.hold(copy_stream_);
-  copy_async(p.h_packed.data(), p.packed.data(), n, copy_stream_);
+  copy_async(p.h_ids.data(), p.sorted_ids.data(), n, copy_stream_);
+  for_each_column([&](auto& to, auto& from) { copy_async(to.data(), from.data(), n, copy_stream_); },
+                  p.h_packed, p.packed);
   p.ready.record(copy_stream_);
 }
 
@@ -203,13 +213,9 @@ ParticlePack CudaBackend::pack_particles() {
   PackArrays& p = *pack_;
   p.ready.wait();
   ParticlePack pack;
-  pack.global_id.resize(p.n), pack.radius.resize(p.n), pack.position.resize(p.n);
-  pack.velocity.resize(p.n), pack.force.resize(p.n), pack.contacts.resize(p.n);
-  for (std::size_t i = 0; i < p.n; ++i) {
-    const PackedParticle& one = p.h_packed[i];
-    pack.global_id[i] = one.global_id, pack.radius[i] = one.radius, pack.position[i] = one.position;
-    pack.velocity[i] = one.velocity, pack.force[i] = one.force, pack.contacts[i] = one.contacts;
-  }
+  pack.global_id.assign(p.h_ids.data(), p.h_ids.data() + p.n);
+  for_each_column([&](auto& values, auto& array) { values.assign(array.data(), array.data() + p.n); }, pack,
+                  p.h_packed);
   return pack;
 }
 

@@ -1,9 +1,12 @@
 // Halo on the device: src/partition/halo.hpp for ghosts of any number of ranks, whose packing are kernels.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <span>
 
+#include "dem/particle_fields.hpp"
 #include "for_each.cuh"
 #include "halo_transport.cuh"
 #include "partition/halo.hpp"
@@ -22,6 +25,7 @@ struct GhostField {
     else
       packed[entry - own] = value;
   }
+  HaloMessage message() const { return {packed, field + first_ghost, sizeof(T)}; }
 };
 
 struct MotionGhostItem {
@@ -76,19 +80,19 @@ class DeviceHalo {
   // exchange.
   Index entries() const { return plan_.own() + plan_.sent(); }
   const Ghost* ghosts() const { return ghost_.data(); }
-  // buffer: 0 or 1, for fields in the same exchange. T: at most as large as Vec4.
+  // buffer: below kBuffers, for fields in the same exchange. T: at most as large as Vec4.
   template <class T>
   GhostField<T> field(int buffer, T* field, Index first_ghost) {
     static_assert(sizeof(T) <= sizeof(Vec4));
     return {field, reinterpret_cast<T*>(packed_[buffer].data()), plan_.own(), first_ghost};
   }
-  // Sends what was put into the fields, and receives the ghosts.
+  // Sends what was put into fields, and receives the ghosts. messages: of these fields.
+  void exchange(Device device, std::span<const HaloMessage> messages) {
+    if (transport_) transport_->exchange(plan_, messages, device.stream);
+  }
   template <class... T>
   void exchange(Device device, const GhostField<T>&... fields) {
-    if (!transport_) return;
-    const std::array<HaloMessage, sizeof...(T)> messages{
-        HaloMessage{fields.packed, fields.field + fields.first_ghost, sizeof(T)}...};
-    transport_->exchange(plan_, messages, device.stream);
+    exchange(device, std::array{fields.message()...});
   }
   // update_halo of positions and velocities.
   void update_motion(Device device, Vec4* position, Vec4* velocity, Index first_ghost);
@@ -106,7 +110,10 @@ class DeviceHalo {
   DeviceArray<Ghost> ghost_;
   DeviceArray<HaloTarget> targets_;
   DeviceArray<unsigned long long> counts_;
-  DeviceArray<Vec4> packed_[2];
+  // For motion, and for what ghosts get once.
+  static constexpr std::size_t kBuffers =
+      std::max(count_arrays<kMotion>(), count_arrays<kNames | kGhostCopies>());
+  DeviceArray<Vec4> packed_[kBuffers];
 };
 
 }  // namespace scree

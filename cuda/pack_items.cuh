@@ -8,26 +8,35 @@
 
 namespace scree {
 
-struct PackedParticle {
-  GlobalId global_id;
-  Real radius;
-  Vec3 position, velocity, force;  // position inside the periodic box; force: contacts only
-  Index contacts;
+// Besides the global ids.
+template <template <class> class Array>
+struct SnapshotArrays {
+  Array<Real> radius{};
+  Array<Vec3> position{}, velocity{}, force{};  // position inside the periodic box; force: contacts only
+  Array<Index> contacts{};
 };
+
+// Calls visit(a.name, b.name, ...) for each of the arrays of each of the sets.
+template <class Visit, class... Sets>
+void for_each_column(const Visit& visit, Sets&... sets) {
+  visit(sets.radius...), visit(sets.position...), visit(sets.velocity...), visit(sets.force...);
+  visit(sets.contacts...);
+}
 
 struct PackItem {
   ParticleViews in;
   const Index* order;     // by global id
   const Index* contacts;  // of ContactEnergyItem
   Vec3 gravity, box_min, period;
-  PackedParticle* out;
+  SnapshotArrays<Pointer> out;
 
   SCREE_HD void operator()(Index k) const {
     const Index i = order[k];
     ImageCount unused;
     const Vec4 x = in.position[i], v = in.velocity[i];
-    out[k] = {id_of(in.row_key[i]),        x.w,        wrap(box_min, period, xyz(x), unused), xyz(v),
-              in.force[i] - v.w * gravity, contacts[i]};
+    out.radius[k] = x.w, out.position[k] = wrap(box_min, period, xyz(x), unused);
+    out.velocity[k] = xyz(v), out.force[k] = in.force[i] - v.w * gravity;
+    out.contacts[k] = contacts[i];
   }
 };
 

@@ -99,8 +99,8 @@ class Backend {
   // State of the particle side: what a checkpoint stores. load: of particles that this rank's part of the
   // model has; the first list brings them to the ranks that own them; records: of those that this rank owns.
   // Shapes' losses are rank 0's.
-  virtual void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) = 0;
-  virtual std::vector<ParticleRecord> records() const = 0;  // ordered by global id
+  virtual void load(const std::vector<Particle>& records, const ShapeLosses& shapes) = 0;
+  virtual std::vector<Particle> records() const = 0;  // ordered by global id
   virtual ShapeLosses shape_losses() const = 0;
 
   // Neighbour list. Displacement: of any item since the list was built, over half the skin that the list

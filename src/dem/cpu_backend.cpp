@@ -23,15 +23,16 @@ std::string CpuBackend::description() const {
   return ranks_.alone() ? "cpu (serial)" : "cpu (" + std::to_string(ranks_.size()) + " ranks)";
 }
 
-void CpuBackend::load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) {
+void CpuBackend::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
   side_.losses() = ranks_.is_root() ? shapes : ShapeLosses{};
-  store_.load(model_.particles, records);
+  count_on_rank(records.size(), model_.particles.totals);
+  store_.load(records);
   layout_changed_ = true;
 }
 
-std::vector<ParticleRecord> CpuBackend::records() const {
-  std::vector<ParticleRecord> out = store_.records();
-  for (ParticleRecord& r : out)
+std::vector<Particle> CpuBackend::records() const {
+  std::vector<Particle> out = store_.records();
+  for (Particle& r : out)
     if (!r.drifting) r.position = subdomain_.wrap(r.position, r.image);
   return out;
 }
@@ -72,7 +73,7 @@ void CpuBackend::fail_if_any(GlobalId id, const char* before, const char* after)
 void CpuBackend::report_not_finite(const std::vector<Vec3>& force) const {
   GlobalId bad = kNone;
   for (Index i = 0; i < layout_.owned; ++i)
-    if (!is_finite(force[i])) bad = std::min(bad, store_.global_id[i]);
+    if (!is_finite(force[i])) bad = std::min(bad, id_of(store_.row_key[i]));
   fail_if_any(bad, "stage contact_force: the force on particle ", " is not finite");
 }
 

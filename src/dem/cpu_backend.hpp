@@ -23,8 +23,8 @@ class CpuBackend : public Backend {
   explicit CpuBackend(const Model& model, const Ranks& ranks = {});
   std::string description() const override;
 
-  void load(const std::vector<ParticleRecord>& records, const ShapeLosses& shapes) override;
-  std::vector<ParticleRecord> records() const override;
+  void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
+  std::vector<Particle> records() const override;
   ShapeLosses shape_losses() const override { return side_.losses(); }
 
   void place_bodies(std::span<const BodyMotion> motion) override;

@@ -108,7 +108,7 @@ GlobalId CpuBackend::worst_particle() const {
   const Real largest = ranks_.max(own);
   GlobalId worst = kNone;
   for (Index i = 0; i < layout_.owned; ++i)
-    if (norm(residual_[i]) == largest) worst = std::min(worst, store_.global_id[i]);
+    if (norm(residual_[i]) == largest) worst = std::min(worst, id_of(store_.row_key[i]));
   worst = ranks_.min(worst);
   return worst == kNone ? -1 : worst;
 }

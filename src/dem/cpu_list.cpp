@@ -14,7 +14,7 @@ void CpuBackend::wrap_positions() {
   for (Index i = 0; i < store_.owned; ++i) {
     Vec3 p = xyz(store_.position[i]);
     if (!wrap_if_sound(model_.space.min, subdomain_.period(), store_.drifting[i], p, store_.image[i]))
-      bad = std::min(bad, store_.global_id[i]);
+      bad = std::min(bad, id_of(store_.row_key[i]));
     store_.position[i] = vec4(p, store_.position[i].w);
   }
   fail_if_any(bad, kUnsoundPosition[0], kUnsoundPosition[1]);
@@ -34,20 +34,20 @@ void CpuBackend::decompose() {
 // migrate: every particle goes to the rank whose box it is in.
 void CpuBackend::migrate() {
   if (!decomposition_.exists() || balance_.imbalance > model_.parallel.imbalance) decompose();
-  std::vector<std::vector<Migrant>> leaving(static_cast<std::size_t>(ranks_.size()));
+  std::vector<std::vector<Particle>> leaving(static_cast<std::size_t>(ranks_.size()));
   std::vector<Index> staying;
   for (Index i = 0; i < store_.owned; ++i) {
     const int owner = decomposition_.owner(xyz(store_.position[i]));
     if (owner == ranks_.rank())
       staying.push_back(i);
     else
-      leaving[static_cast<std::size_t>(owner)].push_back(store_.migrant(i));
+      leaving[static_cast<std::size_t>(owner)].push_back(particle_at(store_, i));
   }
   balance_.migrated += store_.owned - static_cast<std::int64_t>(staying.size());
-  const std::vector<Migrant> arriving = ranks_.deal_out(leaving);
+  const std::vector<Particle> arriving = ranks_.deal_out(leaving);
   countable(staying.size() + arriving.size(), kTooManyParticles);
   store_.reorder(staying);
-  for (const Migrant& particle : arriving) store_.add(particle);
+  for (const Particle& particle : arriving) store_.add(particle);
 }
 
 // Owned particles in the order of their cells; those outside at the end.
@@ -75,20 +75,22 @@ void CpuBackend::lay_out_items(Real skin) {
   const Real width = builder_.cutoff(skin);
   halo_.exchange(ranks_, decomposition_, subdomain_,
                  {store_.position.data(), static_cast<std::size_t>(store_.active)}, width);
-  layout_.ghost_images = halo_.images();
   layout_.first_shape = countable(
       static_cast<std::size_t>(layout_.owned) + static_cast<std::size_t>(halo_.size()), kTooManyItems);
   layout_.shapes_meet = ranks_.is_root();
 
   side_.lay_out(width, layout_);
 
-  store_.position.resize(layout_.items), store_.velocity.resize(layout_.items);
-  store_.material.resize(layout_.items), store_.global_id.resize(layout_.items);
-  halo_.update(std::span<int>(store_.material), layout_.owned);
-  halo_.update(std::span<GlobalId>(store_.global_id), layout_.owned);
+  store_.resize_items(layout_.items);
+  for_each_array<kNames | kGhostCopies>([&](auto& array) { halo_.update(std::span(array), layout_.owned); },
+                                        store_);
+  for (Index g = 0; g < halo_.size(); ++g) {
+    std::int64_t& key = store_.row_key[layout_.owned + g];
+    key = row_key(id_of(key), halo_.images()[g]);
+  }
   for (Index item = layout_.first_shape; item < layout_.items; ++item) {
-    const ShapeItem& shape = side_.shapes().items()[layout_.shape_of(item)];
-    store_.material[item] = shape.material, store_.global_id[item] = shape.global_id;
+    store_.material[item] = side_.shapes().items()[layout_.shape_of(item)].material;
+    store_.row_key[item] = side_.row_key_of(layout_, item);
   }
 }
 

@@ -22,8 +22,8 @@ std::vector<Leaver> CpuBackend::outside() const {
     const Real energy = energy_of_motion(store_.position[i], store_.velocity[i], store_.image[i],
                                          model_.gravity, subdomain_.period());
     const Real shift = verlet_energy_shift(verlet_step(model_), store_.velocity[i].w, store_.acceleration[i]);
-    leavers.push_back({store_.global_id[i], i, p, subdomain_.beyond_wall(p), energy, store_.contact_loss[i],
-                       store_.integrator_loss[i] - shift, 0, ranks_.rank()});
+    leavers.push_back({id_of(store_.row_key[i]), i, p, subdomain_.beyond_wall(p), energy,
+                       store_.contact_loss[i], store_.integrator_loss[i] - shift, 0, ranks_.rank()});
   }
   kernels_->leavers(views(), subdomain_.box(), static_cast<Index>(leavers.size()), leavers.data());
   leavers = ranks_.gather_everywhere(std::move(leavers));
@@ -97,7 +97,7 @@ void CpuBackend::start_pack() {
   kernels_->energies(views(), n, {energy.data(), pack.contacts.data(), pairs.data()});
   for (Index i = 0; i < n; ++i) {
     ImageCount unused;
-    pack.global_id.push_back(store_.global_id[i]);
+    pack.global_id.push_back(id_of(store_.row_key[i]));
     pack.radius.push_back(store_.position[i].w);
     pack.position.push_back(subdomain_.wrap(xyz(store_.position[i]), unused));
     pack.velocity.push_back(xyz(store_.velocity[i]));
@@ -115,10 +115,10 @@ std::vector<TracedParticle> CpuBackend::traced(std::span<const GlobalId> wanted)
   std::sort(ids.begin(), ids.end());
   std::vector<TracedParticle> found;
   for (Index i = 0; i < store_.owned; ++i) {
-    if (!std::binary_search(ids.begin(), ids.end(), store_.global_id[i])) continue;
+    if (!std::binary_search(ids.begin(), ids.end(), id_of(store_.row_key[i]))) continue;
     ImageCount unused;
-    found.push_back(
-        {store_.global_id[i], subdomain_.wrap(xyz(store_.position[i]), unused), xyz(store_.velocity[i])});
+    found.push_back({id_of(store_.row_key[i]), subdomain_.wrap(xyz(store_.position[i]), unused),
+                     xyz(store_.velocity[i])});
   }
   return found;
 }

@@ -13,8 +13,8 @@ namespace scree {
 namespace {
 
 // Bytes per particle or item, by the array groups of cuda/cuda_backend.cuh.
-constexpr double kItemArrays = 2 * (sizeof(Vec4) + sizeof(Vec4) + sizeof(int) + sizeof(GlobalId));
-constexpr double kParticleArrays = 2 * (2 * sizeof(Vec3) + 3 * sizeof(Real) + sizeof(ImageCount) + 1);
+constexpr double kItemFields = 2 * bytes_in_arrays<kItemArrays>();
+constexpr double kOwnedFields = 2 * bytes_in_arrays<kOwnedArrays>();
 constexpr double kSortArrays =
     4 * sizeof(Index) + 2 * sizeof(Index);  // keys and order twice, the library's buffers
 constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);  // counts, walls, positions at the build
@@ -24,8 +24,10 @@ constexpr double kStepArrays =
 constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
 constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
-constexpr double kOutputArrays = 96 + 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
-                                 sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
+constexpr double kSnapshotArrays = sizeof(Real) + 3 * sizeof(Vec3) + sizeof(Index);
+constexpr double kOutputArrays = kSnapshotArrays + 2 * sizeof(Real) + 3 * sizeof(Index) +
+                                 2 * sizeof(GlobalId) + sizeof(GlobalId) +
+                                 sizeof(Index);  // the last two: the library's buffers
 constexpr double kCellBytes = 2 * sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
@@ -62,16 +64,17 @@ Sizes sizes_of(const Model& model) {
   NeighborBuilder builder(model, shapes);
   const Real skin = model.contact.skin;
   const bool periodic = subdomain.period() != Vec3{}, equal = equal_radii(model);
+  const Index particles = count_on_rank(model.particles.size(), model.particles.totals);
   Sizes sizes{};
   sizes.shapes = shapes.size() > 0;
-  sizes.particles = static_cast<double>(model.particles.size());
+  sizes.particles = static_cast<double>(particles);
   ParticleStore store;  // only where it is needed: it is as large as the model
-  if (periodic || !equal) store.load(model.particles, initial_records(model.particles, subdomain));
+  if (periodic || !equal) store.load(initial_records(model.particles, subdomain));
   if (periodic)
     sizes.ghosts =
         static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
   sizes.items = sizes.particles + sizes.ghosts + static_cast<double>(shapes.size());
-  const auto counted = static_cast<Index>(model.particles.size()) + shapes.size();
+  const Index counted = particles + shapes.size();
   sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, counted).count());
   sizes.slots = kSlotsPerItem * sizes.items;
   if (equal) return sizes;
@@ -87,7 +90,7 @@ std::size_t device_memory(const Model& model) {
   const Sizes n = sizes_of(model);
   const bool periodic = n.ghosts > 0;
   const double spare = periodic ? 1.125 : 1;  // arrays that grow when ghosts are found
-  double bytes = n.items * kItemArrays * spare + n.particles * kParticleArrays;
+  double bytes = n.items * kItemFields * spare + n.particles * kOwnedFields;
   bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays : 0);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
   bytes += n.items * kListArrays + n.slots * sizeof(Index);
@@ -96,7 +99,7 @@ std::size_t device_memory(const Model& model) {
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.shapes)
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
-  bytes += n.particles * kOutputArrays + static_cast<double>(kRecordsAtOnce) * sizeof(ParticleRecord);
+  bytes += n.particles * kOutputArrays + static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
   return static_cast<std::size_t>(bytes);
 }
 

@@ -110,21 +110,6 @@ void NeighborBuilder::collect_row(const ParticleStore& store, const ItemLayout& 
       }
 }
 
-// By global id, then by image: the same order whatever the local indices are.
-void NeighborBuilder::order_row(const ParticleStore& store, const ItemLayout& layout, Index* first,
-                                Index* last) const {
-  const auto image = [&](Index j) {
-    if (j < layout.owned) return kNoShift;
-    if (j < layout.first_shape) return layout.ghost_images[j - layout.owned];
-    return layout.is_shape_image(j) ? layout.shape_images[j - layout.first_shape - layout.shapes].image
-                                    : kNoShift;
-  };
-  std::sort(first, last, [&](Index a, Index b) {
-    const GlobalId ia = store.global_id[a], ib = store.global_id[b];
-    return ia != ib ? ia < ib : image(a) < image(b);
-  });
-}
-
 void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout& layout,
                                     NeighborList& list) const {
   list.walls.clear();
@@ -168,7 +153,8 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
       collect_row(store, layout, near_, i, is_shape && shapes_apart ? layout.first_shape : layout.items,
                   list);
     if (is_shape && shapes_apart) collect_row(store, layout, all_shapes_, i, layout.items, list);
-    order_row(store, layout, list.neighbors.data() + begin, list.neighbors.data() + list.neighbors.size());
+    std::sort(list.neighbors.begin() + begin, list.neighbors.end(),
+              [&](Index a, Index b) { return store.row_key[a] < store.row_key[b]; });
     list.offsets[i + 1] = countable(list.neighbors.size(), "stage neighbors: more neighbours");
   }
   collect_walls(store, layout, list);

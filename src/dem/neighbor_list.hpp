@@ -28,9 +28,8 @@ struct ItemLayout {
   Index owned = 0, active = 0;  // owned particles, and those of them in the search
   Index first_shape = 0;        // after owned and ghosts
   Index items = 0;
-  std::vector<std::int8_t> ghost_images;  // numbers of the ghosts' shifts
-  std::vector<Ghost> shape_images;        // of shapes: source counts from 0 within the shapes
-  Index shapes = 0;                       // originals, before their images
+  std::vector<Ghost> shape_images;  // of shapes: source counts from 0 within the shapes
+  Index shapes = 0;                 // originals, before their images
   bool shapes_meet = true;  // whether this rank has the contacts of shapes with each other and with walls
   // Shape of an item >= first_shape, and whether the item is an image of it.
   Index shape_of(Index item) const {
@@ -93,7 +92,6 @@ class NeighborBuilder {
   void collect_row(const ParticleStore& store, const ItemLayout& layout, const SortedItems& sorted, Index i,
                    Index end, NeighborList& list) const;
   bool excluded(const ItemLayout& layout, Index i, Index j) const;
-  void order_row(const ParticleStore& store, const ItemLayout& layout, Index* first, Index* last) const;
   void collect_walls(const ParticleStore& store, const ItemLayout& layout, NeighborList& list) const;
 
   const Model& model_;

@@ -29,6 +29,12 @@ void ShapeSide::lay_out(Real width, ItemLayout& layout) {
   step_.assign(items, Vec3{});
 }
 
+std::int64_t ShapeSide::row_key_of(const ItemLayout& layout, Index item) const {
+  const GlobalId id = shapes_.items()[layout.shape_of(item)].global_id;
+  if (!layout.is_shape_image(item)) return row_key(id);
+  return row_key(id, layout.shape_images[item - layout.first_shape - layout.shapes].image);
+}
+
 Real ShapeSide::place(const ItemLayout& layout) {
   Real squared = 0;
   for (Index s = 0; s < layout.items - layout.first_shape; ++s) {

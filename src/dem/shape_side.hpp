@@ -45,6 +45,7 @@ class ShapeSide {
   // Brings each shape into the periodic box and finds its images; fills the shapes' part of the layout, whose
   // owned particles and ghosts are known.
   void lay_out(Real width, ItemLayout& layout);
+  std::int64_t row_key_of(const ItemLayout& layout, Index item) const;
   // Moves the shape items to where the bodies are; returns the largest displacement of one [m].
   Real place(const ItemLayout& layout);
 

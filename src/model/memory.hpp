@@ -16,7 +16,7 @@ struct Model;
 
 // What one particle of a run keeps in memory [B]: state, scratch and a list of some ten neighbours, with
 // velocity-Verlet and with HHT (tests/performance/bytes_per_item.py).
-constexpr Real kBytesPerExplicitParticle = 700, kBytesPerImplicitParticle = 1000;
+constexpr Real kBytesPerExplicitParticle = 720, kBytesPerImplicitParticle = 1000;
 Real bytes_per_particle(const Model& model);
 // The same of one coordinate or constraint of the multibody side, on rank 0: a few vectors and the sparse
 // factors [B].

@@ -20,7 +20,7 @@ namespace {
 
 // The file's first word to a reader; a new layout gets a new number.
 const std::string kFormatName = "scree checkpoint ";
-constexpr int kFormatNumber = 3;
+constexpr int kFormatNumber = 4;
 
 // In the file, each kind of value has a group of its own.
 const std::string kReals = "/reals/", kIntegers = "/integers/", kTexts = "/texts/";
@@ -66,7 +66,8 @@ template <class T>
 void make_room(Hdf5File& file, const std::string& group, const RowMap<T>& arrays,
                const std::map<std::string, Extent>& extents, int compression) {
   for (const auto& [name, rows] : arrays) {
-    file.create_rows<T>(group + name, {rows.width, kRowsPerChunk, true, compression}, {"", ""});
+    file.create_rows<T>(group + name, {rows.width, kRowsPerChunk, true, compression},
+                        {rows.unit, rows.description});
     file.resize_rows(group + name, extents.at(name).all);
   }
 }
@@ -185,11 +186,13 @@ const std::vector<std::int64_t>& Checkpoint::integer_array(const std::string& na
   return find(integers, name, *this);
 }
 
-const CheckpointRows<Real>& Checkpoint::real_row_array(const std::string& name) const {
+template <>
+const CheckpointRows<Real>& Checkpoint::row_array(const std::string& name) const {
   return find(real_rows, name, *this);
 }
 
-const CheckpointRows<std::int64_t>& Checkpoint::integer_row_array(const std::string& name) const {
+template <>
+const CheckpointRows<std::int64_t>& Checkpoint::row_array(const std::string& name) const {
   return find(integer_rows, name, *this);
 }
 

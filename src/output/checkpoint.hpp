@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "base/types.hpp"
@@ -21,6 +22,7 @@ struct CheckpointRows {
   std::int64_t count = 0;  // rows of this rank
   // Values of rows [first, first + count) of this rank: [count][width].
   std::function<void(std::int64_t first, std::int64_t count, T* to)> copy;
+  std::string unit = {}, description = {};  // for readers of the file; not read back
 };
 
 // What the step loop packs and unpacks; this room gives no meaning to it. Values return bit for bit. Names
@@ -36,10 +38,19 @@ struct Checkpoint {
   // Throw IoError naming the file and what is missing.
   const std::vector<Real>& real_array(const std::string& name) const;
   const std::vector<std::int64_t>& integer_array(const std::string& name) const;
-  const CheckpointRows<Real>& real_row_array(const std::string& name) const;
-  const CheckpointRows<std::int64_t>& integer_row_array(const std::string& name) const;
+  template <class T>
+  const CheckpointRows<T>& row_array(const std::string& name) const;
   const std::string& text(const std::string& name) const;
   std::string path;  // where it was read from, for messages
+
+  // The rows of one type: real_rows or integer_rows.
+  template <class T>
+  std::map<std::string, CheckpointRows<T>>& rows() {
+    if constexpr (std::is_same_v<T, Real>)
+      return real_rows;
+    else
+      return integer_rows;
+  }
 };
 
 // Writes PATH.tmp, syncs it to disk and renames it to PATH. Throws IoError; PATH is then what it was before.

@@ -91,7 +91,7 @@ class Halo {
 
 template <class T>
 void Halo::update(std::span<T> field, Index first_ghost) const {
-  static_assert(std::is_trivially_copyable_v<T> && sizeof(Vec4) % sizeof(T) == 0);
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(Vec4));
   for_each(Serial{}, static_cast<Index>(own_.size()), HaloItem<T>{own_.data(), field.data(), first_ghost});
   T* packed = reinterpret_cast<T*>(buffer_[0].data());
   for (std::size_t k = 0; k < sent_.size(); ++k) packed[k] = field[static_cast<std::size_t>(sent_[k].source)];

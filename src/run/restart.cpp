@@ -180,6 +180,9 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     restart.state = unpack(checkpoint);  // a file may be unreadable where one rank's rows are
   });
   check_state(restart.state, options.restart, model.particles.totals.count, ranks);
+  ranks.together([&] {
+    if (differences.empty()) check_constants(restart.state, options.restart, model.particles.totals);
+  });
   check_hash(restart.state, checkpoint, ranks);
   restart.changes = checkpoint.text("changes");
   apply(differences, model, restart);

@@ -69,9 +69,10 @@ class Simulation {
  private:
   ExitCode run_to_the_end();
   void start_or_resume();
+  void load_state();
   std::string start_change() const;
   bool continues_files() const;
-  std::vector<ParticleRecord> in_id_order(std::vector<ParticleRecord> records) const;
+  std::vector<Particle> in_id_order(std::vector<Particle> records) const;
   // Takes the state's particles away.
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
@@ -115,8 +116,7 @@ void Simulation::start_or_resume() {
     if (!start_change().empty())
       log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
   } else {
-    backend_->load(in_id_order(std::move(state_.particles)), state_.shapes);
-    state_.particles = {};
+    load_state();
     step_.counts() = state_.counts;
     if (state_.clock.time > model_.time.end)
       throw InputError(fmt::format("--restart {}: the checkpoint is at t = {:.9g} s, past time.end = {:g} s",
@@ -126,6 +126,14 @@ void Simulation::start_or_resume() {
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
   }
   start_time_ = state_.clock.time;
+}
+
+// The checkpoint's particles are complete; another deck's constants hold from now on.
+void Simulation::load_state() {
+  std::vector<Particle> records = in_id_order(std::move(state_.particles));
+  state_.particles = {};
+  if (restart_.changed) take_constants(model_.particles, records);
+  backend_->load(records, state_.shapes);
 }
 
 // Of the bodies' velocities, on rank 0.
@@ -142,9 +150,9 @@ bool Simulation::continues_files() const {
 }
 
 // Each rank gets the records of its share of the ids: what it writes, and what its part of the model has.
-std::vector<ParticleRecord> Simulation::in_id_order(std::vector<ParticleRecord> records) const {
+std::vector<Particle> Simulation::in_id_order(std::vector<Particle> records) const {
   std::vector<GlobalId> ids;
-  for (const ParticleRecord& p : records) ids.push_back(p.global_id);
+  for (const Particle& p : records) ids.push_back(p.global_id);
   return IdOrder(ranks_, model_.particles.totals.count, ids).apply(std::move(records));
 }
 

@@ -4,6 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
@@ -162,57 +167,60 @@ void visit_output(Visitor& visit, StateType& state) {
   visit("output/snapshots", state.snapshots);
 }
 
-constexpr int kRealsPerParticle = 15, kIntegersPerParticle = 5;
-
-void pack_reals(const ParticleRecord& p, Real* to) {
-  for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force})
-    for (const Real value : {v.x, v.y, v.z}) *to++ = value;
-  for (const Real value : {p.contact_loss, p.loss_power, p.integrator_loss}) *to++ = value;
+// What a checkpoint holds of a particle: its identity and its fields. visit: as for_each_field's.
+template <class Visit>
+void for_each_dataset(const Visit& visit) {
+  visit(ParticleField{"global_id", "1", "identity, which survives sorting and migration", kState},
+        &Particle::global_id);
+  for_each_field(visit);
 }
 
-void pack_integers(const ParticleRecord& p, std::int64_t* to) {
-  for (const std::int64_t value : {p.global_id, std::int64_t{p.image.x}, std::int64_t{p.image.y},
-                                   std::int64_t{p.image.z}, std::int64_t{p.drifting}})
-    *to++ = value;
-}
-
-ParticleRecord unpack_particle(const Real* r, const std::int64_t* k) {
-  const auto vector = [r](int at) { return Vec3{r[at], r[at + 1], r[at + 2]}; };
-  const auto whole = [k](int at) { return static_cast<std::int32_t>(k[at]); };
-  return {k[0],      vector(0), vector(3),
-          vector(6), vector(9), r[12],
-          r[13],     r[14],     {whole(1), whole(2), whole(3)},
-          k[4] != 0};
-}
+std::string dataset_name(const ParticleField& field) { return std::string("particles/") + field.name; }
 
 template <class T>
-CheckpointRows<T> rows_of(const std::vector<ParticleRecord>& particles, int width,
-                          void (*pack_one)(const ParticleRecord&, T*)) {
-  return {width, std::ssize(particles), [=, &particles](std::int64_t first, std::int64_t count, T* to) {
-            for (std::int64_t i = first; i < first + count; ++i, to += width)
-              pack_one(particles[static_cast<std::size_t>(i)], to);
-          }};
+using NumbersOf = decltype(numbers_of(std::declval<T>()));
+
+template <class T>
+void add_rows(const std::vector<Particle>& particles, const ParticleField& field, T Particle::*member,
+              Checkpoint& out) {
+  using Number = typename NumbersOf<T>::value_type;
+  const auto copy = [member, &particles](std::int64_t first, std::int64_t count, Number* to) {
+    for (std::int64_t i = first; i < first + count; ++i)
+      for (const Number number : numbers_of(particles[static_cast<std::size_t>(i)].*member)) *to++ = number;
+  };
+  out.rows<Number>()[dataset_name(field)] = {std::tuple_size_v<NumbersOf<T>>, std::ssize(particles), copy,
+                                             field.unit, field.description};
 }
 
-// Piece by piece: besides the records there is room for one piece.
-std::vector<ParticleRecord> unpack_particles(const Checkpoint& in) {
-  constexpr std::int64_t kPiece = 65536;
-  const CheckpointRows<Real>& reals = in.real_row_array("particles/reals");
-  const CheckpointRows<std::int64_t>& integers = in.integer_row_array("particles/integers");
-  if (reals.width != kRealsPerParticle || integers.width != kIntegersPerParticle ||
-      reals.count != integers.count)
+// Piece by piece: besides the particles there is room for one piece.
+template <class T>
+void unpack_field(const Checkpoint& in, const std::string& name, T Particle::*member,
+                  std::vector<Particle>& particles) {
+  using Number = typename NumbersOf<T>::value_type;
+  constexpr std::int64_t kPiece = 65536, kWidth = std::tuple_size_v<NumbersOf<T>>;
+  const CheckpointRows<Number>& rows = in.row_array<Number>(name);
+  if (rows.width != kWidth || rows.count != std::ssize(particles))
     throw IoError(in.path + ": the particles' arrays do not fit together");
-  std::vector<ParticleRecord> particles;
-  particles.reserve(static_cast<std::size_t>(reals.count));
-  std::vector<Real> r(kPiece * kRealsPerParticle);
-  std::vector<std::int64_t> k(kPiece * kIntegersPerParticle);
-  for (std::int64_t first = 0; first < reals.count; first += kPiece) {
-    const std::int64_t count = std::min(kPiece, reals.count - first);
-    reals.copy(first, count, r.data()), integers.copy(first, count, k.data());
-    for (std::int64_t i = 0; i < count; ++i)
-      particles.push_back(unpack_particle(&r[static_cast<std::size_t>(i * kRealsPerParticle)],
-                                          &k[static_cast<std::size_t>(i * kIntegersPerParticle)]));
+  std::vector<Number> piece(static_cast<std::size_t>(std::min(kPiece, rows.count) * kWidth));
+  for (std::int64_t first = 0; first < rows.count; first += kPiece) {
+    const std::int64_t count = std::min(kPiece, rows.count - first);
+    rows.copy(first, count, piece.data());
+    for (std::int64_t i = 0; i < count; ++i) {
+      const Number* const numbers = &piece[static_cast<std::size_t>(i * kWidth)];
+      T& value = particles[static_cast<std::size_t>(first + i)].*member;
+      set_value(value, numbers);
+      if (std::is_integral_v<Number> && !std::ranges::equal(numbers_of(value), std::span(numbers, kWidth)))
+        throw IoError(in.path + ": a value of " + name + " is too large");
+    }
   }
+}
+
+std::vector<Particle> unpack_particles(const Checkpoint& in) {
+  const CheckpointRows<std::int64_t>& ids = in.row_array<std::int64_t>("particles/global_id");
+  std::vector<Particle> particles(static_cast<std::size_t>(ids.count));
+  for_each_dataset([&](const ParticleField& field, auto member) {
+    unpack_field(in, dataset_name(field), member, particles);
+  });
   return particles;
 }
 
@@ -222,20 +230,19 @@ Checkpoint pack(const State& state) {
   Checkpoint out;
   Writer writer(out);
   visit_state(writer, state), visit_output(writer, state);
-  out.real_rows["particles/reals"] = rows_of(state.particles, kRealsPerParticle, pack_reals);
-  out.integer_rows["particles/integers"] = rows_of(state.particles, kIntegersPerParticle, pack_integers);
+  for_each_dataset(
+      [&](const ParticleField& field, auto member) { add_rows(state.particles, field, member, out); });
   return out;
 }
 
 std::uint64_t state_hash(const State& state, bool with_rest) {
   std::uint64_t sum = 0;
-  for (const ParticleRecord& p : state.particles) {
+  for (const Particle& p : state.particles) {
     BitHash one;
-    one.add(p.global_id);
-    for (const Vec3& v : {p.position, p.velocity, p.acceleration, p.force}) one.add(v);
-    for (const Real value : {p.contact_loss, p.loss_power, p.integrator_loss}) one.add(value);
-    for (const std::int64_t value : {p.image.x, p.image.y, p.image.z}) one.add(value);
-    one.add(std::int64_t{p.drifting});
+    for_each_dataset([&](const ParticleField& field, auto member) {
+      if ((field.parts & kState) != 0)
+        for (const auto number : numbers_of(p.*member)) one.add(number);
+    });
     sum += one.hash();
   }
   if (!with_rest) return sum;
@@ -263,18 +270,23 @@ void check_ids_increase(const std::string& path, GlobalId before, GlobalId id) {
     refuse(path, fmt::format("particle {} comes after particle {}; ids must increase", id, before));
 }
 
+bool is_finite(const Particle& p) {
+  bool finite = true;
+  for_each_field([&](const ParticleField&, auto member) {
+    for (const auto number : numbers_of(p.*member))
+      finite = finite && std::isfinite(static_cast<Real>(number));
+  });
+  return finite;
+}
+
 void check_particles(const State& state, const std::string& path, std::int64_t particles) {
-  const ParticleRecord* before = nullptr;
-  for (const ParticleRecord& p : state.particles) {
+  const Particle* before = nullptr;
+  for (const Particle& p : state.particles) {
     if (p.global_id < 0 || p.global_id >= particles)
       refuse(path, fmt::format("particle id {}; the deck has the ids 0 to {}", p.global_id, particles - 1));
     if (before != nullptr) check_ids_increase(path, before->global_id, p.global_id);
     before = &p;
-    Real values[kRealsPerParticle];
-    pack_reals(p, values);
-    for (const Real value : values)
-      if (!std::isfinite(value))
-        refuse(path, fmt::format("a value of particle {} is not finite", p.global_id));
+    if (!is_finite(p)) refuse(path, fmt::format("a value of particle {} is not finite", p.global_id));
   }
 }
 
@@ -295,6 +307,19 @@ void check_state(const State& state, const std::string& path, std::int64_t parti
   if (!state.particles.empty()) ends = {state.particles.front().global_id, state.particles.back().global_id};
   ends = ranks.gather_everywhere(ends);
   for (std::size_t k = 2; k < ends.size(); k += 2) check_ids_increase(path, ends[k - 1], ends[k]);
+}
+
+void check_constants(const State& state, const std::string& path, const ParticleTotals& deck) {
+  const auto check = [&](const Particle& p, const char* what, Real value, Real smallest, Real largest) {
+    if (!(value >= smallest && value <= largest))
+      refuse(path, fmt::format("the {} of particle {} is {}; the deck's are {} to {}", what, p.global_id,
+                               value, smallest, largest));
+  };
+  for (const Particle& p : state.particles) {
+    check(p, "radius", p.radius, deck.smallest_radius, deck.largest_radius);
+    check(p, "mass", p.mass, deck.smallest_mass, deck.largest_mass);
+    check(p, "material", p.material, 0, static_cast<Real>(deck.materials.size()) - 1);
+  }
 }
 
 }  // namespace scree

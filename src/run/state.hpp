@@ -1,4 +1,4 @@
-// State: all that changes in time and nothing else. A checkpoint stores exactly this.
+// State: all that changes in time, and the particles' constants. A checkpoint stores exactly this.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ struct State {
   StepCounts counts;
   MultibodyState bodies;
   // Of one rank, ordered by global id; they live in the backend between checkpoints.
-  std::vector<ParticleRecord> particles;
+  std::vector<Particle> particles;
   ShapeLosses shapes;
   CarriedOut carried_out;
   BalanceState balance;
@@ -47,5 +47,7 @@ State unpack(const Checkpoint& checkpoint);
 // of particles: where ids do not increase from particle to particle and from rank to rank, are outside
 // [0, particles), or are missing without having been removed, and where a value is not finite. Collective.
 void check_state(const State& state, const std::string& path, std::int64_t particles, const Ranks& ranks);
+// The same where a particle's radius, mass or material is none of the deck that the state belongs to.
+void check_constants(const State& state, const std::string& path, const ParticleTotals& deck);
 
 }  // namespace scree

@@ -138,7 +138,7 @@ void StepLoop::keep_good_state() {
   const double start = seconds_now();
   parts_.recorder.write_pending();  // the copy counts it, also where the backend fails before it is written
   good_.reset();                    // two copies are not needed
-  std::vector<ParticleRecord> particles = std::move(complete_state().particles);
+  std::vector<Particle> particles = std::move(complete_state().particles);
   state_.particles = {};
   good_ = state_;
   good_->particles = std::move(particles);

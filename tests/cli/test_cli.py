@@ -192,7 +192,7 @@ class UsageTest(CommandLineTest):
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
         for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; a particle "
-                     'that leaves: "drift"', "snapshots      2 of about 0.7 kB", "checkpoints    one at the end, about 1.1 kB",
+                     'that leaves: "drift"', "snapshots      2 of about 0.7 kB", "checkpoints    one at the end, about 1.3 kB",
                      "particles      6", "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
                      "degrees of freedom", "contact", "rebounds within 2 % at steps",
                      "fixed step 0.0001 s (4000 steps)", "memory", "petsc"):

@@ -222,7 +222,7 @@ std::vector<Vec3> settled_discs() {
   fmt::print("settled tile: kinetic energy {:.2e} J per disc, {:.2f} contacts per disc\n",
              ledger.kinetic / kTileParticles, 2 * static_cast<Real>(ledger.contacts) / kTileParticles);
   std::vector<Vec3> out;
-  for (const ParticleRecord& record : backend->records()) out.push_back(record.position);
+  for (const Particle& record : backend->records()) out.push_back(record.position);
   return out;
 }
 

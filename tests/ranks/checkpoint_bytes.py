@@ -4,7 +4,7 @@ import struct
 
 MASK = (1 << 64) - 1
 PIECE = 1 << 20  # [B], of which the checksum adds up one hash each
-REALS = 15  # of a particle's row, its velocity from the fourth on
+CHUNK_ROWS = 8192  # of a dataset of rows, that lie in the file together
 
 
 def bit_hash(words, start=14695981039346656037):
@@ -29,12 +29,17 @@ def sealed(content):
     return content[:end] + b"\nchecksum %016x\n" % (total & MASK)
 
 
-def with_velocity(content, row, integers, place, value):
-    """One component of a particle's velocity replaced, with the state hash that follows. row: offset of the particle's
-    numbers in the file; integers: its id, image and whether it drifts; place: 3, 4 or 5."""
-    before = content[row:row + 8 * REALS]
-    after = before[:8 * place] + struct.pack("<d", value) + before[8 * place + 8:]
-    key, *rest = (number & MASK for number in integers)
-    old, new = (bit_hash((key, *words_of(numbers), *rest)) for numbers in (before, after))
-    content = content[:row] + after + content[row + 8 * REALS:]
-    return content, lambda state_hash: f"{(int(state_hash, 16) - old + new) & MASK:016x}"
+def with_velocity(content, particle, x, velocity, new_velocity):
+    """The velocity along y of the last particle replaced, with the state hash that follows. Its place along x is x, no
+    forces act on it, and it has crossed no side."""
+    place = content.rindex(struct.pack("<d", x))
+    position = content[place:place + 24]
+    at = content.rindex(struct.pack("<d", velocity))
+
+    def hash_of(along_y):
+        forces_and_losses, image_and_drifting = 9 * (0,), 4 * (0,)
+        return bit_hash((particle, *words_of(position), *words_of(struct.pack("<3d", 0, along_y, 0)), *forces_and_losses,
+                         *image_and_drifting))
+    content = content[:at] + struct.pack("<d", new_velocity) + content[at + 8:]
+    change = hash_of(new_velocity) - hash_of(velocity)
+    return content, lambda state_hash: f"{(int(state_hash, 16) + change) & MASK:016x}"

@@ -9,7 +9,7 @@ import struct
 import subprocess
 import unittest
 
-from checkpoint_bytes import sealed, with_velocity
+from checkpoint_bytes import CHUNK_ROWS, sealed, with_velocity
 from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, IO_FAILED, LIMIT, LONELY, MPIEXEC,
                       SCREE, STOPPED, VELOCITY, RanksTest, h5py)
 
@@ -54,10 +54,10 @@ class FailureTest(RanksTest):
                 self.assertEqual(self.record("out")["run"]["exit_code"], FAILED)
 
     def test_a_damaged_checkpoint_is_refused(self):
-        def ids(*both):  # with no image counts, and not drifting
-            return b"".join(struct.pack("<5q", one, 0, 0, 0, 0) for one in both)
+        def ids(*both):  # the whole chunk of that dataset
+            return struct.pack("<2q", *both) + bytes(8 * (CHUNK_ROWS - 2))
         speed = struct.pack("<d", VELOCITY)
-        format_name = b"scree checkpoint 3"
+        format_name = b"scree checkpoint 4"
         damages = {
             "ids must increase": (ids(0, 1), ids(0, 0)), "comes after particle 1": (ids(0, 1), ids(1, 0)),
             "particle id -1": (ids(0, 1), ids(-1, 1)), "particle id 2": (ids(0, 1), ids(0, 2)),
@@ -85,7 +85,7 @@ class FailureTest(RanksTest):
                     damaged.write_bytes(ill)
                     result = self.run_deck(IO_FAILED, ranks, deck, "out", EXPLICIT, "--restart", damaged)
                     self.assert_one_message(result, "damaged.h5: ", words)
-        for number, words in ((b"1", "of an older version"), (b"4", "of a newer version")):
+        for number, words in ((b"3", "of an older version"), (b"5", "of a newer version")):
             with self.subTest(words=words):
                 damaged.write_bytes(sealed(content.replace(format_name, format_name[:-1] + number)))
                 result = self.run_deck(IO_FAILED, 2, deck, "out", EXPLICIT, "--restart", damaged)
@@ -100,10 +100,9 @@ class FailureTest(RanksTest):
             deck = self.write(name, text)
             self.run_deck(DONE, 1, deck, "start", [*how, "time.end=0.1"])
             content = (self.folder / "start" / "checkpoint_end.h5").read_bytes()
-            speed = content.rindex(struct.pack("<d", VELOCITY))
             absurd = self.folder / "absurd.h5"
             # The second particle's, along y; with the state hash and the checksum that belong to it.
-            content, hash_of = with_velocity(content, speed - 4 * 8, (1, 0, 0, 0, 0), 4, 1e308)
+            content, hash_of = with_velocity(content, 1, 0.75, VELOCITY, 1e308)
             state_hash = self.hash("start")
             self.assertEqual(content.count(state_hash.encode()), 1)
             absurd.write_bytes(sealed(content.replace(state_hash.encode(), hash_of(state_hash).encode())))

@@ -93,7 +93,7 @@ class SameBitsTest(RanksTest):
                     for name in ("particles.vtkhdf", "bodies.vtkhdf", "history.h5", "checkpoint_end.h5"):
                         files = [self.datasets(f"{compression} {n}", name) for n in (1, ranks)]
                         self.assertEqual(files[0], files[1], name)
-                    position = files[1]["real_rows/particles/reals"]
+                    position = files[1]["real_rows/particles/position"]
                     self.assertEqual(position[3], "gzip" if compression else None)
         sizes = [(self.folder / f"{c} 4" / "checkpoint_end.h5").stat().st_size for c in (0, 3)]
         self.assertLess(sizes[1], sizes[0])

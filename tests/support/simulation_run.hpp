@@ -67,7 +67,7 @@ class SimulationRun {
   const StepCounts& counts() const { return step_.counts(); }
   const MultibodyState& bodies() const { return state_.bodies; }
   const Multibody& multibody() const { return *link_.multibody(); }
-  std::vector<ParticleRecord> particles() const { return backend_->records(); }  // ordered by global id
+  std::vector<Particle> particles() const { return backend_->records(); }  // ordered by global id
   ParticleLedger particle_ledger() { return backend_->ledger(verlet_step()); }
   Ledger ledger() {
     return make_ledger(particle_ledger(), state_.carried_out, link_.multibody(), state_.bodies,

@@ -65,7 +65,7 @@ struct Coupled {
 
 // Bit for bit, as far as the next step can see.
 bool same(const Coupled& a, const Coupled& b) {
-  const std::vector<ParticleRecord> p = a.backend->records(), q = b.backend->records();
+  const std::vector<Particle> p = a.backend->records(), q = b.backend->records();
   bool equal = p.size() == q.size() && a.bodies.position == b.bodies.position &&
                a.bodies.velocity == b.bodies.velocity && a.bodies.acceleration == b.bodies.acceleration &&
                a.bodies.multipliers == b.bodies.multipliers && a.bodies.force == b.bodies.force;

@@ -43,7 +43,7 @@ struct Pair {
 Real difference(Vec3 a, Vec3 b) { return norm(a - b) / (1 + norm(a)); }
 
 // Largest difference of two states, relative; 0 where all bits are the same.
-Real difference(const std::vector<ParticleRecord>& a, const std::vector<ParticleRecord>& b) {
+Real difference(const std::vector<Particle>& a, const std::vector<Particle>& b) {
   if (a.size() != b.size()) return INFINITY;
   Real largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -249,7 +249,7 @@ TEST_CASE("many short explicit steps are the same on both backends") {
 TEST_CASE("the state moves between the backends without a trace") {
   const BoxCase& c = kBoxes[5];
   Pair pair(dense_box(c, ParticleIntegrator::velocity_verlet, kParticles));
-  const std::vector<ParticleRecord> records = pair.cpu->records();
+  const std::vector<Particle> records = pair.cpu->records();
   pair.cuda->load(records, {});
   CHECK(difference(pair.cuda->records(), records) == 0);
 }

@@ -65,7 +65,7 @@ TEST_CASE("mixed precision: rebound velocities are within 1e-4 of those in doubl
     }
     Run mixed(model, true), exact(model, false);
     mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
-    const std::vector<ParticleRecord> a = mixed.backend->records(), b = exact.backend->records();
+    const std::vector<Particle> a = mixed.backend->records(), b = exact.backend->records();
     Real largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
       largest = std::max(largest, norm(a[i].velocity - b[i].velocity));
@@ -95,9 +95,9 @@ TEST_CASE("mixed precision: a settled heap stays settled for a million steps", "
     }
   Run run(model, true);
   run.advance(1e-4, 200000);
-  const std::vector<ParticleRecord> settled = run.backend->records();
+  const std::vector<Particle> settled = run.backend->records();
   run.advance(1e-4, 1000000);
-  const std::vector<ParticleRecord> after = run.backend->records();
+  const std::vector<Particle> after = run.backend->records();
   Real moved = 0, fastest = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {
     moved = std::max(moved, norm(after[i].position - settled[i].position));
@@ -137,14 +137,14 @@ TEST_CASE("mixed precision: what drifts outside keeps its place however far it g
   add_sphere(model, {50, -3, 50}, {-900, -20, 35}), add_sphere(model, {50, 50, 50}, {});
   Run mixed(model, true), exact(model, false);
   for (Run* run : {&mixed, &exact}) {
-    std::vector<ParticleRecord> records = run->backend->records();
+    std::vector<Particle> records = run->backend->records();
     records[0].drifting = true;
     run->backend->load(records, {});
     run->backend->build_list(model.contact.skin, run->timers);
     run->backend->initial_forces();
     for (int part = 0; part < 3; ++part) run->advance(1e-4, 4000);  // a kilometre
   }
-  const std::vector<ParticleRecord> a = mixed.backend->records(), b = exact.backend->records();
+  const std::vector<Particle> a = mixed.backend->records(), b = exact.backend->records();
   CHECK(b[0].position.x < -1000);
   for (std::size_t i = 0; i < 2; ++i) {
     CHECK(norm(a[i].position - b[i].position) <= 1e-8 * norm(b[i].position));

@@ -140,7 +140,7 @@ TEST_CASE("the ledger sums over all particles and contacts") {
     Real kinetic = 0, gravitational = 0, scale = 0;
     Vec3 momentum, angular;
     for (std::size_t i = 0; i < kParticles; ++i) {
-      const ParticleRecord& r = box.records[i];
+      const Particle& r = box.records[i];
       const Real mass = box.model.particles.mass[i];
       kinetic += mass / 2 * dot(r.velocity, r.velocity);
       gravitational -= mass * dot(box.model.gravity, r.position);

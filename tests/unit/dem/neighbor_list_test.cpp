@@ -21,10 +21,10 @@ constexpr Index kParticles = 150, kDrifting = 7;
 struct Items {
   Items(const Model& model, const BodyShapes& shapes, const NeighborBuilder& builder) {
     const Subdomain subdomain(model.space);
-    std::vector<ParticleRecord> records = initial_records(model.particles, subdomain);
+    std::vector<Particle> records = initial_records(model.particles, subdomain);
     std::stable_sort(records.begin(), records.end() - kDrifting,
                      [](const auto& a, const auto& b) { return a.position.x < b.position.x; });
-    store.load(model.particles, records);
+    store.load(records);
     layout.owned = kParticles, layout.active = kParticles - kDrifting, layout.shapes = shapes.size();
     const Real width = builder.cutoff(kSkin);
     ghosts =
@@ -37,11 +37,10 @@ struct Items {
 
   void add_ghosts() {
     for (const Ghost& ghost : ghosts) {
-      layout.ghost_images.push_back(ghost.image);
       const auto source = static_cast<std::size_t>(ghost.source);
       const Vec4 p = store.position[source];
       store.position.push_back(vec4(xyz(p) + ghost.shift, p.w));
-      store.global_id.push_back(store.global_id[source]);
+      store.row_key.push_back(row_key(id_of(store.row_key[source]), ghost.image));
     }
   }
 
@@ -53,24 +52,24 @@ struct Items {
       const Vec3 p = point_motion(motion[static_cast<std::size_t>(shape.body)], shape.offset).position;
       centers.push_back(vec4(subdomain.wrap(snap(p, subdomain.snap_constant()), unused), shape.radius));
       store.position.push_back(centers.back());
-      store.global_id.push_back(shape.global_id);
+      store.row_key.push_back(row_key(shape.global_id));
     }
     layout.shape_images = periodic_images(subdomain, centers, width);
     for (const Ghost& image : layout.shape_images) {
       const auto source = static_cast<std::size_t>(image.source);
       store.position.push_back(vec4(xyz(centers[source]) + image.shift, centers[source].w));
-      store.global_id.push_back(shapes.items()[source].global_id);
+      store.row_key.push_back(row_key(shapes.items()[source].global_id, image.image));
     }
   }
 
   int image_of(Index j) const {
     if (j < layout.owned) return kNoShift;
-    if (j < layout.first_shape) return layout.ghost_images[static_cast<std::size_t>(j - layout.owned)];
+    if (j < layout.first_shape) return ghosts[static_cast<std::size_t>(j - layout.owned)].image;
     if (!layout.is_shape_image(j)) return kNoShift;
     return layout.shape_images[static_cast<std::size_t>(j - layout.first_shape - layout.shapes)].image;
   }
   Vec4 position(Index j) const { return store.position[static_cast<std::size_t>(j)]; }
-  GlobalId global_id(Index j) const { return store.global_id[static_cast<std::size_t>(j)]; }
+  GlobalId global_id(Index j) const { return id_of(store.row_key[static_cast<std::size_t>(j)]); }
 
   ParticleStore store;
   ItemLayout layout;

@@ -148,7 +148,7 @@ struct LoadedBox {
   LoadedBox& operator=(const LoadedBox&) = delete;
 
   Model model;
-  std::vector<ParticleRecord> records;
+  std::vector<Particle> records;
   std::vector<BodyMotion> motion;
   std::unique_ptr<Backend> backend;
   StageTimers timers;

@@ -59,7 +59,7 @@ RankList list_of(const Model& model, const DomainBox* box, bool shapes_meet) {
   ItemLayout layout;
   const auto all = static_cast<GlobalId>(model.particles.size());
   const auto add = [&](Vec3 p, GlobalId id) {
-    store.position.push_back(vec4(p, kRadius)), store.global_id.push_back(id);
+    store.position.push_back(vec4(p, kRadius)), store.row_key.push_back(row_key(id));
   };
   const auto add_particles = [&](bool owned) {
     for (GlobalId id = 0; id < all; ++id) {
@@ -72,7 +72,6 @@ RankList list_of(const Model& model, const DomainBox* box, bool shapes_meet) {
   };
   layout.owned = layout.active = add_particles(true);
   layout.first_shape = add_particles(false);
-  layout.ghost_images.assign(static_cast<std::size_t>(layout.first_shape - layout.owned), kNoShift);
   for (const ShapeItem& shape : shapes.items()) add(shape.offset, shape.global_id);
   layout.shapes = shapes.size(), layout.items = static_cast<Index>(store.position.size());
   layout.shapes_meet = shapes_meet;
@@ -86,10 +85,11 @@ RankList list_of(const Model& model, const DomainBox* box, bool shapes_meet) {
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (Index i = 0; i < layout.items; ++i) {
     if (i >= layout.owned && i < layout.first_shape) continue;
-    std::vector<GlobalId>& row = out.rows[store.global_id[static_cast<std::size_t>(i)]];
+    std::vector<GlobalId>& row = out.rows[id_of(store.row_key[static_cast<std::size_t>(i)])];
     for (Index k = list.offsets[static_cast<std::size_t>(i)];
          k < list.offsets[static_cast<std::size_t>(i) + 1]; ++k)
-      row.push_back(store.global_id[static_cast<std::size_t>(list.neighbors[static_cast<std::size_t>(k)])]);
+      row.push_back(
+          id_of(store.row_key[static_cast<std::size_t>(list.neighbors[static_cast<std::size_t>(k)])]));
   }
   return out;
 }

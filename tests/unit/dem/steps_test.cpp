@@ -1,35 +1,17 @@
 // Steps of the CPU backend: undone without a trace, the same bits for every list and for fused substeps;
 // particles that leave.
 #include <cmath>
-#include <cstring>
 
 #include "base/error.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
+#include "support/particle_bits.hpp"
 
 namespace scree {
 
 namespace {
 
 constexpr int kParticles = 60;
-
-// Bit for bit, signs of zeros included.
-bool same_bits(Vec3 a, Vec3 b) { return std::memcmp(&a, &b, sizeof(Vec3)) == 0; }
-
-bool same_bits(const std::vector<ParticleRecord>& a, const std::vector<ParticleRecord>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const ParticleRecord &p = a[i], &q = b[i];
-    const bool same = p.global_id == q.global_id && same_bits(p.position, q.position) &&
-                      same_bits(p.velocity, q.velocity) && same_bits(p.acceleration, q.acceleration) &&
-                      same_bits(p.force, q.force) && p.contact_loss == q.contact_loss &&
-                      p.loss_power == q.loss_power && p.integrator_loss == q.integrator_loss &&
-                      p.image.x == q.image.x && p.image.y == q.image.y && p.image.z == q.image.z &&
-                      p.drifting == q.drifting;
-    if (!same) return false;
-  }
-  return true;
-}
 
 Model soft_box(const BoxCase& box, ParticleIntegrator integrator) {
   Model model = random_box(box, kParticles, 21);
@@ -50,7 +32,7 @@ TEST_CASE("a rolled-back step leaves no trace") {
     CAPTURE(c.name);
     LoadedBox box(soft_box(c, ParticleIntegrator::hht), 0.2);
     hht_step(*box.backend, box.motion, 1e-4);
-    const std::vector<ParticleRecord> before = box.backend->records();
+    const std::vector<Particle> before = box.backend->records();
     box.backend->begin_step(1e-3);
     box.backend->contact_force();
     box.backend->place_bodies(box.motion);
@@ -60,7 +42,7 @@ TEST_CASE("a rolled-back step leaves no trace") {
     CHECK(same_bits(box.backend->records(), before));
     // The next step is the one that would have followed.
     hht_step(*box.backend, box.motion, 1e-4);
-    const std::vector<ParticleRecord> after = box.backend->records();
+    const std::vector<Particle> after = box.backend->records();
     LoadedBox other(soft_box(c, ParticleIntegrator::hht), 0.2);
     hht_step(*other.backend, other.motion, 1e-4), hht_step(*other.backend, other.motion, 1e-4);
     CHECK(same_bits(other.backend->records(), after));

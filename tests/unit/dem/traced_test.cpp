@@ -10,7 +10,7 @@ TEST_CASE("traced particles are where the pack of all particles has them") {
   for (const BoxCase& c : {kBoxes[0], kBoxes[4]}) {
     CAPTURE(c.name);
     LoadedBox box(random_box(c, 200, 5));
-    for (ParticleRecord& record : box.records) record.position.x += 0.7;  // some leave the periodic box
+    for (Particle& record : box.records) record.position.x += 0.7;  // some leave the periodic box
     box.backend->load(box.records, {});
     const std::vector<GlobalId> wanted{199, 0, 7, 5000, 198, 3};  // one that is not there
     std::map<GlobalId, TracedParticle> found;

@@ -75,7 +75,7 @@ TEST_CASE("a deck too large for any machine is refused at once") {
                                      "spacing = [1e-9, 0]\nradius = 1e-10\nmass = 1.0\n";
                                return groups;
                              }()),
-                 "a run of 100000000000 particles takes at least 7e+04 GB on one rank"));
+                 "a run of 100000000000 particles takes at least 7.2e+04 GB on one rank"));
   CHECK(contains(model_error(kSmallDeck +
                              [] {
                                std::string rows;

@@ -206,25 +206,32 @@ TEST_CASE("a checkpoint with any dataset too short, too long, missing or unknown
 TEST_CASE("a checkpoint with rows of particles too few, too many or too wide is refused") {
   Case same;
   const ScratchDirectory folder;
-  const auto message = [&](int real_rows, int integer_rows, int width = 15) {
+  const auto resize = [](auto& rows, std::int64_t count) {
+    auto values = values_of(rows);
+    values.resize(static_cast<std::size_t>(count * rows.width), values.back());
+    set_rows(rows, values);
+  };
+  const auto message = [&](std::int64_t all, std::int64_t of_force) {
     return same.refusal(changed(folder, [&](Checkpoint& c) {
-      auto& reals = c.real_rows.at("particles/reals");
-      auto& integers = c.integer_rows.at("particles/integers");
-      std::vector<Real> r = values_of(reals);
-      std::vector<std::int64_t> k = values_of(integers);
-      r.resize(static_cast<std::size_t>(real_rows * width)),
-          k.resize(static_cast<std::size_t>(integer_rows * 5));
-      if (integer_rows == 4) k[15] = 3;  // its id
-      reals.width = width;
-      set_rows(reals, r), set_rows(integers, k);
+      for (auto& [name, rows] : c.real_rows) resize(rows, all);
+      for (auto& [name, rows] : c.integer_rows) resize(rows, all);
+      resize(c.real_rows.at("particles/force"), of_force);
+      if (all == 4) {
+        std::vector<std::int64_t> ids = {0, 1, 2, 3};
+        set_rows(c.integer_rows.at("particles/global_id"), ids);
+      }
     }));
   };
   CHECK(message(3, 3) == "");
   CHECK(contains(message(2, 2), "2 particles; the deck has 3"));
   CHECK(contains(message(4, 4), "4 particles; the deck has 3"));
+  CHECK(contains(message(3, 2), "do not fit together"));
   CHECK(contains(message(2, 3), "do not fit together"));
-  CHECK(contains(message(3, 3, 14),
-                 "dataset /real_rows/particles/reals has 14 values per row; it should have 15"));
+  const std::string wide = same.refusal(changed(folder, [&](Checkpoint& c) {
+    auto& rows = c.real_rows.at("particles/position");
+    rows.width = 2, set_rows(rows, std::vector<Real>(6));
+  }));
+  CHECK(contains(wide, "dataset /real_rows/particles/position has 2 values per row; it should have 3"));
 }
 
 TEST_CASE("a checkpoint whose state has lost a bit is refused by its hash") {
@@ -250,19 +257,18 @@ TEST_CASE("a checkpoint whose state has lost a bit is refused by its hash") {
   CHECK(of_reals == std::ssize(whole.reals));
   for (const auto& [name, values] : whole.integers)
     check([&, &name = name](Checkpoint& c) { flip(c.integers[name][0]); });
-  for (int trial = 0; trial < 20; ++trial) {
-    check([&](Checkpoint& c) {
-      std::vector<Real> values = values_of(c.real_rows.at("particles/reals"));
-      flip(values[random() % values.size()]);
-      set_rows(c.real_rows.at("particles/reals"), values);
-    });
-    check([&](Checkpoint& c) {
-      std::vector<std::int64_t> values = values_of(c.integer_rows.at("particles/integers"));
-      flip(values[random() % values.size()]);
-      set_rows(c.integer_rows.at("particles/integers"), values);
-    });
-  }
-  CHECK(refused >= of_reals + 20);
+  const auto check_rows = [&](auto Checkpoint::*group) {
+    for (const auto& [name, rows] : whole.*group)
+      for (int trial = 0; trial < 4; ++trial)
+        check([&, &name = name](Checkpoint& c) {
+          auto values = values_of((c.*group).at(name));
+          flip(values[random() % values.size()]);
+          set_rows((c.*group).at(name), values);
+        });
+  };
+  refused = 0;
+  check_rows(&Checkpoint::real_rows), check_rows(&Checkpoint::integer_rows);
+  CHECK(refused == 4 * std::ssize(whole.real_rows) + 4 * std::ssize(whole.integer_rows));
   // Lengths are looked at before the state is.
   CHECK(contains(same.refusal(changed(folder, [](Checkpoint& c) { c.reals["bodies/velocity"].pop_back(); })),
                  "dataset /reals/bodies/velocity has 5 values; the deck's model has 6"));
@@ -343,6 +349,37 @@ TEST_CASE("--allow-changes goes on with other steps, forces and integrators, and
     CHECK(other.run(folder.path(), folder / "checkpoint_end.h5") == "");  // the deck is the checkpoint's now
     CHECK(contains(read_checkpoint(folder / "checkpoint_end.h5").text("changes"), "t = 0.02 s: "));
   }
+}
+
+TEST_CASE(
+    "a restart goes on with the checkpoint's radii and masses, one with another deck with that deck's") {
+  const std::vector<std::string> spread = {
+      "particles.discs.radius={ kind = \"uniform\", min = 0.09, max = 0.11 }",
+      "particles.discs.mass={ kind = \"uniform\", min = 1.0, max = 2.0 }"};
+  const ScratchDirectory folder;
+  Case first(spread);
+  REQUIRE(first.run(folder / "first") == "");
+  const auto rows_in = [](const std::string& path, const std::string& name) {
+    return values_of(read_checkpoint(path).real_rows.at("particles/" + name));
+  };
+  const std::string start = folder / "first/checkpoint_end.h5", swapped = folder / "swapped.h5";
+  Checkpoint checkpoint = read_checkpoint(start);
+  for (const char* name : {"radius", "mass"}) {
+    std::vector<Real> values = rows_in(start, name);
+    CHECK((values ==
+           (std::string(name) == "mass" ? first.model.particles.mass : first.model.particles.radius)));
+    std::reverse(values.begin(), values.end());
+    set_rows(checkpoint.real_rows.at(std::string("particles/") + name), values);
+  }
+  write_checkpoint(swapped, checkpoint);
+  Case second(spread);
+  REQUIRE(second.run(folder / "second", swapped) == "");
+  for (const char* name : {"radius", "mass"})
+    CHECK(same_bits(rows_in(folder / "second/checkpoint_end.h5", name), rows_in(swapped, name)));
+  Case other({spread[0], spread[1], "contact.pairs.0.stiffness=2e4"});
+  REQUIRE(other.run(folder / "other", swapped, true) == "");
+  for (const char* name : {"radius", "mass"})
+    CHECK(same_bits(rows_in(folder / "other/checkpoint_end.h5", name), rows_in(start, name)));
 }
 
 TEST_CASE("--allow-changes does not go on where the checkpoint's numbers have no meaning") {

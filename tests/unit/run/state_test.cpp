@@ -4,11 +4,15 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "base/error.hpp"
+#include "output/hdf5_file.hpp"
 #include "support/catch.hpp"
 #include "support/checkpoint_arrays.hpp"
 #include "support/decks.hpp"
+#include "support/particle_bits.hpp"
+#include "unit/output/scratch.hpp"
 
 namespace scree {
 
@@ -23,7 +27,6 @@ class AwkwardNumbers {
     return count_ % 4 == 0 ? kSpecial[static_cast<std::size_t>(count_ / 4 % 5)] : std::sin(count_) * 1e-7;
   }
   std::int64_t integer() { return (std::int64_t{1} << 53) + 1 + ++count_; }
-  std::int32_t small_integer() { return 17 - ++count_; }
   Vec3 vector() {
     const Real x = real(), y = real(), z = real();
     return {x, y, z};
@@ -44,17 +47,10 @@ State awkward_state() {
     for (int k = 0; k < 6; ++k) v->push_back(n.real());
   for (int b = 0; b < 2; ++b) s.bodies.wrench.push_back({n.vector(), n.vector()});
   s.bodies.dissipated = n.real(), s.bodies.integrator_loss = n.real(), s.bodies.driver_work = n.real();
-  for (int i = 0; i < 9; ++i)
-    s.particles.push_back({n.integer(),
-                           n.vector(),
-                           n.vector(),
-                           n.vector(),
-                           n.vector(),
-                           n.real(),
-                           n.real(),
-                           n.real(),
-                           {n.small_integer(), n.small_integer(), n.small_integer()},
-                           i % 3 == 0});
+  for (int i = 0; i < 9; ++i) {
+    s.particles.emplace_back().global_id = n.integer();
+    fill_fields(s.particles.back(), i);
+  }
   s.shapes = {n.real(), n.real()};
   s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real()};
   s.balance.open = true, s.balance.start = n.real(), s.balance.exchanged = n.real();
@@ -82,7 +78,7 @@ TEST_CASE("the state returns from its packed form bit for bit") {
   const State state = awkward_state();
   const State returned = unpack(pack(state));
   const Checkpoint first = with_rows_as_arrays(pack(state)), second = with_rows_as_arrays(pack(returned));
-  CHECK(first.integers.at("particles/integers").size() == 5 * state.particles.size());
+  CHECK(first.integers.at("particles/image").size() == 3 * state.particles.size());
   CHECK(first.integers == second.integers);
   REQUIRE(first.reals.size() == second.reals.size());
   for (const auto& [name, values] : first.reals) {
@@ -100,14 +96,7 @@ TEST_CASE("what a checkpoint holds is the state") {
   CHECK(after.counts.rejected_newton == before.counts.rejected_newton);
   CHECK(same_bits(after.bodies.multipliers, before.bodies.multipliers));
   CHECK(after.bodies.driver_work == before.bodies.driver_work);
-  REQUIRE(after.particles.size() == before.particles.size());
-  for (std::size_t i = 0; i < after.particles.size(); ++i) {
-    const ParticleRecord &a = after.particles[i], &b = before.particles[i];
-    CHECK((a.global_id == b.global_id && a.position == b.position && a.velocity == b.velocity));
-    CHECK((a.acceleration == b.acceleration && a.force == b.force && a.drifting == b.drifting));
-    CHECK((a.contact_loss == b.contact_loss && a.loss_power == b.loss_power));
-    CHECK((a.integrator_loss == b.integrator_loss && a.image.x == b.image.x && a.image.z == b.image.z));
-  }
+  CHECK(differing_fields(after.particles, before.particles) == "");
   CHECK(after.shapes.loss_power == before.shapes.loss_power);
   CHECK(after.carried_out.removed == before.carried_out.removed);
   CHECK(after.balance.open);
@@ -120,10 +109,94 @@ TEST_CASE("the hash is of what was computed, not of what was written") {
   State other = state;
   ++other.history_rows, ++other.snapshots, ++other.clock.snapshots;
   CHECK(state_hash(other, true) == state_hash(state, true));
-  other.particles[3].image.y += 1;
+  ++other.counts.steps;
   CHECK(state_hash(other, true) != state_hash(state, true));
-  other = state, ++other.counts.steps;
-  CHECK(state_hash(other, true) != state_hash(state, true));
+}
+
+TEST_CASE("the hash is of every field that changes in time, and of no other") {
+  const State state = awkward_state();
+  for_each_field([&](const ParticleField& field, auto member) {
+    CAPTURE(field.name);
+    for (std::size_t k = 0; k < numbers_of(state.particles[3].*member).size(); ++k) {
+      State other = state;
+      auto numbers = numbers_of(state.particles[3].*member);
+      numbers[k] += 1;
+      set_value(other.particles[3].*member, numbers.data());
+      const bool differs = state_hash(other, true) != state_hash(state, true);
+      CHECK(differs == ((field.parts & kState) != 0));
+    }
+  });
+}
+
+TEST_CASE("a checkpoint holds a dataset for each field, with its unit and what it means") {
+  const State state = awkward_state();
+  const ScratchDirectory folder;
+  write_checkpoint(folder / "c.h5", pack(state));
+  CHECK(differing_fields(unpack(read_checkpoint(folder / "c.h5")).particles, state.particles) == "");
+  const Hdf5File file(folder / "c.h5", Hdf5Access::read);
+  std::size_t datasets =
+      file.dataset_names("/real_rows/").size() + file.dataset_names("/integer_rows/").size();
+  CHECK(file.rows("/integer_rows/particles/global_id") == 9);
+  --datasets;
+  for_each_field([&](const ParticleField& field, auto member) {
+    auto numbers = numbers_of(state.particles[0].*member);
+    const bool real = std::is_same_v<decltype(numbers), std::array<Real, numbers.size()>>;
+    const std::string name = std::string(real ? "/real_rows" : "/integer_rows") + "/particles/" + field.name;
+    CAPTURE(name);
+    CHECK(file.rows(name) == 9);
+    CHECK(file.width(name) == std::ssize(numbers));
+    CHECK(file.read_text_attribute(name, "unit") == field.unit);
+    CHECK(file.read_text_attribute(name, "description") == field.description);
+    --datasets;
+  });
+  CHECK(datasets == 0);
+}
+
+TEST_CASE("a number that a field cannot hold is refused by the field's name") {
+  const State state = awkward_state();
+  for (const char* name : {"particles/image", "particles/drifting", "particles/material"})
+    for (const std::int64_t value :
+         {std::int64_t{1} << 32, -(std::int64_t{1} << 32), std::int64_t{1} << 40}) {
+      CAPTURE(name, value);
+      Checkpoint changed = pack(state);
+      auto& rows = changed.integer_rows.at(name);
+      rows.copy = [copy = rows.copy, value](std::int64_t first, std::int64_t count, std::int64_t* to) {
+        copy(first, count, to);
+        to[4] = value;
+      };
+      CHECK(contains(unpack_error(changed), name));
+    }
+}
+
+TEST_CASE("constants that no particle of the deck has are refused") {
+  State state;
+  Particle& p = state.particles.emplace_back();
+  p.global_id = 7, p.radius = 0.2, p.mass = 3, p.material = 1;
+  ParticleTotals deck;
+  deck.smallest_radius = 0.1, deck.largest_radius = 0.2, deck.smallest_mass = 3, deck.largest_mass = 4;
+  deck.materials.resize(2);
+  const auto message = [&]() -> std::string {
+    try {
+      check_constants(state, "some.h5", deck);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(message() == "");
+  for (const auto& [name, member] :
+       {std::pair("radius", &Particle::radius), std::pair("mass", &Particle::mass)})
+    for (const Real value : {0.0, 0.09, 4.1, std::nan("")}) {
+      CAPTURE(name, value);
+      const Real healthy = std::exchange(p.*member, value);
+      CHECK(contains(message(),
+                     "some.h5: not a valid checkpoint: the " + std::string(name) + " of particle 7 is "));
+      p.*member = healthy;
+    }
+  for (const int material : {-1, 2}) {
+    p.material = material;
+    CHECK(contains(message(), "the material of particle 7 is "));
+  }
 }
 
 TEST_CASE("a checkpoint that lacks an entry or whose arrays do not fit names it") {
@@ -137,11 +210,11 @@ TEST_CASE("a checkpoint that lacks an entry or whose arrays do not fit names it"
     CHECK(contains(unpack_error(partial), name));
   }
   Checkpoint torn = whole;
-  --torn.real_rows["particles/reals"].count;
+  --torn.real_rows["particles/radius"].count;
   CHECK(contains(unpack_error(torn), "do not fit together"));
   Checkpoint without = whole;
   without.integer_rows.clear();
-  CHECK(contains(unpack_error(without), "particles/integers"));
+  CHECK(contains(unpack_error(without), "particles/global_id"));
   Checkpoint doubled = whole;
   doubled.integers["counts/steps"].push_back(1);
   CHECK(contains(unpack_error(doubled), "counts/steps"));

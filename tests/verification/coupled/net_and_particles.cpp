@@ -14,7 +14,7 @@ namespace {
 
 std::vector<Vec3> positions(const SimulationRun& run) {
   std::vector<Vec3> out;
-  for (const ParticleRecord& particle : run.particles()) out.push_back(particle.position);
+  for (const Particle& particle : run.particles()) out.push_back(particle.position);
   return out;
 }
 

@@ -21,7 +21,7 @@ Real distance(const SimulationRun& run, const Rows& truth) {
   const auto sample = static_cast<std::size_t>(std::lround(run.time() / 1e-3));
   const std::vector<Real>& row = truth.at(sample);
   REQUIRE(std::abs(row[0] - run.time()) < 1e-9);
-  const std::vector<ParticleRecord> particles = run.particles();
+  const std::vector<Particle> particles = run.particles();
   Real largest = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const Vec3 p = particles[i].position;

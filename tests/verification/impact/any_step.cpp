@@ -82,7 +82,7 @@ Outcome measure(const Impact& impact, std::optional<Real> h, int phases) {
     SimulationRun run(model);
     run.run();
     REQUIRE(run.particle_ledger().contacts == 0);
-    const std::vector<ParticleRecord> discs = run.particles();
+    const std::vector<Particle> discs = run.particles();
     if (impact.oblique) {
       const Real kinetic =
           dot(discs[0].velocity, discs[0].velocity) + dot(discs[1].velocity, discs[1].velocity);

@@ -39,7 +39,7 @@ mass = 1.0
 
 // The left particle hits the right one; both drift by `drift` [m/s]. Everything stands `shift` [m] further
 // right.
-std::vector<ParticleRecord> after_impact(Real shift, Vec3 drift, const std::string& integrator) {
+std::vector<Particle> after_impact(Real shift, Vec3 drift, const std::string& integrator) {
   Model model = model_of(kPair, {"integrator.particles=" + integrator});
   for (Vec3& position : model.particles.position) position.x = std::fmod(position.x + shift, 1);
   model.particles.velocity = {drift + Vec3{2, 0, 0}, drift};

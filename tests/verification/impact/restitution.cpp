@@ -39,7 +39,7 @@ Impact floor_impact(Model model, Real expected_duration, int steps_in_contact) {
   Real before = 0;
   while (run.time() < model.time.end) {
     const Real step = run.step();
-    const ParticleRecord particle = run.particles()[0];
+    const Particle particle = run.particles()[0];
     const Real overlap = -0.95 - particle.position.y, now = measure(overlap, -particle.velocity.y);
     if (before > 0 && now <= 0 && impact.duration == 0)
       impact.duration = crossing(run.time(), step, before, now) - gap / kSpeed;

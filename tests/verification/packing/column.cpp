@@ -18,7 +18,7 @@ TEST_CASE("the overlaps of a column of discs at rest bear the weight above them"
         {"time.end=6", "integrator.particles=" + integrator, "integrator.residual_tolerance=1e-13"});
     SimulationRun run(model);
     run.run();
-    const std::vector<ParticleRecord> discs = run.particles();
+    const std::vector<Particle> discs = run.particles();
     const Real n = static_cast<Real>(discs.size()), weight = model.particles.mass[0] * norm(model.gravity);
     REQUIRE(discs.size() == 10);
     Real top_of_below = 0;

@@ -57,7 +57,7 @@ seed = 4
 
 // Puts the particles of `model` where those of `run` are, at rest.
 void take_over_at_rest(const SimulationRun& run, Model& model) {
-  const std::vector<ParticleRecord> records = run.particles();
+  const std::vector<Particle> records = run.particles();
   for (std::size_t i = 0; i < records.size(); ++i) {
     model.particles.position[i] = records[i].position;
     model.particles.velocity[i] = {};
@@ -66,8 +66,8 @@ void take_over_at_rest(const SimulationRun& run, Model& model) {
 
 // Share of the particles on which more than 5 % of their weight is not balanced.
 Real unbalanced_share(const SimulationRun& run, const Model& model) {
-  const std::vector<ParticleRecord> records = run.particles();
-  const auto unbalanced = [&](const ParticleRecord& p) {
+  const std::vector<Particle> records = run.particles();
+  const auto unbalanced = [&](const Particle& p) {
     return norm(p.force) >
            0.05 * model.particles.mass[static_cast<std::size_t>(p.global_id)] * norm(model.gravity);
   };

@@ -1,0 +1,180 @@
+// The fields of a particle, each declared once. Arrays on either machine, a particle by itself and the loops
+// over both follow from the table: load, sort, migration, ghosts, checkpoint, hash and memory estimates are
+// such loops.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "partition/halo.hpp"
+#include "partition/subdomain.hpp"
+
+// One line per field, with its FieldParts. A checkpoint has all of them; the hash takes those of the state,
+// in this order.
+//
+// FIELD(name, type, unit, sentence, parts): an array of its own.
+//
+// PACKED(name, unit, sentence, parts, scalar, unit, sentence, parts): a vector and a scalar in one Vec4, so
+// that a neighbour costs two loads. All items have these, and ghosts get them with each update_halo.
+// clang-format off
+#define SCREE_PARTICLE_FIELDS(FIELD, PACKED)                                                                 \
+  PACKED(position, "m", "centre, within the periodic sides unless the particle drifts", kState,              \
+         radius, "m", "radius", kConstant)                                                                   \
+  PACKED(velocity, "m/s", "velocity", kState, mass, "kg", "mass", kConstant)                                 \
+  FIELD(material, int, "1", "place of its material among the deck's", kConstant | kGhost)                    \
+  FIELD(acceleration, Vec3, "m/s^2", "acceleration that the next step starts from", kState)                  \
+  FIELD(force, Vec3, "N", "gravity and contacts", kState)                                                    \
+  FIELD(contact_loss, Real, "J", "dissipated in its share of its contacts since t = 0", kState)              \
+  FIELD(loss_power, Real, "W", "dissipation in its share of its contacts now", kState)                       \
+  FIELD(integrator_loss, Real, "J", "taken out by HHT since t = 0", kState)                                  \
+  FIELD(image, ImageCount, "1", "periods that were taken off the position", kState)                          \
+  FIELD(drifting, std::uint8_t, "1", "1 if it has left through an open side", kState)
+// clang-format on
+
+namespace scree {
+
+enum FieldParts : unsigned {
+  kState = 1,     // changes in time
+  kConstant = 2,  // given by the deck: take_constants()
+  kGhost = 4,     // a FIELD that ghosts have, too: copied when a list is built
+};
+
+// Orders the entries of a neighbour list's row, by global id and then by image, whatever the local indices
+// are.
+SCREE_HD std::int64_t row_key(GlobalId id, std::int8_t image = kNoShift) { return id * 27 + image; }
+SCREE_HD GlobalId id_of(std::int64_t row_key) { return row_key / 27; }
+
+// One Array per FIELD and PACKED, and the items' names. Array: of memory on one machine, or a plain pointer.
+template <template <class> class Array>
+struct FieldArrays {
+#define SCREE_FIELD(name, type, unit, sentence, parts) Array<type> name{};
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) Array<Vec4> name{};
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+  Array<std::int64_t> row_key{};
+};
+
+template <class T>
+using Pointer = T*;
+using ParticleViews = FieldArrays<Pointer>;
+
+// A particle by itself, complete.
+struct Particle {
+  GlobalId global_id = 0;
+#define SCREE_FIELD(name, type, unit, sentence, parts) type name{};
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
+  Vec3 name{};                                                 \
+  Real scalar{};
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+};
+
+// Which arrays a loop visits.
+enum FieldArrayKind : unsigned {
+  kNames = 1,                                     // row_key
+  kMotion = 2,                                    // PACKED
+  kGhostCopies = 4,                               // FIELD with kGhost
+  kOwnedArrays = 8,                               // other FIELD: owned particles alone
+  kItemArrays = kNames | kMotion | kGhostCopies,  // all items
+  kAllArrays = kItemArrays | kOwnedArrays
+};
+
+// Calls visit(a.name, b.name, ...) with the arrays of these kinds of each of the sets.
+SCREE_HD_CALLER template <unsigned kinds, class Visit, class... Sets>
+constexpr SCREE_HD void for_each_array(const Visit& visit, Sets&... sets) {
+#define SCREE_FIELD(name, type, unit, sentence, parts) \
+  if constexpr ((kinds & ((parts)&kGhost ? kGhostCopies : kOwnedArrays)) != 0) visit(sets.name...);
+#define SCREE_PACKED(name, ...) \
+  if constexpr ((kinds & kMotion) != 0) visit(sets.name...);
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+  if constexpr ((kinds & kNames) != 0) visit(sets.row_key...);
+}
+
+// Bytes that an item takes in the arrays of these kinds, and how many there are.
+template <unsigned kinds>
+constexpr std::size_t bytes_in_arrays() {
+  std::size_t bytes = 0;
+  const ParticleViews none;
+  for_each_array<kinds>([&](auto* array) { bytes += sizeof(*array); }, none);
+  return bytes;
+}
+template <unsigned kinds>
+constexpr std::size_t count_arrays() {
+  std::size_t count = 0;
+  const ParticleViews none;
+  for_each_array<kinds>([&](auto*) { ++count; }, none);
+  return count;
+}
+
+// What the arrays hold of item i, and its place among them; an owned particle has all.
+template <class Arrays>
+SCREE_HD Particle particle_at(const Arrays& arrays, Index i) {
+  Particle p;
+  p.global_id = id_of(arrays.row_key[i]);
+#define SCREE_FIELD(name, ...) p.name = arrays.name[i];
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
+  const Vec4 name = arrays.name[i];                            \
+  p.name = xyz(name), p.scalar = name.w;
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+  return p;
+}
+
+template <class Arrays>
+SCREE_HD void put_particle(Arrays& arrays, Index i, const Particle& p) {
+  arrays.row_key[i] = row_key(p.global_id);
+#define SCREE_FIELD(name, ...) arrays.name[i] = p.name;
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) arrays.name[i] = vec4(p.name, p.scalar);
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+}
+
+// What the table says of a field.
+struct ParticleField {
+  const char *name, *unit, *description;
+  unsigned parts;
+};
+
+// Calls visit(field, member) for each field; member: that of Particle, as a pointer to it.
+template <class Visit>
+void for_each_field(const Visit& visit) {
+#define SCREE_FIELD(name, type, unit, sentence, parts)                                               \
+  static_assert((((parts)&kState) != 0) != (((parts)&kConstant) != 0), #name ": state or constant"); \
+  visit(ParticleField{#name, unit, sentence, parts}, &Particle::name);
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
+  SCREE_FIELD(name, Vec3, unit, sentence, parts)               \
+  SCREE_FIELD(scalar, Real, __VA_ARGS__)
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+}
+
+// The numbers that a value is made of: what checkpoints hold and hashes are taken of. Reals, or integers.
+inline std::array<Real, 1> numbers_of(Real value) { return {value}; }
+inline std::array<Real, 3> numbers_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+inline std::array<std::int64_t, 1> numbers_of(std::integral auto value) { return {value}; }
+inline std::array<std::int64_t, 3> numbers_of(const ImageCount& n) { return {n.x, n.y, n.z}; }
+
+// The value back; integers that it cannot hold come out as others.
+inline void set_value(Real& value, const Real* from) { value = *from; }
+inline void set_value(Vec3& v, const Real* from) { v = {from[0], from[1], from[2]}; }
+template <std::integral T>
+void set_value(T& value, const std::int64_t* from) {
+  value = static_cast<T>(*from);
+}
+inline void set_value(ImageCount& n, const std::int64_t* from) {
+  set_value(n.x, from), set_value(n.y, from + 1), set_value(n.z, from + 2);
+}
+
+}  // namespace scree

@@ -1,0 +1,27 @@
+// Every field of the table goes with a particle that changes its rank.
+#include "support/catch.hpp"
+#include "support/particle_bits.hpp"
+#include "unit/dem/random_box.hpp"
+
+namespace scree {
+
+TEST_CASE("every field goes with a particle to another rank") {
+  const Ranks ranks = Ranks::world();
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    Model model = random_box(c, 150, 21);
+    const std::vector<Particle> all = filled_records(model);
+    const IdRange own = id_range(std::ssize(all), ranks.rank(), ranks.size());
+    const std::unique_ptr<Backend> backend = make_test_backend(model, ranks);
+    backend->load({all.begin() + own.first, all.begin() + own.last}, {});
+    StageTimers timers;
+    backend->place_bodies(motion_of(model.bodies));
+    backend->build_list(0.15, timers);
+    std::vector<Particle> found = ranks.gather_everywhere(backend->records());
+    std::sort(found.begin(), found.end(), [](auto& a, auto& b) { return a.global_id < b.global_id; });
+    CHECK(differing_fields(found, all) == "");
+    CHECK((ranks.sum(backend->balance().migrated) > 0) == !ranks.alone());
+  }
+}
+
+}  // namespace scree
