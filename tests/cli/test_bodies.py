@@ -76,7 +76,8 @@ class StartVelocityTest(BodiesTest):
         self.assertEqual(self.record("given")["run"]["start_change"], "")
         log = self.run_deck(DONE, "found", "--set", "velocities=consistent").stdout
         change = self.record("found")["run"]["start_change"]
-        self.assertRegex(change, r"^x component of the velocity of body 'coupler' \(id 1\) from 0\.0 to -0\.3[0-9]+ m/s$")
+        self.assertRegex(change, r"^x component of the velocity of body 'coupler' \(id 1\) from 0\.0 to "
+                                 r"-0\.3[0-9]+ m/s$")
         self.assertIn(f'velocities = "consistent": the largest change at t = 0 is that of the {change}\n', log)
         self.assertIn(change, self.expect(DONE, "check", self.deck, "--set", "velocities=consistent").stdout)
 

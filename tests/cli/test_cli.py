@@ -191,17 +191,18 @@ class UsageTest(CommandLineTest):
 
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
-        for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; a particle "
-                     'that leaves: "drift"', "snapshots      2 of about 0.7 kB", "checkpoints    one at the end, about 1.3 kB",
-                     "particles      6", "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
-                     "degrees of freedom", "contact", "rebounds within 2 % at steps",
-                     "fixed step 0.0001 s (4000 steps)", "memory", "petsc"):
+        for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; "
+                     'a particle that leaves: "drift"', "snapshots      2 of about 0.7 kB", "particles      6",
+                     "checkpoints    one at the end, about 1.3 kB", "degrees of freedom", "contact", "memory", "petsc",
+                     "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
+                     "rebounds within 2 % at steps", "fixed step 0.0001 s (4000 steps)"):
             self.assertIn(word, text)
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU \(estimate\); .+")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["deck.toml"])
 
     def test_check_says_what_a_deck_does_not(self):
-        bare = DECK.replace("shapes = [{ radius = 0.1 }]\n", "") + '[[walls]]\nname = "w"\npoint = [0.0, -0.9]\nnormal = [0.0, 1.0]\n'
+        wall = '[[walls]]\nname = "w"\npoint = [0.0, -0.9]\nnormal = [0.0, 1.0]\n'
+        bare = DECK.replace("shapes = [{ radius = 0.1 }]\n", "") + wall
         deck = self.write("bare.toml", bare.replace("mass = 1.0\nvelocity", "density = 100.0\nvelocity"))
         text = self.expect(DONE, "check", deck).stdout
         self.assertIn("1 body has no shapes: it passes through walls and touches nothing\n", text)
@@ -257,10 +258,10 @@ class RunTest(CommandLineTest):
 
     def test_a_run_says_at_its_end_what_its_steps_did_to_the_energy(self):
         deck = self.write("gas.toml", GAS)
-        explicit = "integrator.particles=velocity-verlet"
+        explicit = ["time.step=5e-4", "contact.pairs.0.damping=100.0", "integrator.particles=velocity-verlet"]
         for name, settings, advice in (("fine", [], None),
                                        ("coarse", ["time.step=4e-3"], "time.control = \"adaptive\""),
-                                       ("explicit", ["time.step=5e-4", "contact.pairs.0.damping=100.0", explicit], "integrator.substeps")):
+                                       ("explicit", explicit, "integrator.substeps")):
             with self.subTest(name):
                 words = [word for setting in settings for word in ("--set", setting)]
                 result = self.expect(DONE, "run", deck, "--output", self.folder / name, *words)
@@ -274,7 +275,7 @@ class RunTest(CommandLineTest):
                 else:
                     self.assertGreater(changed, 0.01 * measures["energy_exchanged"])
                     last = result.stderr.splitlines()[-1].removeprefix("warning: ")
-                    self.assertRegex(last, r"the time integration has changed the energy by [0-9.]+ J, [0-9.]+ % of the ")
+                    self.assertRegex(last, r"the time integration has changed the energy by [0-9.]+ J, [0-9.]+ % of ")
                     self.assertIn(advice, last)
                     self.assertEqual(record["warnings"][-1], last)
 
@@ -327,7 +328,8 @@ class RunTest(CommandLineTest):
         many = ("--set", "particles.0.size=[300, 100]", "--set", "particles.0.spacing=[1e-3, 1e-3]",
                 "--set", "particles.0.radius=4e-4", "--set", "time.end=1e-4")
         trouble = self.gpu_trouble()
-        why = f"cpu: {trouble}\n" if trouble else "cuda: 30000 particles are at least 2000, from which a GPU is faster; "
+        enough = "cuda: 30000 particles are at least 2000, from which a GPU is faster; "
+        why = f"cpu: {trouble}\n" if trouble else enough
         self.assertIn("\nbackend " + why, "\n" + self.run_deck(DONE, "out", *many).stdout)
 
     def test_mixed_precision_on_the_cpu_is_double(self):
@@ -355,21 +357,23 @@ class RunTest(CommandLineTest):
         for words in ("check", deck), ("run", deck, "--output", self.folder / "out"):
             message = self.expect(BAD_INPUT, *words, launcher=limited).stderr
             self.assertRegex(message, r"error: not enough memory: building the particles takes about 135 GB, "
-                                      r"[0-9.]+ GB are free \(.+\); a run of 900000000 particles and 1 body takes at least 630 GB on one rank; "
-                                      r"start more ranks on more machines")
+                                      r"[0-9.]+ GB are free \(.+\); a run of 900000000 particles and 1 body takes "
+                                      r"at least 630 GB on one rank; start more ranks on more machines")
         self.assertFalse((self.folder / "out").exists())
 
     def test_decks_that_cannot_be_built_are_refused_at_once(self):
-        row = '[[bodies]]\nname = "row"\ncount = {}\nspacing = [{}, 0.0]\nposition = [-0.3, 0.9]\nmass = 1.0\ninertia = 0.01\n' \
-              "shapes = [{{ radius = 1e-9 }}]\n"
+        row = '[[bodies]]\nname = "row"\ncount = {}\nspacing = [{}, 0.0]\nposition = [-0.3, 0.9]\nmass = 1.0\n' \
+              "inertia = 0.01\nshapes = [{{ radius = 1e-9 }}]\n"
         group = '[[particles]]\nname = "many"\nkind = "random"\ncount = {}\nmin = [-0.3, -1.0]\nmax = [0.3, 0.9]\n' \
                 "radius = {}\nmass = 1.0\n"
-        cases = ((row.format(10000000, 1e-9), r"not enough memory: building the bodies takes about 20 GB, [0-9.]+ GB are "
-                  r"free \(ulimit -v, the address space\); a run of 10000001 bodies takes at least 30 GB on one rank; take fewer bodies"),
+        cases = ((row.format(10000000, 1e-9), r"not enough memory: building the bodies takes about 20 GB, [0-9.]+ GB "
+                  r"are free \(ulimit -v, the address space\); a run of 10000001 bodies takes at least 30 GB on one "
+                  r"rank; take fewer bodies"),
                  (row.format(6000000, 2e-7), r'body "row\.[0-9]+" starts at \(0\.35.+, outside the space'),
                  (group.format(1000000000, 1e-6), "not enough memory: building the particles takes about 280 GB"),
-                 (group.format(1000000, 0.01), r"particles\.many\.count = 1000000: the particles are 276 of the area of their box "
-                  r"\(min, max\), and random places fill at most about 0\.5[0-9]* of it in 10000 tries each"))
+                 (group.format(1000000, 0.01), r"particles\.many\.count = 1000000: the particles are 276 of the area "
+                  r"of their box \(min, max\), and random places fill at most about 0\.5[0-9]* of it in 10000 "
+                  r"tries each"))
         for text, message in cases:
             with self.subTest(message=message):
                 deck = self.write("many.toml", DECK.replace("x_min = \"periodic\"\nx_max = \"periodic\"\n", "") + text)

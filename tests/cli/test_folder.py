@@ -1,4 +1,5 @@
-"""The folder of results: what is refused, overwritten, left as it is. Usage: SCREE=path/to/scree python3 test_folder.py"""
+"""The folder of results: what is refused, overwritten, left as it is.
+Usage: SCREE=path/to/scree python3 test_folder.py"""
 
 import os
 import pathlib

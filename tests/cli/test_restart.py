@@ -53,22 +53,24 @@ class FailureTest(CommandLineTest):
                 self.assertIn("space.leaving", message)
 
     def test_a_particle_that_goes_through_a_wall(self):
-        soft = ("--set", "space.y_max=wall", "--set", "particles.0.velocity=[0, 30]", "--set", "contact.pairs.0.stiffness=100")
+        soft = ("--set", "space.y_max=wall", "--set", "particles.0.velocity=[0, 30]",
+                "--set", "contact.pairs.0.stiffness=100")
         message = self.failure(*soft)
-        self.assertIn("beyond a side that is a wall: it overlapped the wall by more than its radius; the contact's stiffness "
-                      "is too low for this impact", message)
+        self.assertIn("beyond a side that is a wall: it overlapped the wall by more than its radius; the contact's "
+                      "stiffness is too low for this impact", message)
         self.assertIn("warning: contact \"default\" on \"default\": the stiffness is too low for impacts at 3", message)
 
     def test_a_body_that_leaves_is_counted(self):
         free = DECK[:DECK.index("[[spring_dampers]]")] + DECK[DECK.index("[[particles]]"):]
         deck = self.write("free.toml", free.replace("inertia", "velocity = [0.0, -30.0]\ninertia"))
         result = self.expect(DONE, "run", deck, "--output", "out", "--set", "time.end=0.05", "--set", "time.step=5e-4")
-        warnings = re.findall(r'warning: body "pad" is outside the space at t = ([0-9.]+) s: bodies that leave are counted, '
-                              "neither stopped nor removed", result.stderr)
+        warnings = re.findall(r'warning: body "pad" is outside the space at t = ([0-9.]+) s: bodies that leave are '
+                              "counted, neither stopped nor removed", result.stderr)
         self.assertEqual(len(warnings), 1)
         self.assertAlmostEqual(float(warnings[0]), 0.8 / 30, delta=1e-3)
         self.assertRegex(result.stdout, "0 particles left the space, 1 body is outside\n")
-        self.assertEqual(json.loads((self.folder / "out" / "run_record.json").read_text())["counts"]["bodies_outside"], 1)
+        record = json.loads((self.folder / "out" / "run_record.json").read_text())
+        self.assertEqual(record["counts"]["bodies_outside"], 1)
         rows = [row.split(",") for row in self.history("out") if not row.startswith("#")]
         column = next(i for i, name in enumerate(rows[0]) if "bodies_outside" in name)
         counts = [float(row[column]) for row in rows[1:]]
@@ -181,7 +183,8 @@ class RestartTest(CommandLineTest):
             self.assertIn("another deck", message)
             self.assertIn("time.end", message)
             name, value = key.split("=")
-            self.assertRegex(message, rf"{re.escape(name).replace('0', '[a-z0-9]+')}(\.value)?: \S+ -> {float(value):g}(;|\n)")
+            key = re.escape(name).replace("0", "[a-z0-9]+")
+            self.assertRegex(message, rf"{key}(\.value)?: \S+ -> {float(value):g}(;|\n)")
         self.run_deck(DONE, "out", *restart, "--set", "title=corrected")
         self.run_deck(DONE, "out", *restart, "--set", "time.end=0.02")
         self.run_deck(DONE, "whole", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
@@ -195,7 +198,8 @@ class RestartTest(CommandLineTest):
         self.write("text.h5", "no checkpoint")
         for name in ("absent.h5", "truncated.h5", "empty.h5", "text.h5", "out/history.h5"):
             with self.subTest(name=name):
-                message = self.run_deck(IO_FAILED, "out", "--set", "time.end=0.02", "--restart", self.folder / name).stderr
+                restart = ("--set", "time.end=0.02", "--restart", self.folder / name)
+                message = self.run_deck(IO_FAILED, "out", *restart).stderr
                 self.assertIn(name, message)
 
 

@@ -58,9 +58,12 @@ def plausible_value(key, rng):
     if key.facts.startswith("one of"):
         return rng.choice(re.findall(r'"[^"]*"', key.facts) or ['""'])
     number = rng.choice(["0.0", "1e-9", "1e-6", "1e-4", "1e-3", "0.02", "0.1", "1.0", "-0.3", "10.0", "1e3", "1e6"])
-    name = rng.choice(["arm", "cord", "cord.1", "wheel", "hinge", "steel", "rubber", "chain", "paddle", "x_min", "ground"])
-    for start, value in (("true or false", rng.choice(["true", "false"])), ("an integer", rng.choice("0123579") + "0"[:rng.choice([0, 0, 1])]),
-                         ("a number", number), ("2 or 3 numbers", rng.choice([f"[{number}, 0.1]", f"[0.1, {number}, 0.0]"])),
+    name = rng.choice(["arm", "cord", "cord.1", "wheel", "hinge", "steel", "rubber", "chain", "paddle", "x_min",
+                       "ground"])
+    for start, value in (("true or false", rng.choice(["true", "false"])),
+                         ("an integer", rng.choice("0123579") + "0"[:rng.choice([0, 0, 1])]),
+                         ("a number", number),
+                         ("2 or 3 numbers", rng.choice([f"[{number}, 0.1]", f"[0.1, {number}, 0.0]"])),
                          ("a list of texts", f'["{name}"]'), ("a list of 2 texts", f'["{name}", "ground"]'),
                          ("a list of integers", "[0, 3]"), ("a list", f"[{number}, 0.5]")):
         if key.facts.startswith(start):
@@ -136,7 +139,8 @@ class Maker:
             word = ".".join([rng.choice(["a", "time"])] * rng.choice([2, 50, 300, 30000])) + "=1"
         elif choice < 0.25:
             at = rng.randrange(len(word) + 1)
-            word = word[:at] + rng.choice(["=", ".", "..", "[", '"', "\n", "\x1b", "#", "ä", ",", "-", "\udcff"]) + word[at:]
+            inserted = rng.choice(["=", ".", "..", "[", '"', "\n", "\x1b", "#", "ä", ",", "-", "\udcff"])
+            word = word[:at] + inserted + word[at:]
         elif choice < 0.3:
             word = "".join(chr(rng.randrange(1, 256)) for _ in range(rng.choice([0, 1, 5, 40])))
         return word[:LARGEST]
@@ -156,8 +160,8 @@ class Maker:
     def checkpoint(self, rng):
         text, files, data, state_hash = rng.choice(self.checkpoints)
         data, kind = damage.damaged(data, rng)
-        return Case(("checkpoint", kind), {"deck.toml": text.encode(), "damaged.h5": data, **files}, restart="damaged.h5",
-                    state_hash=state_hash)
+        return Case(("checkpoint", kind), {"deck.toml": text.encode(), "damaged.h5": data, **files},
+                    restart="damaged.h5", state_hash=state_hash)
 
     def add_checkpoint(self, deck, data, state_hash):
         text = deck.read_text()

@@ -4,9 +4,9 @@
     .venv/bin/python tests/fuzz/fuzz.py --scree build/release/scree [--seconds 60 | --count N] [--seed S]
 
 Decks are those of input/ and of tests/fuzz/decks, which have every table. Each case is checked, and run for a few steps
-where it is accepted; damaged checkpoints are restarted from. Counted are crashes, hangs, wrong exit codes, refusals that
-do not say where, and messages that are not one printable line; the exit code is 1 unless all are zero. Cases follow from
---seed and their number: `--only NUMBER --keep DIR` makes one again and leaves it in DIR.
+where it is accepted; damaged checkpoints are restarted from. Counted are crashes, hangs, wrong exit codes, refusals
+that do not say where, and messages that are not one printable line; the exit code is 1 unless all are zero. Cases
+follow from --seed and their number: `--only NUMBER --keep DIR` makes one again and leaves it in DIR.
 """
 
 import argparse

@@ -17,6 +17,7 @@ STOP_AFTER, HANG_AFTER = 8, 20  # CPU seconds: a run is told to stop; a program 
 PATIENCE = 15  # wall seconds per CPU second on a busy machine, before waiting is taken for a hang, too
 LARGEST_RUN = 5000  # particles and bodies
 STEPS = 5  # of a run
+NAMES_STAGE = r"^error: (the .* at t = \S+ s: )?(stage \w+|mbs_\w+, rank \d+): .*\w"  # of a run that failed
 
 Ended = collections.namedtuple("Ended", "code text errors cpu memory hung stopped")
 
@@ -127,7 +128,7 @@ def message_troubles(ended, case):
         troubles.append(("bad message", f"{len(errors)} error lines with code {ended.code}"))
     elif ended.code in (BAD_INPUT, IO_FAILED) and not has_place(errors[0], case):
         troubles.append(("no place", errors[0][:300]))
-    elif ended.code == FAILED and not re.search(r"^error: (the .* at t = \S+ s: )?(stage \w+|mbs_\w+, rank \d+): .*\w", errors[0]):
+    elif ended.code == FAILED and not re.search(NAMES_STAGE, errors[0]):
         troubles.append(("no place", errors[0][:300]))
     return troubles
 

@@ -50,8 +50,9 @@ def run(scree, folder, deck, *words):
     """Runs the deck; the most memory that it had [B]."""
     (folder / "deck.toml").write_text(HEAD + deck)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-    subprocess.run([scree, "run", folder / "deck.toml", "--backend", "cpu", "--overwrite", "--output", folder / "out", *words],
-                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    command = [scree, "run", folder / "deck.toml", "--backend", "cpu", "--overwrite", "--output", folder / "out",
+               *words]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
     assert most > before, "an earlier run took more"
     return most * 1024

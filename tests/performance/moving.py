@@ -1,5 +1,5 @@
-"""Steps of particles that move far: a column of spheres that collapses on several ranks, with lists built, particles that
-change their rank, and boxes cut anew on the way. Prints a markdown table.
+"""Steps of particles that move far: a column of spheres that collapses on several ranks, with lists built, particles
+that change their rank, and boxes cut anew on the way. Prints a markdown table.
 
     moving.py SCREE [--particles N] [--ranks 1 2 ...] [--backend cuda|cpu] [--end SECONDS] [--mpirun "OPTIONS"]
 """

@@ -4,7 +4,8 @@
 
 A run of the paper's net (20 bodies) and N particles with few snapshots is taken from one with N more; what is left is
 divided by N. Calls and bytes count where they concern files in the folder of the results. The last line is the largest
-disk space while the run goes on, over that of the files which it leaves; --spread adds a table by file. Prints markdown.
+disk space while the run goes on, over that of the files which it leaves; --spread adds a table by file. Prints
+markdown.
 """
 import argparse
 import collections
@@ -47,9 +48,9 @@ def run(scree, snapshots, particles, folder, traced):
     trace, out = folder / "trace", folder / "out"
     strace = ["strace", "-f", "-y", "-s", "0", "-o", str(trace), "-e", "trace=" + ",".join(NAMES)] if traced else []
     end = snapshots * STEP
-    command = [*strace, scree, "run", str(DECK), "--output", str(out), "--backend", "cpu", "--set", "time.control=fixed", "--set", f"time.end={end}",
-               "--set", f"particles.block.count={particles}", "--set", f"output.snapshot_interval={STEP}", "--set",
-               f"output.history_interval={STEP}"]
+    command = [*strace, scree, "run", str(DECK), "--output", str(out), "--backend", "cpu",
+               "--set", "time.control=fixed", "--set", f"time.end={end}", "--set", f"particles.block.count={particles}",
+               "--set", f"output.snapshot_interval={STEP}", "--set", f"output.history_interval={STEP}"]
     largest, done = [0], threading.Event()
 
     def watch():

@@ -1,11 +1,11 @@
-"""What output costs: the same explicit steps of moving.py's column without output on the way, with snapshots, and with a
-checkpoint. Prints a markdown table.
+"""What output costs: the same explicit steps of moving.py's column without output on the way, with snapshots, and with
+a checkpoint. Prints a markdown table.
 
     output_cost.py SCREE [--particles N] [--backend cuda|cpu] [--steps N] [--snapshots N]
 
-The times are wall seconds of the step loop, from the run record; a snapshot's or checkpoint's is what it adds to them. On a
-GPU a snapshot adds what steps wait for it, and should take less to write than the steps up to the next one. The results go
-to a temporary folder (TMPDIR), which is removed.
+The times are wall seconds of the step loop, from the run record; a snapshot's or checkpoint's is what it adds to them.
+On a GPU a snapshot adds what steps wait for it, and should take less to write than the steps up to the next one. The
+results go to a temporary folder (TMPDIR), which is removed.
 """
 import argparse
 import pathlib
@@ -20,7 +20,8 @@ def measure(arguments, settings, file):
     with tempfile.TemporaryDirectory(prefix="scree_output_") as name:
         folder = pathlib.Path(name)
         moving.write_deck(folder / "moving.toml", arguments.particles, arguments.steps * moving.STEP)
-        record = moving.run(arguments.scree, folder / "moving.toml", folder / "out", arguments.backend, settings=settings)
+        record = moving.run(arguments.scree, folder / "moving.toml", folder / "out", arguments.backend,
+                            settings=settings)
         return record["cost"]["loop_seconds"], record["counts"], (folder / "out" / file).stat().st_size if file else 0
 
 
@@ -33,15 +34,16 @@ def main():
     parser.add_argument("--snapshots", type=int, default=3, help="on the way (default 3)")
     arguments = parser.parse_args()
     if arguments.snapshots < 1 or arguments.steps < 1 or arguments.steps % (arguments.snapshots + 1) != 0:
-        parser.error(f"--steps {arguments.steps} --snapshots {arguments.snapshots}: the steps must be a multiple of the "
-                     "snapshots, which are at least 1, and the last state together")
+        parser.error(f"--steps {arguments.steps} --snapshots {arguments.snapshots}: the steps must be a multiple of "
+                     "the snapshots, which are at least 1, and the last state together")
     every = arguments.steps // (arguments.snapshots + 1)
     # Past the middle, so that there is one.
     checkpoint = arguments.steps // 2 + 1
     print("| | particles | steps | us per step | written on the way | MB each | s more for each |\n|" + "---|" * 7)
 
     def row(name, seconds, counts, *written):
-        cells = [name, f"{counts['particles']:,}", f"{counts['steps']:,}", f"{1e6 * seconds / counts['steps']:.1f}", *written]
+        per_step = 1e6 * seconds / counts["steps"]
+        cells = [name, f"{counts['particles']:,}", f"{counts['steps']:,}", f"{per_step:.1f}", *written]
         print("| " + " | ".join(cells) + " |", flush=True)
 
     bare, counts, _ = measure(arguments, [], None)
@@ -49,9 +51,10 @@ def main():
     ends = counts["snapshots"]  # the first and the last state, outside the loop
     seconds, counts, size = measure(arguments, [f"output.snapshot_interval={every * moving.STEP}"], "particles.vtkhdf")
     added = counts["snapshots"] - ends
-    row(f"snapshot every {every:,} steps", seconds, counts, f"{added} snapshots", f"{1e-6 * size / counts['snapshots']:.0f}",
-        f"{(seconds - bare) / added:.3f}")
-    seconds, counts, size = measure(arguments, [f"output.checkpoint_interval={checkpoint * moving.STEP}"], "checkpoint.h5")
+    row(f"snapshot every {every:,} steps", seconds, counts, f"{added} snapshots",
+        f"{1e-6 * size / counts['snapshots']:.0f}", f"{(seconds - bare) / added:.3f}")
+    interval = f"output.checkpoint_interval={checkpoint * moving.STEP}"
+    seconds, counts, size = measure(arguments, [interval], "checkpoint.h5")
     row("a checkpoint", seconds, counts, "1 checkpoint", f"{1e-6 * size:.0f}", f"{seconds - bare:.3f}")
 
 

@@ -4,8 +4,9 @@
     profile_table.py --metrics      # what profile.sh asks Nsight Compute for
 
 copy-bandwidth: what copy_bandwidth prints for the device, bytes read and written. Rates are sums over the kernel's
-calls; registers, occupancy, hit rates, throughputs and stalls are means over them, weighted by time. Stalls: the reasons for
-which warps did not issue an instruction, by Nsight Compute's names, in percent of the warps' time; those of 10 % and more.
+calls; registers, occupancy, hit rates, throughputs and stalls are means over them, weighted by time. Stalls: the
+reasons for which warps did not issue an instruction, by Nsight Compute's names, in percent of the warps' time; those
+of 10 % and more.
 """
 import argparse
 import csv
@@ -111,7 +112,8 @@ def table(path, copy_bandwidth):
     for launch in read_launches(path):
         kernels.setdefault(launch["kernel"], []).append(launch)
     total = sum(launch[TIME] for group in kernels.values() for launch in group)
-    columns = ["kernel", "calls", "time [us]", "of all time [%]", "MB per call", "GB/s", "of copy [%]", *MEANS, "stalls [%]"]
+    columns = ["kernel", "calls", "time [us]", "of all time [%]", "MB per call", "GB/s", "of copy [%]", *MEANS,
+               "stalls [%]"]
     lines = [f"### {path.stem}", "", "| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     for kernel, group in sorted(kernels.items(), key=lambda item: -sum(launch[TIME] for launch in item[1])):
         time = sum(launch[TIME] for launch in group)
@@ -119,7 +121,8 @@ def table(path, copy_bandwidth):
         cells = [f"`{short_name(kernel)}`", str(len(group)), f"{1e6 * time / len(group):.1f}",
                  f"{100 * time / total:.1f}",
                  f"{1e-6 * moved / len(group):.2f}", f"{1e-9 * moved / time:.0f}",
-                 f"{1e-7 * moved / time / copy_bandwidth:.0f}", *(whole(mean(group, name)) for name in MEANS.values()), stalls(group)]
+                 f"{1e-7 * moved / time / copy_bandwidth:.0f}",
+                 *(whole(mean(group, name)) for name in MEANS.values()), stalls(group)]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 

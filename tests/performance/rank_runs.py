@@ -6,8 +6,8 @@ STAGES = ["predict", "migrate", "sort_cells", "exchange_halo", "neighbors", "upd
           "contact_force", "reduce_wrench", "mbs_correct", "particle_correct", "accept", "output"]
 KIND = ["commit", "device", "backend", "precision", "dimension", "integrator", "rebuild"]
 # Of a run as a whole; the other columns are those of a rank.
-WHOLE = {"bodies": int, "contacts": float, "ranks": int, "particles": int, "list_builds": int, "steps": float, "seconds_per_step": float,
-         "fastest": float, "slowest": float, "mean": float}
+WHOLE = {"bodies": int, "contacts": float, "ranks": int, "particles": int, "list_builds": int, "steps": float,
+         "seconds_per_step": float, "fastest": float, "slowest": float, "mean": float}
 OF_RANK = {"rank": int, "owned": int, "ghosts": int, "receivers": int, "halo_bytes": int, "imbalance": float,
            "host_bytes": float, "device_bytes": float, "halo_seconds": float, "halo_exposed": float,
            **{stage: float for stage in STAGES}}

@@ -29,8 +29,8 @@ def per_particle(run):
 
 
 def halo_share(run):
-    """What the halo takes of a step: on GPUs by the device's clock, with the share that runs beside the interior's rows.
-    In implicit steps these are the halos of the forces; those of the linear solve are not looked at."""
+    """What the halo takes of a step: on GPUs by the device's clock, with the share that runs beside the interior's
+    rows. In implicit steps these are the halos of the forces; those of the linear solve are not looked at."""
     if run.backend == "cuda" and run.ranks > 1:
         slowest = max(run.of_rank, key=lambda rank: rank["halo_exposed"])
         hidden = 1 - slowest["halo_exposed"] / slowest["halo_seconds"] if slowest["halo_seconds"] > 0 else 1
@@ -80,8 +80,8 @@ def stages(run):
 
 
 def bodies(runs):
-    """Runs with bodies against those without, of as many ranks: on the bed without the particles in the bodies' way, and on
-    the plain bed."""
+    """Runs with bodies against those without, of as many ranks: on the bed without the particles in the bodies' way,
+    and on the plain bed."""
     def steps_per_list(run):
         return f"{run.steps / max(run.list_builds, 1):.0f}"
 

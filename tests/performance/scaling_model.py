@@ -292,8 +292,8 @@ def limits(model, weak, totals):
         for total in totals:
             at, best = model.limit(bodies, lambda p: total / p), model.fastest(bodies, total)
             where = "nowhere" if at is None else f"from {at:,} rank(s) on ({count(total / at)} particles per rank)"
-            lines.append(f"- {bodies:,} bodies, {count(total)} particles in all: the limit {where}; "
-                         f"most steps per second, {1 / model.step(total / best, best, bodies):,.4g}, on {best:,} rank(s) "
+            lines.append(f"- {bodies:,} bodies, {count(total)} particles in all: the limit {where}; most steps per "
+                         f"second, {1 / model.step(total / best, best, bodies):,.4g}, on {best:,} rank(s) "
                          f"({count(total / best)} particles per rank)")
     return lines
 

@@ -118,7 +118,8 @@ def run_case(arguments, method, particles, backend, window):
 
 
 def run_for(command, folder, budget):
-    """Runs the command, with a signal to stop after the budget, which begins with the first step. Returns the status."""
+    """Runs the command, with a signal to stop after the budget, which begins with the first step. Returns the
+    status."""
     start = signalled = None
     begun = time.monotonic()
     with open(folder / "log", "w") as log:

@@ -132,7 +132,8 @@ class FitTest(unittest.TestCase):
         self.assertEqual(model.fastest(20, 1e9), 10)
         text = "\n".join(scaling_model.limits(model, 8e6, [1e9]))
         self.assertIn("20 bodies, 1,000 million particles in all: the limit from 10 rank(s) on (100 million "
-                      "particles per rank); most steps per second, 99.01, on 10 rank(s) (100 million particles per rank)", text)
+                      "particles per rank); most steps per second, 99.01, on 10 rank(s) (100 million particles per "
+                      "rank)", text)
 
     def test_boxes_of_a_square(self):
         faces_and_messages = {p: scaling_model.faces_and_messages(p) for p in (1, 2, 4, 8, 16, 1000)}

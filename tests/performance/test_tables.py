@@ -100,7 +100,8 @@ class Tables(unittest.TestCase):
         self.assertEqual([row[4] for row in rows[1:]], ["2 snapshots", "1 checkpoint"])
         for row in rows:
             self.assertGreater(float(row[3]), 0)
-        bad = subprocess.run([*command, "--steps", "61", "--snapshots", "2"], text=True, capture_output=True, timeout=LIMIT)
+        bad = subprocess.run([*command, "--steps", "61", "--snapshots", "2"], text=True, capture_output=True,
+                             timeout=LIMIT)
         self.assertEqual(bad.returncode, 2)
         self.assertIn("--steps 61 --snapshots 2", bad.stderr)
 

@@ -70,8 +70,8 @@ class DeviceMemoryTest(RanksTest):
                 hold.kill()
 
     def start(self, words):
-        run = subprocess.Popen(words, cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                               text=True)
+        run = subprocess.Popen(words, cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True)
         self.addCleanup(run.kill)
         return run
 
@@ -97,13 +97,14 @@ class DeviceMemoryTest(RanksTest):
                 self.assertTrue(failed.exists(), "there is no checkpoint_failed.h5")
                 self.run_deck(DONE, 1, deck, "on", how, "--restart", failed)
                 self.run_deck(DONE, 1, deck, "whole", how)
-                self.assertEqual(self.hash("on"), self.hash("whole"), "the run went on from another state than it was in")
+                self.assertEqual(self.hash("on"), self.hash("whole"),
+                                 "the run went on from another state than it was in")
 
     def test_a_full_gpu_is_refused_before_the_run_starts(self):
         many = LONELY
-        for old, new in (("max = [1.0, 1.0]", "max = [14.0, 14.0]"), ('"row"', '"lattice"'), ("count = 2", "size = [70, 70]"),
-                         ("origin = [0.25, 0.5]", "origin = [0.1, 0.1]"), ("spacing = [0.5, 0.0]", "spacing = [0.2, 0.2]"),
-                         ("end = 1.0", "end = 0.01")):
+        for old, new in (("max = [1.0, 1.0]", "max = [14.0, 14.0]"), ('"row"', '"lattice"'),
+                         ("count = 2", "size = [70, 70]"), ("origin = [0.25, 0.5]", "origin = [0.1, 0.1]"),
+                         ("spacing = [0.5, 0.0]", "spacing = [0.2, 0.2]"), ("end = 1.0", "end = 0.01")):
             self.assertIn(old, many)
             many = many.replace(old, new)
         deck = self.write("deck.toml", many)

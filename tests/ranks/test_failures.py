@@ -10,8 +10,8 @@ import subprocess
 import unittest
 
 from checkpoint_bytes import CHUNK_ROWS, sealed, with_velocity
-from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, IO_FAILED, LIMIT, LONELY, MPIEXEC,
-                      SCREE, STOPPED, VELOCITY, RanksTest, h5py)
+from mpi_case import (BACKEND, BAD_INPUT, DAM, DONE, ENVIRONMENT, EXPLICIT, FAILED, IMPLICIT, IO_FAILED, LIMIT, LONELY,
+                      MPIEXEC, SCREE, STOPPED, VELOCITY, RanksTest, h5py)
 
 
 class FailureTest(RanksTest):
@@ -124,18 +124,20 @@ class FailureTest(RanksTest):
         result = subprocess.run([MPIEXEC, "-n", "1", *run, ":", "-n", "1", "bash", "-c", short], cwd=self.folder,
                                 env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
         self.assertEqual(result.returncode, BAD_INPUT, result.stdout + result.stderr)
-        self.assertRegex(result.stderr, r"not enough memory: (running it on the CPU takes about [0-9.]+ GB, .+; )?a run of 1000000 "
-                                        r"particles takes at least 0.7 GB on 2 ranks, 0.35 GB on each")
+        self.assertRegex(result.stderr, r"not enough memory: (running it on the CPU takes about [0-9.]+ GB, .+; )?"
+                                        r"a run of 1000000 particles takes at least 0.7 GB on 2 ranks, 0.35 GB on each")
 
     def test_check_says_what_is_per_rank(self):
         words = [MPIEXEC, "-n", "3", SCREE, "check", str(DAM[0])]
         text = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT, check=True).stdout
         self.assertIn("particles      500 on 3 ranks together", text)
-        self.assertRegex(text, r"memory  +about [0-9.]+ [kM]B of state and scratch on all ranks together, [0-9.]+ [kM]B on rank 0")
+        self.assertRegex(text, r"memory  +about [0-9.]+ [kM]B of state and scratch on all ranks together, "
+                               r"[0-9.]+ [kM]B on rank 0")
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU of each rank \(estimate\)")
         if BACKEND == "cuda":
             both = [MPIEXEC, "-n", "2", "env", "CUDA_VISIBLE_DEVICES=0", SCREE, "check", str(DAM[0])]
-            text = subprocess.run(both, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT, check=True).stdout
+            text = subprocess.run(both, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT,
+                                  check=True).stdout
             self.assertRegex(text, r"\(estimate\), [0-9.]+ MB for the 2 ranks that share one; [0-9]+ MB are free")
 
     def test_a_full_disk_ends_all_with_one_message(self):
@@ -161,7 +163,8 @@ class FailureTest(RanksTest):
         deck = self.write("deck.toml", LONELY)
         self.run_deck(DONE, 2, deck, "out", ["time.end=0.01"])
         command = [word for word in self.command(2, deck, "out", ["time.end=0.01"]) if word != "--overwrite"]
-        result = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+        result = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True,
+                                timeout=LIMIT)
         self.assertEqual(result.returncode, BAD_INPUT, result.stderr)
         self.assert_one_message(result, str(self.folder / "out"), "history.h5", "--overwrite")
 

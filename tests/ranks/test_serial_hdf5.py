@@ -1,5 +1,6 @@
 """The program as it is where HDF5 is not a parallel library against the one whose ranks write at once.
-Usage: SCREE=path/to/scree SCREE_SERIAL_HDF5=path/to/scree_serial_hdf5 MPIEXEC=path/to/mpirun python3 test_serial_hdf5.py
+Usage: SCREE=path/to/scree SCREE_SERIAL_HDF5=path/to/scree_serial_hdf5 MPIEXEC=path/to/mpirun
+    python3 test_serial_hdf5.py
 """
 
 import os

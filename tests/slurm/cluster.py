@@ -1,5 +1,5 @@
-"""A SLURM of this machine alone: munged, slurmctld and two slurmd, each of which plays a node with more CPUs and GPUs than
-there are. It lives in a temporary folder, needs no systemd and no cgroups, and leaves nothing behind."""
+"""A SLURM of this machine alone: munged, slurmctld and two slurmd, each of which plays a node with more CPUs and GPUs
+than there are. It lives in a temporary folder, needs no systemd and no cgroups, and leaves nothing behind."""
 
 import os
 import pathlib

@@ -102,7 +102,8 @@ class SlurmTest(unittest.TestCase):
             os.kill(rank, number)
 
     def warn(self, job, ranks, number="USR1"):
-        """The signal that SLURM sends before the time limit, or another, to a job whose ranks are halted; they go on."""
+        """The signal that SLURM sends before the time limit, or another, to a job whose ranks are halted: they
+        go on."""
         known = self.log(job).count("asking the run")
         self.assertEqual(cluster.run("scancel", "--batch", f"--signal={number}", job).returncode, 0)
         self.until(lambda: self.log(job).count("asking the run") > known, job)
@@ -170,7 +171,8 @@ class RunTest(SlurmTest):
                     lines = sorted(shown.stdout.splitlines())
                     self.assertEqual(len(lines), ranks, shown.stdout)
                     nodes = [re.search(r"node (\w+),", line)[1] for line in lines]
-                    self.assertEqual(len(set(nodes)), ranks // 2)  # any, where one is still busy with the last job's end
+                    # Any nodes, where one is still busy with the last job's end.
+                    self.assertEqual(len(set(nodes)), ranks // 2)
                     for rank, line in enumerate(lines):
                         node = nodes[rank // 2 * 2]
                         self.assertIn(f"rank {rank} of {ranks}: node {node}, local rank {rank % 2}, ", line)

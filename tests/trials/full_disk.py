@@ -2,11 +2,11 @@
 
     full_disk.py SCREE [--trials N] [--seed N] [--tmpfs] [--ranks N]
 
-Each trial runs a deck of particles and bodies where files, or all of them together (--tmpfs, which needs root), may take so
-many bytes, a size drawn at random. The run must end with exit code 4 and one message that names a file of it, or be done
-where there was room. What it has left must be readable and the beginning of what a run without limit writes, and nothing
-may stand beside it; a restart from its last checkpoint, with room, must end in the state and the files of that run. Prints
-a line for each trial; exits with 1 where one fails.
+Each trial runs a deck of particles and bodies where files, or all of them together (--tmpfs, which needs root), may
+take so many bytes, a size drawn at random. The run must end with exit code 4 and one message that names a file of it,
+or be done where there was room. What it has left must be readable and the beginning of what a run without limit
+writes, and nothing may stand beside it; a restart from its last checkpoint, with room, must end in the state and the
+files of that run. Prints a line for each trial; exits with 1 where one fails.
 """
 import argparse
 import json
@@ -60,7 +60,8 @@ def state_hash(folder):
 def datasets(path):
     contents = {}
     with h5py.File(path) as file:
-        file.visititems(lambda name, item: contents.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+        file.visititems(
+            lambda name, item: contents.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
     return contents
 
 
@@ -121,7 +122,7 @@ def main():
     parser.add_argument("scree")
     parser.add_argument("--trials", type=int, default=100, help="(default 100)")
     parser.add_argument("--seed", type=int, default=1, help="(default 1)")
-    parser.add_argument("--tmpfs", action="store_true", help="a small file system each, instead of a limit to each file")
+    parser.add_argument("--tmpfs", action="store_true", help="a small file system each, not a limit to each file")
     parser.add_argument("--ranks", type=int, default=1, help="(default 1)")
     arguments = parser.parse_args()
     if arguments.ranks > 1 and not arguments.tmpfs:
@@ -141,7 +142,8 @@ def main():
             folder.mkdir()
             size = max(size, 4096)
             if arguments.tmpfs:
-                subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "scree_full_disk", str(folder)], check=True)
+                subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "scree_full_disk", str(folder)],
+                               check=True)
             try:
                 print(f"{size} bytes: {trial(arguments, whole, folder, size)}", flush=True)
             except Failed as error:

@@ -3,10 +3,10 @@
     python3 tests/verification/net_400_ensemble.py SCREE [--runs N] [--step H] [--shift S] [--seed K]
 
 The case is chaotic: a change of 1e-10 grows by 1e6 up to 0.55 s and by 2e9 up to 1 s. So the reference is an ensemble,
-48 runs whose free bodies and particles were moved at the start, at random, by up to 1e-6 m (tests/reference/README.md), and
-this program makes its own of equal perturbations, for mean and spread belong to their size. The means of the two must agree
-within three standard errors of their difference; where the reference's deviation is not known they are only shown. Exit code
-0 if all do.
+48 runs whose free bodies and particles were moved at the start, at random, by up to 1e-6 m
+(tests/reference/README.md), and this program makes its own of equal perturbations, for mean and spread belong to their
+size. The means of the two must agree within three standard errors of their difference; where the reference's deviation
+is not known they are only shown. Exit code 0 if all do.
 """
 
 import argparse
@@ -93,10 +93,12 @@ def energies(scree, step, shift, seed):
 
 
 def standard_error(reference, values):
-    """Of the difference of the two means: one population, whose variance both ensembles tell; and the reference's digits."""
+    """Of the difference of the two means: one population, whose variance both ensembles tell; and the reference's
+    digits."""
     _, deviation, digit = reference
     count = len(values)
-    variance = ((REFERENCE_RUNS - 1) * deviation**2 + (count - 1) * statistics.variance(values)) / (REFERENCE_RUNS + count - 2)
+    squares = (REFERENCE_RUNS - 1) * deviation**2 + (count - 1) * statistics.variance(values)
+    variance = squares / (REFERENCE_RUNS + count - 2)
     return math.sqrt(variance * (1 / REFERENCE_RUNS + 1 / count) + digit**2 / 3)
 
 

@@ -1,0 +1,142 @@
+"""What the project's style says that a program can look up. Each check takes the root of a source tree and returns its
+findings, one line of text each."""
+
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+CPP = {".cpp", ".hpp", ".cu", ".cuh"}
+SCRIPTS = {".py", ".sh", ".sbatch"}
+MOST_LINES = 400
+MOST_COLUMNS = 120  # of Python; clang-format keeps the others
+CLANG_FORMAT = 14
+NOT_SOURCES = {".git", ".venv", ".gpu", "build", "results", "__pycache__"}
+ROOMS = "src/README.md"
+
+
+def files(root, suffixes=None, under=None):
+    """Paths of the tree's files relative to its root, sorted."""
+    found = []
+    for folder, folders, names in os.walk(root / under if under else root):
+        folders[:] = [f for f in folders if f not in NOT_SOURCES]
+        found += [(pathlib.Path(folder) / name).relative_to(root) for name in names]
+    return sorted(f for f in found if suffixes is None or f.suffix in suffixes)
+
+
+def room_order(root):
+    """Per room the rooms that its files may include, from the line "base <- physics <- { a, b } <- main"."""
+    lines = [line for line in (root / ROOMS).read_text().splitlines() if re.match(r"    \w+ <- ", line)]
+    if len(lines) != 1:
+        raise ValueError(f"{ROOMS}: {len(lines)} lines with the order of the rooms")
+    allowed, left = {}, set()
+    for part in lines[0].split("<-"):
+        beside = [room.strip() for room in part.strip(" {}").split(",")]
+        for room in beside:
+            allowed[room] = left | {room}
+        left = left | set(beside)
+    return allowed
+
+
+def wrong_includes(root):
+    """Arrows against the order of the rooms. cuda/ stands right of dem, and nothing in src/ sees it."""
+    allowed = room_order(root)
+    findings = []
+    for file in files(root, CPP, "src") + files(root, CPP, "cuda"):
+        in_src = file.parts[0] == "src"
+        room = (file.parts[1] if len(file.parts) > 2 else file.stem) if in_src else "cuda"
+        seen = allowed.get(room, set()) if in_src else allowed["dem"]
+        if in_src and room not in allowed:
+            findings.append(f"{file}: {room} is no room of {ROOMS}")
+        for number, line in enumerate((root / file).read_text().splitlines(), 1):
+            include = re.match(r'\s*#\s*include\s*"([^"]*)"', line)
+            if include is None:
+                continue
+            target = pathlib.PurePosixPath(include[1])
+            own_of_cuda = not in_src and (root / "cuda" / target).is_file()
+            if not own_of_cuda and (len(target.parts) < 2 or target.parts[0] not in seen):
+                findings.append(f"{file}:{number}: {room} may not include {target}")
+    return findings
+
+
+def long_files(root):
+    findings = []
+    for file in files(root, CPP | SCRIPTS):
+        lines = len((root / file).read_text().splitlines())
+        if lines > MOST_LINES:
+            findings.append(f"{file}: {lines} lines, at most {MOST_LINES}")
+    return findings
+
+
+def long_python_lines(root):
+    findings = []
+    for file in files(root, {".py"}):
+        for number, line in enumerate((root / file).read_text().splitlines(), 1):
+            if len(line) > MOST_COLUMNS:
+                findings.append(f"{file}:{number}: {len(line)} columns, at most {MOST_COLUMNS}")
+    return findings
+
+
+def clang_format():
+    """The program, or an error that says how to get it: versions format differently."""
+    for name in (f"clang-format-{CLANG_FORMAT}", "clang-format"):
+        program = shutil.which(name)
+        if program is None:
+            continue
+        version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
+        if re.search(rf"version {CLANG_FORMAT}\.", version):
+            return program
+    raise FileNotFoundError(f"clang-format {CLANG_FORMAT} is missing; on Debian 12: apt-get install clang-format")
+
+
+def unformatted(root):
+    program = clang_format()
+    every = [file for room in ("src", "cuda", "tests") for file in files(root, CPP, room)]
+
+    def first_finding(file):
+        run = subprocess.run([program, "--dry-run", "--Werror", str(file)], cwd=root, capture_output=True, text=True)
+        return run.stderr.splitlines()[0] if run.returncode else ""
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return [finding for finding in pool.map(first_finding, every) if finding]
+
+
+def expanded(pattern):
+    """A path with one group of alternatives {a,b} as the paths that it stands for."""
+    group = re.search(r"\{([^{}]*)\}", pattern)
+    if group is None:
+        return [pattern]
+    return [pattern[:group.start()] + part.strip() + pattern[group.end():] for part in group[1].split(",")]
+
+
+def names_file(readme, text, root, base_names):
+    """Whether a word of a README is a path of this repository at all, and whether it is there."""
+    path = pathlib.PurePosixPath(text)
+    places = [root, root / "src", (root / readme).parent]
+    if len(path.parts) > 1 and any((place / path.parts[0]).is_dir() for place in places):
+        return True, any(any(place.glob(one)) for place in places for one in expanded(text))
+    if len(path.parts) == 1 and path.suffix in CPP | SCRIPTS:
+        return True, any(path.match(one) or pathlib.PurePosixPath(one).match(text) for one in base_names)
+    return False, False
+
+
+def missing_paths(root):
+    """Paths in the inline code and the links of the READMEs that lead nowhere."""
+    base_names = {file.name for file in files(root)}
+    findings = []
+    for readme in (file for file in files(root, {".md"})):
+        text = re.sub(r"^```.*?^```", "", (root / readme).read_text(), flags=re.S | re.M)
+        for target in re.findall(r"\]\(([^)\s]+)\)", text):
+            if not re.match(r"\w+:|#", target) and not ((root / readme).parent / target.split("#")[0]).exists():
+                findings.append(f"{readme}: the link {target} leads nowhere")
+        for code in re.findall(r"`([^`]+)`", text):
+            for word in code.split():
+                word = re.sub(r":\d+$", "", word.strip(",;()\"'"))
+                if re.search(r"[<>$=~@\\]|^/|^-|\.\.\.|://", word) or word.split("/")[0] in NOT_SOURCES:
+                    continue
+                is_path, is_there = names_file(readme, word, root, base_names)
+                if is_path and not is_there:
+                    findings.append(f"{readme}: `{word}` is not there")
+    return findings

@@ -1,0 +1,118 @@
+"""The project's style, looked up; and that each check finds what it is there for."""
+
+import contextlib
+import pathlib
+import tempfile
+import unittest
+from unittest import mock
+
+import checks
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ORDER = "# Rooms\n\n    base <- model <- { dem, mbs } <- run <- main\n"
+
+
+@contextlib.contextmanager
+def tree(**contents):
+    """A source tree of these files; a name's "__" stands for "/", its "_DOT_" for "."."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in {"src__README_DOT_md": ORDER, **contents}.items():
+            path = root / name.replace("__", "/").replace("_DOT_", ".")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        yield root
+
+
+class Project(unittest.TestCase):
+    """This source tree."""
+
+    def assert_none(self, findings):
+        self.assertFalse(findings, "\n" + "\n".join(findings))
+
+    def test_rooms_include_rooms_to_their_left(self):
+        self.assertGreater(len(checks.files(ROOT, checks.CPP, "src")), 100)
+        self.assert_none(checks.wrong_includes(ROOT))
+
+    def test_every_room_is_in_the_order(self):
+        rooms = {path.name for path in (ROOT / "src").iterdir() if path.is_dir()} | {"main"}
+        self.assertEqual(rooms, set(checks.room_order(ROOT)))
+
+    def test_files_are_short(self):
+        self.assert_none(checks.long_files(ROOT))
+
+    def test_python_lines_are_short(self):
+        self.assert_none(checks.long_python_lines(ROOT))
+
+    def test_cpp_and_cuda_are_formatted(self):
+        self.assert_none(checks.unformatted(ROOT))
+
+    def test_paths_in_readmes_are_there(self):
+        self.assert_none(checks.missing_paths(ROOT))
+
+
+class Checks(unittest.TestCase):
+    """The checks themselves."""
+
+    def test_an_order_is_read(self):
+        with tree() as root:
+            order = checks.room_order(root)
+        self.assertEqual(order["mbs"], {"base", "model", "mbs"})
+        self.assertEqual(order["run"], {"base", "model", "dem", "mbs", "run"})
+        with tree(src__README_DOT_md="no order\n") as root, self.assertRaises(ValueError):
+            checks.room_order(root)
+
+    def test_includes(self):
+        right = {"src__dem__a_DOT_cpp": '#include "base/x.hpp"\n#include "dem/y.hpp"\n#include <run/z.hpp>\n',
+                 "src__main_DOT_cpp": '#include "run/x.hpp"\n', "cuda__own_DOT_cuh": "",
+                 "cuda__a_DOT_cu": '#include "own.cuh"\n#include "dem/x.hpp"\n',
+                 "tests__a_DOT_cpp": '#include "run/x.hpp"\n#include "own.cuh"\n'}
+        with tree(**right) as root:
+            self.assertEqual(checks.wrong_includes(root), [])
+        for name, include in (("src__base__a_DOT_cpp", "model/x.hpp"), ("src__dem__a_DOT_hpp", "mbs/x.hpp"),
+                              ("src__mbs__a_DOT_hpp", "dem/x.hpp"), ("src__dem__a_DOT_cpp", "own.cuh"),
+                              ("src__run__a_DOT_cpp", "../cuda/own.cuh"), ("src__run__a_DOT_cpp", "cuda/own.cuh"),
+                              ("cuda__b_DOT_cu", "run/x.hpp"), ("cuda__b_DOT_cu", "mbs/x.hpp"),
+                              ("src__new__a_DOT_cpp", "base/x.hpp")):
+            with self.subTest(name=name, include=include), tree(**right) as root:
+                path = root / name.replace("__", "/").replace("_DOT_", ".")
+                path.parent.mkdir(exist_ok=True)
+                path.write_text(f'\n#  include "{include}"\n')
+                self.assertTrue(checks.wrong_includes(root))
+
+    def test_lengths(self):
+        with tree(a_DOT_py="x\n" * 400 + "", b_DOT_md="x\n" * 500, c_DOT_py="x" * 120 + "\n") as root:
+            self.assertEqual(checks.long_files(root) + checks.long_python_lines(root), [])
+        for suffix in ("cpp", "hpp", "cu", "cuh", "py", "sh"):
+            with tree(**{f"a_DOT_{suffix}": "x\n" * 401}) as root:
+                self.assertEqual(checks.long_files(root), [f"a.{suffix}: 401 lines, at most 400"])
+        with tree(a_DOT_py="\n" + "x" * 121 + "\n") as root:
+            self.assertEqual(checks.long_python_lines(root), ["a.py:2: 121 columns, at most 120"])
+
+    def test_format(self):
+        style = "BasedOnStyle: Google\n"
+        with tree(_DOT_clang_DOT_format="", src__a_DOT_cpp="int a = 1;\n", tests__a_DOT_cu="int b;\n") as root:
+            (root / ".clang-format").write_text(style)
+            self.assertEqual(checks.unformatted(root), [])
+            (root / "tests/a.cu").write_text("int  b;\n")
+            self.assertEqual(len(checks.unformatted(root)), 1)
+            self.assertIn("tests/a.cu:1", checks.unformatted(root)[0])
+        with mock.patch("shutil.which", return_value=None):
+            with self.assertRaisesRegex(FileNotFoundError, "apt-get install clang-format"):
+                checks.clang_format()
+
+    def test_paths(self):
+        sources = {"src__dem__a_DOT_hpp": "", "jobs__run_DOT_sh": "", "jobs__README_DOT_md": ""}
+        right = ("`dem/a.hpp`, `src/dem/`, `jobs/run.sh --fast`, `a.hpp`, `dem/*.hpp`, `dem/{a,a}.hpp`, [jobs]"
+                 "(jobs/README.md#x), `build/x.cpp`, `out.h5`, `case/run.h5`, `a = b`, `/proc/x.sh`, [web]"
+                 "(https://x.org)\n```\njobs/none.sh\n```\n")
+        with tree(README_DOT_md=right, **sources) as root:
+            self.assertEqual(checks.missing_paths(root), [])
+        for wrong in ("`dem/b.hpp`", "`src/none/`", "`jobs/gone.sh --fast`", "`b.hpp`", "`dem/*.cpp`",
+                      "[jobs](jobs/none.md)"):
+            with self.subTest(wrong=wrong), tree(README_DOT_md=f"See {wrong}.\n", **sources) as root:
+                self.assertEqual(len(checks.missing_paths(root)), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
