@@ -38,8 +38,9 @@ def with_velocity(content, particle, x, velocity, new_velocity):
 
     def hash_of(along_y):
         forces_and_losses, image_and_drifting = 9 * (0,), 4 * (0,)
-        return bit_hash((particle, *words_of(position), *words_of(struct.pack("<3d", 0, along_y, 0)), *forces_and_losses,
-                         *image_and_drifting))
+        motion = (*words_of(position), *words_of(struct.pack("<3d", 0, along_y, 0)))
+        return bit_hash((particle, *motion, *forces_and_losses, *image_and_drifting))
+
     content = content[:at] + struct.pack("<d", new_velocity) + content[at + 8:]
     change = hash_of(new_velocity) - hash_of(velocity)
     return content, lambda state_hash: f"{(int(state_hash, 16) + change) & MASK:016x}"
