@@ -10,6 +10,7 @@
 #include "run/simulation.hpp"
 #include "support/bits.hpp"
 #include "support/catch.hpp"
+#include "support/near.hpp"
 #include "support/reference.hpp"
 #include "unit/output/scratch.hpp"
 
@@ -73,7 +74,7 @@ TEST_CASE("mixed precision: rebound velocities are within 1e-4 of those in doubl
     CHECK(largest <= 1e-4);
     const Real lost = mixed.backend->ledger(1e-4).contact_loss,
                exactly = exact.backend->ledger(1e-4).contact_loss;
-    CHECK(lost == Approx(exactly).epsilon(1e-3).margin(1e-9));
+    CHECK(near(lost, exactly, {.relative = 1e-3, .absolute = 1e-9}));
     std::printf("rebound, damping %g: velocities within %.1e m/s of double's, dissipation %.9g of %.9g J\n",
                 damping, largest, lost, exactly);
   }

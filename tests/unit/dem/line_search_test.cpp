@@ -4,12 +4,13 @@
 #include <limits>
 
 #include "support/catch.hpp"
+#include "support/near.hpp"
 
 namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = 1e-14;
+constexpr Real kRoundOff = 4 * kUlp;  // of shares of up to 1
 
 // What a search comes to: the share that is applied, and how often it was shortened. slope(share): of the
 // potential.
@@ -27,7 +28,7 @@ Found search_along(const Slope& slope) {
     search.look(-slope(found.share));
     if (!search.overshoots()) break;
     const Real next = search.next_share(), change = search.shorten();
-    CHECK(found.share + change == Approx(next).epsilon(kRoundOff));
+    CHECK(near(found.share + change, next, {.absolute = kRoundOff}));
     CHECK((next >= 0.1 * found.share * (1 - kRoundOff) && next <= 2 * found.share / 3));
     found.share += change;
   }
@@ -62,7 +63,7 @@ TEST_CASE("the minimum of a parabola is found at once") {
   for (const Real minimum : {0.12, 0.3, 0.6}) {
     const Found found = search_along([&](Real share) { return 5 * (share - minimum); });
     CHECK(found.looks == 1);
-    CHECK(found.share == Approx(minimum).epsilon(kRoundOff));
+    CHECK(near(found.share, minimum, {.relative = kRoundOff}));
   }
 }
 

@@ -7,10 +7,13 @@
 #include "model/generators.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
+#include "support/near.hpp"
 
 namespace scree {
 
 namespace {
+
+constexpr Real kRoundOff = kUlp;  // of places of up to 1 m [m]
 
 std::string deck_3d(const std::string& particles) {
   return "[space]\ndimension = 3\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[time]\nend = 1.0\nstep = 1e-4\n"
@@ -54,10 +57,10 @@ TEST_CASE("a lattice fills row by row") {
                        "size = [4, 3]\ncount = 6\nradius = 0.05\nmass = 1.0\n"))
           .particles;
   REQUIRE(p.size() == 6);
-  CHECK(p.position[3].x == Approx(0.1));
+  CHECK(near(p.position[3].x, 0.1, {.absolute = kRoundOff}));
   CHECK(p.position[3].y == -0.5);
-  CHECK(p.position[5].x == Approx(-0.3));
-  CHECK(p.position[5].y == Approx(-0.2));
+  CHECK(near(p.position[5].x, -0.3, {.absolute = kRoundOff}));
+  CHECK(near(p.position[5].y, -0.2, {.absolute = kRoundOff}));
   CHECK(p.position[5].z == 0);
 }
 
@@ -70,8 +73,8 @@ TEST_CASE("a lattice in 3D, by its centre") {
   Vec3 sum;
   for (const Vec3 x : p.position) sum += x;
   CHECK(norm((1.0 / 12) * sum - Vec3{0.5, 0.5, 0.5}) < 1e-14);
-  CHECK(p.position[11].z == Approx(0.65));
-  CHECK(p.position[5].z == Approx(0.35));
+  CHECK(near(p.position[11].z, 0.65, {.absolute = kRoundOff}));
+  CHECK(near(p.position[5].z, 0.35, {.absolute = kRoundOff}));
 }
 
 TEST_CASE("wrong lattices") {
@@ -95,7 +98,7 @@ TEST_CASE("a random packing keeps clear of everything and stays in its box") {
     const Real r = p.radius[i];
     CHECK((r >= 0.02 && r <= 0.05));
     CHECK((x.x >= r && x.x <= 1 - r && x.y >= r && x.y <= 1 - r && x.z >= r && x.z <= 1 - r));
-    CHECK(p.mass[i] == Approx(1000 * 4.0 / 3 * std::numbers::pi * r * r * r));
+    CHECK(near(p.mass[i], 1000 * 4.0 / 3 * std::numbers::pi * r * r * r, {.relative = 4 * kUlp}));
     CHECK(std::abs(p.velocity[i].z) <= 0.5);
   }
 }
@@ -191,16 +194,16 @@ TEST_CASE("distributions") {
     return std::accumulate(v.begin(), v.end(), 0.0) / v.size();
   };
   // Standard errors of the means: 0.0003 / sqrt(12 x 4000), 0.0002 / sqrt(4000); five of them are allowed.
-  CHECK(mean(radii("{ kind = \"uniform\", min = 0.001, max = 0.002 }")) == Approx(0.0015).margin(2.3e-5));
+  CHECK(near(mean(radii("{ kind = \"uniform\", min = 0.001, max = 0.002 }")), 0.0015, {.absolute = 2.3e-5}));
   const std::vector<Real> normal =
       radii("{ kind = \"normal\", mean = 0.002, sd = 0.0002, min = 0.0015, max = 0.0025 }");
-  CHECK(mean(normal) == Approx(0.002).margin(1.6e-5));
+  CHECK(near(mean(normal), 0.002, {.absolute = 1.6e-5}));
   CHECK((*std::min_element(normal.begin(), normal.end()) >= 0.0015 &&
          *std::max_element(normal.begin(), normal.end()) <= 0.0025));
   const std::vector<Real> table =
       radii("{ kind = \"table\", values = [0.001, 0.003], weights = [3.0, 1.0] }");
   const auto small = static_cast<Real>(std::count(table.begin(), table.end(), 0.001));
-  CHECK(small / 4000 == Approx(0.75).margin(5 * std::sqrt(0.75 * 0.25 / 4000)));
+  CHECK(near(small / 4000, 0.75, {.absolute = 5 * std::sqrt(0.75 * 0.25 / 4000)}));
   CHECK(contains(input_error([&] { radii("{ kind = \"uniform\", min = 0.002, max = 0.001 }"); }),
                  "must be at least min = 0.002"));
   CHECK(contains(input_error([&] { radii("{ kind = \"table\", values = [0.001], weights = [1.0, 2.0] }"); }),
@@ -215,10 +218,10 @@ TEST_CASE("masses: given, from density, from the material") {
       "[[particles]]\nname = \"p\"\nkind = \"list\"\npositions = [[0, 0]]\nradius = 0.1\n";
   const auto mass = [](const std::string& text) { return model_of(text).particles.mass[0]; };
   CHECK(mass(deck_2d(list + "mass = 2.0\n")) == 2);
-  CHECK(mass(deck_2d(list + "density = 100.0\nthickness = 0.5\n")) ==
-        Approx(100 * 0.5 * std::numbers::pi * 0.01));
-  CHECK(mass(deck_2d("[[materials]]\nname = \"m\"\ndensity = 10.0\n" + list)) ==
-        Approx(10 * std::numbers::pi * 0.01));
+  CHECK(near(mass(deck_2d(list + "density = 100.0\nthickness = 0.5\n")), 100 * 0.5 * std::numbers::pi * 0.01,
+             {.relative = 4 * kUlp}));
+  CHECK(near(mass(deck_2d("[[materials]]\nname = \"m\"\ndensity = 10.0\n" + list)),
+             10 * std::numbers::pi * 0.01, {.relative = 4 * kUlp}));
   CHECK(contains(model_error(deck_2d(list)), "particles.p.mass: missing; the group needs mass or density"));
   CHECK(contains(model_error(deck_2d(list + "mass = 1.0\ndensity = 1.0\n")), "not used together with mass"));
 }

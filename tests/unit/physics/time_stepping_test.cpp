@@ -4,17 +4,18 @@
 #include "physics/energy.hpp"
 #include "physics/time_function.hpp"
 #include "support/catch.hpp"
+#include "support/near.hpp"
 
 namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = 1e-14;
+constexpr Real kRoundOff = 4 * kUlp;
+constexpr Within kVectors{.relative = kRoundOff, .absolute = kRoundOff};
+constexpr Real kTruncation = 1e-9;  // of central differences over 1e-5, and their round-off
 constexpr Real kAlphas[] = {0, -0.05, -0.1, -0.3, -1.0 / 3};
 const Vec3 kVelocity{1, -2, 0.5}, kStart{3, 1, -4}, kEnd{-2, 5, 1};
 constexpr Real kStep = 0.1, kMass = 2.5;
-
-bool near(Vec3 a, Vec3 b) { return norm(a - b) <= kRoundOff * (1 + norm(a)); }
 
 }  // namespace
 
@@ -22,15 +23,15 @@ TEST_CASE("HHT's coefficients") {
   const HhtCoefficients trapezoidal = hht_coefficients(0);
   CHECK(trapezoidal.newmark_gamma == 0.5);
   CHECK(trapezoidal.newmark_beta == 0.25);
-  CHECK(trapezoidal.error_constant == Approx(1.0 / 12).epsilon(kRoundOff));
+  CHECK(near(trapezoidal.error_constant, 1.0 / 12, {.relative = kRoundOff}));
   const HhtCoefficients most_damped = hht_coefficients(-1.0 / 3);
-  CHECK(most_damped.newmark_gamma == Approx(5.0 / 6).epsilon(kRoundOff));
-  CHECK(most_damped.newmark_beta == Approx(4.0 / 9).epsilon(kRoundOff));
+  CHECK(near(most_damped.newmark_gamma, 5.0 / 6, {.relative = kRoundOff}));
+  CHECK(near(most_damped.newmark_beta, 4.0 / 9, {.relative = kRoundOff}));
   for (const Real alpha : kAlphas) {
     const HhtCoefficients c = hht_coefficients(alpha);
     CAPTURE(alpha);
     CHECK(c.hht_alpha == alpha);
-    CHECK(c.newmark_gamma == Approx(0.5 - alpha).epsilon(kRoundOff));  // second order
+    CHECK(near(c.newmark_gamma, 0.5 - alpha, {.relative = kRoundOff}));  // second order
     CHECK(c.error_constant > 0);
   }
 }
@@ -40,10 +41,12 @@ TEST_CASE("Newmark is exact for a constant acceleration and a mean for a changin
     CAPTURE(alpha);
     const HhtCoefficients c = hht_coefficients(alpha);
     const Real h = kStep;
-    CHECK(near(newmark_displacement(c, h, kVelocity, kStart, kStart), h * kVelocity + (h * h / 2) * kStart));
-    CHECK(near(newmark_velocity(c, h, kVelocity, kStart, kStart), kVelocity + h * kStart));
+    CHECK(near(newmark_displacement(c, h, kVelocity, kStart, kStart), h * kVelocity + (h * h / 2) * kStart,
+               kVectors));
+    CHECK(near(newmark_velocity(c, h, kVelocity, kStart, kStart), kVelocity + h * kStart, kVectors));
     const Vec3 dx = newmark_displacement(c, h, kVelocity, kStart, kEnd);
-    CHECK(near(dx, h * kVelocity + (h * h) * ((0.5 - c.newmark_beta) * kStart + c.newmark_beta * kEnd)));
+    CHECK(near(dx, h * kVelocity + (h * h) * ((0.5 - c.newmark_beta) * kStart + c.newmark_beta * kEnd),
+               kVectors));
     CHECK(newmark_displacement(c, h, kVelocity.x, kStart.x, kEnd.x) == dx.x);  // the same for a number
   }
 }
@@ -57,15 +60,17 @@ TEST_CASE("Newmark's gains are the changes of position and velocity per change o
     const Vec3 v = newmark_velocity(c, h, kVelocity, kStart, kEnd);
     const Vec3 other = kEnd + kStart;
     CHECK(near(newmark_displacement(c, h, kVelocity, kStart, other),
-               dx + newmark_position_gain(c, h) * kStart));
-    CHECK(near(newmark_velocity(c, h, kVelocity, kStart, other), v + newmark_velocity_gain(c, h) * kStart));
+               dx + newmark_position_gain(c, h) * kStart, kVectors));
+    CHECK(near(newmark_velocity(c, h, kVelocity, kStart, other), v + newmark_velocity_gain(c, h) * kStart,
+               kVectors));
   }
 }
 
 TEST_CASE("without numerical damping, Newmark is the trapezoidal rule") {
   const HhtCoefficients c = hht_coefficients(0);
   const Vec3 v1 = newmark_velocity(c, kStep, kVelocity, kStart, kEnd);
-  CHECK(near(newmark_displacement(c, kStep, kVelocity, kStart, kEnd), (kStep / 2) * (kVelocity + v1)));
+  CHECK(near(newmark_displacement(c, kStep, kVelocity, kStart, kEnd), (kStep / 2) * (kVelocity + v1),
+             kVectors));
 }
 
 TEST_CASE("HHT's residual vanishes for forces that fit the accelerations") {
@@ -112,7 +117,7 @@ TEST_CASE("the integrator's loss is the energy that an oscillator misses") {
       lost += integrator_loss(kMass, dx, v, v1, f, f1);
       x += dx, v = v1, a = a1, f = f1;
     }
-    CHECK(start - energy() == Approx(lost).margin(1e-12 * start));
+    CHECK(near(start - energy(), lost, {.absolute = 25 * kUlp * start}));
     CHECK(lost >= -1e-12 * start);
     CHECK((lost > 1e-6 * start) == (alpha < 0));
   }
@@ -121,15 +126,17 @@ TEST_CASE("the integrator's loss is the energy that an oscillator misses") {
 TEST_CASE("velocity Verlet: the displacement is found again from the predicted velocity") {
   const Vec3 predicted = verlet_predicted_velocity(kStep, kVelocity, kStart);
   CHECK(near(verlet_last_displacement(kStep, predicted, kStart),
-             verlet_displacement(kStep, kVelocity, kStart)));
-  CHECK(near(verlet_velocity(kStep, predicted, kStart, kEnd), kVelocity + (kStep / 2) * (kStart + kEnd)));
+             verlet_displacement(kStep, kVelocity, kStart), kVectors));
+  CHECK(near(verlet_velocity(kStep, predicted, kStart, kEnd), kVelocity + (kStep / 2) * (kStart + kEnd),
+             kVectors));
 }
 
 TEST_CASE("velocity Verlet runs backwards on its own path") {
   const Vec3 dx = verlet_displacement(kStep, kVelocity, kStart);
   const Vec3 v1 = verlet_velocity(kStep, verlet_predicted_velocity(kStep, kVelocity, kStart), kStart, kEnd);
-  CHECK(near(verlet_displacement(-kStep, v1, kEnd), -dx));
-  CHECK(near(verlet_velocity(-kStep, verlet_predicted_velocity(-kStep, v1, kEnd), kEnd, kStart), kVelocity));
+  CHECK(near(verlet_displacement(-kStep, v1, kEnd), -dx, kVectors));
+  CHECK(near(verlet_velocity(-kStep, verlet_predicted_velocity(-kStep, v1, kEnd), kEnd, kStart), kVelocity,
+             kVectors));
 }
 
 TEST_CASE("velocity Verlet's energy error is the change of the shift") {
@@ -137,7 +144,7 @@ TEST_CASE("velocity Verlet's energy error is the change of the shift") {
   const Vec3 v1 = verlet_velocity(kStep, verlet_predicted_velocity(kStep, kVelocity, kStart), kStart, kEnd);
   const Real error = integrator_loss(kMass, dx, kVelocity, v1, kMass * kStart, kMass * kEnd);
   const Real shift = verlet_energy_shift(kStep, kMass, kStart) - verlet_energy_shift(kStep, kMass, kEnd);
-  CHECK(error == Approx(shift).epsilon(1e-12));
+  CHECK(near(error, shift, {.relative = 8 * kRoundOff}));
 }
 
 // x = t^3 / 6 with HHT's accelerations a_n = t_n + alpha h: the error of one step is the estimate.
@@ -148,8 +155,8 @@ TEST_CASE("the error estimate is the local error of a steady jerk") {
     const HhtCoefficients c = hht_coefficients(alpha);
     const Vec3 a0{alpha * h, 0, 0}, a1{h + alpha * h, 0, 0};
     const Real error = newmark_displacement(c, h, Vec3{}, a0, a1).x - h * h * h / 6;
-    CHECK(hht_position_error(c, h, a0, a1, 1) == Approx(error).epsilon(1e-10));
-    CHECK(hht_position_error(c, h, a0, a1, 0.5) == Approx(2 * error).epsilon(1e-10));
+    CHECK(near(hht_position_error(c, h, a0, a1, 1), error, {.relative = 4 * kRoundOff}));
+    CHECK(near(hht_position_error(c, h, a0, a1, 0.5), 2 * error, {.relative = 4 * kRoundOff}));
   }
 }
 
@@ -158,9 +165,10 @@ TEST_CASE("time functions: rates and accelerations are derivatives") {
   const auto check = [](const auto& function, Real t) {
     const Real dt = 1e-5;
     const TimeValue up = function(t + dt), down = function(t - dt), at = function(t);
-    const Real truncation = 1e-8;
-    CHECK(at.rate == Approx((up.value - down.value) / (2 * dt)).epsilon(truncation).margin(truncation));
-    CHECK(at.acceleration == Approx((up.rate - down.rate) / (2 * dt)).epsilon(truncation).margin(truncation));
+    CHECK(near(at.rate, (up.value - down.value) / (2 * dt),
+               {.relative = kTruncation, .absolute = kTruncation}));
+    CHECK(near(at.acceleration, (up.rate - down.rate) / (2 * dt),
+               {.relative = kTruncation, .absolute = kTruncation}));
   };
   check([](Real t) { return ramp_function(2, -3, t); }, 1.5);
   check([](Real t) { return sine_function(1, 0.5, 0.7, 0.3, t); }, 1.5);
@@ -178,8 +186,8 @@ TEST_CASE("many Verlet steps under a constant acceleration are taken at once") {
     middle = verlet_next_middle(kStep, middle, kStart);
     displacement += kStep * middle;
   }
-  CHECK(near(verlet_middle_after(kSteps, kStep, kVelocity, kStart), middle));
-  CHECK(near(verlet_displacement_of(kSteps, kStep, kVelocity, kStart), displacement));
+  CHECK(near(verlet_middle_after(kSteps, kStep, kVelocity, kStart), middle, kVectors));
+  CHECK(near(verlet_displacement_of(kSteps, kStep, kVelocity, kStart), displacement, kVectors));
 }
 
 }  // namespace scree

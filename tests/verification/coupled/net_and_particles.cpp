@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "support/catch.hpp"
+#include "support/near.hpp"
 #include "support/reference.hpp"
 #include "support/simulation_run.hpp"
 
@@ -82,9 +83,9 @@ TEST_CASE("5.3 with 400 particles has the ensemble's energies at 0.4 s") {
       "5.3, N = 400 at 0.4 s: kinetic {:.2f}, gravitational {:.2f}, springs {:.4f}, dissipated "
       "{:.4f}, total {:.3f} J\n",
       ledger.kinetic, ledger.gravitational, ledger.elastic_force_elements, dissipated, ledger.mechanical());
-  CHECK(ledger.kinetic == Approx(2905.1).epsilon(kPhysical));
-  CHECK(ledger.gravitational == Approx(1287.2).epsilon(kPhysical));
-  CHECK(ledger.elastic_force_elements == Approx(75.845).epsilon(kPhysical));
-  CHECK(dissipated == Approx(60.232).epsilon(kPhysical));
-  CHECK(ledger.mechanical() == Approx(4293.9).epsilon(kPhysical));
+  CHECK(near(ledger.kinetic, 2905.1, {.relative = kPhysical}));
+  CHECK(near(ledger.gravitational, 1287.2, {.relative = kPhysical}));
+  CHECK(near(ledger.elastic_force_elements, 75.845, {.relative = kPhysical}));
+  CHECK(near(dissipated, 60.232, {.relative = kPhysical}));
+  CHECK(near(ledger.mechanical(), 4293.9, {.relative = kPhysical}));
 }

@@ -1,0 +1,38 @@
+// Two bars for one error: what is promised, and some three times what was measured, so that a loss of digits
+// shows long before a promise is broken.
+#pragma once
+
+#include <cmath>
+#include <ostream>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+// Both in the unit of the error.
+struct Bars {
+  Real promise;   // what the documents or the method say
+  Real measured;  // the largest error seen when the test was written
+};
+
+// What keeps() finds: true where an error is below both bars, and all that a failure must tell.
+struct Kept {
+  static constexpr Real kSpread = 3;  // of the error over machines, compilers and backends
+
+  Real error;
+  Bars bars;
+
+  bool promise() const { return std::abs(error) < bars.promise; }  // not where it is NaN
+  bool digits() const { return std::abs(error) <= kSpread * bars.measured; }
+  explicit operator bool() const { return promise() && digits(); }
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Kept& kept) {
+  out << "error " << kept.error << ", promised " << kept.bars.promise << ", measured " << kept.bars.measured;
+  if (!kept.promise()) return out << ": the promise is broken";
+  return out << (kept.digits() ? "" : ": more than three times as large as it was");
+}
+
+inline Kept keeps(Real error, Bars bars) { return {error, bars}; }
+
+}  // namespace scree
