@@ -13,6 +13,12 @@ constexpr Real kRoundOff = 1e-9;   // of all energies: where less was exchanged,
 
 }  // namespace
 
+void add_sample(BalanceState& balance, const Ledger& ledger) {
+  if (!balance.open) balance = {true, ledger.accounted(), 0, ledger};
+  balance.exchanged += energy_exchanged(balance.last, ledger);
+  balance.last = ledger;
+}
+
 // HHT books what it does as an entry of its own; what velocity-Verlet does to contacts is the balance error.
 std::string balance_warning(const BalanceState& balance, const Model& model) {
   const Real error = balance_error(balance), taken = balance.last.dissipated_integrator;

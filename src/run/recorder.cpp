@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "partition/id_order.hpp"
+#include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
 #include "run/target_contacts.hpp"
 
@@ -109,9 +110,7 @@ void Recorder::balance(State& state, HistorySample& sample) const {
   // Not yet at the start: the first step can tell more.
   if (balance.open && link_.ranks().any(!std::isfinite(ledger.mechanical())))
     throw SimulationError("stage output: the energy of particles and bodies is not finite");
-  if (!balance.open) balance = {true, ledger.accounted(), 0, ledger};
-  balance.exchanged += energy_exchanged(balance.last, ledger);
-  balance.last = ledger;
+  add_sample(balance, ledger);
   sample.balance_error = ledger.accounted() - balance.start, sample.exchanged = balance.exchanged;
 }
 

@@ -11,28 +11,29 @@
 #include "output/history.hpp"
 #include "output/snapshot.hpp"
 #include "run/history_columns.hpp"
+#include "run/records.hpp"
 #include "run/state.hpp"
 
 namespace scree {
 
-class Recorder {
+class Recorder : public Records {
  public:
   // Continues existing files after state.history_rows rows and state.snapshots snapshots, or starts new ones.
   Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
            const State& state);
-  ~Recorder();
+  ~Recorder() override;
   Recorder(const Recorder&) = delete;  // the backend knows its address
   Recorder& operator=(const Recorder&) = delete;
 
-  // One row; h: length of the step just taken [s]. Updates the balance in the state.
-  void history(State& state, Real h);
+  void history(State& state, Real h) override;
   // After a restart with another deck: what that adds to the energies or takes from them, at this instant, is
   // neither a balance error nor exchanged. The balance goes on from its last sample.
   void rebase_balance(State& state);
   // Takes one. On one rank a backend that computes asynchronously goes on with its steps, and the snapshot is
   // written while the host would only wait for them, at the latest by flush() or before the next one.
-  void snapshot(State& state);
-  void write_pending();  // where the backend fails to hand out the particles, the snapshot is given up
+  void snapshot(State& state) override;
+  void write_pending()
+      override;  // where the backend fails to hand out the particles, the snapshot is given up
   // Brings all that was recorded to disk.
   void flush();
   void flush_history();  // rank 0's part of it alone, at any time

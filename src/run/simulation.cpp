@@ -16,6 +16,7 @@
 #include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
 #include "run/choose_backend.hpp"
+#include "run/recorder.hpp"
 #include "run/restart.hpp"
 #include "run/step_loop.hpp"
 

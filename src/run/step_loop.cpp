@@ -49,11 +49,12 @@ StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(Stat
   keep_good_state();
 }
 
-LoopEnd StepLoop::run() {
+LoopEnd StepLoop::run(Real until) {
   checkpoint_age_ = seconds_now();
   while (!clock_.done()) {
+    if (clock_.time() >= until) return LoopEnd::paused;
     if (look_outside() != 0) return LoopEnd::stopped_by_signal;
-    take_step();
+    take_step(until);
   }
   return LoopEnd::done;
 }
@@ -78,9 +79,9 @@ void StepLoop::write_checkpoint() {
   checkpoint_age_ = seconds_now();
 }
 
-void StepLoop::take_step() {
+void StepLoop::take_step(Real until) {
   const Real h = clock_.begin_step();
-  if (!implicit_) return take_explicit_steps(h);
+  if (!implicit_) return take_explicit_steps(h, until);
   const StepOutcome outcome = parts_.step.implicit_step(state_.bodies, clock_.time(), h);
   if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
   if (outcome.verdict == Verdict::not_converged) return clock_.rejected_for_convergence(outcome.trouble);
@@ -88,10 +89,12 @@ void StepLoop::take_step() {
   close_step(h);
 }
 
-// Equal steps up to the next output, but no longer than until the next look at signals and progress.
-void StepLoop::take_explicit_steps(Real h) {
-  const std::vector<Real> times =
+// Equal steps up to the next output, but no longer than until the next look at signals and progress, and none
+// that begins at `until` or later.
+void StepLoop::take_explicit_steps(Real h, Real until) {
+  std::vector<Real> times =
       clock_.equal_steps(batch_length(parts_.model, parts_.backend.is_mixed(), step_seconds_));
+  times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
   const double start = seconds_now();
   const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h);
   step_seconds_ = (seconds_now() - start) / static_cast<double>(taken);
@@ -124,8 +127,8 @@ void StepLoop::output(Real h) {
   const bool history = clock_.take_history(), snapshot = clock_.take_snapshot(),
              checkpoint = clock_.take_checkpoint();
   state_.clock = clock_.state();
-  if (history) parts_.recorder.history(state_, h);
-  if (snapshot) parts_.recorder.snapshot(state_);
+  if (history) parts_.records.history(state_, h);
+  if (snapshot) parts_.records.snapshot(state_);
   if (checkpoint) write_checkpoint();
   progress_(state_, h);
   bool stale = !implicit_ && seconds_now() - good_age_ > good_cost_ / kGoodStateShare;
@@ -136,7 +139,7 @@ void StepLoop::output(Real h) {
 void StepLoop::keep_good_state() {
   if (implicit_) return;
   const double start = seconds_now();
-  parts_.recorder.write_pending();  // the copy counts it, also where the backend fails before it is written
+  parts_.records.write_pending();  // the copy counts it, also where the backend fails before it is written
   good_.reset();                    // two copies are not needed
   std::vector<Particle> particles = std::move(complete_state().particles);
   state_.particles = {};

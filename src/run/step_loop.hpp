@@ -8,13 +8,13 @@
 
 #include "base/log.hpp"
 #include "coupling/coupled_step.hpp"
-#include "run/recorder.hpp"
+#include "run/records.hpp"
 #include "run/state.hpp"
 #include "run/step_clock.hpp"
 
 namespace scree {
 
-enum class LoopEnd { done, stopped_by_signal };
+enum class LoopEnd { done, paused, stopped_by_signal };
 
 // What the loop works on; all of it outlives the loop.
 struct LoopParts {
@@ -22,7 +22,7 @@ struct LoopParts {
   Backend& backend;
   BodyLink& link;
   CoupledStep& step;
-  Recorder& recorder;
+  Records& records;
   StageTimers& timers;
 };
 
@@ -36,8 +36,9 @@ class StepLoop {
   StepLoop(const LoopParts& parts, State& state, std::function<void(State&)> write_checkpoint,
            std::function<void(const State&, Real h)> progress);
 
-  // Steps until the end or a signal. Throws SimulationError when the run cannot go on.
-  LoopEnd run();
+  // Steps until the end or a signal, or pauses after the first step that reaches the time `until` [s]; may be
+  // called again then. Throws SimulationError when the run cannot go on.
+  LoopEnd run(Real until = std::numeric_limits<Real>::infinity());
   int signal() const { return signal_; }  // that stopped it on some rank
   // The state as it is, complete with the particles.
   State& complete_state();
@@ -48,8 +49,8 @@ class StepLoop {
  private:
   int look_outside();
   void write_checkpoint();
-  void take_step();
-  void take_explicit_steps(Real h);
+  void take_step(Real until);
+  void take_explicit_steps(Real h, Real until);
   void close_step(Real h);
   void leave();
   void output(Real h);

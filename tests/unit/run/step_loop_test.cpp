@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dem/cpu_backend.hpp"
+#include "run/recorder.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/petsc_run.hpp"

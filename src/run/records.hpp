@@ -1,0 +1,22 @@
+// What takes down what a run computes.
+#pragma once
+
+#include "base/types.hpp"
+#include "run/state.hpp"
+
+namespace scree {
+
+// The step loop calls it when the state has reached an output's time.
+class Records {
+ public:
+  virtual ~Records() = default;
+
+  // h: length of the step just taken [s]. Books the energy balance in the state and counts the row there.
+  virtual void history(State& state, Real h) = 0;
+  // Counts it in the state; may write it later.
+  virtual void snapshot(State& state) = 0;
+  // Writes what was taken and not yet written.
+  virtual void write_pending() = 0;
+};
+
+}  // namespace scree
