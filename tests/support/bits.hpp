@@ -1,43 +1,49 @@
-// States compared bit for bit.
+// Values compared bit for bit: -0.0 is not 0.0, and a NaN is itself.
 #pragma once
 
-#include <cstring>
-#include <string>
+#include <algorithm>
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <iterator>
+#include <ranges>
+#include <tuple>
 
-#include "run/state.hpp"
-#include "support/checkpoint_arrays.hpp"
-#include "support/simulation_run.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
 
 namespace scree {
 
-inline bool same_bits(const std::vector<Real>& a, const std::vector<Real>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Real)) == 0);
+inline bool same_bits(Real a, Real b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+inline bool same_bits(std::integral auto a, std::integral auto b) { return a == b; }
+
+// Of a struct, for which fields() gives a tuple of its members: by structured binding, so that a member that
+// is forgotten here does not compile.
+inline auto fields(const Vec3& v) {
+  const auto& [x, y, z] = v;
+  return std::tie(x, y, z);
+}
+template <class Struct>
+requires requires(const Struct& s) { fields(s); }
+bool same_bits(const Struct& a, const Struct& b);
+
+// Of all elements of two vectors, arrays or spans.
+template <std::ranges::range Range>
+bool same_bits(const Range& a, const Range& b) {
+  const auto same = [](const auto& x, const auto& y) { return same_bits(x, y); };
+  return std::equal(std::begin(a), std::end(a), std::begin(b), std::end(b), same);
 }
 
-// Names of the arrays that differ in a bit, or that only one of the two has; "" if there is none.
-inline std::string differing_arrays(const Checkpoint& one, const Checkpoint& other) {
-  const Checkpoint a = with_rows_as_arrays(one), b = with_rows_as_arrays(other);
-  std::string names;
-  for (const auto& [name, values] : a.reals)
-    if (!b.reals.count(name) || !same_bits(values, b.reals.at(name))) names += name + " ";
-  for (const auto& [name, values] : a.integers)
-    if (!b.integers.count(name) || values != b.integers.at(name)) names += name + " ";
-  if (a.reals.size() != b.reals.size() || a.integers.size() != b.integers.size()) names += "(other arrays)";
-  return names;
-}
-
-// One history sample of a run in memory: time, counts, ledger, momentum.
-inline std::vector<Real> history_row(SimulationRun& run) {
-  const StepCounts& n = run.counts();
-  std::vector<Real> row{run.time(), run.balance_error(), run.exchanged()};
-  for (const std::int64_t count :
-       {n.steps, n.newton_iterations, n.linear_iterations, n.rejected_error, n.rejected_newton})
-    row.push_back(static_cast<Real>(count));
-  for (const Real entry : run.ledger().entries()) row.push_back(entry);
-  const ParticleLedger particles = run.particle_ledger();
-  for (const Vec3& v : {particles.momentum, particles.angular_momentum})
-    row.insert(row.end(), {v.x, v.y, v.z});
-  return row;
+template <class Struct>
+requires requires(const Struct& s) { fields(s); }
+bool same_bits(const Struct& a, const Struct& b) {
+  return std::apply(
+      [&](const auto&... of_a) {
+        return std::apply([&](const auto&... of_b) { return (same_bits(of_a, of_b) && ...); }, fields(b));
+      },
+      fields(a));
 }
 
 }  // namespace scree

@@ -2,11 +2,11 @@
 // of fields.
 #pragma once
 
-#include <cstring>
 #include <string>
 #include <vector>
 
 #include "dem/particle_store.hpp"
+#include "support/bits.hpp"
 
 namespace scree {
 
@@ -14,8 +14,7 @@ namespace scree {
 inline std::string differing_fields(const Particle& a, const Particle& b) {
   std::string names = a.global_id == b.global_id ? "" : "global_id ";
   for_each_field([&](const ParticleField& field, auto member) {
-    const auto p = numbers_of(a.*member), q = numbers_of(b.*member);
-    if (std::memcmp(p.data(), q.data(), sizeof(p)) != 0) names += std::string(field.name) + " ";
+    if (!same_bits(numbers_of(a.*member), numbers_of(b.*member))) names += std::string(field.name) + " ";
   });
   return names;
 }
@@ -30,9 +29,7 @@ inline std::string differing_fields(const std::vector<Particle>& a, const std::v
   return "";
 }
 
-inline bool same_bits(const std::vector<Particle>& a, const std::vector<Particle>& b) {
-  return differing_fields(a, b).empty();
-}
+inline bool same_bits(const Particle& a, const Particle& b) { return differing_fields(a, b).empty(); }
 
 // Fills every field with numbers that no other field has, nor a particle of another number, as far as its
 // type tells so many apart, and that decimal text or a cast would spoil.

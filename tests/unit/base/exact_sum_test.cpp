@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "support/bits.hpp"
 #include "support/catch.hpp"
 
 namespace scree {
@@ -27,8 +28,6 @@ std::vector<Real> random_terms(std::mt19937_64& engine, int count, int exponents
   for (int i = 0; i < count; ++i) terms.push_back(std::ldexp(mantissa(engine), exponent(engine)));
   return terms;
 }
-
-bool same_bits(Real a, Real b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 }  // namespace
 

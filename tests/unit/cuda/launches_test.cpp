@@ -4,8 +4,9 @@
 
 #include "dem/device.hpp"
 #include "output/checkpoint.hpp"
-#include "support/bits.hpp"
+#include "run/state.hpp"
 #include "support/catch.hpp"
+#include "support/state_bits.hpp"
 #include "unit/dem/random_box.hpp"
 
 namespace scree {

@@ -8,10 +8,10 @@
 #include "output/checkpoint.hpp"
 #include "partition/subdomain.hpp"
 #include "run/simulation.hpp"
-#include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "support/reference.hpp"
+#include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"
 
 namespace scree {

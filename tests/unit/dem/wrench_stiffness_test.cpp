@@ -5,6 +5,7 @@
 #include "random_box.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
+#include "support/state_bits.hpp"
 
 namespace scree {
 
@@ -53,7 +54,7 @@ std::array<Real, 6> wrench_at(LoadedBox& box, const BodyMotion& motion, ContactW
   box.backend->contact_force();
   box.backend->reduce_wrench(step, end);
   box.backend->reduce_wrench(alone);
-  CHECK((end[0].force == alone[0].force && end[0].torque == alone[0].torque));
+  CHECK(same_bits(end[0], alone[0]));
   const BodyWrench& wrench = step.wrench[0];
   return {wrench.force.x, wrench.force.y, wrench.force.z, wrench.torque.x, wrench.torque.y, wrench.torque.z};
 }

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "output/file_seal.hpp"
 #include "scratch.hpp"
+#include "support/bits.hpp"
 #include "support/catch.hpp"
 
 using namespace scree;
@@ -36,12 +37,6 @@ Checkpoint awkward_checkpoint() {
   return checkpoint;
 }
 
-std::vector<std::uint64_t> bits(const std::vector<Real>& values) {
-  std::vector<std::uint64_t> result;
-  for (const Real value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
-  return result;
-}
-
 }  // namespace
 
 TEST_CASE("a checkpoint returns bit for bit") {
@@ -51,7 +46,7 @@ TEST_CASE("a checkpoint returns bit for bit") {
   write_checkpoint(scratch / "c.h5", written);  // over the first
   const Checkpoint read = read_checkpoint(scratch / "c.h5");
   CHECK(read.reals.size() == written.reals.size());
-  for (const auto& [name, values] : written.reals) CHECK(bits(read.real_array(name)) == bits(values));
+  for (const auto& [name, values] : written.reals) CHECK(same_bits(read.real_array(name), values));
   CHECK(read.integers == written.integers);
   CHECK(read.texts == written.texts);
   CHECK(read.path == scratch / "c.h5");

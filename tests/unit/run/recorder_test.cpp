@@ -14,6 +14,7 @@
 #include "dem/cpu_backend.hpp"
 #include "output/hdf5_file.hpp"
 #include "run/step_clock.hpp"
+#include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/petsc_run.hpp"
@@ -131,7 +132,7 @@ struct Recording {
 template <class T>
 bool same_values(const Hdf5File& a, const Hdf5File& b, const std::string& name) {
   try {
-    return a.read_array<T>(name) == b.read_array<T>(name);
+    return same_bits(a.read_array<T>(name), b.read_array<T>(name));
   } catch (const IoError&) {
     return false;
   }

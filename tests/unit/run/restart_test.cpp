@@ -10,10 +10,10 @@
 
 #include "base/error.hpp"
 #include "run/checkpoint_datasets.hpp"
-#include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/petsc_run.hpp"
+#include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"
 
 namespace scree {

@@ -6,8 +6,9 @@
 #include "output/checkpoint.hpp"
 #include "output/hdf5_file.hpp"
 #include "run/simulation.hpp"
-#include "support/bits.hpp"
 #include "support/catch.hpp"
+#include "support/petsc_run.hpp"
+#include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"
 #include "verification/restart/cases.hpp"
 

@@ -3,8 +3,9 @@
 #include <vector>
 
 #include "output/checkpoint.hpp"
-#include "support/bits.hpp"
 #include "support/catch.hpp"
+#include "support/simulation_run.hpp"
+#include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"
 #include "verification/restart/cases.hpp"
 
@@ -18,6 +19,20 @@ struct Result {
   std::int64_t left = 0;
   Real contact_loss = 0;
 };
+
+// One history sample: time, counts, ledger, momentum.
+std::vector<Real> history_row(SimulationRun& run) {
+  const StepCounts& n = run.counts();
+  std::vector<Real> row{run.time(), run.balance_error(), run.exchanged()};
+  for (const std::int64_t count :
+       {n.steps, n.newton_iterations, n.linear_iterations, n.rejected_error, n.rejected_newton})
+    row.push_back(static_cast<Real>(count));
+  for (const Real entry : run.ledger().entries()) row.push_back(entry);
+  const ParticleLedger particles = run.particle_ledger();
+  for (const Vec3& v : {particles.momentum, particles.angular_momentum})
+    row.insert(row.end(), {v.x, v.y, v.z});
+  return row;
+}
 
 Result result_of(SimulationRun& run, std::vector<std::vector<Real>> rows) {
   const State& state = run.complete_state();
