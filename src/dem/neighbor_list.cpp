@@ -91,7 +91,7 @@ bool NeighborBuilder::excluded(const ItemLayout& layout, Index i, Index j) const
 }
 
 void NeighborBuilder::collect_row(const ParticleStore& store, const ItemLayout& layout,
-                                  const SortedItems& sorted, Index i, Index end, NeighborList& list) const {
+                                  const SortedItems& sorted, Index i, Index end, NeighborList& list) {
   const CellGrid& grid = sorted.grid;
   const Vec4 p = store.position[i];
   const Index cell = sorted.cell_of[i];
@@ -100,14 +100,17 @@ void NeighborBuilder::collect_row(const ParticleStore& store, const ItemLayout& 
               cz = cell / (grid.cells[0] * grid.cells[1]);
   const Index x0 = std::max(cx - 1, 0), x1 = std::min(cx + 1, grid.cells[0] - 1);
   for (Index z = std::max(cz - 1, 0); z <= std::min(cz + 1, grid.cells[2] - 1); ++z)
-    for (Index y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.cells[1] - 1); ++y)
-      for (Index k = sorted.start[grid.index(x0, y, z)]; k < sorted.start[grid.index(x1, y, z) + 1]; ++k) {
+    for (Index y = std::max(cy - 1, 0); y <= std::min(cy + 1, grid.cells[1] - 1); ++y) {
+      const Index first = sorted.start[grid.index(x0, y, z)], last = sorted.start[grid.index(x1, y, z) + 1];
+      distances_ += last - first;
+      for (Index k = first; k < last; ++k) {
         const Index j = sorted.items[k];
         const Vec4 q = store.position[j];
         const Vec3 d = xyz(p) - xyz(q);
         const Real reach = p.w + q.w + list.skin;
         if (dot(d, d) < reach * reach && j < end && !excluded(layout, i, j)) list.neighbors.push_back(j);
       }
+    }
 }
 
 void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout& layout,
@@ -129,6 +132,7 @@ void NeighborBuilder::collect_walls(const ParticleStore& store, const ItemLayout
 void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
                             Real skin, NeighborList& list) {
   list.skin = skin;
+  distances_ = 0;
   list.neighbors.clear();
   list.offsets.assign(static_cast<std::size_t>(layout.items) + 1, 0);
   // Shapes that reach no particle of this rank are left out of its cells, whose edges they would crowd.

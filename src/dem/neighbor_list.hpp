@@ -74,6 +74,8 @@ class NeighborBuilder {
   // Fills the list from the positions of all items.
   void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells, Real skin,
              NeighborList& list);
+  // Pairs of items whose distance the last build has computed.
+  std::int64_t distances() const { return distances_; }
 
  private:
   // Items in the order of their cells.
@@ -90,13 +92,14 @@ class NeighborBuilder {
                       Real skin) const;
   // Adds the neighbours of item i among the sorted items before `end`.
   void collect_row(const ParticleStore& store, const ItemLayout& layout, const SortedItems& sorted, Index i,
-                   Index end, NeighborList& list) const;
+                   Index end, NeighborList& list);
   bool excluded(const ItemLayout& layout, Index i, Index j) const;
   void collect_walls(const ParticleStore& store, const ItemLayout& layout, NeighborList& list) const;
 
   const Model& model_;
   const BodyShapes& shapes_;
   Real largest_radius_ = 0;
+  std::int64_t distances_ = 0;
   SortedItems near_;        // what can touch this rank's particles, and those
   SortedItems all_shapes_;  // where shapes meet on a rank whose cells are not those of the space
 };

@@ -18,11 +18,11 @@ constexpr double kBatchSeconds = 0.05, kMostSubsteps = 1e6;
 // 0.6 s where the particles fill its memory.
 constexpr double kMixedBatch = 1e9, kMixedIdle = 1e5, kFewestMixed = 32;
 
-double seconds_now() {
+}  // namespace
+
+double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-}  // namespace
 
 // In mixed precision a batch closes its last step with forces in double: if the clock chose that step, a
 // rerun would have other bits. So the deck alone does. Beside bodies the host's work may take the longest,
@@ -50,7 +50,7 @@ StepLoop::StepLoop(const LoopParts& parts, State& state, std::function<void(Stat
 }
 
 LoopEnd StepLoop::run(Real until) {
-  checkpoint_age_ = seconds_now();
+  checkpoint_age_ = parts_.seconds();
   while (!clock_.done()) {
     if (clock_.time() >= until) return LoopEnd::paused;
     if (look_outside() != 0) return LoopEnd::stopped_by_signal;
@@ -63,7 +63,7 @@ LoopEnd StepLoop::run(Real until) {
 // state is at rest here, whoever takes the steps: a checkpoint moves none of them.
 int StepLoop::look_outside() {
   const Real interval = parts_.model.output.checkpoint_wall_interval;
-  const bool due = interval > 0 && ranks().is_root() && seconds_now() - checkpoint_age_ >= interval;
+  const bool due = interval > 0 && ranks().is_root() && parts_.seconds() - checkpoint_age_ >= interval;
   Real wanted[] = {static_cast<Real>(signal_received()), due ? Real(1) : Real(0)};
   ranks().max(wanted);
   signal_ = static_cast<int>(wanted[0]);
@@ -76,7 +76,7 @@ int StepLoop::look_outside() {
 
 void StepLoop::write_checkpoint() {
   write_checkpoint_(complete_state());
-  checkpoint_age_ = seconds_now();
+  checkpoint_age_ = parts_.seconds();
 }
 
 void StepLoop::take_step(Real until) {
@@ -95,9 +95,9 @@ void StepLoop::take_explicit_steps(Real h, Real until) {
   std::vector<Real> times =
       clock_.equal_steps(batch_length(parts_.model, parts_.backend.is_mixed(), step_seconds_));
   times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
-  const double start = seconds_now();
+  const double start = parts_.seconds();
   const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h);
-  step_seconds_ = (seconds_now() - start) / static_cast<double>(taken);
+  step_seconds_ = (parts_.seconds() - start) / static_cast<double>(taken);
   ranks().broadcast(step_seconds_);  // clocks differ
   for (std::size_t k = 0; k < taken; ++k) clock_.accepted(0);
   close_step(h);
@@ -131,21 +131,21 @@ void StepLoop::output(Real h) {
   if (snapshot) parts_.records.snapshot(state_);
   if (checkpoint) write_checkpoint();
   progress_(state_, h);
-  bool stale = !implicit_ && seconds_now() - good_age_ > good_cost_ / kGoodStateShare;
+  bool stale = !implicit_ && parts_.seconds() - good_age_ > good_cost_ / kGoodStateShare;
   if (!implicit_) ranks().broadcast(stale);
   if (stale) keep_good_state();
 }
 
 void StepLoop::keep_good_state() {
   if (implicit_) return;
-  const double start = seconds_now();
+  const double start = parts_.seconds();
   parts_.records.write_pending();  // the copy counts it, also where the backend fails before it is written
-  good_.reset();                    // two copies are not needed
+  good_.reset();                   // two copies are not needed
   std::vector<Particle> particles = std::move(complete_state().particles);
   state_.particles = {};
   good_ = state_;
   good_->particles = std::move(particles);
-  good_age_ = seconds_now();
+  good_age_ = parts_.seconds();
   good_cost_ = good_age_ - start;
 }
 

@@ -16,6 +16,9 @@ namespace scree {
 
 enum class LoopEnd { done, paused, stopped_by_signal };
 
+// Since some moment, by the machine's clock.
+double steady_seconds();
+
 // What the loop works on; all of it outlives the loop.
 struct LoopParts {
   const Model& model;
@@ -24,6 +27,7 @@ struct LoopParts {
   CoupledStep& step;
   Records& records;
   StageTimers& timers;
+  std::function<double()> seconds = steady_seconds;  // a clock that never goes back
 };
 
 // Explicit steps of the bodies to take at once, where the last ones took so many seconds each. mixed: that of

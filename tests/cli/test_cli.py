@@ -8,7 +8,6 @@ import resource
 import shutil
 import subprocess
 import tempfile
-import time
 import unittest
 
 SCREE = os.environ["SCREE"]
@@ -380,11 +379,9 @@ class RunTest(CommandLineTest):
                 limit = () if SANITIZED else ("bash", "-c", 'ulimit -v 4000000; exec "$@"', "bash")  # [KiB]
                 if SANITIZED and "memory" in message:
                     continue
-                begin = time.monotonic()
                 self.assertRegex(self.expect(BAD_INPUT, "check", deck, launcher=limit).stderr, message)
                 spent = resource.getrusage(resource.RUSAGE_CHILDREN)
-                self.assertLess(spent.ru_maxrss, 1e6)  # [kB], of the largest child so far
-                self.assertLess(time.monotonic() - begin, 30)  # under a second on an idle machine
+                self.assertLess(spent.ru_maxrss, 1e6)  # [kB], of the largest child so far: none of them was built
 
     def test_output_that_cannot_be_written(self):
         self.write("file", "not a folder")

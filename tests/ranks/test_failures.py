@@ -220,7 +220,7 @@ class SignalTest(RanksTest):
         self.run_deck(DONE, 1, DAM[0], "none", [*settings, "output.checkpoint_wall_interval=0"])
         self.assertFalse((self.folder / "none" / "checkpoint.h5").exists())
         for ranks in (1, 2):
-            self.run_deck(DONE, ranks, DAM[0], f"many {ranks}", [*settings, "output.checkpoint_wall_interval=0.02"])
+            self.run_deck(DONE, ranks, DAM[0], f"many {ranks}", [*settings, "output.checkpoint_wall_interval=1e-9"])
             self.assertTrue((self.folder / f"many {ranks}" / "checkpoint.h5").exists())
             self.assertEqual(self.hash(f"many {ranks}"), self.hash("none"))
             self.run_deck(DONE, 3 - ranks, DAM[0], "on", settings, "--restart",

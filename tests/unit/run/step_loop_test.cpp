@@ -1,10 +1,8 @@
 // How many explicit steps the loop takes at once.
 #include "run/step_loop.hpp"
 
-#include <chrono>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "dem/cpu_backend.hpp"
@@ -50,30 +48,32 @@ mass = 1.0
 history_interval = 1.0
 )";
 
-// Says that it is mixed, or not; dawdles, and keeps how many steps it had to take at once.
+// Says that it is mixed, or not; takes some time by a clock of its own for any number of steps, and keeps how
+// many it had to take at once.
 class SlowBackend : public CpuBackend {
  public:
-  SlowBackend(const Model& model, bool mixed, int milliseconds)
-      : CpuBackend(model), mixed_(mixed), milliseconds_(milliseconds) {}
+  SlowBackend(const Model& model, bool mixed, double seconds)
+      : CpuBackend(model), mixed_(mixed), seconds_(seconds) {}
   bool is_mixed() const override { return mixed_; }
   VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) override {
     batches.push_back(most);
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds_));
+    now += seconds_;
     return CpuBackend::verlet_run(h, most, keep_open, timers);
   }
 
   std::vector<Index> batches;
+  double now = 0;  // [s]
 
  private:
   bool mixed_;
-  int milliseconds_;
+  double seconds_;
 };
 
 // The batches of a whole run.
-std::vector<Index> batches(bool mixed, int milliseconds) {
+std::vector<Index> batches(bool mixed, double seconds) {
   const Model model = (petsc(), model_of(kDeck));
   const ScratchDirectory folder;
-  SlowBackend backend(model, mixed, milliseconds);
+  SlowBackend backend(model, mixed, seconds);
   BodyLink link(model);
   StageTimers timers;
   CoupledStep step(model, backend, link, timers);
@@ -83,7 +83,8 @@ std::vector<Index> batches(bool mixed, int milliseconds) {
   step.start(state.bodies);
   Recorder recorder(model, backend, link, folder.path(), state);
   StepLoop loop(
-      {model, backend, link, step, recorder, timers}, state, [](State&) {}, [](const State&, Real) {});
+      {model, backend, link, step, recorder, timers, [&] { return backend.now; }}, state, [](State&) {},
+      [](const State&, Real) {});
   CHECK(loop.run() == LoopEnd::done);
   return backend.batches;
 }
@@ -122,10 +123,19 @@ TEST_CASE("in mixed precision a batch follows from the deck, and a GPU takes wel
 }
 
 TEST_CASE("in mixed precision no clock decides where the loop's batches end") {
-  const std::vector<Index> quick = batches(true, 0);
+  const std::vector<Index> quick = batches(true, 1e-6);
   CHECK(quick.size() > 2);
-  CHECK(quick == batches(true, 20));
-  CHECK(batches(false, 0) != batches(false, 20));
+  CHECK(quick == batches(true, 0.02));
+}
+
+TEST_CASE(
+    "in double the loop's batches take up to 0.05 s, and each is as long as the last one's steps let it be") {
+  CHECK(batches(false, 1e-6) == std::vector<Index>{1, 19999});
+  std::vector<Index> slow = batches(false, 0.02);
+  REQUIRE(slow.size() > 4);
+  slow.resize(4);
+  CHECK(slow == std::vector<Index>{1, 2, 5, 12});
+  CHECK(batches(false, 0.06).size() == 20000);
 }
 
 }  // namespace scree
