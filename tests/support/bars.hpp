@@ -11,8 +11,10 @@ namespace scree {
 
 // Both in the unit of the error.
 struct Bars {
-  Real promise;   // what the documents or the method say
-  Real measured;  // the largest error seen when the test was written
+  Real promise;  // what the documents or the method say
+  // The largest error seen when the test was written; of round-off, which compilers and libraries change,
+  // three times that, and no less than some last places of the values.
+  Real measured;
 };
 
 // What keeps() finds: true where an error is below both bars, and all that a failure must tell.

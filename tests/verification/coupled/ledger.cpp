@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/reference.hpp"
@@ -23,7 +24,7 @@ void check_balance(const std::string& what, const Model& model, Real least_excha
                            run.exchanged());
   CAPTURE(what);
   CHECK(run.exchanged() > least_exchanged);
-  CHECK(std::abs(run.balance_error()) < kTruncation * run.exchanged());
+  CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = kTruncation, .measured = 5.1e-9}));
 }
 
 // A disc of 1 kg that the floor y = 0 already bears at half of its weight: it swings without leaving the
