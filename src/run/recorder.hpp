@@ -32,8 +32,8 @@ class Recorder : public Records {
   // Takes one. On one rank a backend that computes asynchronously goes on with its steps, and the snapshot is
   // written while the host would only wait for them, at the latest by flush() or before the next one.
   void snapshot(State& state) override;
-  void write_pending()
-      override;  // where the backend fails to hand out the particles, the snapshot is given up
+  // Where the backend fails to hand out the particles, the snapshot is given up.
+  void write_pending() override;
   // Brings all that was recorded to disk.
   void flush();
   void flush_history();  // rank 0's part of it alone, at any time

@@ -42,7 +42,7 @@ class StepLoop {
 
   // Steps until the end or a signal, or pauses after the first step that reaches the time `until` [s]; may be
   // called again then. Throws SimulationError when the run cannot go on.
-  LoopEnd run(Real until = std::numeric_limits<Real>::infinity());
+  LoopEnd run(Real until = kInfinity);
   int signal() const { return signal_; }  // that stopped it on some rank
   // The state as it is, complete with the particles.
   State& complete_state();

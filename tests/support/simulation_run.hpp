@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -57,9 +56,7 @@ class SimulationRun {
   SimulationRun& operator=(const SimulationRun&) = delete;
 
   // Steps until time.end; calls at_history after each history sample. Throws SimulationError as the run does.
-  void run(const std::function<void()>& at_history = [] {}) {
-    run_until(std::numeric_limits<Real>::infinity(), at_history);
-  }
+  void run(const std::function<void()>& at_history = [] {}) { run_until(kInfinity, at_history); }
   // As run(), until the step that reaches time t [s].
   void run_until(
       Real t, const std::function<void()>& at_history = [] {}) {
@@ -69,7 +66,7 @@ class SimulationRun {
   }
   // One accepted step; its length [s].
   Real step() {
-    loop_->run(std::nextafter(time(), std::numeric_limits<Real>::infinity()));
+    loop_->run(std::nextafter(time(), kInfinity));
     return last_step_;
   }
 

@@ -10,8 +10,7 @@ namespace scree {
 
 namespace {
 
-constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN(),
-               kInfinity = std::numeric_limits<Real>::infinity();
+constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
 
 template <class Printed>
 std::string text(const Printed& printed) {
