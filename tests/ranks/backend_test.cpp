@@ -206,8 +206,7 @@ TEST_CASE("what leaves while it touches others, and what it leaves, has the bits
         CHECK((same_energies && elastic > 0));
         CHECK(differing_fields(one.records(), many.records()) == "");
         const ShapeLosses p = one.backend->shape_losses(), q = many.backend->shape_losses();
-        if (world.is_root())
-          CHECK(same_bits(p, q));
+        if (world.is_root()) CHECK(same_bits(p, q));
       }
 }
 

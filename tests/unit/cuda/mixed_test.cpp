@@ -10,6 +10,7 @@
 #include "run/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
+#include "support/petsc_run.hpp"
 #include "support/reference.hpp"
 #include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"

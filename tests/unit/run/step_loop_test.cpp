@@ -1,7 +1,7 @@
 // How many explicit steps the loop takes at once.
 #include "run/step_loop.hpp"
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +10,7 @@
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/petsc_run.hpp"
+#include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"
 
 namespace scree {
@@ -69,24 +70,34 @@ class SlowBackend : public CpuBackend {
   double seconds_;
 };
 
-// The batches of a whole run.
-std::vector<Index> batches(bool mixed, double seconds) {
+// A run of the deck.
+struct SlowRun {
+  SlowRun(bool mixed, double seconds) : backend(model, mixed, seconds) {
+    state.clock = StepClock(model).state();
+    backend.load(initial_records(model.particles, Subdomain(model.space)), {});
+    step.start(state.bodies);
+    recorder.emplace(model, backend, link, folder.path(), state);
+    const LoopParts parts{model, backend, link, step, *recorder, timers, [this] { return backend.now; }};
+    loop.emplace(
+        parts, state, [](State&) {}, [](const State&, Real) {});
+  }
+
   const Model model = (petsc(), model_of(kDeck));
   const ScratchDirectory folder;
-  SlowBackend backend(model, mixed, seconds);
-  BodyLink link(model);
+  SlowBackend backend;
+  BodyLink link{model};
   StageTimers timers;
-  CoupledStep step(model, backend, link, timers);
+  CoupledStep step{model, backend, link, timers};
   State state;
-  state.clock = StepClock(model).state();
-  backend.load(initial_records(model.particles, Subdomain(model.space)), {});
-  step.start(state.bodies);
-  Recorder recorder(model, backend, link, folder.path(), state);
-  StepLoop loop(
-      {model, backend, link, step, recorder, timers, [&] { return backend.now; }}, state, [](State&) {},
-      [](const State&, Real) {});
-  CHECK(loop.run() == LoopEnd::done);
-  return backend.batches;
+  std::optional<Recorder> recorder;
+  std::optional<StepLoop> loop;
+};
+
+// Of a whole run.
+std::vector<Index> batches(bool mixed, double seconds) {
+  SlowRun run(mixed, seconds);
+  CHECK(run.loop->run() == LoopEnd::done);
+  return run.backend.batches;
 }
 
 }  // namespace
@@ -136,6 +147,20 @@ TEST_CASE(
   slow.resize(4);
   CHECK(slow == std::vector<Index>{1, 2, 5, 12});
   CHECK(batches(false, 0.06).size() == 20000);
+}
+
+TEST_CASE("the loop pauses after the step that reaches a time, and goes on from there") {
+  SlowRun whole(false, 1e-6), parts(false, 1e-6);
+  CHECK(whole.loop->run() == LoopEnd::done);
+  for (const Real until : {5e-5, 0.1, 0.1 + 1e-9, 0.5}) {
+    CHECK(parts.loop->run(until) == LoopEnd::paused);
+    CHECK(parts.state.clock.time >= until);
+    CHECK(parts.state.clock.time < until + 5.1e-5);
+  }
+  CHECK(parts.loop->run(parts.state.clock.time) == LoopEnd::paused);  // there already: no step
+  CHECK(parts.backend.batches.size() == 4);
+  CHECK(parts.loop->run() == LoopEnd::done);
+  CHECK(differing_arrays(pack(parts.loop->complete_state()), pack(whole.loop->complete_state())) == "");
 }
 
 }  // namespace scree

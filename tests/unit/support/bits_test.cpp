@@ -75,7 +75,8 @@ TEST_CASE("states that differ name the arrays that do") {
   CHECK(differing([](State& s) { ++s.counts.steps; }) == "counts/steps ");
   CHECK(differing([](State& s) { s.particles[1].loss_power = -0.0; }) == "particles/loss_power ");
   CHECK(differing([](State& s) { s.particles[0].drifting = true; }) == "particles/drifting ");
-  CHECK(differing([](State& s) { s.particles.pop_back(); }).find("particles/global_id ") != std::string::npos);
+  CHECK(differing([](State& s) { s.particles.pop_back(); }).find("particles/global_id ") !=
+        std::string::npos);
   Checkpoint extra = pack(state);
   extra.reals["more"] = {};
   CHECK(differing_arrays(pack(state), extra) == "(other arrays)");
