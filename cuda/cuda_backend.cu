@@ -34,6 +34,49 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
 
 CudaBackend::~CudaBackend() = default;
 
+namespace {
+
+class CudaStep : public ImplicitStep {
+ public:
+  CudaStep(CudaBackend& backend, Real h) : backend_(backend), h_(h) {}
+  void predict() override { backend_.begin_step(h_); }
+  Real step_displacement() override { return backend_.step_displacement(); }
+  ParticleNorms contact_force() override { return backend_.contact_force(); }
+  GlobalId worst_particle() override { return backend_.worst_particle(); }
+  void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) override {
+    backend_.reduce_wrench(step, end);
+  }
+  ParticleCorrection particle_correct() override { return backend_.particle_correct(); }
+  void shorten_correction() override { backend_.shorten_correction(); }
+  Real error() override { return backend_.error(); }
+  void accept() override { backend_.accept(); }
+  void undo() override { backend_.rollback(); }
+
+ private:
+  CudaBackend& backend_;
+  Real h_;
+};
+
+class CudaRun : public ExplicitRun {
+ public:
+  CudaRun(CudaBackend& backend, Real h) : backend_(backend), h_(h) { backend.verlet_start(h); }
+  StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override {
+    return backend_.verlet_run(h_, most, keep_open, timers);
+  }
+  void shape_contacts() override { backend_.shape_contacts(); }
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { backend_.reduce_wrench(wrench); }
+
+ private:
+  CudaBackend& backend_;
+  Real h_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImplicitStep> CudaBackend::open_step(Real h) { return std::make_unique<CudaStep>(*this, h); }
+
+std::unique_ptr<ExplicitRun> CudaBackend::start_run(Real h) { return std::make_unique<CudaRun>(*this, h); }
+
 std::string CudaBackend::description() const {
   const bool asked = model_.integrator.precision == Precision::mixed;
   const std::string precision = mixed_ ? "mixed" : asked ? "double, because bodies have shapes" : "double";
@@ -67,7 +110,7 @@ RecordItem CudaBackend::record_item(Index first) const {
   return {views_of(now_), first, model_.space.min, subdomain_.period(), records_.data()};
 }
 
-std::vector<Particle> CudaBackend::records() const {
+std::vector<Particle> CudaBackend::records() {
   if (migrating_) throw DeviceError("particles were on their way between ranks");
   std::vector<Particle> out(static_cast<std::size_t>(owned_));
   const auto at_once = static_cast<Index>(records_.size());
@@ -343,7 +386,7 @@ void CudaBackend::find_rows(Real skin) {
 
 // Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:
 // all ranks then fail, and can write their last good state.
-void CudaBackend::build_list(Real skin, StageTimers& timers) {
+void CudaBackend::build(Real skin, StageTimers& timers) {
   settle();
   layout_changed_ = true;
   std::int64_t particles = 0;
@@ -372,7 +415,7 @@ void CudaBackend::build_list(Real skin, StageTimers& timers) {
   measure_balance();
 }
 
-Real CudaBackend::list_displacement() {
+Real CudaBackend::displacement() {
   if (layout_changed_) return 2;
   settle();
   const DisplacementItem moved{list_position_.data(), now_.position.data()};

@@ -30,47 +30,52 @@ struct SolverControl {
   int alone;  // the last block decides; else the ranks do, together, after the product
 };
 
-class CudaBackend : public Backend {
+class CudaBackend : public Backend, public RankParticles, public RankList, public Reports {
  public:
   CudaBackend(const Model& model, const Ranks& ranks);
   ~CudaBackend() override;
   std::string description() const override;
+  RankParticles& particles() override { return *this; }
+  RankList& list() override { return *this; }
+  Reports& reports() override { return *this; }
+  std::unique_ptr<ImplicitStep> open_step(Real h) override;
+  std::unique_ptr<ExplicitRun> start_run(Real h) override;
 
   void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
-  std::vector<Particle> records() const override;
+  std::vector<Particle> records() override;
   ShapeLosses shape_losses() const override { return side_.losses(); }
 
   void place_bodies(std::span<const BodyMotion> motion) override;
-  Real list_displacement() override;
-  void build_list(Real skin, StageTimers& timers) override;
-  std::int64_t list_entries() const override { return list_.entries(); }
-  std::int64_t list_builds() const override { return list_builds_; }
+  Real displacement() override;
+  void build(Real skin, StageTimers& timers) override;
+  std::int64_t entries() const override { return list_.entries(); }
+  std::int64_t builds() const override { return list_builds_; }
   LoadBalance balance() const override { return balance_; }
   void initial_forces() override;
 
-  void begin_step(Real h) override;
-  void rollback() override;
-  Real step_displacement() override;
-  ParticleNorms contact_force() override;
-  GlobalId worst_particle() const override;
-  void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) override;
+  void begin_step(Real h);
+  void rollback();
+  Real step_displacement();
+  ParticleNorms contact_force();
+  GlobalId worst_particle();
+  void reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end);
   void reduce_wrench(std::vector<BodyWrench>& end) override;
-  ParticleCorrection particle_correct() override;
-  void shorten_correction() override;
-  Real error() override;
-  void accept() override;
+  ParticleCorrection particle_correct();
+  void shorten_correction();
+  Real error();
+  void accept();
 
-  void verlet_start(Real h) override;
-  VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) override;
-  void shape_contacts() override;
+  void verlet_start(Real h);
+  StepsTaken verlet_run(Real h, Index most, bool keep_open, StageTimers& timers);
+  void shape_contacts();
 
-  std::vector<Leaver> outside() const override;
+  std::vector<Leaver> outside() override;
   void take_out(const std::vector<Leaver>& leavers) override;
   ParticleLedger ledger(Real verlet_step) override;
   void start_pack() override;
   ParticlePack pack_particles() override;
   ShapePack pack_shapes() override;
-  std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) const override;
+  std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
   std::vector<ContactSum> body_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
   bool computes_asynchronously() const override { return true; }
@@ -180,8 +185,8 @@ class CudaBackend : public Backend {
   void convert_from_mixed();
   void finish(Real h);
   bool renew_list(StageTimers& timers);
-  VerletRun run_alone(Real h, Index most, bool keep_open, StageTimers& timers);
-  VerletRun run_with_shapes(Real h, Index most, bool keep_open, StageTimers& timers);
+  StepsTaken run_alone(Real h, Index most, bool keep_open, StageTimers& timers);
+  StepsTaken run_with_shapes(Real h, Index most, bool keep_open, StageTimers& timers);
   bool step_with_shapes(Real h, bool keep_open, StageTimers& timers);
   bool shapes_covered() const;
   void queue_shape_contacts();

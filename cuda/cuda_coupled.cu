@@ -35,8 +35,8 @@ void CudaBackend::queue_shape_contacts() {
   copy_async(&h_results_.data()->control, result(&Results::control), 1, shape_stream_);
 }
 
-VerletRun CudaBackend::run_with_shapes(Real h, Index most, bool keep_open, StageTimers& timers) {
-  VerletRun run{0, true};
+StepsTaken CudaBackend::run_with_shapes(Real h, Index most, bool keep_open, StageTimers& timers) {
+  StepsTaken run{0, true};
   for (; run.closed < most && run.open; ++run.closed)
     run.open = step_with_shapes(h, keep_open || run.closed + 1 < most, timers);
   return run;
@@ -46,7 +46,7 @@ VerletRun CudaBackend::run_with_shapes(Real h, Index most, bool keep_open, Stage
 // and solves for the bodies' motion while the particles' kernel runs.
 bool CudaBackend::step_with_shapes(Real h, bool keep_open, StageTimers& timers) {
   for (;;) {
-    if (layout_changed_ || !shapes_covered()) build_list(model_.contact.skin, timers), resume_control();
+    if (layout_changed_ || !shapes_covered()) build(model_.contact.skin, timers), resume_control();
     const auto scope = timers.time(Stage::contact_force);
     step_queued_.record(stream_);
     queue_shape_contacts();

@@ -210,7 +210,7 @@ void CudaBackend::resume_control(Index last) {
 // After a stop: whether the list is the reason and was renewed, or turned out to cover the particles yet.
 bool CudaBackend::renew_list(StageTimers& timers) {
   if (!layout_changed_ && bound_ < list_skin_ / 2) return false;
-  if (!(list_displacement() < kWornList)) build_list(model_.contact.skin, timers);
+  if (!(displacement() < kWornList)) build(model_.contact.skin, timers);
   resume_control();
   return true;
 }
@@ -308,12 +308,12 @@ void CudaBackend::finish(Real h) {
   refresh_ghosts(now_.position.data(), now_.velocity.data());
 }
 
-VerletRun CudaBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) {
+StepsTaken CudaBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) {
   return shape_items() > 0 ? run_with_shapes(h, most, keep_open, timers)
                            : run_alone(h, most, keep_open, timers);
 }
 
-VerletRun CudaBackend::run_alone(Real h, Index most, bool keep_open, StageTimers& timers) {
+StepsTaken CudaBackend::run_alone(Real h, Index most, bool keep_open, StageTimers& timers) {
   const VerletControl* c = &wait_for_control();
   const Index start = c->closed, last = start + most - (keep_open ? 0 : 1);
   const auto leaves = [&] { return c->closed_steps[c->closed % VerletControl::kClosedSteps].leaves; };

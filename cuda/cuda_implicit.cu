@@ -130,7 +130,7 @@ void CudaBackend::report_not_finite(const Vec3* force) const {
                           " is not finite");
 }
 
-GlobalId CudaBackend::worst_particle() const {
+GlobalId CudaBackend::worst_particle() {
   max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
   halo_.max(device(), result(&Results::largest), 1);
   require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_),

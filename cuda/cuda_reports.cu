@@ -75,7 +75,7 @@ struct CountDriftingItem {
 
 }  // namespace
 
-std::vector<Leaver> CudaBackend::outside() const {
+std::vector<Leaver> CudaBackend::outside() {
   constexpr std::size_t kFirstRoom = 1024;
   if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, stream_);
   const auto find = [&] {
@@ -224,7 +224,7 @@ ShapePack CudaBackend::pack_shapes() {
   return side_.pack(layout_, ranks_);
 }
 
-std::vector<TracedParticle> CudaBackend::traced(std::span<const GlobalId> wanted) const {
+std::vector<TracedParticle> CudaBackend::traced(std::span<const GlobalId> wanted) {
   if (wanted.empty()) return {};
   std::vector<GlobalId> ids(wanted.begin(), wanted.end());
   std::sort(ids.begin(), ids.end());

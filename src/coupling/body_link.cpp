@@ -49,29 +49,33 @@ void BodyLink::check_reactions() {
   if (has_bodies()) ranks_.on_root([&] { multibody_->check_reactions(); });
 }
 
-void BodyLink::broadcast(Backend& backend) {
+void BodyLink::broadcast(RankList& list) {
   ranks_.broadcast(std::span<BodyMotion>(motion_));
-  backend.place_bodies(motion_);
+  list.place_bodies(motion_);
 }
 
-void BodyLink::broadcast_motion(Backend& backend) {
+void BodyLink::broadcast_motion(RankList& list) {
   if (!has_bodies()) return;
   if (multibody_) motion_ = multibody_->motion();
-  broadcast(backend);
+  broadcast(list);
 }
 
-void BodyLink::broadcast_motion(Backend& backend, const MultibodyState& state, Real tau) {
+void BodyLink::broadcast_motion(RankList& list, const MultibodyState& state, Real tau) {
   if (!has_bodies()) return;
   if (multibody_) multibody_->motion(state, tau, motion_);
-  broadcast(backend);
+  broadcast(list);
 }
 
-void BodyLink::reduce_wrench(Backend& backend) {
-  if (has_bodies()) backend.reduce_wrench(step_wrench_, end_wrench_);
+void BodyLink::reduce_wrench(ImplicitStep& step) {
+  if (has_bodies()) step.reduce_wrench(step_wrench_, end_wrench_);
 }
 
-void BodyLink::reduce_end_wrench(Backend& backend) {
-  if (has_bodies()) backend.reduce_wrench(end_wrench_);
+void BodyLink::reduce_end_wrench(ExplicitRun& run) {
+  if (has_bodies()) run.reduce_wrench(end_wrench_);
+}
+
+void BodyLink::reduce_end_wrench(RankParticles& particles) {
+  if (has_bodies()) particles.reduce_wrench(end_wrench_);
 }
 
 void BodyLink::set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,

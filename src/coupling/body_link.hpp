@@ -31,14 +31,14 @@ class BodyLink {
   void accept(MultibodyState& bodies);  // with end_wrench()
   void check_reactions();
 
-  // Rank 0 -> all: motion at the current iterate of the open step, handed to the backend's shapes.
-  void broadcast_motion(Backend& backend);
+  // Rank 0 -> all: motion at the current iterate of the open step, handed to the bodies' shapes on the list.
+  void broadcast_motion(RankList& list);
   // The same for an instant tau [s] after `state`, along rank 0's prediction.
-  void broadcast_motion(Backend& backend, const MultibodyState& state, Real tau);
-  // All -> rank 0: contact wrench and contact stiffness per body, as Backend::reduce_wrench. The wrenches are
-  // rank 0's; zero elsewhere.
-  void reduce_wrench(Backend& backend);
-  void reduce_end_wrench(Backend& backend);  // end_wrench() alone
+  void broadcast_motion(RankList& list, const MultibodyState& state, Real tau);
+  // All -> rank 0: contact wrench and contact stiffness per body. The wrenches are rank 0's; zero elsewhere.
+  void reduce_wrench(ImplicitStep& step);
+  void reduce_end_wrench(ExplicitRun& run);          // end_wrench() alone
+  void reduce_end_wrench(RankParticles& particles);  // the same at the start
   // Replaces the step's wrench by the one whose trapezoidal impulse over `substeps` equal parts is their sum:
   // twice the mean force less the force at the start. sum: of the forces at the parts' ends, the outer two
   // halved.
@@ -48,7 +48,7 @@ class BodyLink {
   const std::vector<BodyMotion>& motion() const { return motion_; }
 
  private:
-  void broadcast(Backend& backend);
+  void broadcast(RankList& list);
 
   Ranks ranks_;
   std::unique_ptr<Multibody> multibody_;

@@ -45,94 +45,103 @@ CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, S
       something_touches_(model.particles.totals.count > 0 || !pair_limits(model).empty()),
       largest_radius_(radius_range(model).largest) {}
 
-void CoupledStep::rebuild_list(Real skin) { backend_.build_list(skin, timers_); }
+void CoupledStep::rebuild_list(Real skin) { backend_.list().build(skin, timers_); }
 
 void CoupledStep::start(MultibodyState& bodies) {
   link_.set_initial_state(bodies, {model_.bodies.size(), BodyWrench{}});
   resume(bodies);
-  backend_.initial_forces();
+  backend_.particles().initial_forces();
   // Only now are the contact wrenches at the start known.
-  link_.reduce_end_wrench(backend_);
+  link_.reduce_end_wrench(backend_.particles());
   link_.set_initial_state(bodies, link_.end_wrench());
   bodies.wrench = link_.end_wrench();
 }
 
 void CoupledStep::resume(const MultibodyState& bodies) {
-  link_.broadcast_motion(backend_, bodies, 0);
+  link_.broadcast_motion(backend_.list(), bodies, 0);
   rebuild_list(model_.contact.skin);
 }
 
 void CoupledStep::renew_forces(MultibodyState& bodies, Real t) {
-  backend_.initial_forces();
-  link_.reduce_end_wrench(backend_);
+  backend_.particles().initial_forces();
+  link_.reduce_end_wrench(backend_.particles());
   link_.solve_acceleration(bodies, t);
 }
 
-void CoupledStep::open_step(const MultibodyState& bodies, Real t, Real h) {
+void CoupledStep::open_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h) {
   {
     const auto scope = timers_.time(Stage::predict);
     link_.predict(bodies, t, h);
-    backend_.begin_step(h);
+    step = backend_.open_step(h);
+    step->predict();
   }
   const auto scope = timers_.time(Stage::broadcast_motion);
-  link_.broadcast_motion(backend_);
+  link_.broadcast_motion(backend_.list());
 }
 
-void CoupledStep::undo_step(const MultibodyState& bodies) {
-  backend_.rollback();
-  link_.broadcast_motion(backend_, bodies, 0);
+void CoupledStep::undo_step(OpenStep& step, const MultibodyState& bodies) {
+  if (step) step->undo();
+  step.reset();
+  link_.broadcast_motion(backend_.list(), bodies, 0);
 }
 
 // Whether the neighbour list sees every pair that the iterate can bring to touch. If not, the step is undone
 // and the list built with a skin that covers it: the step is then repeated with the same h, so that what the
 // list happens to cover never changes the result.
-bool CoupledStep::covered(const MultibodyState& bodies, int builds) {
-  if (!something_touches_ || backend_.list_displacement() <= 1) return true;
-  const Real moved = backend_.step_displacement(), widest = kMostSkin * largest_radius_;
+bool CoupledStep::covered(OpenStep& step, const MultibodyState& bodies, int builds) {
+  if (!something_touches_ || backend_.list().displacement() <= 1) return true;
+  const Real moved = step->step_displacement(), widest = kMostSkin * largest_radius_;
   if (builds == kMostListBuilds)
     throw SimulationError(fmt::format(
         "stage neighbors: the step moves a particle or a shape of a body by {:.3g} m, farther than "
         "contacts are looked for: by half of {:.3g} m",
         moved, std::max(model_.contact.skin, widest)));
-  undo_step(bodies);
+  undo_step(step, bodies);
   rebuild_list(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, widest)));
   return false;
+}
+
+// Opens the step of both sides, on a list that covers it, and iterates until the residuals are small.
+void CoupledStep::solve_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h) {
+  const StepCounts before = counts_;
+  bool done = false;
+  for (int builds = 0; !done; ++builds) {
+    // Attempts that the list does not cover leave no trace, in the counts neither.
+    counts_.newton_iterations = before.newton_iterations,
+    counts_.linear_iterations = before.linear_iterations;
+    open_step(step, bodies, t, h);
+    if (!covered(step, bodies, builds)) continue;
+    iterate(*step);
+    done = covered(step, bodies, builds);
+  }
 }
 
 StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   StepOutcome outcome;
   const StepCounts before = counts_;
+  OpenStep step;
   try {
-    bool done = false;
-    for (int builds = 0; !done; ++builds) {
-      // Attempts that the list does not cover leave no trace, in the counts neither.
-      counts_.newton_iterations = before.newton_iterations,
-      counts_.linear_iterations = before.linear_iterations;
-      open_step(bodies, t, h);
-      if (!covered(bodies, builds)) continue;
-      iterate();
-      done = covered(bodies, builds);
-    }
-    for (const Leaver& l : backend_.outside())
+    solve_step(step, bodies, t, h);
+    for (const Leaver& l : backend_.particles().outside())
       if (l.lost) check_inside();  // through a wall: a shorter step may not
   } catch (const DeviceError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
     counts_ = before;
-    undo_step(bodies);
+    undo_step(step, bodies);
     throw;
   } catch (const SimulationError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
-    undo_step(bodies);
+    undo_step(step, bodies);
     link_.check_reactions();
     ++counts_.rejected_newton;
     return {Verdict::not_converged, 0, error.what()};
   }
   const auto scope = timers_.time(Stage::accept);
   if (model_.time.control == StepControl::adaptive) {
-    outcome.error = std::max(backend_.error(), link_.error());
+    outcome.error = std::max(step->error(), link_.error());
     outcome.error /= model_.time.tolerance;
     if (!(outcome.error <= 1)) {
-      undo_step(bodies);
+      undo_step(step, bodies);
       ++counts_.rejected_error;
       outcome.verdict = Verdict::inaccurate;
       return outcome;
@@ -143,10 +152,10 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     check_inside();
     link_.accept(end);
   } catch (const SimulationError&) {
-    undo_step(bodies);
+    undo_step(step, bodies);
     throw;
   }
-  backend_.accept();
+  step->accept();
   bodies = std::move(end);
   ++counts_.steps;
   return outcome;
@@ -154,7 +163,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
 
 std::vector<Leaver> CoupledStep::check_inside() const {
   const Leaving policy = model_.space.leaving;
-  std::vector<Leaver> leavers = backend_.outside();
+  std::vector<Leaver> leavers = backend_.particles().outside();
   for (const Leaver& l : leavers) {
     if (!l.lost && policy != Leaving::error) continue;
     throw SimulationError(fmt::format(
@@ -167,17 +176,17 @@ std::vector<Leaver> CoupledStep::check_inside() const {
   return leavers;
 }
 
-void CoupledStep::iterate() {
+void CoupledStep::iterate(ImplicitStep& step) {
   Iteration last;
   for (int iteration = 0; iteration < model_.integrator.max_iterations; ++iteration) {
     ++counts_.newton_iterations;
-    if (iterate_once(last)) return;
+    if (iterate_once(step, last)) return;
   }
-  throw SimulationError(trouble_of(last));
+  throw SimulationError(trouble_of(step, last));
 }
 
 // Whose residual or correction is above the limit: the particles', if both are.
-std::string CoupledStep::trouble_of(const Iteration& last) const {
+std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last) const {
   const Integrator& limits = model_.integrator;
   const auto trouble = [&](const char* stage, const std::string& what) {
     return fmt::format("stage {}: no convergence in {} iterations; {}", stage, limits.max_iterations, what);
@@ -185,7 +194,7 @@ std::string CoupledStep::trouble_of(const Iteration& last) const {
   if (!(last.residual <= limits.residual_tolerance))
     return trouble("particle_correct",
                    fmt::format("the largest residual, {:.2e} of the largest force, is that of particle {}",
-                               last.residual, backend_.worst_particle()));
+                               last.residual, step.worst_particle()));
   if (!(last.bodies.residual <= limits.residual_tolerance))
     return trouble("mbs_correct", fmt::format("the bodies' scaled residual is {:.2e}", last.bodies.residual));
   if (!(last.bodies.correction <= limits.correction_tolerance))
@@ -198,16 +207,16 @@ std::string CoupledStep::trouble_of(const Iteration& last) const {
 
 // One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
 // correction: block Gauss-Seidel on the coupled Newton system.
-bool CoupledStep::iterate_once(Iteration& last) {
+bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last) {
   const Integrator& limits = model_.integrator;
   ParticleNorms particles;
   {
     const auto scope = timers_.time(Stage::contact_force);
-    particles = backend_.contact_force();
+    particles = step.contact_force();
     last.residual = particles.residual;
     last.judged_correction = std::min(last.correction, particles.correction_bound);
     if (particles.overshoot) {
-      backend_.shorten_correction();
+      step.shorten_correction();
       return false;
     }
   }
@@ -215,7 +224,7 @@ bool CoupledStep::iterate_once(Iteration& last) {
   if (link_.has_bodies()) {
     {
       const auto scope = timers_.time(Stage::reduce_wrench);
-      link_.reduce_wrench(backend_);
+      link_.reduce_wrench(step);
     }
     {
       const auto scope = timers_.time(Stage::mbs_correct);
@@ -224,14 +233,14 @@ bool CoupledStep::iterate_once(Iteration& last) {
                     last.bodies.correction <= limits.correction_tolerance;
     }
     const auto scope = timers_.time(Stage::broadcast_motion);
-    link_.broadcast_motion(backend_);
+    link_.broadcast_motion(backend_.list());
   }
   const bool particles_done =
       last.residual <= limits.residual_tolerance && last.judged_correction <= limits.correction_tolerance;
   if (bodies_done && particles_done) return true;
 
   const auto scope = timers_.time(Stage::particle_correct);
-  const ParticleCorrection correction = backend_.particle_correct();
+  const ParticleCorrection correction = step.particle_correct();
   last.correction = correction.correction;
   counts_.linear_iterations += correction.iterations;
   return false;
@@ -239,25 +248,26 @@ bool CoupledStep::iterate_once(Iteration& last) {
 
 std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h) {
   const int substeps = model_.integrator.substeps;
+  std::unique_ptr<ExplicitRun> run;
   {
     const auto scope = timers_.time(Stage::predict);
-    backend_.verlet_start(h / substeps);
+    run = backend_.start_run(h / substeps);
   }
   std::size_t taken = 0;
   if (link_.has_bodies()) {
     for (bool open = true; open; ++taken)
-      open = explicit_step_with_bodies(bodies, times[taken], h, taken + 1 < times.size());
+      open = explicit_step_with_bodies(*run, bodies, times[taken], h, taken + 1 < times.size());
   } else {
     const Index most = static_cast<Index>(times.size()) * substeps;
-    taken =
-        static_cast<std::size_t>(backend_.verlet_run(h / substeps, most, false, timers_).closed / substeps);
+    taken = static_cast<std::size_t>(run->take_steps(most, false, timers_).closed / substeps);
   }
   counts_.steps += static_cast<std::int64_t>(taken);
   return taken;
 }
 
 // Returns whether the particles' next step is open.
-bool CoupledStep::explicit_step_with_bodies(MultibodyState& bodies, Real t, Real h, bool keep_open) {
+bool CoupledStep::explicit_step_with_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h,
+                                            bool keep_open) {
   const int substeps = model_.integrator.substeps;
   std::vector<BodyWrench>& sum = wrench_sum_;
   sum.assign(bodies.wrench.size(), BodyWrench{});
@@ -266,21 +276,21 @@ bool CoupledStep::explicit_step_with_bodies(MultibodyState& bodies, Real t, Real
   for (int s = 1; s <= substeps; ++s) {
     {
       const auto scope = timers_.time(Stage::broadcast_motion);
-      link_.broadcast_motion(backend_, bodies, h * s / substeps);
+      link_.broadcast_motion(backend_.list(), bodies, h * s / substeps);
     }
-    open = backend_.verlet_run(h / substeps, 1, s < substeps || keep_open, timers_).open;
+    open = run.take_steps(1, s < substeps || keep_open, timers_).open;
     const auto scope = timers_.time(Stage::reduce_wrench);
-    link_.reduce_end_wrench(backend_);
+    link_.reduce_end_wrench(run);
     add_wrenches(sum, link_.end_wrench(), s < substeps ? 1 : 0.5);
   }
   link_.set_mean_wrench(bodies.wrench, sum, substeps);
-  solve_bodies(bodies, t, h);
+  solve_bodies(run, bodies, t, h);
   return open;
 }
 
 // The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
 // begins, with the contacts at the bodies' corrected place.
-void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
+void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h) {
   const Integrator& limits = model_.integrator;
   {
     const auto scope = timers_.time(Stage::mbs_correct);
@@ -299,12 +309,12 @@ void CoupledStep::solve_bodies(MultibodyState& bodies, Real t, Real h) {
   }
   {
     const auto scope = timers_.time(Stage::broadcast_motion);
-    link_.broadcast_motion(backend_);
+    link_.broadcast_motion(backend_.list());
   }
   {
     const auto scope = timers_.time(Stage::reduce_wrench);
-    backend_.shape_contacts();
-    link_.reduce_end_wrench(backend_);
+    run.shape_contacts();
+    link_.reduce_end_wrench(run);
   }
   const auto scope = timers_.time(Stage::accept);
   link_.accept(bodies);

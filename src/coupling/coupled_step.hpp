@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -55,14 +56,16 @@ class CoupledStep {
 
  private:
   struct Iteration;
-  void open_step(const MultibodyState& bodies, Real t, Real h);
-  void undo_step(const MultibodyState& bodies);
-  bool covered(const MultibodyState& bodies, int builds);
-  void iterate();
-  bool iterate_once(Iteration& last);
-  std::string trouble_of(const Iteration& last) const;
-  bool explicit_step_with_bodies(MultibodyState& bodies, Real t, Real h, bool keep_open);
-  void solve_bodies(MultibodyState& bodies, Real t, Real h);
+  using OpenStep = std::unique_ptr<ImplicitStep>;  // of the particles; null while none is open
+  void open_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
+  void undo_step(OpenStep& step, const MultibodyState& bodies);
+  bool covered(OpenStep& step, const MultibodyState& bodies, int builds);
+  void solve_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
+  void iterate(ImplicitStep& step);
+  bool iterate_once(ImplicitStep& step, Iteration& last);
+  std::string trouble_of(ImplicitStep& step, const Iteration& last) const;
+  bool explicit_step_with_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h, bool keep_open);
+  void solve_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h);
 
   const Model& model_;
   Backend& backend_;

@@ -1,81 +1,83 @@
-// The explicit step of the serial backend.
+#include "dem/cpu_explicit.hpp"
+
 #include <cmath>
 #include <utility>
 
 #include "base/for_each.hpp"
-#include "dem/cpu_backend.hpp"
 
 namespace scree {
 
-VerletViews CpuBackend::verlet_views(Real h, std::vector<Vec4>& position, std::vector<Vec4>& velocity) {
-  return {position.data(),
-          velocity.data(),
-          store_.acceleration.data(),
-          store_.contact_loss.data(),
-          store_.loss_power.data(),
-          h,
-          subdomain_.snap_constant()};
-}
-
-void CpuBackend::verlet_start(Real h) {
-  const VerletStartItem item{verlet_views(h, store_.position, store_.velocity)};
-  step_bound_ = std::sqrt(max_over(Serial{}, layout_.owned, item));
-  closed_ = 0;
+CpuExplicitRun::CpuExplicitRun(CpuItems& items, CpuList& list, Real h) : items_(items), list_(list), h_(h) {
+  const VerletStartItem item{views_of(items.store.position, items.store.velocity)};
+  step_bound_ = std::sqrt(max_over(Serial{}, items.layout.owned, item));
   share_step();
 }
 
+VerletViews CpuExplicitRun::views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity) {
+  ParticleStore& store = items_.store;
+  return {position.data(),
+          velocity.data(),
+          store.acceleration.data(),
+          store.contact_loss.data(),
+          store.loss_power.data(),
+          h_,
+          items_.subdomain.snap_constant()};
+}
+
 // What all ranks must know of the open step.
-void CpuBackend::share_step() {
-  Real shared[2] = {step_bound_, ends_step() && any_outside() ? Real(1) : Real(0)};
-  ranks_.max(shared);
+void CpuExplicitRun::share_step() {
+  const bool ends_step = (closed_ + 1) % items_.model.integrator.substeps == 0;
+  Real shared[2] = {step_bound_, ends_step && items_.any_outside() ? Real(1) : Real(0)};
+  items_.ranks.max(shared);
   step_bound_ = shared[0], outside_ = shared[1] != 0;
 }
 
-VerletRun CpuBackend::verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) {
-  VerletRun run{0, true};
-  while (run.closed < most && run.open) {
-    if (list_displacement() > 1) build_list(model_.contact.skin, timers);
+StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& timers) {
+  Index taken = 0;
+  while (taken < most && open_) {
+    if (!list_.covers(std::exchange(step_bound_, 0))) list_.build(items_.model.contact.skin, timers);
     const auto refresh = [&] {
       const auto scope = timers.time(Stage::update_halo);
-      refresh_ghosts();
+      items_.refresh_ghosts();
     };
     refresh();
     {
       const auto scope = timers.time(Stage::contact_force);
-      run.open = (keep_open || run.closed + 1 < most) && !outside_;
-      run.open ? verlet_advance(h) : verlet_finish(h);
-      ++run.closed, ++closed_;
-      if (run.open) share_step();
+      open_ = (keep_open || taken + 1 < most) && !outside_;
+      open_ ? advance() : finish();
+      ++taken, ++closed_;
+      if (open_) share_step();
     }
-    if (!run.open) refresh();  // with the velocities at the end of the step
+    if (!open_) refresh();  // with the velocities at the end of the step
   }
-  return run;
+  return {taken, open_};
 }
 
 // Particles as the last step left them before it opened the next: with the velocities that the law saw.
-void CpuBackend::shape_contacts() {
-  find_shape_contacts(views(opened_ ? spare_position_ : store_.position, spare_velocity_));
+void CpuExplicitRun::shape_contacts() {
+  items_.find_shape_contacts(
+      items_.views(open_ ? items_.spare_position : items_.store.position, items_.spare_velocity));
 }
 
-void CpuBackend::verlet_advance(Real h) {
-  find_shape_contacts(views());
-  side_.book_losses(h);
-  step_bound_ = std::sqrt(kernels_->verlet_advance(views(), model_.gravity, layout_.owned,
-                                                   verlet_views(h, spare_position_, spare_velocity_)));
-  std::swap(store_.position, spare_position_);
-  std::swap(store_.velocity, spare_velocity_);
-  opened_ = true;
+void CpuExplicitRun::advance() {
+  items_.find_shape_contacts();
+  items_.side.book_losses(h_);
+  step_bound_ =
+      std::sqrt(items_.kernels->verlet_advance(items_.views(), items_.model.gravity, items_.layout.owned,
+                                               views_of(items_.spare_position, items_.spare_velocity)));
+  std::swap(items_.store.position, items_.spare_position);
+  std::swap(items_.store.velocity, items_.spare_velocity);
 }
 
-void CpuBackend::verlet_finish(Real h) {
-  find_shape_contacts(views());
-  side_.book_losses(h);
+void CpuExplicitRun::finish() {
+  items_.find_shape_contacts();
+  items_.side.book_losses(h_);
+  std::vector<Vec3>& force = items_.store.force;
   const Real squared =
-      kernels_->verlet_finish(views(), model_.gravity, layout_.owned,
-                              verlet_views(h, spare_position_, spare_velocity_), store_.force.data());
-  if (!std::isfinite(ranks_.max(squared))) report_not_finite(store_.force);
-  std::swap(store_.velocity, spare_velocity_);
-  opened_ = false;
+      items_.kernels->verlet_finish(items_.views(), items_.model.gravity, items_.layout.owned,
+                                    views_of(items_.spare_position, items_.spare_velocity), force.data());
+  if (!std::isfinite(items_.ranks.max(squared))) items_.report_not_finite(force);
+  std::swap(items_.store.velocity, items_.spare_velocity);
 }
 
 }  // namespace scree

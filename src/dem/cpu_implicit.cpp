@@ -1,90 +1,90 @@
-// The implicit step of the serial backend.
+#include "dem/cpu_implicit.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "base/for_each.hpp"
 #include "base/reproducible_sum.hpp"
-#include "dem/cpu_backend.hpp"
 
 namespace scree {
-StepViews CpuBackend::step_views() {
-  return {store_.position.data(),
-          store_.velocity.data(),
-          store_.acceleration.data(),
-          start_position_.data(),
-          start_velocity_.data(),
-          start_acceleration_.data(),
-          start_force_.data(),
-          hht_,
+
+void CpuImplicitArrays::resize(const ItemLayout& layout, std::size_t list_entries) {
+  const auto owned = static_cast<std::size_t>(layout.owned);
+  matrix_entries.resize(list_entries), direction.resize(static_cast<std::size_t>(layout.items));
+  step_force.resize(owned), end_force.resize(owned), force_magnitude.resize(owned);
+  stiffening.resize(owned), matrix_count.resize(owned);
+  residual.resize(owned), right_hand_side.resize(owned), correction.resize(owned);
+  matrix_diagonal.resize(owned), inverse_block.resize(owned);
+}
+
+CpuImplicitStep::CpuImplicitStep(CpuItems& items, CpuImplicitArrays& arrays, Real h)
+    : items_(items), arrays_(arrays), h_(h) {
+  arrays_.resize(items.layout, items.list.neighbors.size());
+  arrays_.start_position = items.store.position;
+  arrays_.start_velocity = items.store.velocity;
+  arrays_.start_acceleration = items.store.acceleration;
+  arrays_.start_force = items.store.force;
+}
+
+StepViews CpuImplicitStep::step_views() {
+  return {items_.store.position.data(),
+          items_.store.velocity.data(),
+          items_.store.acceleration.data(),
+          arrays_.start_position.data(),
+          arrays_.start_velocity.data(),
+          arrays_.start_acceleration.data(),
+          arrays_.start_force.data(),
+          items_.hht,
           h_,
-          subdomain_.snap_constant()};
+          items_.subdomain.snap_constant()};
 }
 
-void CpuBackend::initial_forces() {
-  refresh_ghosts();
-  kernels_->forces(views(), model_.gravity, layout_.owned, store_.force.data(), store_.loss_power.data());
-  for_each(Serial{}, layout_.owned,
-           StartAccelerationItem{store_.force.data(), store_.velocity.data(), store_.acceleration.data()});
-  find_shape_contacts(views());
-  if (is_verlet(model_))
-    side_.book_losses(0);
-  else
-    std::fill(store_.loss_power.begin(), store_.loss_power.end(), 0);
+StepForces CpuImplicitStep::step_forces() {
+  return {arrays_.step_force.data(), arrays_.end_force.data(), arrays_.force_magnitude.data()};
 }
 
-void CpuBackend::begin_step(Real h) {
-  h_ = h;
-  line_search_ = {};
-  in_implicit_step_ = true;
-  start_position_ = store_.position;
-  start_velocity_ = store_.velocity;
-  start_acceleration_ = store_.acceleration;
-  start_force_ = store_.force;
-  for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
-  refresh_ghosts();
+StepStart CpuImplicitStep::step_start() const {
+  return {arrays_.start_position.data(), arrays_.start_velocity.data(), h_,
+          items_.model.integrator.resolve_events};
 }
 
-void CpuBackend::rollback() {
-  if (!in_implicit_step_) return;
-  std::copy(start_position_.begin(), start_position_.begin() + layout_.owned, store_.position.begin());
-  std::copy(start_velocity_.begin(), start_velocity_.begin() + layout_.owned, store_.velocity.begin());
-  store_.acceleration = start_acceleration_;
-  store_.force = start_force_;
-  refresh_ghosts();
-  in_implicit_step_ = false;
+ContactMatrix CpuImplicitStep::matrix() {
+  return {arrays_.matrix_count.data(), arrays_.matrix_entries.data(), arrays_.matrix_diagonal.data()};
 }
 
-Real CpuBackend::step_displacement() {
-  const DisplacementItem moved{start_position_.data(), store_.position.data()};
-  const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
-  const Real particles = max_over(Serial{}, layout_.active, moved);
-  return std::sqrt(
-      ranks_.max(std::max(particles, max_over(Serial{}, layout_.items - layout_.first_shape, shapes))));
+// To where their accelerations take them.
+void CpuImplicitStep::move_particles() {
+  for_each(Serial{}, items_.layout.owned, NewmarkItem{step_views()});
+  items_.refresh_ghosts();
 }
 
-StepForces CpuBackend::step_forces() {
-  return {step_force_.data(), end_force_.data(), force_magnitude_.data()};
+void CpuImplicitStep::predict() { move_particles(); }
+
+void CpuImplicitStep::undo() {
+  ParticleStore& store = items_.store;
+  const Index owned = items_.layout.owned;
+  std::copy_n(arrays_.start_position.begin(), owned, store.position.begin());
+  std::copy_n(arrays_.start_velocity.begin(), owned, store.velocity.begin());
+  store.acceleration = arrays_.start_acceleration;
+  store.force = arrays_.start_force;
+  items_.refresh_ghosts();
 }
 
-StepStart CpuBackend::step_start() const {
-  return {start_position_.data(), start_velocity_.data(), h_, model_.integrator.resolve_events};
+Real CpuImplicitStep::step_displacement() {
+  const ItemLayout& layout = items_.layout;
+  const DisplacementItem moved{arrays_.start_position.data(), items_.store.position.data()};
+  const DisplacementItem shapes{moved.from + layout.first_shape, moved.to + layout.first_shape};
+  const Real particles = max_over(Serial{}, layout.active, moved);
+  return std::sqrt(items_.ranks.max(std::max(particles, max_over(Serial{}, items_.shape_items(), shapes))));
 }
 
-ParticleNorms CpuBackend::contact_force() {
-  const Index n = layout_.owned;
-  const NewtonWeights weights{newmark_position_gain(hht_, h_), newmark_velocity_gain(hht_, h_)};
-  const ContactMatrix matrix{matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()};
-  kernels_->system(views(), model_.gravity, n, weights, step_start(), step_forces(), matrix);
-  kernels_->shapes(views(), layout_.items - layout_.first_shape, step_start(), side_.contacts().data());
-  for_each(Serial{}, n,
-           ResidualItem{step_views(), step_force_.data(), matrix, residual_.data(), inverse_block_.data(),
-                        stiffening_.data()});
-
+// Over the particles of all ranks. Throws as report_not_finite where a residual is not.
+StepNorms CpuImplicitStep::largest_norms() {
   Real residual = 0, bound = 0, force = 0, stiffening = 0;
   bool finite = true;
-  const StepNormsItem of{step_views(), residual_.data(), force_magnitude_.data(), stiffening_.data()};
-  for (Index i = 0; i < n; ++i) {
+  const StepNormsItem of{step_views(), arrays_.residual.data(), arrays_.force_magnitude.data(),
+                         arrays_.stiffening.data()};
+  for (Index i = 0; i < items_.layout.owned; ++i) {
     const StepNorms one = of(i);
     finite = finite && std::isfinite(one.residual);
     residual = std::max(residual, one.residual);
@@ -93,99 +93,119 @@ ParticleNorms CpuBackend::contact_force() {
     stiffening = std::max(stiffening, one.stiffening);
   }
   Real maxima[5] = {residual, bound, force, stiffening, finite ? Real(0) : Real(1)};
-  ranks_.max(maxima);
-  if (maxima[4] != 0) report_not_finite(residual_);
+  items_.ranks.max(maxima);
+  if (maxima[4] != 0) items_.report_not_finite(arrays_.residual);
   StepNorms largest;
   largest.residual = maxima[0], largest.correction_bound = maxima[1];
-  largest.force = force_scale_ = maxima[2], largest.stiffening = largest_stiffening_ = maxima[3];
-  if (line_search_.is_open()) line_search_.look(along_correction(residual_));
+  largest.force = maxima[2], largest.stiffening = maxima[3];
+  return largest;
+}
+
+ParticleNorms CpuImplicitStep::contact_force() {
+  const Index n = items_.layout.owned;
+  const CpuItems::Views views = items_.views();
+  const NewtonWeights weights{newmark_position_gain(items_.hht, h_), newmark_velocity_gain(items_.hht, h_)};
+  items_.kernels->system(views, items_.model.gravity, n, weights, step_start(), step_forces(), matrix());
+  items_.kernels->shapes(views, items_.shape_items(), step_start(), items_.side.contacts().data());
+  for_each(Serial{}, n,
+           ResidualItem{step_views(), arrays_.step_force.data(), matrix(), arrays_.residual.data(),
+                        arrays_.inverse_block.data(), arrays_.stiffening.data()});
+  const StepNorms largest = largest_norms();
+  force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
+  if (line_search_.is_open()) line_search_.look(along_correction(arrays_.residual));
   return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
-GlobalId CpuBackend::worst_particle() const {
+GlobalId CpuImplicitStep::worst_particle() {
+  const std::vector<Vec3>& residual = arrays_.residual;
+  const Index n = items_.layout.owned;
   Real own = 0;
-  for (Index i = 0; i < layout_.owned; ++i) own = std::max(own, norm(residual_[i]));
-  const Real largest = ranks_.max(own);
-  GlobalId worst = kNone;
-  for (Index i = 0; i < layout_.owned; ++i)
-    if (norm(residual_[i]) == largest) worst = std::min(worst, id_of(store_.row_key[i]));
-  worst = ranks_.min(worst);
-  return worst == kNone ? -1 : worst;
+  for (Index i = 0; i < n; ++i) own = std::max(own, norm(residual[i]));
+  const Real largest = items_.ranks.max(own);
+  GlobalId worst = CpuItems::kNone;
+  for (Index i = 0; i < n; ++i)
+    if (norm(residual[i]) == largest) worst = std::min(worst, id_of(items_.store.row_key[i]));
+  worst = items_.ranks.min(worst);
+  return worst == CpuItems::kNone ? -1 : worst;
 }
 
-Real CpuBackend::along_correction(const std::vector<Vec3>& residual) const {
+void CpuImplicitStep::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {
+  items_.side.reduce(items_.layout, items_.ranks, step, end);
+}
+
+Real CpuImplicitStep::along_correction(const std::vector<Vec3>& residual) const {
   Real sum[1];
-  reproducible_sums(layout_.owned, SlopeItem{residual.data(), correction_.data()}, sum, ranks_);
+  reproducible_sums(items_.layout.owned, SlopeItem{residual.data(), arrays_.correction.data()}, sum,
+                    items_.ranks);
   return sum[0];
 }
 
-CorrectItem CpuBackend::correct_item(Real share) {
-  return {store_.acceleration.data(), correction_.data(), store_.position.data(), share,
-          newmark_position_gain(hht_, h_)};
+CorrectItem CpuImplicitStep::correct_item(Real share) {
+  return {items_.store.acceleration.data(), arrays_.correction.data(), items_.store.position.data(), share,
+          newmark_position_gain(items_.hht, h_)};
 }
 
-void CpuBackend::shorten_correction() {
-  for_each(Serial{}, layout_.owned, correct_item(line_search_.shorten()));
-  for_each(Serial{}, layout_.owned, NewmarkItem{step_views()});
-  refresh_ghosts();
+void CpuImplicitStep::shorten_correction() {
+  for_each(Serial{}, items_.layout.owned, correct_item(line_search_.shorten()));
+  move_particles();
 }
 
-void CpuBackend::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {
-  side_.reduce(layout_, ranks_, step, end);
+// The bodies have already taken their correction: as a known part of the solution it moves to the right.
+void CpuImplicitStep::subtract_shape_steps(const SubtractMatrixItem<PackedRows>& matrix) {
+  if (items_.shape_items() == 0) return;
+  std::vector<Vec4>& direction = arrays_.direction;
+  const Index first_shape = items_.layout.first_shape;
+  for_each(Serial{}, items_.layout.items,
+           ShapeDirectionItem{items_.side.step().data(), newmark_position_gain(items_.hht, h_), first_shape,
+                              direction.data()});
+  for_each(Serial{}, items_.layout.owned, matrix);
+  std::fill(direction.begin() + first_shape, direction.end(), Vec4{});
 }
 
-void CpuBackend::reduce_wrench(std::vector<BodyWrench>& end) { side_.reduce(layout_, ranks_, end); }
-
-ParticleCorrection CpuBackend::particle_correct() {
-  const Index n = layout_.owned;
-  const SubtractMatrixItem<PackedRows> matrix{
-      {matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()},
-      {list_.offsets.data(), list_.neighbors.data()},
-      store_.velocity.data(),
-      hht_inertia_weight(hht_),
-      direction_.data(),
-      residual_.data()};
-  // The bodies have already taken their correction: as a known part of the solution it moves to the right.
-  if (layout_.items > layout_.first_shape) {
-    for_each(Serial{}, layout_.items,
-             ShapeDirectionItem{side_.step().data(), newmark_position_gain(hht_, h_), layout_.first_shape,
-                                direction_.data()});
-    for_each(Serial{}, n, matrix);
-    std::fill(direction_.begin() + layout_.first_shape, direction_.end(), Vec4{});
-  }
-  right_hand_side_ = residual_;
-  const Real right_hand_side = ranks_.max(max_over(Serial{}, n, NormItem{residual_.data()}));
+ParticleCorrection CpuImplicitStep::particle_correct() {
+  const Index n = items_.layout.owned;
+  const Ranks& ranks = items_.ranks;
+  std::vector<Vec3>& residual = arrays_.residual;
+  const SubtractMatrixItem<PackedRows> system_matrix{
+      matrix(),
+      {items_.list.offsets.data(), items_.list.neighbors.data()},
+      items_.store.velocity.data(),
+      hht_inertia_weight(items_.hht),
+      arrays_.direction.data(),
+      residual.data()};
+  subtract_shape_steps(system_matrix);
+  arrays_.right_hand_side = residual;
+  const Real right_hand_side = ranks.max(max_over(Serial{}, n, NormItem{residual.data()}));
   // The shapes' displacements may be what is not finite: without a correction the bodies alone would notice.
-  if (!std::isfinite(right_hand_side)) report_not_finite(residual_);
+  if (!std::isfinite(right_hand_side)) items_.report_not_finite(residual);
   const Real tolerance =
-      solver_tolerance(model_.integrator.residual_tolerance, force_scale_, right_hand_side);
-  const BlockSolver::System system{matrix, inverse_block_,      residual_, halo_,
-                                   ranks_, largest_stiffening_, tolerance};
+      solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, right_hand_side);
+  const BlockSolver::System system{system_matrix, arrays_.inverse_block, residual, items_.halo,
+                                   ranks,         largest_stiffening_,   tolerance};
   ParticleCorrection out;
   line_search_ = {};
   if (right_hand_side > 0) {
-    out.iterations = solver_.solve(system, direction_, correction_);
-    out.correction = ranks_.max(max_over(Serial{}, n, correct_item(1)));
-    line_search_.open(along_correction(right_hand_side_));
+    out.iterations = BlockSolver().solve(system, arrays_.direction, arrays_.correction);
+    out.correction = ranks.max(max_over(Serial{}, n, correct_item(1)));
+    line_search_.open(along_correction(arrays_.right_hand_side));
   }
-  for_each(Serial{}, n, NewmarkItem{step_views()});
-  refresh_ghosts();
+  move_particles();
   return out;
 }
 
-Real CpuBackend::error() {
-  return ranks_.max(max_over(Serial{}, layout_.owned, StepErrorItem{step_views()}));
+Real CpuImplicitStep::error() {
+  return items_.ranks.max(max_over(Serial{}, items_.layout.owned, StepErrorItem{step_views()}));
 }
 
-void CpuBackend::accept() {
-  kernels_->books(views(), layout_.owned, step_start(), store_.contact_loss.data(),
-                  store_.integrator_loss.data());
-  std::vector<ContactBooks> shapes(static_cast<std::size_t>(layout_.items - layout_.first_shape));
-  kernels_->shape_books(views(), layout_.items - layout_.first_shape, step_start(), shapes.data());
-  side_.book_step(shapes);
-  for_each(Serial{}, layout_.owned,
-           AcceptItem{step_views(), step_forces(), store_.force.data(), store_.integrator_loss.data()});
-  in_implicit_step_ = false;
+void CpuImplicitStep::accept() {
+  ParticleStore& store = items_.store;
+  items_.kernels->books(items_.views(), items_.layout.owned, step_start(), store.contact_loss.data(),
+                        store.integrator_loss.data());
+  std::vector<ContactBooks> shapes(static_cast<std::size_t>(items_.shape_items()));
+  items_.kernels->shape_books(items_.views(), items_.shape_items(), step_start(), shapes.data());
+  items_.side.book_step(shapes);
+  for_each(Serial{}, items_.layout.owned,
+           AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
 }
 
 }  // namespace scree

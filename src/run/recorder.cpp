@@ -23,10 +23,10 @@ std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, con
 }
 
 // Where the particles are that the deck wants traced: NaN of those that were removed. Complete on rank 0.
-std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, const Backend& backend) {
+std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Backend& backend) {
   const std::vector<GlobalId>& wanted = model.output.history_particles;
   if (wanted.empty()) return {};
-  const std::vector<TracedParticle> all = ranks.gather(backend.traced(wanted));
+  const std::vector<TracedParticle> all = ranks.gather(backend.reports().traced(wanted));
   const Vec3 nowhere{std::nan(""), std::nan(""), std::nan("")};
   std::vector<TracedParticle> traced;
   for (const GlobalId id : wanted) {
@@ -95,15 +95,15 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
 void Recorder::rebase_balance(State& state) {
   BalanceState& balance = state.balance;
   if (!balance.open) return;
-  const Ledger now = make_ledger(backend_.ledger(verlet_step(model_)), state.carried_out, link_.multibody(),
-                                 state.bodies, state.clock.time);
+  const Ledger now = make_ledger(backend_.reports().ledger(verlet_step(model_)), state.carried_out,
+                                 link_.multibody(), state.bodies, state.clock.time);
   balance.start += now.accounted() - balance.last.accounted();
   balance.last = now;
 }
 
 // Fills the energies, and brings the balance up to date.
 void Recorder::balance(State& state, HistorySample& sample) const {
-  sample.particles = backend_.ledger(verlet_step(model_));
+  sample.particles = backend_.reports().ledger(verlet_step(model_));
   const Ledger& ledger = sample.ledger =
       make_ledger(sample.particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
   BalanceState& balance = state.balance;
@@ -116,8 +116,8 @@ void Recorder::balance(State& state, HistorySample& sample) const {
 
 void Recorder::snapshot(State& state) {
   write_pending();
-  backend_.start_pack();
-  PendingSnapshot next{state.clock.time, backend_.pack_shapes(), {}, {}};
+  backend_.reports().start_pack();
+  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
   for (const int body : next.shapes.body) {
     next.angle.push_back(motion[body].angle);
@@ -131,7 +131,8 @@ void Recorder::snapshot(State& state) {
 void Recorder::write_pending() {
   if (!pending_) return;
   const PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticlePack p = in_id_order(link_.ranks(), model_.particles.totals.count, backend_.pack_particles());
+  const ParticlePack p =
+      in_id_order(link_.ranks(), model_.particles.totals.count, backend_.reports().pack_particles());
   const ShapePack& s = snapshot.shapes;
   snapshots_->append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,

@@ -112,7 +112,7 @@ class Simulation {
 void Simulation::start_or_resume() {
   if (options_.restart.empty()) {
     state_.clock = StepClock(model_).state();
-    backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
+    backend_->particles().load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
     if (!start_change().empty())
       log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
@@ -134,7 +134,7 @@ void Simulation::load_state() {
   std::vector<Particle> records = in_id_order(std::move(state_.particles));
   state_.particles = {};
   if (restart_.changed) take_constants(model_.particles, records);
-  backend_->load(records, state_.shapes);
+  backend_->particles().load(records, state_.shapes);
 }
 
 // Of the bodies' velocities, on rank 0.
@@ -281,8 +281,8 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   recorder_->finish();
   const std::string reactions = link_.multibody() ? link_.multibody()->reaction_warning() : "";
   if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
-  list_entries_ = ranks_.sum(backend_->list_entries());
-  migrated_ = ranks_.sum(backend_->balance().migrated);
+  list_entries_ = ranks_.sum(backend_->list().entries());
+  migrated_ = ranks_.sum(backend_->list().balance().migrated);
   summarize();  // what it warns of goes into the record
   ranks_.on_root([&] { write_record(status, code); });
   return code;
@@ -300,7 +300,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_;
   record.ranks = ranks_.size();
-  const LoadBalance balance = backend_->balance();
+  const LoadBalance balance = backend_->list().balance();
   record.wall_seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   record.loop_seconds = loop_seconds_;
   record.cpu_seconds = cpu_seconds() - start_cpu_;
@@ -311,8 +311,8 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"linear_iterations", n.linear_iterations},
                    {"rejected_error", n.rejected_error},
                    {"rejected_newton", n.rejected_newton},
-                   {"list_builds", backend_->list_builds()},
-                   {"list_entries", ranks_.alone() ? backend_->list_entries() : list_entries_},
+                   {"list_builds", backend_->list().builds()},
+                   {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
                    {"rebalances", balance.rebalances},
                    {"migrated", migrated_},
                    {"particles", model_.particles.totals.count},
@@ -337,7 +337,7 @@ void Simulation::summarize() const {
   log_.info(fmt::format(
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
-      n.linear_iterations, backend_->list_builds()));
+      n.linear_iterations, backend_->list().builds()));
   const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
   log_.info(
       fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} left the space{}",

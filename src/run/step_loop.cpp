@@ -115,7 +115,7 @@ void StepLoop::leave() {
     const auto scope = parts_.timers.time(Stage::migrate);
     const std::vector<Leaver> leavers = parts_.step.check_inside();
     if (leavers.empty()) return;
-    parts_.backend.take_out(leavers);
+    parts_.backend.particles().take_out(leavers);
     book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
   }
   parts_.step.rebuild_list(parts_.model.contact.skin);  // has stages of its own
@@ -152,8 +152,8 @@ void StepLoop::keep_good_state() {
 State& StepLoop::complete_state() {
   state_.clock = clock_.state();
   state_.counts = parts_.step.counts();
-  state_.particles = parts_.backend.records();
-  state_.shapes = parts_.backend.shape_losses();
+  state_.particles = parts_.backend.particles().records();
+  state_.shapes = parts_.backend.particles().shape_losses();
   return state_;
 }
 

@@ -25,8 +25,8 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
   for (const ContactTarget& target : targets)
     if (target.wall >= 0) walls.push_back(target.wall);
   std::vector<ContactSum> on_bodies;
-  if (walls.size() < targets.size()) on_bodies = backend.body_contacts();
-  const std::vector<ContactSum> on_walls = backend.wall_contacts(walls);
+  if (walls.size() < targets.size()) on_bodies = backend.reports().body_contacts();
+  const std::vector<ContactSum> on_walls = backend.reports().wall_contacts(walls);
   std::vector<BodyMotion> motion;
   if (link.multibody() != nullptr) motion = link.multibody()->motion(state.bodies);
   std::vector<ContactSum> sums;

@@ -43,12 +43,12 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
   Run run(std::move(bed), options);
   Backend& backend = *run.backend;
   const Real skin = run.model.contact.skin;
-  backend.place_bodies({});
-  backend.build_list(skin, run.timers);
-  backend.initial_forces();
-  backend.verlet_start(h);
+  backend.list().place_bodies({});
+  backend.list().build(skin, run.timers);
+  backend.particles().initial_forces();
+  const std::unique_ptr<ExplicitRun> bed_run = backend.start_run(h);
   const auto take = [&](Index steps) {
-    if (backend.verlet_run(h, steps, true, run.timers).closed != steps)
+    if (bed_run->take_steps(steps, true, run.timers).closed != steps)
       throw SimulationError("a particle has left the bed");
   };
   std::int64_t builds = 0;
@@ -59,12 +59,12 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
         if (options.rebuild == 0) take(steps);
         for (Index done = 0; options.rebuild > 0 && done < steps; done += options.rebuild) {
           take(options.rebuild);
-          backend.build_list(skin, run.timers);
+          backend.list().build(skin, run.timers);
         }
-        backend.list_displacement();  // returns when all that was asked for is done
+        backend.list().displacement();  // returns when all that was asked for is done
       },
-      [&] { builds = backend.list_builds(), timers = run.timers; });
-  builds = backend.list_builds() - builds;
+      [&] { builds = backend.list().builds(), timers = run.timers; });
+  builds = backend.list().builds() - builds;
   fmt::print("{:10d} {}, {} x {} steps, {} list builds, {:.2f} listed per particle\n",
              run.model.particles.totals.count, speed_text(samples, run.model.particles.totals.count),
              options.repeats, samples.steps, builds, run.listed());
@@ -87,9 +87,9 @@ void measure_implicit(Model bed, const Options& options, BedReport& report) {
   StepCounts counts;
   std::int64_t builds = 0;
   const Samples samples = sample(options, 1, advance, [&] {
-    timers = run.timers, counts = run.step.counts(), builds = run.backend->list_builds();
+    timers = run.timers, counts = run.step.counts(), builds = run.backend->list().builds();
   });
-  builds = run.backend->list_builds() - builds;
+  builds = run.backend->list().builds() - builds;
   const double steps = static_cast<double>(run.step.counts().steps - counts.steps);
   fmt::print(
       "{:10d} {:.4g} ({:.4g} to {:.4g}) ms per step, {:.1f} Newton and {:.1f} linear iterations per step, {} "
@@ -136,16 +136,16 @@ CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& repo
             "--particles");
       if (run.step.explicit_steps(run.bodies, times, kSphereStep) != times.size())
         throw SimulationError("a particle has left the bed");
-      const std::vector<int> contacts = run.backend->pack_shapes().contacts;
+      const std::vector<int> contacts = run.backend->reports().pack_shapes().contacts;
       out.contacts.push_back(std::accumulate(contacts.begin(), contacts.end(), 0));
     }
-    run.backend->list_displacement();
+    run.backend->list().displacement();
   };
   out.samples = sample(options, kCoupledBatch, advance, [&] {
-    builds = run.backend->list_builds(), timers = run.timers;
+    builds = run.backend->list().builds(), timers = run.timers;
     out.contacts.clear();
   });
-  builds = run.backend->list_builds() - builds;
+  builds = run.backend->list().builds() - builds;
   Measured result = measured(out.samples, run.model, builds);
   result.contacts = out.mean_contacts();
   report.add(result, timers, run.timers, *run.backend);

@@ -211,18 +211,18 @@ std::vector<Vec3> settled_discs() {
   count_particles(model.particles, model.contact.materials());
   StageTimers timers;
   const std::unique_ptr<Backend> backend = make_cpu_backend(model);
-  backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+  backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
   BodyLink link(model);
   CoupledStep step(model, *backend, link, timers);
   MultibodyState bodies;
   step.start(bodies);
   const std::vector<Real> times(static_cast<std::size_t>(kSteps / model.integrator.substeps));
   step.explicit_steps(bodies, times, model.time.step);
-  const ParticleLedger ledger = backend->ledger(0);
+  const ParticleLedger ledger = backend->reports().ledger(0);
   fmt::print("settled tile: kinetic energy {:.2e} J per disc, {:.2f} contacts per disc\n",
              ledger.kinetic / kTileParticles, 2 * static_cast<Real>(ledger.contacts) / kTileParticles);
   std::vector<Vec3> out;
-  for (const Particle& record : backend->records()) out.push_back(record.position);
+  for (const Particle& record : backend->particles().records()) out.push_back(record.position);
   return out;
 }
 

@@ -48,10 +48,10 @@ BedReport::BedReport(const std::string& path, const std::string& kind, const Ran
 }
 
 void BedReport::add(const Measured& measured, const StageTimers& before, const StageTimers& after,
-                    const Backend& backend) {
+                    Backend& backend) {
   if (path_.empty()) return;
   OfRank own;
-  own.halo = backend.balance().halo, own.imbalance = backend.balance().imbalance;
+  own.halo = backend.list().balance().halo, own.imbalance = backend.list().balance().imbalance;
   own.host_bytes = peak_memory();
   own.device_bytes = static_cast<double>(device_memory_in_use());
   for (int s = 0; s < static_cast<int>(Stage::count); ++s)

@@ -28,8 +28,7 @@ class BedReport {
   // all rows of this program have in common, as in kKindColumns. Collective. Throws IoError.
   BedReport(const std::string& path, const std::string& kind, const Ranks& ranks);
   // before, after: this rank's stage times around the samples. Collective.
-  void add(const Measured& measured, const StageTimers& before, const StageTimers& after,
-           const Backend& backend);
+  void add(const Measured& measured, const StageTimers& before, const StageTimers& after, Backend& backend);
 
   // Columns of `kind`; rebuild: option of bed, or "coupled" where bodies and particles exchange in batches.
   static constexpr const char* kKindColumns = "commit,device,backend,precision,dimension,integrator,rebuild";

@@ -76,11 +76,11 @@ Run::Run(Model bed, const Options& options)
       link(model, options.ranks),
       ranks(options.ranks),
       step(model, *backend, link, timers) {
-  backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+  backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
 }
 
 double Run::listed() const {
-  return static_cast<double>(ranks.sum(backend->list_entries())) /
+  return static_cast<double>(ranks.sum(backend->list().entries())) /
          static_cast<double>(model.particles.totals.count);
 }
 

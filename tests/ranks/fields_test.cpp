@@ -13,14 +13,14 @@ TEST_CASE("every field goes with a particle to another rank") {
     const std::vector<Particle> all = filled_records(model);
     const IdRange own = id_range(std::ssize(all), ranks.rank(), ranks.size());
     const std::unique_ptr<Backend> backend = make_test_backend(model, ranks);
-    backend->load({all.begin() + own.first, all.begin() + own.last}, {});
+    backend->particles().load({all.begin() + own.first, all.begin() + own.last}, {});
     StageTimers timers;
-    backend->place_bodies(motion_of(model.bodies));
-    backend->build_list(0.15, timers);
-    std::vector<Particle> found = ranks.gather_everywhere(backend->records());
+    backend->list().place_bodies(motion_of(model.bodies));
+    backend->list().build(0.15, timers);
+    std::vector<Particle> found = ranks.gather_everywhere(backend->particles().records());
     std::sort(found.begin(), found.end(), [](auto& a, auto& b) { return a.global_id < b.global_id; });
     CHECK(differing_fields(found, all) == "");
-    CHECK((ranks.sum(backend->balance().migrated) > 0) == !ranks.alone());
+    CHECK((ranks.sum(backend->list().balance().migrated) > 0) == !ranks.alone());
   }
 }
 

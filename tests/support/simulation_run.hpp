@@ -40,7 +40,7 @@ class SimulationRun {
   // Starts at t = 0.
   explicit SimulationRun(const Model& model) : SimulationRun(model, true) {
     state_.clock = StepClock(model_).state();
-    backend_->load(initial_records(model_.particles, Subdomain(model_.space)), {});
+    backend_->particles().load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
     records_.history(state_, 0), records_.snapshot(state_);
     make_loop();
@@ -48,7 +48,7 @@ class SimulationRun {
   // Continues from a state that complete_state() returned, of this model.
   SimulationRun(const Model& model, const State& state) : SimulationRun(model, true) {
     state_ = state;
-    backend_->load(std::exchange(state_.particles, {}), state_.shapes);
+    backend_->particles().load(std::exchange(state_.particles, {}), state_.shapes);
     step_.counts() = state_.counts;
     step_.resume(state_.bodies);
     make_loop();
@@ -75,8 +75,8 @@ class SimulationRun {
   const StepCounts& counts() const { return step_.counts(); }
   const MultibodyState& bodies() const { return state_.bodies; }
   const Multibody& multibody() const { return *link_.multibody(); }
-  std::vector<Particle> particles() const { return backend_->records(); }  // ordered by global id
-  ParticleLedger particle_ledger() { return backend_->ledger(verlet_step(model_)); }
+  std::vector<Particle> particles() const { return backend_->particles().records(); }  // ordered by global id
+  ParticleLedger particle_ledger() { return backend_->reports().ledger(verlet_step(model_)); }
   Ledger ledger() {
     return make_ledger(particle_ledger(), state_.carried_out, link_.multibody(), state_.bodies, time());
   }

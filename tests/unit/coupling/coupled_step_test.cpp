@@ -53,7 +53,7 @@ struct Coupled {
     backend = make_test_backend(model);
     link = std::make_unique<BodyLink>(model);
     step = std::make_unique<CoupledStep>(model, *backend, *link, timers);
-    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
+    backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
     step->start(bodies);
   }
 
@@ -70,7 +70,8 @@ std::string differing(const Coupled& a, const Coupled& b) {
   const auto packed = [](const Coupled& side) {
     State state;
     state.bodies = side.bodies;
-    state.particles = side.backend->records(), state.shapes = side.backend->shape_losses();
+    state.particles = side.backend->particles().records(),
+    state.shapes = side.backend->particles().shape_losses();
     return pack(state);
   };
   return differing_arrays(packed(a), packed(b));
@@ -148,11 +149,11 @@ point = [0.0, 0.0]
   BodyLink link(model);
   CoupledStep alone(model, *backend, link, timers);
   MultibodyState bodies;
-  backend->load({}, {});
+  backend->particles().load({}, {});
   alone.start(bodies);
   for (int n = 0; n < 5; ++n)
     REQUIRE(alone.implicit_step(bodies, n * 0.01, 0.01).verdict == Verdict::accepted);
-  CHECK(backend->list_builds() == 1);
+  CHECK(backend->list().builds() == 1);
 }
 
 TEST_CASE("a step that is not accurate enough leaves both sides as they were") {
@@ -178,7 +179,7 @@ TEST_CASE("the step after a refused one is the step that would have come without
 TEST_CASE("a list that is too short is built anew without changing the result") {
   Coupled shortest({"contact.skin=1e-9"}), longest({"contact.skin=0.2"});
   take_steps(shortest, 50), take_steps(longest, 50);
-  CHECK(shortest.backend->list_builds() > longest.backend->list_builds());
+  CHECK(shortest.backend->list().builds() > longest.backend->list().builds());
   CHECK(shortest.step->counts().newton_iterations == longest.step->counts().newton_iterations);
   CHECK(differing(shortest, longest) == "");
 }
@@ -195,8 +196,8 @@ TEST_CASE("explicit steps do not depend on how many are asked for at once, nor o
     return coupled;
   };
   const auto narrow = run("0.002", 1), wide = run("0.2", 1), together = run("0.002", 40);
-  CHECK(narrow->backend->list_builds() > 10 * wide->backend->list_builds());
-  CHECK(narrow->backend->ledger(kStep / 20).contact_loss > 0);
+  CHECK(narrow->backend->list().builds() > 10 * wide->backend->list().builds());
+  CHECK(narrow->backend->reports().ledger(kStep / 20).contact_loss > 0);
   CHECK(differing(*narrow, *wide) == "");
   CHECK(differing(*narrow, *together) == "");
 }
@@ -217,11 +218,13 @@ TEST_CASE("a run resumed from its state goes on with the same bits") {
     };
     advance(whole, 0, 10);
     second.bodies = whole.bodies;
-    second.backend->load(whole.backend->records(), whole.backend->shape_losses());
+    second.backend->particles().load(whole.backend->particles().records(),
+                                     whole.backend->particles().shape_losses());
     second.step->resume(second.bodies);
     advance(whole, 10, 30), advance(second, 10, 30);
     CHECK(differing(whole, second) == "");
-    CHECK(whole.backend->shape_losses().contact_loss == second.backend->shape_losses().contact_loss);
+    CHECK(whole.backend->particles().shape_losses().contact_loss ==
+          second.backend->particles().shape_losses().contact_loss);
   }
 }
 

@@ -24,15 +24,11 @@ struct Pair {
         cpu(make_cpu_backend(model)),
         cuda(make_cuda_backend(model)) {
     for (Backend* backend : {cpu.get(), cuda.get()}) {
-      backend->load(initial_records(model.particles, Subdomain(model.space)), {});
-      backend->place_bodies(motion);
-      backend->build_list(skin, timers);
-      backend->initial_forces();
+      backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
+      backend->list().place_bodies(motion);
+      backend->list().build(skin, timers);
+      backend->particles().initial_forces();
     }
-  }
-  template <class Do>
-  void both(const Do& action) {
-    action(*cpu), action(*cuda);
   }
 
   Model model;
@@ -62,17 +58,12 @@ Real difference(const std::vector<Particle>& a, const std::vector<Particle>& b) 
 
 Real allowed(const BoxCase& box) { return box.exponent == 1 ? 0 : kRoundOff; }
 
-void check_wrenches(Pair& pair, Real tolerance) {
-  ContactWrenches step[2];
-  std::vector<BodyWrench> end[2];
-  for (int k = 0; k < 2; ++k) {
-    step[k].wrench.resize(pair.model.bodies.size()), end[k].resize(pair.model.bodies.size());
-    (k == 0 ? pair.cpu : pair.cuda)->reduce_wrench(step[k], end[k]);
-  }
-  for (std::size_t b = 0; b < pair.model.bodies.size(); ++b) {
-    CHECK(difference(step[0].wrench[b].force, step[1].wrench[b].force) <= tolerance);
-    CHECK(difference(step[0].wrench[b].torque, step[1].wrench[b].torque) <= tolerance);
-    CHECK(difference(end[0][b].force, end[1][b].force) <= tolerance);
+// Of both backends.
+void check_wrenches(const std::vector<BodyWrench> (&wrench)[2], Real tolerance) {
+  REQUIRE(wrench[0].size() == wrench[1].size());
+  for (std::size_t b = 0; b < wrench[0].size(); ++b) {
+    CHECK(difference(wrench[0][b].force, wrench[1][b].force) <= tolerance);
+    CHECK(difference(wrench[0][b].torque, wrench[1][b].torque) <= tolerance);
   }
 }
 
@@ -83,8 +74,8 @@ void check_contacts(Pair& pair, Real tolerance) {
   std::vector<ContactSum> sums[2];
   for (int k = 0; k < 2; ++k) {
     Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
-    sums[k] = backend.wall_contacts(all);
-    for (const ContactSum& body : backend.body_contacts()) sums[k].push_back(body);
+    sums[k] = backend.reports().wall_contacts(all);
+    for (const ContactSum& body : backend.reports().body_contacts()) sums[k].push_back(body);
   }
   REQUIRE(sums[0].size() == sums[1].size());
   std::int64_t contacts = 0;
@@ -103,16 +94,21 @@ TEST_CASE("forces, lists and sums at the start are the same on both backends") {
   for (const BoxCase& c : kBoxes) {
     CAPTURE(c.name);
     Pair pair(dense_box(c, ParticleIntegrator::hht, kParticles));
-    CHECK(pair.cpu->list_entries() == pair.cuda->list_entries());
-    CHECK(pair.cpu->list_entries() > kParticles);
-    CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= allowed(c));
-    const ParticleLedger a = pair.cpu->ledger(0), b = pair.cuda->ledger(0);
+    CHECK(pair.cpu->list().entries() == pair.cuda->list().entries());
+    CHECK(pair.cpu->list().entries() > kParticles);
+    CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) <= allowed(c));
+    const ParticleLedger a = pair.cpu->reports().ledger(0), b = pair.cuda->reports().ledger(0);
     CHECK(a.contacts == b.contacts);
     CHECK(a.kinetic == b.kinetic);
     CHECK(a.gravitational == b.gravitational);
     CHECK(std::abs(a.contact_elastic - b.contact_elastic) <= allowed(c) * a.contact_elastic);
     CHECK(difference(a.angular_momentum, b.angular_momentum) == 0);
-    check_wrenches(pair, allowed(c));
+    std::vector<BodyWrench> wrench[2];
+    for (int k = 0; k < 2; ++k) {
+      wrench[k].resize(pair.model.bodies.size());
+      (k == 0 ? pair.cpu : pair.cuda)->particles().reduce_wrench(wrench[k]);
+    }
+    check_wrenches(wrench, allowed(c));
     check_contacts(pair, allowed(c));
   }
 }
@@ -122,42 +118,47 @@ TEST_CASE("an implicit step is the same on both backends") {
     CAPTURE(c.name);
     Pair pair(dense_box(c, ParticleIntegrator::hht, kParticles), 0.1);
     std::vector<int> iterations[2];
+    std::unique_ptr<ImplicitStep> steps[2];
+    std::vector<BodyWrench> in_step[2], at_end[2];
     for (int k = 0; k < 2; ++k) {
       Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
-      backend.begin_step(2e-4);
+      steps[k] = predicted_step(backend, 2e-4);
       for (int iteration = 0; iteration < 60; ++iteration) {
-        const ParticleNorms norms = backend.contact_force();
+        const ParticleNorms norms = steps[k]->contact_force();
         if (norms.overshoot) {
-          backend.shorten_correction();
+          steps[k]->shorten_correction();
           iterations[k].push_back(-1);
           continue;
         }
         if (norms.residual <= 1e-10) break;
-        backend.place_bodies(pair.motion);
-        iterations[k].push_back(backend.particle_correct().iterations);
+        backend.list().place_bodies(pair.motion);
+        iterations[k].push_back(steps[k]->particle_correct().iterations);
       }
-      CHECK(backend.step_displacement() > 0);
+      CHECK(steps[k]->step_displacement() > 0);
+      at_end[k].resize(pair.model.bodies.size());
+      ContactWrenches contacts{at_end[k], {}};
+      steps[k]->reduce_wrench(contacts, at_end[k]);
+      in_step[k] = contacts.wrench;
     }
     // Other exponents: both iterates are within the residual's tolerance.
     const Real tolerance = c.exponent == 1 ? 0 : 1e-7;
-    CHECK(
-        near(pair.cpu->step_displacement(), pair.cuda->step_displacement(), {.relative = 1e-3 * tolerance}));
+    CHECK(near(steps[0]->step_displacement(), steps[1]->step_displacement(), {.relative = 1e-3 * tolerance}));
     CHECK(iterations[0] == iterations[1]);
     CHECK(iterations[0].size() > 1);
-    CHECK(near(pair.cpu->error(), pair.cuda->error(), {.relative = tolerance}));
-    check_wrenches(pair, tolerance);
-    pair.both([](Backend& backend) { backend.accept(); });
-    CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= tolerance);
+    CHECK(near(steps[0]->error(), steps[1]->error(), {.relative = tolerance}));
+    for (const auto* wrench : {&in_step, &at_end}) check_wrenches(*wrench, tolerance);
+    for (const auto& step : steps) step->accept();
+    CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) <= tolerance);
   }
 }
 
 // Takes those that leave out; what they take along [J], all of it and the contacts' part.
 std::array<Real, 2> leave(Backend& backend) {
-  const std::vector<Leaver> leavers = backend.outside();
+  const std::vector<Leaver> leavers = backend.particles().outside();
   std::array<Real, 2> taken{};
   for (const Leaver& l : leavers)
     taken[0] += l.energy + l.contact_loss + l.integrator_loss + l.elastic, taken[1] += l.elastic;
-  backend.take_out(leavers);
+  backend.particles().take_out(leavers);
   return taken;
 }
 
@@ -178,36 +179,44 @@ TEST_CASE("what leaves after an implicit step, and what it leaves, is the same o
         Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
         hht_step(backend, pair.motion, 2e-4);
         taken[k] = leave(backend);
-        backend.build_list(0.1, pair.timers);
+        backend.list().build(0.1, pair.timers);
         hht_step(backend, pair.motion, 2e-4);
       }
       const Real tolerance = c.exponent == 1 ? 0 : 1e-7;
       CHECK(taken[0][1] > 0);
       for (int k = 0; k < 2; ++k)
         CHECK(std::abs(taken[0][k] - taken[1][k]) <= tolerance * std::abs(taken[0][k]));
-      CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= tolerance);
-      CHECK(near(pair.cpu->shape_losses().contact_loss, pair.cuda->shape_losses().contact_loss,
-                 {.relative = tolerance}));
-      CHECK(near(pair.cpu->shape_losses().integrator_loss, pair.cuda->shape_losses().integrator_loss,
-                 {.relative = tolerance}));
+      CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) <= tolerance);
+      CHECK(near(pair.cpu->particles().shape_losses().contact_loss,
+                 pair.cuda->particles().shape_losses().contact_loss, {.relative = tolerance}));
+      CHECK(near(pair.cpu->particles().shape_losses().integrator_loss,
+                 pair.cuda->particles().shape_losses().integrator_loss, {.relative = tolerance}));
     }
 }
 
-// Steps of one backend, with those that leave taken out on the way; what they take along.
-std::array<Real, 2> take_steps(Backend& backend, Pair& pair, Index steps, Index most, Real h = 1e-4) {
-  std::array<Real, 2> taken{};
-  backend.verlet_start(h);
+struct Outcome {
+  std::array<Real, 2> taken{};     // by those that left
+  std::vector<BodyWrench> wrench;  // with the last step closed
+};
+
+// Steps of one backend, with those that leave taken out on the way.
+Outcome take_steps(Backend& backend, Pair& pair, Index steps, Index most, Real h = 1e-4) {
+  Outcome out;
+  out.wrench.resize(pair.model.bodies.size());
+  std::unique_ptr<ExplicitRun> run = backend.start_run(h);
   for (Index left = steps; left > 0;) {
-    backend.place_bodies(pair.motion);
-    const VerletRun run = backend.verlet_run(h, std::min(left, most), left > most, pair.timers);
-    left -= run.closed;
-    if (run.open) continue;
+    backend.list().place_bodies(pair.motion);
+    const StepsTaken steps_taken = run->take_steps(std::min(left, most), left > most, pair.timers);
+    left -= steps_taken.closed;
+    if (steps_taken.open) continue;
+    run->shape_contacts();
+    run->reduce_wrench(out.wrench);
     const std::array<Real, 2> now = leave(backend);
-    taken[0] += now[0], taken[1] += now[1];
-    backend.build_list(pair.model.contact.skin, pair.timers);
-    if (left > 0) backend.verlet_start(h);
+    out.taken[0] += now[0], out.taken[1] += now[1];
+    backend.list().build(pair.model.contact.skin, pair.timers);
+    if (left > 0) run = backend.start_run(h);
   }
-  return taken;
+  return out;
 }
 
 TEST_CASE("explicit steps are the same on both backends") {
@@ -218,15 +227,14 @@ TEST_CASE("explicit steps are the same on both backends") {
       model.contact.skin = 0.004;  // expires within the run
       model.space.leaving = leaving;
       Pair pair(model, model.contact.skin);
-      const std::array<Real, 2> a = take_steps(*pair.cpu, pair, 100, 7),
-                                b = take_steps(*pair.cuda, pair, 100, 50);
-      CHECK((a[1] > 0) == (c.periodic_axes < c.dimension));
+      const Outcome a = take_steps(*pair.cpu, pair, 100, 7), b = take_steps(*pair.cuda, pair, 100, 50);
+      CHECK((a.taken[1] > 0) == (c.periodic_axes < c.dimension));
       for (int k = 0; k < 2; ++k)
-        CHECK(std::abs(a[k] - b[k]) <= (c.exponent == 1 ? 0 : 1e-7) * std::abs(a[k]));
-      CHECK(pair.cuda->list_builds() > 2);
-      CHECK(difference(pair.cpu->records(), pair.cuda->records()) <= (c.exponent == 1 ? 0 : 1e-7));
-      pair.both([](Backend& backend) { backend.shape_contacts(); });
-      check_wrenches(pair, c.exponent == 1 ? 0 : 1e-7);
+        CHECK(std::abs(a.taken[k] - b.taken[k]) <= (c.exponent == 1 ? 0 : 1e-7) * std::abs(a.taken[k]));
+      CHECK(pair.cuda->list().builds() > 2);
+      CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) <=
+            (c.exponent == 1 ? 0 : 1e-7));
+      check_wrenches({a.wrench, b.wrench}, c.exponent == 1 ? 0 : 1e-7);
       if (c.exponent == 1) check_contacts(pair, 0);
     }
 }
@@ -243,18 +251,18 @@ TEST_CASE("many short explicit steps are the same on both backends") {
       const Index at_once = model.bodies.empty() ? 300 : 1;
       for (Backend* backend : {pair.cpu.get(), pair.cuda.get()})
         take_steps(*backend, pair, 300, at_once, 1e-5);
-      CHECK(pair.cuda->list_builds() > 1);
-      CHECK(pair.cuda->list_builds() < 30);
-      CHECK(difference(pair.cpu->records(), pair.cuda->records()) == 0);
+      CHECK(pair.cuda->list().builds() > 1);
+      CHECK(pair.cuda->list().builds() < 30);
+      CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) == 0);
     }
 }
 
 TEST_CASE("the state moves between the backends without a trace") {
   const BoxCase& c = kBoxes[5];
   Pair pair(dense_box(c, ParticleIntegrator::velocity_verlet, kParticles));
-  const std::vector<Particle> records = pair.cpu->records();
-  pair.cuda->load(records, {});
-  CHECK(difference(pair.cuda->records(), records) == 0);
+  const std::vector<Particle> records = pair.cpu->particles().records();
+  pair.cuda->particles().load(records, {});
+  CHECK(difference(pair.cuda->particles().records(), records) == 0);
 }
 
 TEST_CASE("what is said about device memory before a run is what the run takes") {
@@ -272,16 +280,15 @@ TEST_CASE("what is said about device memory before a run is what the run takes")
       const std::size_t before = device_memory_in_use();
       const std::unique_ptr<Backend> backend = make_cuda_backend(model);
       StageTimers timers;
-      backend->load(initial_records(model.particles, Subdomain(model.space)), {});
-      backend->build_list(model.contact.skin, timers);
-      backend->initial_forces();
+      backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
+      backend->list().build(model.contact.skin, timers);
+      backend->particles().initial_forces();
       if (integrator == ParticleIntegrator::velocity_verlet) {
-        backend->verlet_start(1e-7);
-        backend->verlet_run(1e-7, 4, false, timers);
+        backend->start_run(1e-7)->take_steps(4, false, timers);
       }
-      backend->ledger(0);
-      backend->start_pack();
-      backend->pack_particles();
+      backend->reports().ledger(0);
+      backend->reports().start_pack();
+      backend->reports().pack_particles();
       const auto taken = static_cast<double>(device_memory_in_use() - before);
       CHECK(near(static_cast<double>(device_memory(model)), taken, {.relative = 0.1}));
     }

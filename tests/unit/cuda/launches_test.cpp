@@ -33,8 +33,8 @@ struct Outcome {
 
 Outcome outcome_of(LoadedBox& box, Real verlet_step) {
   State state;
-  state.particles = box.backend->records();
-  const ParticleLedger l = box.backend->ledger(verlet_step);
+  state.particles = box.backend->particles().records();
+  const ParticleLedger l = box.backend->reports().ledger(verlet_step);
   std::vector<Real> sums{l.kinetic,      l.gravitational,   l.contact_elastic,
                          l.contact_loss, l.integrator_loss, static_cast<Real>(l.contacts)};
   for (const Vec3& v : {l.momentum, l.angular_momentum}) sums.insert(sums.end(), {v.x, v.y, v.z});
@@ -58,12 +58,12 @@ Outcome explicit_steps(const BoxCase& c, Precision precision, const Launches& ch
   LoadedBox box(model, model.contact.skin, make_cuda_backend);
   constexpr Real kStep = 1e-5;
   const Index steps = 300, at_once = model.bodies.empty() ? steps : 1;
-  box.backend->verlet_start(kStep);
+  const std::unique_ptr<ExplicitRun> run = box.backend->start_run(kStep);
   for (Index left = steps; left > 0; left -= at_once) {
-    box.backend->place_bodies(box.motion);
-    REQUIRE(box.backend->verlet_run(kStep, at_once, left > at_once, box.timers).closed == at_once);
+    box.backend->list().place_bodies(box.motion);
+    REQUIRE(run->take_steps(at_once, left > at_once, box.timers).closed == at_once);
   }
-  CHECK(box.backend->list_builds() > 1);
+  CHECK(box.backend->list().builds() > 1);
   return outcome_of(box, kStep);
 }
 

@@ -39,14 +39,13 @@ void add_sphere(Model& model, Vec3 position, Vec3 velocity) {
 struct Run {
   Run(const Model& of, bool cuda)
       : model(of), backend(cuda ? make_cuda_backend(model) : make_cpu_backend(model)) {
-    backend->load(initial_records(model.particles, Subdomain(model.space)), {});
-    backend->place_bodies({});
-    backend->build_list(model.contact.skin, timers);
-    backend->initial_forces();
+    backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
+    backend->list().place_bodies({});
+    backend->list().build(model.contact.skin, timers);
+    backend->particles().initial_forces();
   }
   void advance(Real h, Index steps) {
-    backend->verlet_start(h);
-    REQUIRE(backend->verlet_run(h, steps, false, timers).closed == steps);
+    REQUIRE(backend->start_run(h)->take_steps(steps, false, timers).closed == steps);
   }
 
   Model model;
@@ -67,14 +66,15 @@ TEST_CASE("mixed precision: rebound velocities are within 1e-4 of those in doubl
     }
     Run mixed(model, true), exact(model, false);
     mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
-    const std::vector<Particle> a = mixed.backend->records(), b = exact.backend->records();
+    const std::vector<Particle> a = mixed.backend->particles().records(),
+                                b = exact.backend->particles().records();
     Real largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
       largest = std::max(largest, norm(a[i].velocity - b[i].velocity));
     CHECK(norm(b[0].velocity - Vec3{1, 0.1, 0}) > 0.3);  // they did collide
     CHECK(largest <= 1e-4);
-    const Real lost = mixed.backend->ledger(1e-4).contact_loss,
-               exactly = exact.backend->ledger(1e-4).contact_loss;
+    const Real lost = mixed.backend->reports().ledger(1e-4).contact_loss,
+               exactly = exact.backend->reports().ledger(1e-4).contact_loss;
     CHECK(near(lost, exactly, {.relative = 1e-3, .absolute = 1e-9}));
     std::printf("rebound, damping %g: velocities within %.1e m/s of double's, dissipation %.9g of %.9g J\n",
                 damping, largest, lost, exactly);
@@ -97,9 +97,9 @@ TEST_CASE("mixed precision: a settled heap stays settled for a million steps", "
     }
   Run run(model, true);
   run.advance(1e-4, 200000);
-  const std::vector<Particle> settled = run.backend->records();
+  const std::vector<Particle> settled = run.backend->particles().records();
   run.advance(1e-4, 1000000);
-  const std::vector<Particle> after = run.backend->records();
+  const std::vector<Particle> after = run.backend->particles().records();
   Real moved = 0, fastest = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {
     moved = std::max(moved, norm(after[i].position - settled[i].position));
@@ -122,9 +122,9 @@ TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum", "[long]") 
                {random.normal(), random.normal(), random.normal()});
   }
   Run run(model, true);
-  const ParticleLedger before = run.backend->ledger(0);
+  const ParticleLedger before = run.backend->reports().ledger(0);
   run.advance(1e-4, 20000);
-  const ParticleLedger after = run.backend->ledger(0);
+  const ParticleLedger after = run.backend->reports().ledger(0);
   CHECK(after.contact_loss > 0.01 * before.kinetic);  // there were collisions
   // In 1e-9 of the sum of the momenta's sizes, some 1 each.
   const Real drift = norm(after.momentum - before.momentum) / spheres / 1e-9;
@@ -139,14 +139,15 @@ TEST_CASE("mixed precision: what drifts outside keeps its place however far it g
   add_sphere(model, {50, -3, 50}, {-900, -20, 35}), add_sphere(model, {50, 50, 50}, {});
   Run mixed(model, true), exact(model, false);
   for (Run* run : {&mixed, &exact}) {
-    std::vector<Particle> records = run->backend->records();
+    std::vector<Particle> records = run->backend->particles().records();
     records[0].drifting = true;
-    run->backend->load(records, {});
-    run->backend->build_list(model.contact.skin, run->timers);
-    run->backend->initial_forces();
+    run->backend->particles().load(records, {});
+    run->backend->list().build(model.contact.skin, run->timers);
+    run->backend->particles().initial_forces();
     for (int part = 0; part < 3; ++part) run->advance(1e-4, 4000);  // a kilometre
   }
-  const std::vector<Particle> a = mixed.backend->records(), b = exact.backend->records();
+  const std::vector<Particle> a = mixed.backend->particles().records(),
+                              b = exact.backend->particles().records();
   CHECK(b[0].position.x < -1000);
   for (std::size_t i = 0; i < 2; ++i) {
     CHECK(norm(a[i].position - b[i].position) <= 1e-8 * norm(b[i].position));

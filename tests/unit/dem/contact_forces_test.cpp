@@ -73,14 +73,14 @@ TEST_CASE("contact forces on particles and shapes are those of all pairs and wal
     LoadedBox box(random_box(c, kParticles, 11));
     const BruteContacts expected = brute_contacts(box);
     REQUIRE(expected.count > 20);
-    box.backend->start_pack();
-    const ParticlePack particles = box.backend->pack_particles();
+    box.backend->reports().start_pack();
+    const ParticlePack particles = box.backend->reports().pack_particles();
     for (std::size_t i = 0; i < particles.global_id.size(); ++i) {
       const auto id = static_cast<std::size_t>(particles.global_id[i]);
       CHECK(norm(particles.force[i] - expected.force[id]) <= kRoundOff * expected.magnitude);
       CHECK(particles.contacts[i] == expected.contacts[id]);
     }
-    const ShapePack shapes = box.backend->pack_shapes();
+    const ShapePack shapes = box.backend->reports().pack_shapes();
     for (std::size_t s = 0; s < shapes.force.size(); ++s) {
       CHECK(norm(shapes.force[s] - expected.force[kParticles + s]) <= kRoundOff * expected.magnitude);
       CHECK(shapes.contacts[s] == expected.contacts[kParticles + s]);
@@ -95,7 +95,7 @@ TEST_CASE("the wrench on a body is the sum over its shapes, with their arms") {
     LoadedBox box(random_box(c, kParticles, 12));
     const BruteContacts contacts = brute_contacts(box);
     std::vector<BodyWrench> end(box.motion.size());
-    box.backend->reduce_wrench(end);
+    box.backend->particles().reduce_wrench(end);
     std::size_t item = kParticles;
     for (std::size_t b = 0; b < box.motion.size(); ++b) {
       Vec3 force, torque;
@@ -118,14 +118,14 @@ TEST_CASE("particles and bodies push each other with opposite forces and torques
     LoadedBox box(model);
     Vec3 force, torque;
     Real magnitude = 0;
-    box.backend->start_pack();
-    const ParticlePack particles = box.backend->pack_particles();
+    box.backend->reports().start_pack();
+    const ParticlePack particles = box.backend->reports().pack_particles();
     for (std::size_t i = 0; i < particles.force.size(); ++i) {
       force += particles.force[i], torque += cross(particles.position[i], particles.force[i]);
       magnitude += norm(particles.force[i]);
     }
     std::vector<BodyWrench> end(box.motion.size());
-    box.backend->reduce_wrench(end);
+    box.backend->particles().reduce_wrench(end);
     for (std::size_t b = 0; b < end.size(); ++b) {
       force += end[b].force, torque += end[b].torque + cross(box.motion[b].position, end[b].force);
     }
@@ -149,7 +149,7 @@ TEST_CASE("the ledger sums over all particles and contacts") {
       scale += mass * norm(box.model.gravity) * norm(r.position);
       momentum += mass * r.velocity, angular += mass * cross(r.position, r.velocity);
     }
-    const ParticleLedger ledger = box.backend->ledger(0);
+    const ParticleLedger ledger = box.backend->reports().ledger(0);
     CHECK(near(ledger.kinetic, kinetic, {.relative = kSum}));
     CHECK(near(ledger.gravitational, gravitational, {.absolute = kSum * scale}));
     CHECK(near(ledger.contact_elastic, contacts.elastic, {.relative = kSum}));
@@ -169,17 +169,17 @@ TEST_CASE("the ledger adds what particles and shapes have lost so far, and Verle
     box.records[i].acceleration = {1, 2, 0};
   }
   box.records[3].drifting = true;
-  box.backend->load(box.records, {7, 0});
-  box.backend->place_bodies(box.motion);
-  box.backend->build_list(0.02, box.timers);
-  const ParticleLedger ledger = box.backend->ledger(0);
+  box.backend->particles().load(box.records, {7, 0});
+  box.backend->list().place_bodies(box.motion);
+  box.backend->list().build(0.02, box.timers);
+  const ParticleLedger ledger = box.backend->reports().ledger(0);
   CHECK(ledger.contact_loss == lost + 7);
   CHECK(ledger.integrator_loss == integrator);
   CHECK(ledger.drifting == 1);
   Real mass = 0;
   for (const Real m : box.model.particles.mass) mass += m;
   const Real h = 0.01, shift = mass * h * h / 8 * 5;
-  CHECK(near(box.backend->ledger(h).integrator_loss, integrator - shift, {.relative = kSum}));
+  CHECK(near(box.backend->reports().ledger(h).integrator_loss, integrator - shift, {.relative = kSum}));
 }
 
 }  // namespace scree

@@ -69,12 +69,12 @@ TEST_CASE("every field goes into the backend, through its cells, and out") {
     model.integrator.particles = ParticleIntegrator::velocity_verlet;
     const std::vector<Particle> records = filled_records(model);
     const std::unique_ptr<Backend> backend = make_test_backend(model, {});
-    backend->load(records, {});
-    CHECK(differing_fields(backend->records(), records) == "");
+    backend->particles().load(records, {});
+    CHECK(differing_fields(backend->particles().records(), records) == "");
     StageTimers timers;
-    backend->place_bodies(motion_of(model.bodies));
-    for (const Real skin : {0.1, 0.3}) backend->build_list(skin, timers);
-    CHECK(differing_fields(backend->records(), records) == "");
+    backend->list().place_bodies(motion_of(model.bodies));
+    for (const Real skin : {0.1, 0.3}) backend->list().build(skin, timers);
+    CHECK(differing_fields(backend->particles().records(), records) == "");
   }
 }
 

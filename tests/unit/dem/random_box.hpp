@@ -139,10 +139,10 @@ struct LoadedBox {
         records(initial_records(model.particles, Subdomain(model.space))),
         motion(motion_of(model.bodies)),
         backend(make(model, {})) {
-    backend->load(records, {});
-    backend->place_bodies(motion);
-    backend->build_list(skin, timers);
-    backend->initial_forces();
+    backend->particles().load(records, {});
+    backend->list().place_bodies(motion);
+    backend->list().build(skin, timers);
+    backend->particles().initial_forces();
   }
   LoadedBox(const LoadedBox&) = delete;
   LoadedBox& operator=(const LoadedBox&) = delete;
@@ -154,20 +154,33 @@ struct LoadedBox {
   StageTimers timers;
 };
 
+inline std::unique_ptr<ImplicitStep> predicted_step(Backend& backend, Real h) {
+  std::unique_ptr<ImplicitStep> step = backend.open_step(h);
+  step->predict();
+  return step;
+}
+
 // An HHT step of the particles alone, the bodies held at `motion`.
 inline void hht_step(Backend& backend, const std::vector<BodyMotion>& motion, Real h) {
-  backend.begin_step(h);
+  const std::unique_ptr<ImplicitStep> step = predicted_step(backend, h);
   for (int iteration = 0; iteration < 100; ++iteration) {
-    const ParticleNorms norms = backend.contact_force();
+    const ParticleNorms norms = step->contact_force();
     if (norms.overshoot) {
-      backend.shorten_correction();
+      step->shorten_correction();
       continue;
     }
-    if (norms.residual <= 1e-10) return backend.accept();
-    backend.place_bodies(motion);
-    backend.particle_correct();
+    if (norms.residual <= 1e-10) return step->accept();
+    backend.list().place_bodies(motion);
+    step->particle_correct();
   }
   FAIL("no convergence");
+}
+
+// A run of explicit steps, the bodies held at `motion`; how many it took.
+inline Index verlet_steps(LoadedBox& box, Real h, Index steps) {
+  const std::unique_ptr<ExplicitRun> run = box.backend->start_run(h);
+  box.backend->list().place_bodies(box.motion);
+  return run->take_steps(steps, false, box.timers).closed;
 }
 
 // A particle or a shape for the search by brute force.

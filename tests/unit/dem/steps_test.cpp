@@ -22,12 +22,6 @@ Model soft_box(const BoxCase& box, ParticleIntegrator integrator) {
   return model;
 }
 
-void verlet_step(LoadedBox& box, Real h) {
-  box.backend->verlet_start(h);
-  box.backend->place_bodies(box.motion);
-  box.backend->verlet_run(h, 1, false, box.timers);
-}
-
 }  // namespace
 
 TEST_CASE("a rolled-back step leaves no trace") {
@@ -35,20 +29,20 @@ TEST_CASE("a rolled-back step leaves no trace") {
     CAPTURE(c.name);
     LoadedBox box(soft_box(c, ParticleIntegrator::hht), 0.2);
     hht_step(*box.backend, box.motion, 1e-4);
-    const std::vector<Particle> before = box.backend->records();
-    box.backend->begin_step(1e-3);
-    box.backend->contact_force();
-    box.backend->place_bodies(box.motion);
-    box.backend->particle_correct();
-    CHECK_FALSE(same_bits(box.backend->records(), before));
-    box.backend->rollback();
-    CHECK(same_bits(box.backend->records(), before));
+    const std::vector<Particle> before = box.backend->particles().records();
+    const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-3);
+    step->contact_force();
+    box.backend->list().place_bodies(box.motion);
+    step->particle_correct();
+    CHECK_FALSE(same_bits(box.backend->particles().records(), before));
+    step->undo();
+    CHECK(same_bits(box.backend->particles().records(), before));
     // The next step is the one that would have followed.
     hht_step(*box.backend, box.motion, 1e-4);
-    const std::vector<Particle> after = box.backend->records();
+    const std::vector<Particle> after = box.backend->particles().records();
     LoadedBox other(soft_box(c, ParticleIntegrator::hht), 0.2);
     hht_step(*other.backend, other.motion, 1e-4), hht_step(*other.backend, other.motion, 1e-4);
-    CHECK(same_bits(other.backend->records(), after));
+    CHECK(same_bits(other.backend->particles().records(), after));
   }
 }
 
@@ -63,12 +57,12 @@ TEST_CASE("the list's skin and age do not change a bit") {
           if (integrator == ParticleIntegrator::hht)
             hht_step(*box->backend, box->motion, 2e-4);
           else
-            verlet_step(*box, 2e-4);
+            verlet_steps(*box, 2e-4, 1);
         }
-        often.backend->build_list(0.02 + 0.01 * step, often.timers);
+        often.backend->list().build(0.02 + 0.01 * step, often.timers);
       }
-      REQUIRE(seldom.backend->list_displacement() <= 1);
-      CHECK(same_bits(often.backend->records(), seldom.backend->records()));
+      REQUIRE(seldom.backend->list().displacement() <= 1);
+      CHECK(same_bits(often.backend->particles().records(), seldom.backend->particles().records()));
     }
 }
 
@@ -78,11 +72,9 @@ TEST_CASE("fused explicit steps give the bits of single ones") {
     const Model model = soft_box(c, ParticleIntegrator::velocity_verlet);
     LoadedBox fused(model, 0.3), single(model, 0.3);
     const Real h = 1e-4;
-    fused.backend->verlet_start(h);
-    fused.backend->place_bodies(fused.motion);
-    CHECK(fused.backend->verlet_run(h, 9, false, fused.timers).closed == 9);
-    for (int step = 0; step < 9; ++step) verlet_step(single, h);
-    CHECK(same_bits(fused.backend->records(), single.backend->records()));
+    CHECK(verlet_steps(fused, h, 9) == 9);
+    for (int step = 0; step < 9; ++step) verlet_steps(single, h, 1);
+    CHECK(same_bits(fused.backend->particles().records(), single.backend->particles().records()));
   }
 }
 
@@ -92,17 +84,16 @@ TEST_CASE("steps go on without a particle or a shape") {
     model.integrator.particles = integrator;
     LoadedBox box(model);
     if (integrator == ParticleIntegrator::velocity_verlet) {
-      box.backend->verlet_start(1e-4);
-      CHECK(box.backend->verlet_run(1e-4, 3, false, box.timers).closed == 3);
+      CHECK(verlet_steps(box, 1e-4, 3) == 3);
     } else {
-      box.backend->begin_step(1e-4);
-      CHECK(box.backend->contact_force().residual == 0);
-      CHECK(box.backend->particle_correct().correction == 0);
-      box.backend->accept();
+      const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-4);
+      CHECK(step->contact_force().residual == 0);
+      CHECK(step->particle_correct().correction == 0);
+      step->accept();
     }
-    CHECK(box.backend->list_displacement() == 0);
-    CHECK(box.backend->ledger(0).kinetic == 0);
-    CHECK(box.backend->records().empty());
+    CHECK(box.backend->list().displacement() == 0);
+    CHECK(box.backend->reports().ledger(0).kinetic == 0);
+    CHECK(box.backend->particles().records().empty());
   }
 }
 
@@ -115,28 +106,28 @@ TEST_CASE("steps conserve momentum without gravity, walls and bodies") {
       Model model = soft_box(c, integrator);
       model.gravity = {};
       LoadedBox box(model, 0.3);
-      const ParticleLedger start = box.backend->ledger(0);
+      const ParticleLedger start = box.backend->reports().ledger(0);
       for (int step = 0; step < 10; ++step) {
         if (integrator == ParticleIntegrator::hht)
           hht_step(*box.backend, box.motion, 1e-4);
         else
-          verlet_step(box, 1e-4);
+          verlet_steps(box, 1e-4, 1);
       }
       // HHT's is exact to its residual, 1e-10 of the largest force, times 1 ms.
-      CHECK(norm(box.backend->ledger(0).momentum - start.momentum) <= 1e-11 * kParticles);
+      CHECK(norm(box.backend->reports().ledger(0).momentum - start.momentum) <= 1e-11 * kParticles);
     }
 }
 
 TEST_CASE("the list expires when an item has moved by half the skin") {
   LoadedBox box(soft_box(kBoxes[2], ParticleIntegrator::hht), 0.1);
-  CHECK(box.backend->list_displacement() == 0);
+  CHECK(box.backend->list().displacement() == 0);
   box.motion[4].position.x += 0.04;
-  box.backend->begin_step(1e-9);
-  box.backend->place_bodies(box.motion);
-  CHECK(near(box.backend->list_displacement(), 0.8, {.relative = kRoundOff}));
+  const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-9);
+  box.backend->list().place_bodies(box.motion);
+  CHECK(near(box.backend->list().displacement(), 0.8, {.relative = kRoundOff}));
   box.motion[4].position.x += 0.02;
-  box.backend->place_bodies(box.motion);
-  CHECK(near(box.backend->list_displacement(), 1.2, {.relative = kRoundOff}));
+  box.backend->list().place_bodies(box.motion);
+  CHECK(near(box.backend->list().displacement(), 1.2, {.relative = kRoundOff}));
 }
 
 TEST_CASE("particles outside leave once, ordered by global id, and drift or are removed") {
@@ -150,20 +141,21 @@ TEST_CASE("particles outside leave once, ordered by global id, and drift or are 
       model.particles.velocity[id] = {100, 0, 0};
     }
     LoadedBox box(model, 0.5);
-    verlet_step(box, h);
-    const ParticleLedger before = box.backend->ledger(0);
-    const std::vector<Leaver> leavers = box.backend->outside();
+    verlet_steps(box, h, 1);
+    const ParticleLedger before = box.backend->reports().ledger(0);
+    const std::vector<Leaver> leavers = box.backend->particles().outside();
     REQUIRE(leavers.size() == 3);
     CHECK((leavers[0].global_id == 7 && leavers[1].global_id == 23 && leavers[2].global_id == 41));
     for (const Leaver& l : leavers) CHECK((l.position.x > model.space.max.x && !l.lost));
     if (leaving == Leaving::error) continue;
-    box.backend->take_out(leavers);
-    CHECK(box.backend->list_displacement() > 1);
-    box.backend->build_list(0.1, box.timers);
-    CHECK(box.backend->outside().empty());
-    const ParticleLedger after = box.backend->ledger(0);
+    box.backend->particles().take_out(leavers);
+    CHECK(box.backend->list().displacement() > 1);
+    box.backend->list().build(0.1, box.timers);
+    CHECK(box.backend->particles().outside().empty());
+    const ParticleLedger after = box.backend->reports().ledger(0);
     const bool removed = leaving == Leaving::remove;
-    CHECK(box.backend->records().size() == static_cast<std::size_t>(removed ? kParticles - 3 : kParticles));
+    CHECK(box.backend->particles().records().size() ==
+          static_cast<std::size_t>(removed ? kParticles - 3 : kParticles));
     CHECK(after.drifting == (removed ? 0 : 3));
     Real taken = 0;
     for (const Leaver& l : leavers) taken += l.energy;
@@ -178,10 +170,10 @@ TEST_CASE("an explicit step across the whole periodic space is refused, but to t
     box.records[23].velocity = {0, speed, 0};
     box.records[23].drifting = drifting;
     try {
-      box.backend->load(box.records, {});
-      box.backend->build_list(0.2, box.timers);
-      verlet_step(box, 1e-3);
-      box.backend->build_list(0.2, box.timers);
+      box.backend->particles().load(box.records, {});
+      box.backend->list().build(0.2, box.timers);
+      verlet_steps(box, 1e-3, 1);
+      box.backend->list().build(0.2, box.timers);
     } catch (const SimulationError& error) {
       return error.what();
     }
@@ -205,11 +197,11 @@ TEST_CASE("a particle that drifts feels gravity alone") {
     box.records[id].position = {2 + 0.01 * static_cast<Real>(id), 0, 0};
     box.records[id].drifting = true;
   }
-  box.backend->load(box.records, {});
-  box.backend->build_list(0.02, box.timers);
-  box.backend->initial_forces();
-  box.backend->start_pack();
-  const ParticlePack pack = box.backend->pack_particles();
+  box.backend->particles().load(box.records, {});
+  box.backend->list().build(0.02, box.timers);
+  box.backend->particles().initial_forces();
+  box.backend->reports().start_pack();
+  const ParticlePack pack = box.backend->reports().pack_particles();
   for (std::size_t i = 0; i < pack.global_id.size(); ++i) {
     if (pack.global_id[i] < 3 || pack.global_id[i] > 5) continue;
     CHECK(norm(pack.force[i]) == 0);
@@ -220,13 +212,12 @@ TEST_CASE("a particle that drifts feels gravity alone") {
 TEST_CASE("a force that is not finite names the stage and the particle") {
   LoadedBox box(soft_box(kBoxes[0], ParticleIntegrator::hht));
   box.records[17].velocity.x = std::nan("");
-  box.backend->load(box.records, {});
-  box.backend->build_list(0.02, box.timers);
-  box.backend->initial_forces();
+  box.backend->particles().load(box.records, {});
+  box.backend->list().build(0.02, box.timers);
+  box.backend->particles().initial_forces();
   std::string message;
   try {
-    box.backend->begin_step(1e-4);
-    box.backend->contact_force();
+    predicted_step(*box.backend, 1e-4)->contact_force();
   } catch (const SimulationError& error) {
     message = error.what();
   }

@@ -11,24 +11,25 @@ TEST_CASE("traced particles are where the pack of all particles has them") {
     CAPTURE(c.name);
     LoadedBox box(random_box(c, 200, 5));
     for (Particle& record : box.records) record.position.x += 0.7;  // some leave the periodic box
-    box.backend->load(box.records, {});
+    box.backend->particles().load(box.records, {});
     const std::vector<GlobalId> wanted{199, 0, 7, 5000, 198, 3};  // one that is not there
     std::map<GlobalId, TracedParticle> found;
-    for (const TracedParticle& t : box.backend->traced(wanted)) CHECK(found.emplace(t.global_id, t).second);
+    for (const TracedParticle& t : box.backend->reports().traced(wanted))
+      CHECK(found.emplace(t.global_id, t).second);
     CHECK(found.size() == wanted.size() - 1);
     CHECK(!found.contains(5000));
 
-    box.backend->build_list(0.02, box.timers);
-    box.backend->initial_forces();
-    box.backend->start_pack();
-    const ParticlePack pack = box.backend->pack_particles();
+    box.backend->list().build(0.02, box.timers);
+    box.backend->particles().initial_forces();
+    box.backend->reports().start_pack();
+    const ParticlePack pack = box.backend->reports().pack_particles();
     for (std::size_t i = 0; i < pack.global_id.size(); ++i) {
       const auto traced = found.find(pack.global_id[i]);
       if (traced == found.end()) continue;
       CHECK(traced->second.position == pack.position[i]);
       CHECK(traced->second.velocity == pack.velocity[i]);
     }
-    CHECK(box.backend->traced({}).empty());
+    CHECK(box.backend->reports().traced({}).empty());
   }
 }
 

@@ -47,15 +47,16 @@ Model touched_body(int dimension) {
 }
 
 // Force and torque of the step's wrench as one row of six.
-std::array<Real, 6> wrench_at(LoadedBox& box, const BodyMotion& motion, ContactWrenches& step) {
+std::array<Real, 6> wrench_at(LoadedBox& box, ImplicitStep& step, const BodyMotion& motion,
+                              ContactWrenches& contacts) {
   std::vector<BodyWrench> end(1), alone(1);
-  step.wrench.resize(1);
-  box.backend->place_bodies(std::vector<BodyMotion>{motion});
-  box.backend->contact_force();
-  box.backend->reduce_wrench(step, end);
-  box.backend->reduce_wrench(alone);
+  contacts.wrench.resize(1);
+  box.backend->list().place_bodies(std::vector<BodyMotion>{motion});
+  step.contact_force();
+  step.reduce_wrench(contacts, end);
+  box.backend->particles().reduce_wrench(alone);
   CHECK(same_bits(end[0], alone[0]));
-  const BodyWrench& wrench = step.wrench[0];
+  const BodyWrench& wrench = contacts.wrench[0];
   return {wrench.force.x, wrench.force.y, wrench.force.z, wrench.torque.x, wrench.torque.y, wrench.torque.z};
 }
 
@@ -79,19 +80,19 @@ BodyMotion moved(BodyMotion motion, int column, Real position, Real velocity) {
 TEST_CASE("the wrench's blocks are minus its derivatives") {
   for (const int dimension : {2, 3}) {
     LoadedBox box(touched_body(dimension));
-    box.backend->begin_step(1e-4);
+    const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-4);
     ContactWrenches contacts, unused;
-    wrench_at(box, box.motion[0], contacts);
+    wrench_at(box, *step, box.motion[0], contacts);
     REQUIRE(contacts.stiffness.size() == 1);
     const WrenchStiffness blocks = contacts.stiffness[0];
     for (const int column : kColumns) {
       if (dimension == 2 && column == 2) continue;
       CAPTURE(dimension, column);
       const Real dx = 0.01 * kOverlap, dv = 1e-3;
-      const auto up = wrench_at(box, moved(box.motion[0], column, dx, 0), unused);
-      const auto down = wrench_at(box, moved(box.motion[0], column, -dx, 0), unused);
-      const auto faster = wrench_at(box, moved(box.motion[0], column, 0, dv), unused);
-      const auto slower = wrench_at(box, moved(box.motion[0], column, 0, -dv), unused);
+      const auto up = wrench_at(box, *step, moved(box.motion[0], column, dx, 0), unused);
+      const auto down = wrench_at(box, *step, moved(box.motion[0], column, -dx, 0), unused);
+      const auto faster = wrench_at(box, *step, moved(box.motion[0], column, 0, dv), unused);
+      const auto slower = wrench_at(box, *step, moved(box.motion[0], column, 0, -dv), unused);
       for (int row = 0; row < 6; ++row) {
         const auto r = static_cast<std::size_t>(row);
         CAPTURE(row);

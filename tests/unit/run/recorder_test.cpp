@@ -51,6 +51,29 @@ mass = 1.0
 history_particles = [1]
 )";
 
+// Reports of a backend, until the test says that its device has failed.
+class FailingReports : public Reports {
+ public:
+  explicit FailingReports(Reports& of) : of_(of) {}
+  ParticleLedger ledger(Real verlet_step) override { return of_.ledger(verlet_step); }
+  void start_pack() override { of_.start_pack(); }
+  ParticlePack pack_particles() override {
+    if (failed) throw DeviceError("the device has failed");
+    return of_.pack_particles();
+  }
+  ShapePack pack_shapes() override { return of_.pack_shapes(); }
+  std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override { return of_.traced(wanted); }
+  std::vector<ContactSum> body_contacts() override { return of_.body_contacts(); }
+  std::vector<ContactSum> wall_contacts(std::span<const int> walls) override {
+    return of_.wall_contacts(walls);
+  }
+
+  bool failed = false;
+
+ private:
+  Reports& of_;
+};
+
 // Lets the recorder believe that the steps go on while it could write, and idles when the test says so.
 class LateBackend : public CpuBackend {
  public:
@@ -58,12 +81,11 @@ class LateBackend : public CpuBackend {
   bool computes_asynchronously() const override { return true; }
   bool has_idle_work() const { return idle_work_ != nullptr; }
   void idle() { idle_work_(); }
-  ParticlePack pack_particles() override {
-    if (failed) throw DeviceError("the device has failed");
-    return CpuBackend::pack_particles();
-  }
+  Reports& reports() override { return reports_; }
+  void fail() { reports_.failed = true; }
 
-  bool failed = false;
+ private:
+  FailingReports reports_{CpuBackend::reports()};
 };
 
 class Folder {
@@ -90,7 +112,7 @@ template <class B>
 struct Recording {
   Recording() {
     state.clock = StepClock(model).state();
-    backend.load(initial_records(model.particles, Subdomain(model.space)), {});
+    backend.particles().load(initial_records(model.particles, Subdomain(model.space)), {});
     step.start(state.bodies);
     recorder = std::make_unique<Recorder>(model, backend, link, folder.path(), state);
   }
@@ -217,7 +239,7 @@ TEST_CASE("late and immediate snapshots give the same files") {
 TEST_CASE("a snapshot that a failed device holds is given up once") {
   Recording<LateBackend> run;
   run.recorder->snapshot(run.state);
-  run.backend.failed = true;
+  run.backend.fail();
   CHECK_THROWS_AS(run.recorder->write_pending(), DeviceError);
   run.recorder->flush();
   CHECK(run.recorder->snapshots_written() == 0);

@@ -49,6 +49,23 @@ mass = 1.0
 history_interval = 1.0
 )";
 
+// Calls before_steps(most) whenever it has to take steps.
+class WatchedRun : public ExplicitRun {
+ public:
+  WatchedRun(std::unique_ptr<ExplicitRun> run, std::function<void(Index)> before_steps)
+      : run_(std::move(run)), before_steps_(std::move(before_steps)) {}
+  StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override {
+    before_steps_(most);
+    return run_->take_steps(most, keep_open, timers);
+  }
+  void shape_contacts() override { run_->shape_contacts(); }
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { run_->reduce_wrench(wrench); }
+
+ private:
+  std::unique_ptr<ExplicitRun> run_;
+  std::function<void(Index)> before_steps_;
+};
+
 // Says that it is mixed, or not; takes some time by a clock of its own for any number of steps, and keeps how
 // many it had to take at once.
 class SlowBackend : public CpuBackend {
@@ -56,10 +73,11 @@ class SlowBackend : public CpuBackend {
   SlowBackend(const Model& model, bool mixed, double seconds)
       : CpuBackend(model), mixed_(mixed), seconds_(seconds) {}
   bool is_mixed() const override { return mixed_; }
-  VerletRun verlet_run(Real h, Index most, bool keep_open, StageTimers& timers) override {
-    batches.push_back(most);
-    now += seconds_;
-    return CpuBackend::verlet_run(h, most, keep_open, timers);
+  std::unique_ptr<ExplicitRun> start_run(Real h) override {
+    return std::make_unique<WatchedRun>(CpuBackend::start_run(h), [this](Index most) {
+      batches.push_back(most);
+      now += seconds_;
+    });
   }
 
   std::vector<Index> batches;
@@ -74,7 +92,7 @@ class SlowBackend : public CpuBackend {
 struct SlowRun {
   SlowRun(bool mixed, double seconds) : backend(model, mixed, seconds) {
     state.clock = StepClock(model).state();
-    backend.load(initial_records(model.particles, Subdomain(model.space)), {});
+    backend.particles().load(initial_records(model.particles, Subdomain(model.space)), {});
     step.start(state.bodies);
     recorder.emplace(model, backend, link, folder.path(), state);
     const LoopParts parts{model, backend, link, step, *recorder, timers, [this] { return backend.now; }};

@@ -1,4 +1,4 @@
-#include "dem/backend.hpp"
+#include "dem/reports.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,33 @@
+// Explicit steps of the serial backend.
+#pragma once
+
+#include "dem/cpu_list.hpp"
+#include "dem/explicit_run.hpp"
+
+namespace scree {
+
+class CpuExplicitRun : public ExplicitRun {
+ public:
+  CpuExplicitRun(CpuItems& items, CpuList& list, Real h);
+
+  StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
+  void shape_contacts() override;
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
+
+ private:
+  VerletViews views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity);
+  void share_step();
+  void advance();
+  void finish();
+
+  CpuItems& items_;
+  CpuList& list_;
+  const Real h_;
+  Index closed_ = 0;      // steps since the start of the run
+  bool open_ = true;      // whether a step is open
+  Real step_bound_ = 0;   // displacement of any particle in the open step; 0 once the list knows it [m]
+  bool outside_ = false;  // whether a particle is outside the space where the open step ends, if one of the
+                          // bodies ends there
+};
+
+}  // namespace scree

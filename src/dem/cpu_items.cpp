@@ -1,0 +1,53 @@
+#include "dem/cpu_items.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace scree {
+
+CpuItems::CpuItems(const Model& of, const Ranks& on)
+    : model(of),
+      ranks(on),
+      subdomain(of.space),
+      side(of, subdomain),
+      kernels(make_contact_kernels(of.contact)),
+      planes(wall_planes(of)),
+      hht(hht_coefficients(of.integrator.hht_alpha)) {}
+
+CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const {
+  return {position.data(),
+          velocity.data(),
+          store.material.data(),
+          {list.offsets.data(), list.neighbors.data()},
+          list.wall_offsets.data(),
+          list.walls.data(),
+          planes.data(),
+          layout.first_shape};
+}
+
+void CpuItems::find_shape_contacts(const Views& with) {
+  kernels->shapes(with, {side.position().data(), side.velocity().data()}, shape_items(),
+                  side.contacts().data());
+}
+
+bool CpuItems::any_outside() const {
+  for (Index i = 0; i < store.owned; ++i)
+    if (!store.drifting[i] && !subdomain.inside(xyz(store.position[i]))) return true;
+  return false;
+}
+
+void CpuItems::fail_if_any(GlobalId id, const char* before, const char* after) const {
+  const GlobalId first = ranks.min(id);
+  if (first != kNone) throw SimulationError(before + std::to_string(first) + after);
+}
+
+void CpuItems::report_not_finite(const std::vector<Vec3>& force) const {
+  GlobalId bad = kNone;
+  for (Index i = 0; i < layout.owned; ++i)
+    if (!is_finite(force[i])) bad = std::min(bad, id_of(store.row_key[i]));
+  fail_if_any(bad, "stage contact_force: the force on particle ", " is not finite");
+}
+
+}  // namespace scree

@@ -1,0 +1,58 @@
+// The items of one rank on the serial backend: what its objects share.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "dem/contact_kernels.hpp"
+#include "dem/neighbor_list.hpp"
+#include "dem/particle_store.hpp"
+#include "dem/shape_side.hpp"
+#include "model/model.hpp"
+#include "partition/halo.hpp"
+#include "partition/ranks.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+struct CpuItems {
+  using Views = ContactViews<PackedRows>;
+  static constexpr GlobalId kNone = std::numeric_limits<GlobalId>::max();
+
+  CpuItems(const Model& of, const Ranks& on);
+  CpuItems(const CpuItems&) = delete;  // `side` knows the address of `subdomain`
+  CpuItems& operator=(const CpuItems&) = delete;
+
+  Views views() const { return views(store.position, store.velocity); }
+  Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const;
+  Index shape_items() const { return layout.items - layout.first_shape; }
+  void refresh_ghosts() { halo.update_motion(store.position, store.velocity, layout.owned); }
+  // Into side.contacts(), where the shapes are now.
+  void find_shape_contacts() { find_shape_contacts(views()); }
+  void find_shape_contacts(const Views& with);
+  void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(layout, ranks, end); }
+  bool any_outside() const;
+  // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.
+  void report_not_finite(const std::vector<Vec3>& force) const;
+  // The same of a particle that only some ranks know of; id: kNone without one.
+  void fail_if_any(GlobalId id, const char* before, const char* after) const;
+
+  const Model& model;
+  Ranks ranks;
+  Subdomain subdomain;
+  ShapeSide side;
+  std::unique_ptr<ContactKernels> kernels;
+  std::vector<WallPlane> planes;
+  HhtCoefficients hht;
+
+  ParticleStore store;
+  Halo halo;
+  NeighborList list;
+  ItemLayout layout;
+  // Explicit steps write here while neighbours are read. After a run: the velocities that the law saw last.
+  std::vector<Vec4> spare_position, spare_velocity;
+};
+
+}  // namespace scree

@@ -1,0 +1,94 @@
+#include "dem/cpu_particles.hpp"
+
+#include <algorithm>
+
+#include "base/for_each.hpp"
+#include "dem/explicit_run.hpp"
+#include "dem/ledger_items.hpp"
+
+namespace scree {
+
+void CpuParticles::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
+  items_.side.losses() = items_.ranks.is_root() ? shapes : ShapeLosses{};
+  count_on_rank(records.size(), items_.model.particles.totals);
+  items_.store.load(records);
+  list_.outdate();
+}
+
+std::vector<Particle> CpuParticles::records() {
+  std::vector<Particle> out = items_.store.records();
+  for (Particle& r : out)
+    if (!r.drifting) r.position = items_.subdomain.wrap(r.position, r.image);
+  return out;
+}
+
+void CpuParticles::initial_forces() {
+  ParticleStore& store = items_.store;
+  items_.refresh_ghosts();
+  items_.kernels->forces(items_.views(), items_.model.gravity, items_.layout.owned, store.force.data(),
+                         store.loss_power.data());
+  for_each(Serial{}, items_.layout.owned,
+           StartAccelerationItem{store.force.data(), store.velocity.data(), store.acceleration.data()});
+  items_.find_shape_contacts();
+  if (is_verlet(items_.model))
+    items_.side.book_losses(0);
+  else
+    std::fill(store.loss_power.begin(), store.loss_power.end(), 0);
+}
+
+std::vector<Leaver> CpuParticles::outside() {
+  const ParticleStore& store = items_.store;
+  const Model& model = items_.model;
+  const Ranks& ranks = items_.ranks;
+  std::vector<Leaver> leavers;
+  if (!ranks.any(items_.any_outside())) return leavers;
+  for (Index i = 0; i < store.owned; ++i) {
+    const Vec3 p = xyz(store.position[i]);
+    if (store.drifting[i] || items_.subdomain.inside(p)) continue;
+    const Real energy = energy_of_motion(store.position[i], store.velocity[i], store.image[i], model.gravity,
+                                         items_.subdomain.period());
+    const Real shift = verlet_energy_shift(verlet_step(model), store.velocity[i].w, store.acceleration[i]);
+    leavers.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.beyond_wall(p), energy,
+                       store.contact_loss[i], store.integrator_loss[i] - shift, 0, ranks.rank()});
+  }
+  items_.kernels->leavers(items_.views(), items_.subdomain.box(), static_cast<Index>(leavers.size()),
+                          leavers.data());
+  leavers = ranks.gather_everywhere(std::move(leavers));
+  std::sort(leavers.begin(), leavers.end(),
+            [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
+  return leavers;
+}
+
+// Before the leavers are wrapped and marked.
+void CpuParticles::take_contacts_out() {
+  ParticleStore& store = items_.store;
+  const Model& model = items_.model;
+  const bool verlet = is_verlet(model);
+  items_.kernels->departures(
+      items_.views(store.position, verlet ? items_.spare_velocity : store.velocity), model.gravity,
+      items_.subdomain.box(), items_.layout.owned,
+      {store.force.data(), store.acceleration.data(), verlet ? store.loss_power.data() : nullptr,
+       store.integrator_loss.data(), store.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
+       verlet_step(model)});
+}
+
+void CpuParticles::take_out(const std::vector<Leaver>& leavers) {
+  ParticleStore& store = items_.store;
+  take_contacts_out();
+  for (const Leaver& leaver : leavers) {
+    if (leaver.rank != items_.ranks.rank()) continue;
+    const auto i = static_cast<std::size_t>(leaver.local_index);
+    const Vec4& p = store.position[i];
+    store.position[i] = vec4(items_.subdomain.wrap(xyz(p), store.image[i]), p.w);
+    store.drifting[i] = 1;
+  }
+  list_.outdate();
+  if (items_.model.space.leaving != Leaving::remove) return;
+  std::vector<Index> staying;
+  for (Index i = 0; i < store.owned; ++i)
+    if (!store.drifting[i]) staying.push_back(i);
+  list_.keep_rows(staying);
+  store.reorder(staying);
+}
+
+}  // namespace scree

@@ -1,0 +1,30 @@
+// The particles of one rank on the serial backend.
+#pragma once
+
+#include <vector>
+
+#include "dem/cpu_list.hpp"
+#include "dem/rank_particles.hpp"
+
+namespace scree {
+
+class CpuParticles : public RankParticles {
+ public:
+  CpuParticles(CpuItems& items, CpuList& list) : items_(items), list_(list) {}
+
+  void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
+  std::vector<Particle> records() override;
+  ShapeLosses shape_losses() const override { return items_.side.losses(); }
+  void initial_forces() override;
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
+  std::vector<Leaver> outside() override;
+  void take_out(const std::vector<Leaver>& leavers) override;
+
+ private:
+  void take_contacts_out();
+
+  CpuItems& items_;
+  CpuList& list_;
+};
+
+}  // namespace scree

@@ -1,0 +1,38 @@
+// The particles of one rank: what a checkpoint stores of them, and those that leave the space.
+#pragma once
+
+#include <vector>
+
+#include "dem/leaver_items.hpp"
+#include "dem/particle_fields.hpp"
+#include "dem/shape_side.hpp"
+#include "model/body_exchange.hpp"
+
+namespace scree {
+
+// All functions but records() and shape_losses() are collective (see Backend).
+class RankParticles {
+ public:
+  virtual ~RankParticles() = default;
+
+  // State of the particle side: what a checkpoint stores. load: of particles that this rank's part of the
+  // model has; the first list brings them to the ranks that own them; records: of those that this rank owns.
+  // Shapes' losses are rank 0's.
+  virtual void load(const std::vector<Particle>& records, const ShapeLosses& shapes) = 0;
+  virtual std::vector<Particle> records() = 0;  // ordered by global id
+  virtual ShapeLosses shape_losses() const = 0;
+
+  // Start: forces and accelerations of the loaded positions and velocities, on a list of these.
+  virtual void initial_forces() = 0;
+  // Contact wrenches on the bodies, from the contacts that were found last: here, by initial_forces. On rank
+  // 0; zero elsewhere.
+  virtual void reduce_wrench(std::vector<BodyWrench>& wrench) = 0;
+
+  // The particles that are outside the space now and not known to drift, ordered by global id.
+  virtual std::vector<Leaver> outside() = 0;
+  // Takes them out of the search, and their contacts out of what the next step starts from: they drift from
+  // now on or are removed, as the deck says. The list must then be built anew.
+  virtual void take_out(const std::vector<Leaver>& leavers) = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,63 @@
+// What a backend tells of its particles as they are now: sums, and values for output.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/shape_side.hpp"
+
+namespace scree {
+
+// Sums over all particles; order-independent.
+struct ParticleLedger {
+  Real kinetic = 0, gravitational = 0, contact_elastic = 0;  // [J]
+  Real contact_loss = 0, integrator_loss = 0;                // since t = 0 [J]
+  Vec3 momentum;                                             // [kg m/s]
+  Vec3 angular_momentum;                                     // about the origin [kg m^2/s]
+  std::int64_t contacts = 0;                                 // touching pairs, walls and body shapes included
+  std::int64_t drifting = 0;                                 // particles outside that drift on
+};
+
+// From the sums of LedgerItem over the particles, indexed by LedgerTerm, and the shapes' shares.
+ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes);
+
+// From the sums of WallContactItem over what touches a wall, indexed by WallTerm.
+ContactSum make_wall_contact(const Real* sums);
+
+// One entry per particle of this rank, any order.
+struct ParticlePack {
+  std::vector<GlobalId> global_id;
+  std::vector<Real> radius;
+  std::vector<Vec3> position, velocity, force;  // force: contacts only
+  std::vector<int> contacts;
+};
+
+// A particle whose motion is recorded.
+struct TracedParticle {
+  GlobalId global_id;
+  Vec3 position, velocity;  // position inside the periodic box [m], [m/s]
+};
+
+// All functions but pack_particles() and traced() are collective (see Backend).
+class Reports {
+ public:
+  virtual ~Reports() = default;
+
+  // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s]. Complete on rank 0.
+  virtual ParticleLedger ledger(Real verlet_step) = 0;
+  // Begins to copy out what pack_particles returns: the particles as they are now, whatever steps follow.
+  virtual void start_pack() = 0;
+  virtual ParticlePack pack_particles() = 0;
+  virtual ShapePack pack_shapes() = 0;  // complete on rank 0
+  // Those of these particles that this rank owns, where they are now, in any order.
+  virtual std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) = 0;
+  // What touches each body, and each of these walls (indices into Model::walls), where all are now; the
+  // bodies' on rank 0.
+  virtual std::vector<ContactSum> body_contacts() = 0;
+  virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
+};
+
+}  // namespace scree
