@@ -1,63 +1,12 @@
-// The implicit step of the GPU's backend: the schedule of src/dem/cpu_implicit.cpp and block_solver.cpp.
+// The schedule of src/dem/cpu_implicit.cpp and block_solver.cpp.
 #include <cmath>
 
-#include "backend_parts.cuh"
+#include "cuda_implicit.cuh"
+#include "cuda_shapes.cuh"
 #include "dem/block_solver.hpp"
 
 namespace scree {
-
-StepViews CudaBackend::step_views() {
-  return {now_.position.data(),
-          now_.velocity.data(),
-          now_.acceleration.data(),
-          other_.position.data(),
-          other_.velocity.data(),
-          other_.acceleration.data(),
-          now_.force.data(),
-          hht_,
-          h_,
-          subdomain_.snap_constant()};
-}
-
-StepForces CudaBackend::step_forces() {
-  return {step_force_.data(), end_force_.data(), force_magnitude_.data()};
-}
-
-StepStart CudaBackend::step_start() const {
-  return {other_.position.data(), other_.velocity.data(), h_, model_.integrator.resolve_events};
-}
-
-ContactMatrix CudaBackend::matrix() {
-  return {matrix_count_.data(), matrix_entries_.data(), matrix_diagonal_.data()};
-}
-
-void CudaBackend::size_step_arrays() {
-  const auto owned = static_cast<std::size_t>(owned_), slots = static_cast<std::size_t>(list_.slots());
-  matrix_entries_.resize(slots);
-  for (DeviceArray<Vec4>& direction : direction_) direction.resize(static_cast<std::size_t>(layout_.items));
-  step_force_.resize(owned), end_force_.resize(owned), force_magnitude_.resize(owned),
-      stiffening_.resize(owned), matrix_count_.resize(owned);
-  residual_.resize(owned), right_hand_side_.resize(owned), correction_.resize(owned);
-  matrix_diagonal_.resize(owned), inverse_block_.resize(owned);
-}
-
 namespace {
-
-// Smallest id of the particles of which `is` holds; *id starts from kNoId.
-template <class Is>
-struct SmallestIdItem {
-  const std::int64_t* row_key;
-  Is is;
-  long long* id;
-  __device__ void operator()(Index i) const {
-    if (is(i)) atomicMin(id, static_cast<long long>(id_of(row_key[i])));
-  }
-};
-
-struct IsNotFinite {
-  const Vec3* force;
-  __device__ bool operator()(Index i) const { return !is_finite(force[i]); }
-};
 
 struct IsLargest {
   const Vec3* residual;
@@ -120,232 +69,261 @@ __global__ void solver_kernel(Index first, Index end, const __grid_constant__ So
 
 }  // namespace
 
-void CudaBackend::report_not_finite(const Vec3* force) const {
-  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_),
-               "cudaMemsetAsync");
-  for_each(device(), owned_,
-           SmallestIdItem<IsNotFinite>{now_.row_key.data(), {force}, result(&Results::worst_id)});
-  if (const long long id = smallest_id(); id < kNoId)
-    throw SimulationError("stage contact_force: the force on particle " + std::to_string(id) +
-                          " is not finite");
+void CudaImplicitArrays::resize(const CudaItems& items) {
+  const auto owned = static_cast<std::size_t>(items.owned),
+             slots = static_cast<std::size_t>(items.list.slots());
+  matrix_entries.resize(slots);
+  for (DeviceArray<Vec4>& d : direction) d.resize(static_cast<std::size_t>(items.layout.items));
+  step_force.resize(owned), end_force.resize(owned), force_magnitude.resize(owned);
+  stiffening.resize(owned), matrix_count.resize(owned);
+  residual.resize(owned), right_hand_side.resize(owned), correction.resize(owned);
+  matrix_diagonal.resize(owned), inverse_block.resize(owned);
 }
 
-GlobalId CudaBackend::worst_particle() {
-  max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
-  halo_.max(device(), result(&Results::largest), 1);
-  require_cuda(cudaMemsetAsync(result(&Results::worst_id), 0x7f, sizeof(long long), stream_),
-               "cudaMemsetAsync");
-  for_each(
-      device(), owned_,
-      SmallestIdItem<IsLargest>{
-          now_.row_key.data(), {residual_.data(), result(&Results::largest)}, result(&Results::worst_id)});
-  const long long worst = smallest_id();
-  return worst < kNoId ? worst : -1;
+// The state is put aside by a swap.
+CudaImplicitStep::CudaImplicitStep(CudaItems& items, CudaShapes& shapes, CudaImplicitArrays& arrays, Real h)
+    : items_(items), shapes_(shapes), arrays_(arrays), h_(h) {
+  std::swap(items.now.position, items.other.position), std::swap(items.now.velocity, items.other.velocity);
 }
 
-void CudaBackend::initial_forces() {
-  refresh_ghosts(now_.position.data(), now_.velocity.data());
-  kernels_->forces(device(), views(), model_.gravity, owned_, now_.force.data(), now_.loss_power.data());
-  for_each(device(), owned_,
-           StartAccelerationItem{now_.force.data(), now_.velocity.data(), now_.acceleration.data()});
-  find_shape_contacts();
-  if (is_verlet(model_))
-    side_.book_losses(0);
-  else
-    now_.loss_power.zero(stream_);
+StepViews CudaImplicitStep::step_views() {
+  ParticleArrays &now = items_.now, &start = items_.other;
+  return {now.position.data(),
+          now.velocity.data(),
+          now.acceleration.data(),
+          start.position.data(),
+          start.velocity.data(),
+          start.acceleration.data(),
+          now.force.data(),
+          items_.hht,
+          h_,
+          items_.subdomain.snap_constant()};
 }
 
-void CudaBackend::begin_step(Real h) {
-  h_ = h;
-  line_search_ = {};
-  in_implicit_step_ = true;
-  const auto n = static_cast<std::size_t>(owned_), shapes = static_cast<std::size_t>(shape_items());
-  std::swap(now_.position, other_.position), std::swap(now_.velocity, other_.velocity);
-  copy_async(other_.acceleration.data(), now_.acceleration.data(), n, stream_);
-  copy_async(now_.position.data() + layout_.first_shape, other_.position.data() + layout_.first_shape, shapes,
-             stream_);
-  copy_async(now_.velocity.data() + layout_.first_shape, other_.velocity.data() + layout_.first_shape, shapes,
-             stream_);
-  for_each(device(), owned_, NewmarkItem{step_views()});
+StepForces CudaImplicitStep::step_forces() {
+  return {arrays_.step_force.data(), arrays_.end_force.data(), arrays_.force_magnitude.data()};
+}
+
+StepStart CudaImplicitStep::step_start() const {
+  return {items_.other.position.data(), items_.other.velocity.data(), h_,
+          items_.model.integrator.resolve_events};
+}
+
+ContactMatrix CudaImplicitStep::matrix() {
+  return {arrays_.matrix_count.data(), arrays_.matrix_entries.data(), arrays_.matrix_diagonal.data()};
+}
+
+void CudaImplicitStep::predict() {
+  const auto n = static_cast<std::size_t>(items_.owned), shapes = static_cast<std::size_t>(shapes_.count());
+  const Index first_shape = items_.layout.first_shape;
+  ParticleArrays &now = items_.now, &start = items_.other;
+  copy_async(start.acceleration.data(), now.acceleration.data(), n, items_.stream);
+  copy_async(now.position.data() + first_shape, start.position.data() + first_shape, shapes, items_.stream);
+  copy_async(now.velocity.data() + first_shape, start.velocity.data() + first_shape, shapes, items_.stream);
+  for_each(items_.device(), items_.owned, NewmarkItem{step_views()});
   ghosts_stale_ = true;
 }
 
-void CudaBackend::rollback() {
-  if (!in_implicit_step_) return;
-  std::swap(now_.position, other_.position), std::swap(now_.velocity, other_.velocity);
-  copy_async(now_.acceleration.data(), other_.acceleration.data(), static_cast<std::size_t>(owned_), stream_);
-  refresh_ghosts(now_.position.data(), now_.velocity.data());
-  in_implicit_step_ = ghosts_stale_ = false;
+void CudaImplicitStep::undo() {
+  ParticleArrays &now = items_.now, &start = items_.other;
+  std::swap(now.position, start.position), std::swap(now.velocity, start.velocity);
+  copy_async(now.acceleration.data(), start.acceleration.data(), static_cast<std::size_t>(items_.owned),
+             items_.stream);
+  items_.refresh_ghosts();
 }
 
-Real CudaBackend::step_displacement() {
-  const DisplacementItem moved{other_.position.data(), now_.position.data()};
-  const DisplacementItem shapes{moved.from + layout_.first_shape, moved.to + layout_.first_shape};
-  max_over(device(), layout_.active, moved, result(&Results::largest));
-  max_over(device(), shape_items(), shapes, result(&Results::displacement));
-  const Real particles = fetch(&Results::largest);
-  return std::sqrt(ranks_.max(std::max(particles, fetch(&Results::displacement))));
+Real CudaImplicitStep::step_displacement() {
+  DeviceResults& results = items_.results;
+  const Index first_shape = items_.layout.first_shape;
+  const DisplacementItem moved{items_.other.position.data(), items_.now.position.data()};
+  const DisplacementItem shapes{moved.from + first_shape, moved.to + first_shape};
+  max_over(items_.device(), items_.layout.active, moved, results.at(&Results::largest));
+  max_over(items_.device(), shapes_.count(), shapes, results.at(&Results::displacement));
+  const Real particles = results.fetch(&Results::largest);
+  return std::sqrt(items_.ranks.max(std::max(particles, results.fetch(&Results::displacement))));
 }
 
-ParticleNorms CudaBackend::contact_force() {
+// Forces, Newton matrix and residual, with the ghosts refreshed where they must be.
+void CudaImplicitStep::queue_forces() {
   SystemRequest r;
-  r.in = views(), r.gravity = model_.gravity;
-  r.weights = {newmark_position_gain(hht_, h_), newmark_velocity_gain(hht_, h_)};
+  r.in = items_.views(), r.gravity = items_.model.gravity;
+  r.weights = {newmark_position_gain(items_.hht, h_), newmark_velocity_gain(items_.hht, h_)};
   r.start = step_start();
   r.forces = step_forces(), r.matrix = matrix(), r.step = step_views();
-  r.residual = residual_.data(), r.stiffening = stiffening_.data(), r.inverse_block = inverse_block_.data();
-  r.largest = result(&Results::norms);
-  require_cuda(cudaMemsetAsync(r.largest, 0, sizeof(StepNorms), stream_), "cudaMemsetAsync");
+  r.residual = arrays_.residual.data(), r.stiffening = arrays_.stiffening.data();
+  r.inverse_block = arrays_.inverse_block.data();
+  r.largest = items_.results.at(&Results::norms);
+  require_cuda(cudaMemsetAsync(r.largest, 0, sizeof(StepNorms), items_.stream), "cudaMemsetAsync");
   const auto queue_rows = [&](Device on, Index first, Index end) {
     r.first = first, r.end = end;
-    kernels_->system(on, r);
+    items_.kernels->system(on, r);
   };
-  const auto queue_ghosts = [&](Device on) {
-    halo_.update_motion(on, now_.position.data(), now_.velocity.data(), owned_);
-  };
-  if (ghosts_stale_) {
-    halo_after_rows();
-    queue_beside_halo(queue_ghosts, queue_rows, &halo_clock_);
-    rows_after_halo();
-    ghosts_stale_ = false;
-  } else {
-    queue_rows(device(), 0, owned_);
-  }
-  if (shape_items() > 0) {
-    kernels_->shapes(device(), views(), shape_items(), r.start, h_shape_contacts_.data());
-    fetch_shape_contacts(ContactSpan::step, stream_);
-  }
-  if (line_search_.is_open()) queue_sums(SlopeItem{residual_.data(), correction_.data()}, &Results::slope);
-  copy_async(&h_results_.data()->slope, result(&Results::slope), 1, stream_);
-  StepNorms largest = fetch(&Results::norms);
-  halo_clock_.read(balance_.halo);
+  if (!ghosts_stale_) return queue_rows(items_.device(), 0, items_.owned);
+  items_.halo_after_rows();
+  items_.queue_beside_halo([&](Device on) { items_.refresh_ghosts(on); }, queue_rows, &items_.lane.clock);
+  items_.rows_after_halo();
+  ghosts_stale_ = false;
+}
+
+// Over the particles of all ranks; waits. Throws as report_not_finite where a residual is not.
+StepNorms CudaImplicitStep::largest_norms() {
+  StepNorms largest = items_.results.fetch(&Results::norms);
+  items_.lane.clock.read(items_.balance.halo);
   Real maxima[4] = {largest.residual, largest.correction_bound, largest.force, largest.stiffening};
-  ranks_.max(maxima);
+  items_.ranks.max(maxima);
   largest.residual = maxima[0], largest.correction_bound = maxima[1];
   largest.force = maxima[2], largest.stiffening = maxima[3];
-  if (!std::isfinite(largest.residual)) report_not_finite(residual_.data());
+  if (!std::isfinite(largest.residual)) items_.report_not_finite(arrays_.residual.data());
+  return largest;
+}
 
+ParticleNorms CudaImplicitStep::contact_force() {
+  queue_forces();
+  shapes_.find_contacts(step_start());
+  DeviceResults& results = items_.results;
+  if (line_search_.is_open())
+    items_.queue_sums(SlopeItem{arrays_.residual.data(), arrays_.correction.data()}, &Results::slope);
+  results.copy(&Results::slope);
+  const StepNorms largest = largest_norms();
   force_scale_ = largest.force, largest_stiffening_ = largest.stiffening;
   right_hand_side_norm_ = largest.residual;
-  if (line_search_.is_open()) line_search_.look(totals(h_results_[0].slope)[0]);
+  if (line_search_.is_open()) line_search_.look(results.totals(results.host().slope)[0]);
   return {scaled_residual(largest), largest.correction_bound, line_search_.overshoots()};
 }
 
-CorrectItem CudaBackend::correct_item(Real share) {
-  return {now_.acceleration.data(), correction_.data(), now_.position.data(), share,
-          newmark_position_gain(hht_, h_)};
+GlobalId CudaImplicitStep::worst_particle() {
+  Real* largest = items_.results.at(&Results::largest);
+  max_over(items_.device(), items_.owned, NormItem{arrays_.residual.data()}, largest);
+  items_.lane.halo.max(items_.device(), largest, 1);
+  const long long worst = items_.smallest_id(IsLargest{arrays_.residual.data(), largest});
+  return worst < kNoId ? worst : -1;
 }
 
-void CudaBackend::shorten_correction() {
-  max_over(device(), owned_, correct_item(line_search_.shorten()), result(&Results::largest));
-  for_each(device(), owned_, NewmarkItem{step_views()});
+void CudaImplicitStep::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {
+  shapes_.side().reduce(items_.layout, items_.ranks, step, end);
+}
+
+CorrectItem CudaImplicitStep::correct_item(Real share) {
+  return {items_.now.acceleration.data(), arrays_.correction.data(), items_.now.position.data(), share,
+          newmark_position_gain(items_.hht, h_)};
+}
+
+void CudaImplicitStep::shorten_correction() {
+  max_over(items_.device(), items_.owned, correct_item(line_search_.shorten()),
+           items_.results.at(&Results::largest));
+  for_each(items_.device(), items_.owned, NewmarkItem{step_views()});
   ghosts_stale_ = true;
 }
 
 // The bodies have already taken their correction: as a known part of the solution it moves to the right.
-void CudaBackend::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
-  const auto n = static_cast<std::size_t>(shape_items());
-  if (n == 0) return;
-  shape_step_.upload(side_.step(), stream_);
-  for_each(device(), layout_.items,
-           ShapeDirectionItem{shape_step_.data(), newmark_position_gain(hht_, h_), layout_.first_shape,
-                              direction_[0].data()});
-  matrix.d = direction_[0].data();
-  for_each(device(), owned_, matrix);
-  max_over(device(), owned_, NormItem{residual_.data()}, result(&Results::largest));
-  right_hand_side_norm_ = ranks_.max(fetch(&Results::largest));
+void CudaImplicitStep::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
+  if (shapes_.count() == 0) return;
+  Vec4* direction = arrays_.direction[0].data();
+  const Vec3* steps = shapes_.upload_steps();
+  for_each(
+      items_.device(), items_.layout.items,
+      ShapeDirectionItem{steps, newmark_position_gain(items_.hht, h_), items_.layout.first_shape, direction});
+  matrix.d = direction;
+  for_each(items_.device(), items_.owned, matrix);
+  max_over(items_.device(), items_.owned, NormItem{arrays_.residual.data()},
+           items_.results.at(&Results::largest));
+  right_hand_side_norm_ = items_.ranks.max(items_.results.fetch(&Results::largest));
   // Without a correction the bodies alone would notice.
-  if (!std::isfinite(right_hand_side_norm_)) report_not_finite(residual_.data());
+  if (!std::isfinite(right_hand_side_norm_)) items_.report_not_finite(arrays_.residual.data());
 }
 
-// Solves for correction_ in batches of products, so that the host seldom waits; returns the number of
+// Solves for the correction in batches of products, so that the host seldom waits; returns the number of
 // products.
-int CudaBackend::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
+int CudaImplicitStep::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
   constexpr int kBatch = 8;
-  h_solver_[0] = {tolerance, 0, 0, 0, 0, ranks_.alone()};
-  copy_async(solver_.data(), h_solver_.data(), 1, stream_);
+  SolverControl* control = arrays_.solver.data();
+  SolverControl& h_control = arrays_.h_solver[0];
+  Vec3 *residual = arrays_.residual.data(), *correction = arrays_.correction.data();
+  DeviceHalo& halo = items_.lane.halo;
+  h_control = {tolerance, 0, 0, 0, 0, items_.ranks.alone()};
+  copy_async(control, &h_control, 1, items_.stream);
   // Ghosts are refreshed, shapes do not move.
-  const std::size_t shapes = static_cast<std::size_t>(shape_items()) * sizeof(Vec4);
-  for (DeviceArray<Vec4>& direction : direction_)
+  const std::size_t shapes = static_cast<std::size_t>(shapes_.count()) * sizeof(Vec4);
+  for (DeviceArray<Vec4>& direction : arrays_.direction)
     if (shapes > 0)
-      require_cuda(cudaMemsetAsync(direction.data() + layout_.first_shape, 0, shapes, stream_),
+      require_cuda(cudaMemsetAsync(direction.data() + items_.layout.first_shape, 0, shapes, items_.stream),
                    "cudaMemsetAsync");
   ChebyshevWeights weights = solver_weights(largest_stiffening_);
   const auto direction = [&] {
-    return DirectionItem{inverse_block_.data(), residual_.data(), weights.from_last, weights.from_residual};
+    return DirectionItem{arrays_.inverse_block.data(), residual, weights.from_last, weights.from_residual};
   };
-  for_each(device(), owned_, FirstDirectionItem{direction(), direction_[0].data(), correction_.data()});
-  halo_after_rows();
+  for_each(items_.device(), items_.owned,
+           FirstDirectionItem{direction(), arrays_.direction[0].data(), correction});
+  items_.halo_after_rows();
   for (int product = 0; product < kMostProducts; ++product) {
-    DeviceArray<Vec4>&d = direction_[product % 2], &next = direction_[1 - product % 2];
-    const DirectionGhostItem ghosts{halo_.ghosts(), halo_.field(0, d.data(), owned_)};
+    Vec4 *d = arrays_.direction[product % 2].data(), *next = arrays_.direction[1 - product % 2].data();
+    const DirectionGhostItem ghosts{halo.ghosts(), halo.field(0, d, items_.owned)};
     weights.advance();
-    SolverItem item{matrix, direction(), next.data(), correction_.data()};
-    item.subtract.d = d.data(), item.subtract.residual = residual_.data();
+    SolverItem item{matrix, direction(), next, correction};
+    item.subtract.d = d, item.subtract.residual = residual;
     const auto queue_ghosts = [&](Device on) {
-      for_each(on, halo_.entries(), ghosts);
-      halo_.exchange(on, ghosts.direction);
+      for_each(on, halo.entries(), ghosts);
+      halo.exchange(on, ghosts.direction);
     };
     const auto queue_rows = [&](Device on, Index first, Index end) {
       const unsigned blocks = std::max(1u, blocks_for(end - first));
-      solver_kernel<<<blocks, launches().block, 0, on.stream>>>(first, end, item, solver_.data());
+      solver_kernel<<<blocks, launches().block, 0, on.stream>>>(first, end, item, control);
     };
-    queue_beside_halo(queue_ghosts, queue_rows, nullptr);
-    if (!ranks_.alone()) {
-      halo_.max({halo_stream_}, &solver_.data()->largest, 1);
-      decide_kernel<<<1, 1, 0, halo_stream_>>>(solver_.data());
-      rows_after_halo();
+    items_.queue_beside_halo(queue_ghosts, queue_rows, nullptr);
+    if (!items_.ranks.alone()) {
+      halo.max({items_.lane.stream}, &control->largest, 1);
+      decide_kernel<<<1, 1, 0, items_.lane.stream>>>(control);
+      items_.rows_after_halo();
     }
     require_cuda(cudaGetLastError(), "linear solve");
     if (product % kBatch != kBatch - 1) continue;
-    copy_async(h_solver_.data(), solver_.data(), 1, stream_);
-    if (idle_work_) idle_work_();
-    wait_for(stream_);
-    if (h_solver_[0].stop) break;
+    copy_async(&h_control, control, 1, items_.stream);
+    items_.idle();
+    wait_for(items_.stream);
+    if (h_control.stop) break;
   }
-  return h_solver_[0].products;
+  return h_control.products;
 }
 
-ParticleCorrection CudaBackend::particle_correct() {
+ParticleCorrection CudaImplicitStep::particle_correct() {
+  Vec3 *residual = arrays_.residual.data(), *right_hand_side = arrays_.right_hand_side.data();
+  DeviceResults& results = items_.results;
   const SubtractMatrixItem<SlicedRows> system{
-      matrix(), list_.rows(), now_.velocity.data(), hht_inertia_weight(hht_), nullptr, residual_.data()};
+      matrix(), items_.list.rows(), items_.now.velocity.data(), hht_inertia_weight(items_.hht), nullptr,
+      residual};
   subtract_shape_steps(system);
-  const Real right_hand_side = right_hand_side_norm_;
+  const Real norm = right_hand_side_norm_;
   ParticleCorrection out;
   line_search_ = {};
-  if (right_hand_side > 0) {
-    copy_async(right_hand_side_.data(), residual_.data(), static_cast<std::size_t>(owned_), stream_);
+  if (norm > 0) {
+    copy_async(right_hand_side, residual, static_cast<std::size_t>(items_.owned), items_.stream);
     out.iterations =
-        solve(system, solver_tolerance(model_.integrator.residual_tolerance, force_scale_, right_hand_side));
-    max_over(device(), owned_, correct_item(1), result(&Results::largest));
-    queue_sums(SlopeItem{right_hand_side_.data(), correction_.data()}, &Results::slope);
+        solve(system, solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, norm));
+    max_over(items_.device(), items_.owned, correct_item(1), results.at(&Results::largest));
+    items_.queue_sums(SlopeItem{right_hand_side, arrays_.correction.data()}, &Results::slope);
   }
-  for_each(device(), owned_, NewmarkItem{step_views()});
+  for_each(items_.device(), items_.owned, NewmarkItem{step_views()});
   ghosts_stale_ = true;
-  if (right_hand_side > 0) {
-    copy_async(&h_results_.data()->largest, result(&Results::largest), 1, stream_);
-    line_search_.open(totals(fetch(&Results::slope))[0]);
-    out.correction = ranks_.max(h_results_[0].largest);
+  if (norm > 0) {
+    results.copy(&Results::largest);
+    line_search_.open(results.totals(results.fetch(&Results::slope))[0]);
+    out.correction = items_.ranks.max(results.host().largest);
   }
   return out;
 }
 
-Real CudaBackend::error() {
-  max_over(device(), owned_, StepErrorItem{step_views()}, result(&Results::largest));
-  return ranks_.max(fetch(&Results::largest));
+Real CudaImplicitStep::error() {
+  max_over(items_.device(), items_.owned, StepErrorItem{step_views()}, items_.results.at(&Results::largest));
+  return items_.ranks.max(items_.results.fetch(&Results::largest));
 }
 
-void CudaBackend::accept() {
-  kernels_->books(device(), views(), owned_, step_start(), now_.contact_loss.data(),
-                  now_.integrator_loss.data());
-  for_each(device(), owned_,
-           AcceptItem{step_views(), step_forces(), now_.force.data(), now_.integrator_loss.data()});
-  if (const auto shapes = static_cast<std::size_t>(shape_items()); shapes > 0) {
-    kernels_->shape_books(device(), views(), shape_items(), step_start(), h_shape_books_.data());
-    wait_for(stream_);
-    side_.book_step({h_shape_books_.data(), shapes});
-  }
-  in_implicit_step_ = false;
+void CudaImplicitStep::accept() {
+  ParticleArrays& now = items_.now;
+  items_.kernels->books(items_.device(), items_.views(), items_.owned, step_start(), now.contact_loss.data(),
+                        now.integrator_loss.data());
+  for_each(items_.device(), items_.owned,
+           AcceptItem{step_views(), step_forces(), now.force.data(), now.integrator_loss.data()});
+  shapes_.book_step(step_start());
 }
 
 }  // namespace scree

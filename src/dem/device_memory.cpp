@@ -12,7 +12,7 @@
 namespace scree {
 namespace {
 
-// Bytes per particle or item, by the array groups of cuda/cuda_backend.cuh.
+// Bytes per particle or item, by the array groups of cuda/cuda_*.cuh.
 constexpr double kItemFields = 2 * bytes_in_arrays<kItemArrays>();
 constexpr double kOwnedFields = 2 * bytes_in_arrays<kOwnedArrays>();
 constexpr double kSortArrays =

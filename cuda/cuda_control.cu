@@ -1,0 +1,90 @@
+#include <cmath>
+
+#include "cuda_control.cuh"
+
+namespace scree {
+namespace {
+
+// Opens the first step of a run.
+struct RunStartItem {
+  VerletStartItem start;
+  Index active;
+  OpenBox box;
+  const std::uint8_t* drifting;
+  VerletControl* control;
+
+  __device__ Real operator()(Index i) const {
+    const Real squared = start(i);
+    if (!box.inside(xyz(start.state.position[i])) && !drifting[i]) control->outside = 1;
+    return i < active ? squared : 0;
+  }
+};
+
+// What the ranks share of the first step.
+__global__ void started_kernel(VerletControl* c, const Real* largest) {
+  c->shared[0] = *largest, c->shared[1] = c->outside;
+}
+
+__global__ void open_kernel(VerletControl* c) {
+  c->outside = c->shared[1] != 0;
+  c->move(std::sqrt(c->shared[0]));
+  c->judge(c->outside != 0);
+}
+
+// Closes a step once the ranks have shared what it found.
+__global__ void close_kernel(VerletControl* c) {
+  if (c->stop) return;
+  c->outside = c->shared[1] != 0;
+  c->close(c->shared[0]);
+}
+
+// Goes on after a stop: with another end, or another list.
+__global__ void resume_kernel(VerletControl* c, Index last, Real bound, Real half_skin, bool new_list,
+                              int position_parity, int velocity_parity) {
+  c->last = last, c->half_skin = half_skin;
+  if (new_list) c->moved = VerletControl::kNoRows, c->choose_rows();
+  c->bound = bound;
+  c->parity[0] = position_parity, c->parity[1] = velocity_parity;
+  c->judge(c->outside != 0);
+}
+
+}  // namespace
+
+void RunControl::start(const VerletRequest& step) {
+  VerletControl& c = items_.results.host().control;
+  c = {};
+  c.bound = list_.bound(), c.half_skin = list_.skin() / 2, c.moved = VerletControl::kNoRows;
+  c.last = kEndless, c.substeps = items_.model.integrator.substeps, c.alone = items_.ranks.alone();
+  copy_async(on_device(), &c, 1, items_.stream);
+  known_list_ = list_.builds();
+  VerletViews state = step.state;
+  state.position = items_.now.position.data(), state.velocity = items_.now.velocity.data();
+  Real* largest = items_.results.at(&Results::largest);
+  max_over(items_.device(), items_.owned,
+           RunStartItem{{state}, step.active, step.box, step.drifting, step.control}, largest);
+  started_kernel<<<1, 1, 0, items_.stream>>>(on_device(), largest);
+  items_.lane.halo.max(items_.device(), on_device()->shared, 2);
+  open_kernel<<<1, 1, 0, items_.stream>>>(on_device());
+  require_cuda(cudaGetLastError(), "explicit step");
+  wait_for(items_.stream);  // the host's copy of the control is free again
+}
+
+const VerletControl& RunControl::wait() {
+  const VerletControl& c = items_.results.fetch(&Results::control);
+  items_.lane.clock.read(items_.balance.halo);
+  parity_[0] = c.parity[0], parity_[1] = c.parity[1];
+  list_.set_bound(c.bound);
+  return c;
+}
+
+void RunControl::resume(Index last) {
+  const bool new_list = known_list_ != list_.builds();
+  resume_kernel<<<1, 1, 0, items_.stream>>>(on_device(), last, list_.bound(), list_.skin() / 2, new_list,
+                                            parity_[0], parity_[1]);
+  known_list_ = list_.builds();
+  require_cuda(cudaGetLastError(), "explicit step");
+}
+
+void RunControl::close(Device on) { close_kernel<<<1, 1, 0, on.stream>>>(on_device()); }
+
+}  // namespace scree

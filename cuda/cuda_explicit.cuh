@@ -1,0 +1,48 @@
+// A run of explicit steps on the GPU. Steps are queued ahead of the host: each reads on the device whether
+// the list still covers it, and does nothing if not.
+#pragma once
+
+#include "cuda_step_queue.cuh"
+#include "dem/explicit_run.hpp"
+
+namespace scree {
+
+class CudaExplicitRun : public ExplicitRun {
+ public:
+  CudaExplicitRun(CudaItems& items, CudaShapes& shapes, CudaList& list, RunWorkspace& workspace, Real h);
+  ~CudaExplicitRun() override;
+  CudaExplicitRun(const CudaExplicitRun&) = delete;  // the items know its address
+  CudaExplicitRun& operator=(const CudaExplicitRun&) = delete;
+
+  StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
+  void shape_contacts() override;
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { shapes_.reduce_wrench(wrench); }
+
+  // Brings the open step into the arrays of the state; the run goes on from there.
+  void settle();
+
+ private:
+  StepsTaken take_steps_alone(Index most, bool keep_open, StageTimers& timers);
+  bool renew_list(StageTimers& timers);
+  Index steps_ahead(const VerletControl& control) const;
+  void finish();
+  // cuda_coupled.cu
+  StepsTaken take_steps_with_shapes(Index most, bool keep_open, StageTimers& timers);
+  bool step_with_shapes(bool keep_open, StageTimers& timers);
+  void queue_shape_contacts();
+
+  CudaItems& items_;
+  CudaShapes& shapes_;
+  CudaList& list_;
+  RunWorkspace& workspace_;
+  RunControl control_;
+  StepQueue queue_;
+  const Real h_;
+  Index closed_ = 0;  // with bodies: steps since the start of the run
+  // Where the particles as the last step left them are, with the velocities that the law saw.
+  struct {
+    const Vec4 *position, *velocity;
+  } closed_step_{};
+};
+
+}  // namespace scree

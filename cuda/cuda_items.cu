@@ -1,0 +1,52 @@
+#include "cuda_items.cuh"
+
+namespace scree {
+namespace {
+
+struct IsNotFinite {
+  const Vec3* force;
+  __device__ bool operator()(Index i) const { return !is_finite(force[i]); }
+};
+
+}  // namespace
+
+CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void()>& work)
+    : model(of),
+      ranks(on),
+      subdomain(of.space),
+      hht(hht_coefficients(of.integrator.hht_alpha)),
+      idle_work(work),
+      kernels(make_device_contact_kernels(of.contact)),
+      lane(on, of.parallel.transport),
+      results(on, stream) {
+  planes.upload(wall_planes(of), stream);
+}
+
+DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity) const {
+  return {position,     velocity,      now.material.data(), list.rows(), list.wall_offsets(),
+          list.walls(), planes.data(), layout.first_shape};
+}
+
+void CudaItems::reorder(const Index* order, Index n) {
+  const auto size = static_cast<std::size_t>(n);
+  other.grow(std::max(size, now.position.size()), size, 0, stream);
+  for_each(device(), n, ReorderItem{views_of(now), views_of(other), order});
+  std::swap(now, other);
+  owned = n;
+}
+
+void CudaItems::halo_after_rows() {
+  if (!ranks.alone()) lane.rows_done.record(stream), lane.rows_done.hold(lane.stream);
+}
+
+void CudaItems::rows_after_halo() {
+  if (!ranks.alone()) lane.done.record(lane.stream), lane.done.hold(stream);
+}
+
+void CudaItems::report_not_finite(const Vec3* force) {
+  if (const long long id = smallest_id(IsNotFinite{force}); id < kNoId)
+    throw SimulationError("stage contact_force: the force on particle " + std::to_string(id) +
+                          " is not finite");
+}
+
+}  // namespace scree

@@ -1,0 +1,140 @@
+// The items of one rank on its GPU: what the objects of the backend share.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "contact_kernels.cuh"
+#include "cuda_results.cuh"
+#include "device_halo.cuh"
+#include "device_list.cuh"
+#include "for_each.cuh"
+#include "model/model.hpp"
+#include "particle_arrays.cuh"
+#include "partition/decomposition.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+class CudaExplicitRun;
+
+// The halo with a stream of its own, beside that of the rows.
+struct HaloLane {
+  HaloLane(const Ranks& ranks, Transport transport) : halo(ranks, transport) {}
+
+  DeviceHalo halo;
+  Stream stream{Priority::urgent};
+  HaloClock clock;
+  Event rows_done, done;
+};
+
+struct CudaItems {
+  // idle_work: Backend's.
+  CudaItems(const Model& of, const Ranks& on, const std::function<void()>& idle_work);
+  CudaItems(const CudaItems&) = delete;
+  CudaItems& operator=(const CudaItems&) = delete;
+
+  Device device() const { return {stream}; }
+  DeviceViews views() const { return views(now.position.data(), now.velocity.data()); }
+  DeviceViews views(const Vec4* position, const Vec4* velocity) const;
+  Index shape_items() const { return layout.items - layout.first_shape; }
+  void idle() const {
+    if (idle_work) idle_work();
+  }
+  // Particle i becomes the one that was order[i]; n of them stay.
+  void reorder(const Index* order, Index n);
+
+  void refresh_ghosts(Device on) {
+    lane.halo.update_motion(on, now.position.data(), now.velocity.data(), owned);
+  }
+  void refresh_ghosts() { refresh_ghosts(device()); }
+  // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.
+  // One rank alone does not use that stream.
+  void halo_after_rows();
+  void rows_after_halo();
+  template <class QueueGhosts, class QueueRows>
+  void queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock);
+
+  // Queues sums of terms over the particles; see DeviceResults::totals.
+  template <int N, class Item>
+  void queue_sums(const Item& item, ExactSums<N> Results::*sums);
+  // Smallest id of the particles of all ranks of which `is` holds; kNoId without one.
+  template <class Is>
+  long long smallest_id(const Is& is);
+  // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.
+  void report_not_finite(const Vec3* force);
+
+  const Model& model;
+  Ranks ranks;
+  Subdomain subdomain;
+  HhtCoefficients hht;
+  const std::function<void()>& idle_work;
+  Stream stream;  // everything that follows the particles
+  std::unique_ptr<DeviceContactKernels> kernels;
+  DeviceArray<WallPlane> planes;
+
+  // `now` holds the state. `other` is what sorting writes, the start of an open implicit step, or what the
+  // open explicit step reads or writes.
+  ParticleArrays now, other;
+  Index owned = 0;
+  ItemLayout layout;   // without its list of ghosts
+  Index interior = 0;  // the first so many particles, whole blocks of them, meet no ghosts and are none
+  HaloLane lane;
+  DeviceList list;
+  LoadBalance balance;
+  DeviceResults results;
+  DeviceArray<unsigned char> space;  // of library calls
+
+  // The explicit run with an open step, which may be elsewhere than in `now`; null without one.
+  CudaExplicitRun* open_run = nullptr;
+  // Where the velocities are that the law saw in the last explicit step, until a list is built; null where
+  // the state's are those.
+  const Vec4* seen_velocity = nullptr;
+};
+
+template <class Is>
+struct SmallestIdItem {
+  const std::int64_t* row_key;
+  Is is;
+  long long* id;
+  __device__ void operator()(Index i) const {
+    if (is(i)) atomicMin(id, static_cast<long long>(id_of(row_key[i])));
+  }
+};
+
+template <class Is>
+long long CudaItems::smallest_id(const Is& is) {
+  long long* id = results.clear_id();
+  for_each(device(), owned, SmallestIdItem<Is>{now.row_key.data(), is, id});
+  return results.smallest_id();
+}
+
+template <int N, class Item>
+void CudaItems::queue_sums(const Item& item, ExactSums<N> Results::*sums) {
+  exact_sums(device(), owned, item, results.at(sums),
+             [&](Real* largest) { lane.halo.max(device(), largest, N); });
+}
+
+// Queues a pass over the particles that needs their ghosts: queue_ghosts(device), queue_rows(device, first,
+// end). With several ranks the interior, which meets no ghosts, is computed while the halo is under way, and
+// the rest beside it as soon as that is there. Both streams stand where the pass may begin; afterwards the
+// halo's stands behind it, so that the next halo begins before the next rows fill the GPU. clock: if given,
+// it looks.
+template <class QueueGhosts, class QueueRows>
+void CudaItems::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
+                                  HaloClock* clock) {
+  if (ranks.alone()) {
+    queue_ghosts(device());
+    queue_rows(device(), 0, owned);
+    return;
+  }
+  if (clock != nullptr) clock->begin(lane.stream);
+  if (interior > 0) queue_rows(device(), 0, interior);
+  if (clock != nullptr) clock->interior_done(stream);
+  queue_ghosts({lane.stream});
+  if (clock != nullptr) clock->end(lane.stream);
+  queue_rows({lane.stream}, interior, owned);
+  halo_after_rows();
+}
+
+}  // namespace scree

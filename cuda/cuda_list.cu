@@ -1,0 +1,258 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/countable.hpp"
+#include "cuda_explicit.cuh"
+#include "cuda_list.cuh"
+
+namespace scree {
+namespace {
+
+// Wraps a particle into the periodic box. *bad: smallest id of a particle whose position is not sound.
+struct WrapItem {
+  ParticleViews in;
+  Vec3 box_min, period;
+  long long* bad;
+
+  __device__ void operator()(Index i) const {
+    Vec3 p = xyz(in.position[i]);
+    if (!wrap_if_sound(box_min, period, in.drifting[i] != 0, p, in.image[i]))
+      atomicMin(bad, static_cast<long long>(id_of(in.row_key[i])));
+    in.position[i] = vec4(p, in.position[i].w);
+  }
+};
+
+// Particles outside the search get the key past the last cell, those that have gone to other ranks the next.
+struct CellKeyItem {
+  const Vec4* position;
+  const std::uint8_t* drifting;
+  BrickGrid grid;
+  unsigned outside;
+  unsigned* keys;
+
+  SCREE_HD void operator()(Index i) const {
+    const CellPlace c = grid.cells.place(xyz(position[i]));
+    keys[i] = drifting[i] == kGone          ? outside + 1
+              : drifting[i] != 0 || c.x < 0 ? outside
+                                            : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
+  }
+};
+
+// What the ghosts need once: their keys, and the fields that are copied.
+struct GhostNameItem {
+  const Ghost* ghosts;
+  FieldArrays<GhostField> fields;
+  SCREE_HD void operator()(Index entry) const {
+    const Ghost ghost = ghosts[entry];
+    for_each_array<kGhostCopies>([&](const auto& copy) { copy.put(entry, copy.field[ghost.source]); },
+                                 fields);
+    const GhostField<std::int64_t>& key = fields.row_key;
+    key.put(entry, row_key(id_of(key.field[ghost.source]), ghost.image));
+  }
+};
+
+// Shapes that reach no particle of this rank would crowd the edges of its cells: they are left out.
+struct OtherKeyItem {
+  const Vec4* position;  // of the first item that is no owned particle
+  Index ghosts;
+  BrickGrid grid;
+  unsigned outside;
+  unsigned* keys;
+  SCREE_HD void operator()(Index k) const {
+    const Vec3 p = xyz(position[k]);
+    const CellPlace c = grid.cells.place(p);
+    keys[k] = c.x < 0 || (k >= ghosts && !grid.cells.reaches(p))
+                  ? outside
+                  : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
+  }
+};
+
+struct OtherItem {
+  const Index* order;
+  Index first;
+  Index* out;
+  SCREE_HD void operator()(Index k) const { out[k] = first + order[k]; }
+};
+
+}  // namespace
+
+// While a run of explicit steps is open its step is brought into the state first.
+void CudaList::settle() {
+  if (items_.open_run != nullptr) items_.open_run->settle();
+}
+
+void CudaList::place_bodies(std::span<const BodyMotion> motion) {
+  shapes_.side().set_motion(motion);
+  if (!current_) return;
+  shapes_.place();
+  // An explicit run brings the shapes to the arrays of its open step itself.
+  if (items_.open_run == nullptr) shapes_.put();
+}
+
+void CudaList::wrap_positions() {
+  long long* bad = items_.results.clear_id();
+  for_each(items_.device(), items_.owned,
+           WrapItem{views_of(items_.now), items_.model.space.min, items_.subdomain.period(), bad});
+  if (const long long id = items_.results.smallest_id(); id < kNoId)
+    throw SimulationError(kUnsoundPosition[0] + std::to_string(id) + kUnsoundPosition[1]);
+}
+
+// particles: of all ranks.
+void CudaList::sort_cells(Real skin, std::int64_t particles) {
+  const Ranks& ranks = items_.ranks;
+  grid_ = make_brick_grid(ranks.alone()
+                              ? builder_.cells(skin, particles)
+                              : builder_.cells(skin, particles,
+                                               owners_.decomposition().box(ranks.rank(), items_.subdomain),
+                                               items_.owned + shapes_.side().shapes().size()));
+  const auto outside = static_cast<unsigned>(grid_.count());
+  for_each(items_.device(), items_.owned,
+           CellKeyItem{items_.now.position.data(), items_.now.drifting.data(), grid_, outside,
+                       particle_sort_.keys(static_cast<std::size_t>(items_.owned))});
+  particle_sort_.sort(items_.device(), items_.owned, outside + 1);
+  Results& found = items_.results.host();
+  const Index* starts = particle_sort_.starts();
+  copy_async(&found.interior, starts + grid_.cells_of(grid_.interior), 1, items_.stream);
+  copy_async(&found.active, starts + outside, 1, items_.stream);
+  copy_async(&found.staying, starts + outside + 1, 1, items_.stream);
+  wait_for(items_.stream);
+  items_.reorder(particle_sort_.order(), found.staying);
+  owners_.arrived();
+  items_.interior = found.interior / kStepBlock * kStepBlock;
+  items_.layout.owned = items_.owned, items_.layout.active = found.active;
+}
+
+// Lays out all items, makes room for them, and names the ghosts among them.
+void CudaList::find_ghosts(Real width) {
+  ItemLayout& layout = items_.layout;
+  DeviceHalo& halo = items_.lane.halo;
+  ParticleArrays &now = items_.now, &other = items_.other;
+  halo.count(items_.device(), HaloPlan(items_.ranks, owners_.decomposition(), items_.subdomain, width),
+             now.position.data(), layout.active);
+  layout.shapes_meet = items_.ranks.is_root();
+  items_.ranks.together([&] {
+    const auto owned = static_cast<std::size_t>(items_.owned);
+    layout.first_shape = countable(owned + static_cast<std::size_t>(halo.size()), kTooManyItems);
+    shapes_.side().lay_out(width, layout);
+    halo.list(items_.device(), now.position.data(), layout.active);
+    const auto items = static_cast<std::size_t>(layout.items);
+    now.grow(items, owned, owned, items_.stream), other.grow(items, owned, 0, items_.stream);
+  });
+  name_ghosts();
+}
+
+void CudaList::name_ghosts() {
+  constexpr unsigned kKinds = kNames | kGhostCopies;
+  DeviceHalo& halo = items_.lane.halo;
+  GhostNameItem item{halo.ghosts(), {}};
+  std::vector<HaloMessage> messages;
+  for_each_array<kKinds>(
+      [&](auto& copy, auto& array) {
+        copy = halo.field(static_cast<int>(messages.size()), array.data(), items_.owned);
+        messages.push_back(copy.message());
+      },
+      item.fields, items_.now);
+  for_each(items_.device(), halo.entries(), item);
+  halo.exchange(items_.device(), messages);
+}
+
+void CudaList::lay_out_items(Real skin) {
+  find_ghosts(builder_.cutoff(skin));
+  shapes_.name();
+  items_.refresh_ghosts();
+  shapes_.place();
+  shapes_.put();
+}
+
+// Ghosts and shapes by cell.
+void CudaList::index_others() {
+  const Index others = items_.layout.items - items_.owned;
+  if (others == 0) return;
+  const auto outside = static_cast<unsigned>(grid_.count());
+  for_each(items_.device(), others,
+           OtherKeyItem{items_.now.position.data() + items_.owned, items_.lane.halo.size(), grid_, outside,
+                        other_sort_.keys(static_cast<std::size_t>(others))});
+  other_sort_.sort(items_.device(), others, outside);
+  other_items_.resize(static_cast<std::size_t>(others));
+  for_each(items_.device(), others, OtherItem{other_sort_.order(), items_.owned, other_items_.data()});
+}
+
+void CudaList::search(Real skin) {
+  const ItemLayout& layout = items_.layout;
+  ListInput in;
+  in.position = items_.now.position.data(), in.row_key = items_.now.row_key.data();
+  in.grid = grid_;
+  in.particle_starts = particle_sort_.starts();
+  const bool others = layout.items > items_.owned;
+  in.other_starts = others ? other_sort_.starts() : nullptr;
+  in.other_items = others ? other_items_.data() : nullptr;
+  in.bodies = shapes_.bodies();
+  in.planes = items_.planes.data(), in.walls = static_cast<Index>(items_.planes.size());
+  in.active = layout.active, in.owned = items_.owned, in.first_shape = layout.first_shape;
+  in.first_image = layout.first_shape + layout.shapes, in.items = layout.items;
+  in.shapes_meet = layout.shapes_meet;
+  in.skin = skin;
+  items_.list.build(items_.device(), in);
+}
+
+// What of the list each rank makes alone: what takes most of the memory.
+void CudaList::find_rows(Real skin) {
+  index_others();
+  search(skin);
+  const auto items = static_cast<std::size_t>(items_.layout.items);
+  built_at_.resize(items);
+  copy_async(built_at_.data(), items_.now.position.data(), items, items_.stream);
+  owners_.note_rows();
+  if (items_.model.integrator.particles == ParticleIntegrator::hht)
+    step_arrays_.resize(items_);
+  else
+    items_.list.pruned_rows(items_.layout.first_shape);  // makes room for them
+}
+
+// Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:
+// all ranks then fail, and can write their last good state.
+void CudaList::build(Real skin, StageTimers& timers) {
+  settle();
+  current_ = false;
+  std::int64_t particles = 0;
+  {
+    const auto scope = timers.time(Stage::migrate);
+    particles = items_.ranks.sum(static_cast<std::int64_t>(items_.owned));
+    wrap_positions();
+    if (!items_.ranks.alone()) owners_.migrate();
+  }
+  {
+    const auto scope = timers.time(Stage::sort_cells);
+    sort_cells(skin, particles);
+  }
+  {
+    const auto scope = timers.time(Stage::exchange_halo);
+    lay_out_items(skin);
+  }
+  const auto scope = timers.time(Stage::neighbors);
+  items_.ranks.together([&] { find_rows(skin); });
+  shapes_.note_places();
+  items_.seen_velocity = nullptr;
+  skin_ = skin, bound_ = 0;
+  current_ = true;
+  ++builds_;
+  owners_.measure_balance();
+}
+
+Real CudaList::displacement() {
+  if (!current_) return 2;
+  settle();
+  const DisplacementItem moved{built_at_.data(), items_.now.position.data()};
+  const Index first_shape = items_.layout.first_shape;
+  const DisplacementItem shapes{moved.from + first_shape, moved.to + first_shape};
+  DeviceResults& results = items_.results;
+  max_over(items_.device(), items_.layout.active, moved, results.at(&Results::largest));
+  max_over(items_.device(), items_.shape_items(), shapes, results.at(&Results::displacement));
+  Real squared[2] = {results.fetch(&Results::largest), results.fetch(&Results::displacement)};
+  items_.ranks.max(squared);
+  if (!std::isfinite(squared[0]) || !std::isfinite(squared[1])) return 2;
+  bound_ = std::sqrt(std::max(squared[0], squared[1]));
+  return bound_ / (skin_ / 2);
+}
+
+}  // namespace scree

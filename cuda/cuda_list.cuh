@@ -1,0 +1,66 @@
+// The neighbour list of one rank on its GPU, and all that is done when one is built.
+#pragma once
+
+#include <vector>
+
+#include "cell_sort.cuh"
+#include "cuda_implicit.cuh"
+#include "cuda_owners.cuh"
+#include "cuda_shapes.cuh"
+#include "dem/rank_list.hpp"
+
+namespace scree {
+
+class CudaList : public RankList {
+ public:
+  // step_arrays: those of implicit steps, which grow with the list.
+  CudaList(CudaItems& items, CudaShapes& shapes, CudaImplicitArrays& step_arrays)
+      : items_(items),
+        shapes_(shapes),
+        step_arrays_(step_arrays),
+        builder_(items.model, shapes.side().shapes()),
+        owners_(items, builder_) {}
+
+  void place_bodies(std::span<const BodyMotion> motion) override;
+  Real displacement() override;
+  void build(Real skin, StageTimers& timers) override;
+  std::int64_t entries() const override { return items_.list.entries(); }
+  std::int64_t builds() const override { return builds_; }
+  LoadBalance balance() const override { return items_.balance; }
+
+  // Whether the items are those that the list was built of, and it is finished.
+  bool current() const { return current_; }
+  void outdate() { current_ = false; }
+  Real skin() const { return skin_; }  // that it covers [m]
+  Real cutoff() const { return builder_.cutoff(skin_); }
+  Real bound() const { return bound_; }  // displacement of any item since it was built, at most [m]
+  void set_bound(Real bound) { bound_ = bound; }
+  CudaOwners& owners() { return owners_; }
+
+ private:
+  // Parts of build, in their order.
+  void settle();
+  void wrap_positions();
+  void sort_cells(Real skin, std::int64_t particles);
+  void lay_out_items(Real skin);
+  void find_ghosts(Real width);
+  void name_ghosts();
+  void find_rows(Real skin);
+  void index_others();
+  void search(Real skin);
+
+  CudaItems& items_;
+  CudaShapes& shapes_;
+  CudaImplicitArrays& step_arrays_;
+  NeighborBuilder builder_;  // its grid and reach; the search is the device's
+  CudaOwners owners_;
+  CellSort particle_sort_, other_sort_;
+  BrickGrid grid_;
+  DeviceArray<Index> other_items_;
+  DeviceArray<Vec4> built_at_;  // positions of all items when the list was built
+  bool current_ = false;
+  Real skin_ = 0, bound_ = 0;
+  std::int64_t builds_ = 0;
+};
+
+}  // namespace scree

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <cub/device/device_select.cuh>
+
+#include "cuda_particles.cuh"
+#include "dem/device.hpp"
+#include "dem/explicit_run.hpp"
+#include "dem/particle_store.hpp"
+
+namespace scree {
+namespace {
+
+// Collects the particles outside that are not known to drift; counts all, keeps as many as there is room for.
+struct LeaverItem {
+  ParticleViews in;
+  OpenBox box;
+  Vec3 gravity, period;
+  Real verlet_step;  // [s]
+  Leaver* out;
+  Index room;
+  Index* count;
+
+  __device__ void operator()(Index i) const {
+    const Vec4 x = in.position[i];
+    if (in.drifting[i] || box.inside(xyz(x))) return;
+    const Index slot = atomicAdd(count, 1);
+    if (slot >= room) return;
+    const Real energy = energy_of_motion(x, in.velocity[i], in.image[i], gravity, period);
+    const Real shift = verlet_energy_shift(verlet_step, in.velocity[i].w, in.acceleration[i]);
+    out[slot] = {id_of(in.row_key[i]),         i, xyz(x), false, energy, in.contact_loss[i],
+                 in.integrator_loss[i] - shift};
+  }
+};
+
+// Wraps the leavers a last time and marks them.
+struct MarkItem {
+  const Index* particles;
+  ParticleViews in;
+  Vec3 box_min, period;
+  SCREE_HD void operator()(Index k) const {
+    const Index i = particles[k];
+    const Vec4 x = in.position[i];
+    in.position[i] = vec4(wrap(box_min, period, xyz(x), in.image[i]), x.w);
+    in.drifting[i] = 1;
+  }
+};
+
+struct StaysItem {
+  const std::uint8_t* drifting;
+  std::uint8_t* stays;
+  Index* iota;
+  SCREE_HD void operator()(Index i) const { stays[i] = !drifting[i], iota[i] = i; }
+};
+
+struct GatherItem {
+  const Index *values, *from;
+  Index* out;
+  SCREE_HD void operator()(Index i) const { out[i] = values[from[i]]; }
+};
+
+}  // namespace
+
+CudaParticles::CudaParticles(CudaItems& items, CudaShapes& shapes, CudaList& list)
+    : items_(items), shapes_(shapes), list_(list) {
+  records_.resize_clean(kRecordsAtOnce, items.stream);
+}
+
+void CudaParticles::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
+  const cudaStream_t stream = items_.stream;
+  shapes_.side().losses() = items_.ranks.is_root() ? shapes : ShapeLosses{};
+  items_.owned = count_on_rank(records.size(), items_.model.particles.totals);
+  items_.now.grow(records.size(), records.size(), 0, stream);
+  const auto at_once = static_cast<Index>(records_.size());
+  for (Index first = 0; first < items_.owned; first += at_once) {
+    const Index n = std::min(at_once, items_.owned - first);
+    copy_async(records_.data(), records.data() + first, static_cast<std::size_t>(n), stream);
+    for_each(items_.device(), n, ArrivalItem{records_.data(), views_of(items_.now), first});
+  }
+  wait_for(stream);
+  list_.outdate();
+  // records() must work where no memory is left, and a kernel takes some when it is launched first.
+  for_each(items_.device(), std::min<Index>(items_.owned, 1), record_item(0));
+}
+
+RecordItem CudaParticles::record_item(Index first) {
+  return {views_of(items_.now), first, items_.model.space.min, items_.subdomain.period(), records_.data()};
+}
+
+std::vector<Particle> CudaParticles::records() {
+  if (list_.owners().migrating()) throw DeviceError("particles were on their way between ranks");
+  std::vector<Particle> out(static_cast<std::size_t>(items_.owned));
+  const auto at_once = static_cast<Index>(records_.size());
+  for (Index first = 0; first < items_.owned; first += at_once) {
+    const Index n = std::min(at_once, items_.owned - first);
+    for_each(items_.device(), n, record_item(first));
+    copy_async(out.data() + first, records_.data(), static_cast<std::size_t>(n), items_.stream);
+  }
+  wait_for(items_.stream);
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
+  return out;
+}
+
+void CudaParticles::initial_forces() {
+  ParticleArrays& now = items_.now;
+  items_.refresh_ghosts();
+  items_.kernels->forces(items_.device(), items_.views(), items_.model.gravity, items_.owned,
+                         now.force.data(), now.loss_power.data());
+  for_each(items_.device(), items_.owned,
+           StartAccelerationItem{now.force.data(), now.velocity.data(), now.acceleration.data()});
+  shapes_.find_contacts();
+  if (is_verlet(items_.model))
+    shapes_.side().book_losses(0);
+  else
+    now.loss_power.zero(items_.stream);
+}
+
+// Into leavers_, as many as there is room for; how many there are.
+std::size_t CudaParticles::find_leavers() {
+  Index* count = items_.results.at(&Results::leavers);
+  require_cuda(cudaMemsetAsync(count, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
+  for_each(items_.device(), items_.owned,
+           LeaverItem{views_of(items_.now), items_.subdomain.box(), items_.model.gravity,
+                      items_.subdomain.period(), verlet_step(items_.model), leavers_.data(),
+                      static_cast<Index>(leavers_.size()), count});
+  return static_cast<std::size_t>(items_.results.fetch(&Results::leavers));
+}
+
+std::vector<Leaver> CudaParticles::outside() {
+  constexpr std::size_t kFirstRoom = 1024;
+  if (leavers_.size() == 0) leavers_.resize_clean(kFirstRoom, items_.stream);
+  std::vector<Leaver> leavers(find_leavers());
+  if (!items_.ranks.any(!leavers.empty())) return leavers;
+  if (leavers.size() > leavers_.size()) {  // not all were kept; now there is room for them
+    leavers_.resize_clean(leavers.size(), items_.stream);
+    find_leavers();
+  }
+  items_.kernels->leavers(items_.device(), items_.views(), items_.subdomain.box(),
+                          static_cast<Index>(leavers.size()), leavers_.data());
+  copy_async(leavers.data(), leavers_.data(), leavers.size(), items_.stream);
+  wait_for(items_.stream);
+  for (Leaver& leaver : leavers)
+    leaver.lost = items_.subdomain.beyond_wall(leaver.position), leaver.rank = items_.ranks.rank();
+  leavers = items_.ranks.gather_everywhere(std::move(leavers));
+  std::sort(leavers.begin(), leavers.end(),
+            [](const Leaver& a, const Leaver& b) { return a.global_id < b.global_id; });
+  return leavers;
+}
+
+void CudaParticles::take_out(const std::vector<Leaver>& leavers) {
+  if (leavers.empty()) return;
+  std::vector<Index> particles;
+  for (const Leaver& leaver : leavers)
+    if (leaver.rank == items_.ranks.rank()) particles.push_back(leaver.local_index);
+  const bool remove = items_.model.space.leaving == Leaving::remove;
+  const auto n = remove ? static_cast<std::size_t>(items_.owned) : 0;
+  // The arrays come first: where there is no memory for them, nothing has changed yet.
+  DeviceArray<Index> d_particles, iota(n), staying(n), row_length(items_.ranks.alone() ? 0 : n);
+  DeviceArray<std::uint8_t> stays(n);
+  d_particles.upload(particles, items_.stream);
+  take_contacts_out();
+  for_each(
+      items_.device(), static_cast<Index>(particles.size()),
+      MarkItem{d_particles.data(), views_of(items_.now), items_.model.space.min, items_.subdomain.period()});
+  list_.outdate();
+  if (!remove) return;
+
+  for_each(items_.device(), items_.owned, StaysItem{items_.now.drifting.data(), stays.data(), iota.data()});
+  with_space(items_.space, [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceSelect::Flagged(at, bytes, iota.data(), stays.data(), staying.data(),
+                                            items_.results.at(&Results::index), items_.owned, items_.stream),
+                 "select");
+  });
+  items_.reorder(staying.data(), items_.results.fetch(&Results::index));
+  DeviceArray<Index>& old_length = list_.owners().row_length();
+  if (!items_.ranks.alone()) {
+    row_length.resize(static_cast<std::size_t>(items_.owned));
+    for_each(items_.device(), items_.owned, GatherItem{old_length.data(), staying.data(), row_length.data()});
+  }
+  wait_for(items_.stream);  // before the arrays above go
+  old_length.swap(row_length);
+}
+
+// Before the leavers are wrapped and marked.
+void CudaParticles::take_contacts_out() {
+  ParticleArrays& now = items_.now;
+  const bool verlet = is_verlet(items_.model);
+  const Vec4* seen = items_.seen_velocity != nullptr ? items_.seen_velocity : now.velocity.data();
+  items_.kernels->departures(
+      items_.device(), items_.views(now.position.data(), seen), items_.model.gravity, items_.subdomain.box(),
+      items_.owned,
+      {now.force.data(), now.acceleration.data(), verlet ? now.loss_power.data() : nullptr,
+       now.integrator_loss.data(), now.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
+       verlet_step(items_.model)});
+}
+
+}  // namespace scree

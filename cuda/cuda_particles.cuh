@@ -1,0 +1,35 @@
+// The particles of one rank on its GPU.
+#pragma once
+
+#include <vector>
+
+#include "cuda_list.cuh"
+#include "dem/rank_particles.hpp"
+
+namespace scree {
+
+class CudaParticles : public RankParticles {
+ public:
+  CudaParticles(CudaItems& items, CudaShapes& shapes, CudaList& list);
+
+  void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
+  std::vector<Particle> records() override;
+  ShapeLosses shape_losses() const override { return shapes_.side().losses(); }
+  void initial_forces() override;
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { shapes_.reduce_wrench(wrench); }
+  std::vector<Leaver> outside() override;
+  void take_out(const std::vector<Leaver>& leavers) override;
+
+ private:
+  RecordItem record_item(Index first);
+  std::size_t find_leavers();
+  void take_contacts_out();
+
+  CudaItems& items_;
+  CudaShapes& shapes_;
+  CudaList& list_;
+  DeviceArray<Particle> records_;  // on their way between host and device
+  DeviceArray<Leaver> leavers_;
+};
+
+}  // namespace scree

@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <utility>
+
+#include "cuda_step_queue.cuh"
+
+namespace scree {
+namespace {
+
+// Refreshes a ghost in the arrays of the open step.
+struct RunGhostItem {
+  const Ghost* ghosts;
+  GhostField<Vec4> position[2], velocity[2];
+  const VerletControl* control;
+
+  __device__ void operator()(Index entry) const {
+    MotionGhostItem{ghosts, control->parity[0] == 0 ? position[0] : position[1],
+                    control->parity[1] == 0 ? velocity[0] : velocity[1]}(entry);
+  }
+};
+
+struct MixedGhostItem {
+  const Ghost* ghosts;
+  GhostField<MixedPlace> place[2];
+  GhostField<MixedMotion> motion[2];
+  QuantumGrid grid;
+  const VerletControl* control;
+
+  __device__ void operator()(Index entry) const {
+    const bool first = control->parity[0] == 0;
+    const Ghost ghost = ghosts[entry];
+    const GhostField<MixedPlace>& places = first ? place[0] : place[1];
+    const GhostField<MixedMotion>& motions = first ? motion[0] : motion[1];
+    places.put(entry, shifted(grid, places.field[ghost.source], ghost.shift));
+    motions.put(entry, motions.field[ghost.source]);
+  }
+};
+
+template <class T>
+std::string bytes(const T& value) {
+  return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+}  // namespace
+
+void MixedArrays::resize(std::size_t items, std::size_t owned) {
+  for (int k = 0; k < 2; ++k) place[k].resize(items), motion[k].resize(items);
+  fraction.resize(owned), rest.resize(owned);
+}
+
+MixedViews MixedArrays::views() {
+  return {
+      {place[0].data(), place[1].data()}, {motion[0].data(), motion[1].data()}, fraction.data(), rest.data()};
+}
+
+PrunedViews StepQueue::pruned_views(const Vec4* position) {
+  const DeviceViews v = items_.views(position, nullptr);
+  return {v.position,     v.velocity, v.material, items_.list.pruned_rows(v.first_shape),
+          v.wall_offsets, v.walls,    v.planes,   v.first_shape};
+}
+
+// The launch of a step on the particles [first, end): all of them, or one of the step's two parts.
+StepRows StepQueue::step_rows(Index first, Index end) const {
+  const bool alone = items_.ranks.alone();
+  const Index owned = items_.owned, interior = items_.interior;
+  const bool in_parts = !alone && interior > 0;
+  const unsigned blocks =
+      in_parts ? step_blocks(0, interior) + step_blocks(interior, owned) : step_blocks(0, owned);
+  return {first, end, alone, blocks};
+}
+
+VerletRequest StepQueue::request() {
+  ParticleArrays &now = items_.now, &other = items_.other;
+  VerletRequest r{};
+  r.in = pruned_views(nullptr);
+  r.rows = step_rows(0, items_.owned), r.active = items_.layout.active, r.gravity = items_.model.gravity;
+  r.position[0] = now.position.data(), r.position[1] = other.position.data();
+  r.velocity[0] = now.velocity.data(), r.velocity[1] = other.velocity.data();
+  r.state = {nullptr,
+             nullptr,
+             now.acceleration.data(),
+             now.contact_loss.data(),
+             now.loss_power.data(),
+             h_,
+             items_.subdomain.snap_constant()};
+  r.force = now.force.data();
+  r.box = items_.subdomain.box();
+  r.drifting = now.drifting.data();
+  r.control = control_.on_device();
+  return r;
+}
+
+void StepQueue::convert_to_mixed() {
+  ParticleArrays& now = items_.now;
+  workspace_.arrays.resize(static_cast<std::size_t>(items_.layout.items),
+                           static_cast<std::size_t>(items_.owned));
+  mixed_ = {make_quantum_grid(list_.cutoff()), control_.seen().closed};
+  // Ghosts come with the first step's halo.
+  for_each(
+      items_.device(), items_.owned,
+      ToMixedItem{now.position.data(), now.velocity.data(), now.acceleration.data(),
+                  workspace_.arrays.views(), mixed_->quanta, items_.subdomain.box(), h_, list_.skin() / 2});
+}
+
+void StepQueue::convert_from_mixed() {
+  ParticleArrays& now = items_.now;
+  for_each(items_.device(), items_.owned,
+           FromMixedItem{workspace_.arrays.views(), control_.position_parity(), mixed_->quanta,
+                         now.position.data(), now.velocity.data(), now.acceleration.data(),
+                         now.contact_loss.data(), now.drifting.data(), items_.model.gravity, h_,
+                         control_.seen().closed - mixed_->start});
+  mixed_.reset();
+}
+
+void StepQueue::bring_home() {
+  if (mixed_) {
+    convert_from_mixed();
+  } else {
+    if (control_.position_parity() == 1) std::swap(items_.now.position, items_.other.position);
+    if (control_.velocity_parity() == 1) std::swap(items_.now.velocity, items_.other.velocity);
+  }
+  control_.at_home();
+}
+
+// queue_ghosts(device, k): the halo of the k-th step from now on; queue_rows(device, first, end): the kernel
+// of a step on these particles; key: all that the launches depend on. After each step the ranks share what
+// decides whether the next one may be taken.
+template <class QueueGhosts, class QueueRows>
+void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
+                              const QueueRows& queue_rows) {
+  if (items_.ranks.alone()) {
+    workspace_.graph.queue(items_.stream, key, steps, [&] {
+      queue_ghosts(items_.device(), 0);
+      queue_rows(items_.device(), 0, items_.owned);
+    });
+    return;
+  }
+  const Device halo{items_.lane.stream};
+  items_.halo_after_rows();
+  for (Index k = 0; k < steps; ++k) {
+    // The first step waits for the host; steps behind a stop do nothing that a halo could hide behind.
+    HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &items_.lane.clock : nullptr;
+    items_.queue_beside_halo([&](Device on) { queue_ghosts(on, k); }, queue_rows, clock);
+    items_.lane.halo.max(halo, control_.on_device()->shared, 2);
+    control_.close(halo);
+    items_.rows_after_halo();
+  }
+  require_cuda(cudaGetLastError(), "explicit step");
+}
+
+// The host knows where the steps that are queued find their ghosts: behind a stop nothing is read any more.
+void StepQueue::queue_double(Index steps) {
+  DeviceHalo& halo = items_.lane.halo;
+  const VerletRequest r = request();
+  const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) {
+    return halo.field(buffer, of[parity], items_.owned);
+  };
+  const RunGhostItem ghosts{halo.ghosts(),
+                            {field(0, r.position, 0), field(0, r.position, 1)},
+                            {field(1, r.velocity, 0), field(1, r.velocity, 1)},
+                            r.control};
+  const auto queue_ghosts = [&](Device on, Index k) {
+    for_each(on, halo.entries(), ghosts);
+    halo.exchange(on, ghosts.position[(control_.position_parity() + k) % 2],
+                  ghosts.velocity[(control_.velocity_parity() + k) % 2]);
+  };
+  const auto queue_rows = [&](Device on, Index first, Index end) {
+    VerletRequest of_rows = r;
+    of_rows.rows = step_rows(first, end);
+    items_.kernels->verlet_advance(on, of_rows);
+  };
+  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo.entries()), steps, queue_ghosts, queue_rows);
+}
+
+void StepQueue::queue_mixed(Index steps) {
+  if (!mixed_) convert_to_mixed();
+  DeviceHalo& halo = items_.lane.halo;
+  MixedRequest r{};
+  r.in = pruned_views(items_.now.position.data()), r.rows = step_rows(0, items_.owned);
+  r.active = items_.layout.active;
+  r.gravity = items_.model.gravity;
+  r.state = workspace_.arrays.views(), r.grid = mixed_->quanta, r.h = h_;
+  r.box = items_.subdomain.box(), r.drifting = items_.now.drifting.data(), r.control = control_.on_device();
+  const auto field = [&](int buffer, auto* of) { return halo.field(buffer, of, items_.owned); };
+  const MixedGhostItem ghosts{halo.ghosts(),
+                              {field(0, r.state.place[0]), field(0, r.state.place[1])},
+                              {field(1, r.state.motion[0]), field(1, r.state.motion[1])},
+                              r.grid,
+                              r.control};
+  const auto queue_ghosts = [&](Device on, Index k) {
+    for_each(on, halo.entries(), ghosts);
+    const Index parity = (control_.position_parity() + k) % 2;
+    halo.exchange(on, ghosts.place[parity], ghosts.motion[parity]);
+  };
+  const auto queue_rows = [&](Device on, Index first, Index end) {
+    MixedRequest of_rows = r;
+    of_rows.rows = step_rows(first, end);
+    items_.kernels->mixed_advance(on, of_rows);
+  };
+  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo.entries()), steps, queue_ghosts, queue_rows);
+}
+
+}  // namespace scree

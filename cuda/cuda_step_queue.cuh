@@ -1,0 +1,72 @@
+// Explicit steps as they are queued on the device, in double or in mixed precision.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cuda_control.cuh"
+#include "dem/mixed_items.hpp"
+#include "step_graph.cuh"
+
+namespace scree {
+
+// The items in mixed precision.
+struct MixedArrays {
+  DeviceArray<MixedPlace> place[2];
+  DeviceArray<MixedMotion> motion[2];
+  DeviceArray<MixedFraction> fraction;
+  DeviceArray<MixedRest> rest;
+
+  void resize(std::size_t items, std::size_t owned);
+  MixedViews views();
+};
+
+// Kept from one run to the next.
+struct RunWorkspace {
+  explicit RunWorkspace(bool in_mixed) : mixed(in_mixed) {}
+
+  const bool mixed;  // whether runs are in mixed precision
+  StepGraph graph;
+  MixedArrays arrays;
+  Event step_queued;
+};
+
+class StepQueue {
+ public:
+  StepQueue(CudaItems& items, CudaList& list, RunControl& control, RunWorkspace& workspace, Real h)
+      : items_(items), list_(list), control_(control), workspace_(workspace), h_(h) {}
+
+  // Queues so many steps, each closed and the next opened, behind each other and their halos. Those behind a
+  // stop do nothing.
+  void queue(Index steps) { workspace_.mixed ? queue_mixed(steps) : queue_double(steps); }
+  // A step in double.
+  VerletRequest request();
+  bool in_mixed() const { return mixed_.has_value(); }
+  // Brings the open step into the arrays of the state, once the host has looked at the control.
+  void bring_home();
+
+ private:
+  // Where the open step is in the arrays of mixed precision.
+  struct Mixed {
+    QuantumGrid quanta;
+    Index start;  // steps closed when it was brought there
+  };
+  PrunedViews pruned_views(const Vec4* position);
+  StepRows step_rows(Index first, Index end) const;
+  void queue_double(Index steps);
+  void queue_mixed(Index steps);
+  template <class QueueGhosts, class QueueRows>
+  void queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
+                     const QueueRows& queue_rows);
+  void convert_to_mixed();
+  void convert_from_mixed();
+
+  CudaItems& items_;
+  CudaList& list_;
+  RunControl& control_;
+  RunWorkspace& workspace_;
+  const Real h_;
+  std::optional<Mixed> mixed_;
+};
+
+}  // namespace scree
