@@ -1,6 +1,8 @@
 // How many explicit steps the loop takes at once.
 #include "run/step_loop.hpp"
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
