@@ -1,4 +1,4 @@
-// Sorting by cell, and the index of ghosts and shapes by cell.
+// Sorting by cell, and the index of ghosts by cell.
 #pragma once
 
 #include "brick_grid.cuh"

@@ -12,6 +12,7 @@
 #include "dem/leaver_items.hpp"
 #include "dem/mixed_items.hpp"
 #include "dem/step_items.hpp"
+#include "dem/surface_items.hpp"
 #include "device.cuh"
 #include "device_list.cuh"
 #include "for_each.cuh"
@@ -27,9 +28,9 @@ using PrunedViews = ContactViews<PrunedRows<0>>;
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
   const PrunedRows<0>& r = in.rows;
-  return {
-      in.position,     in.velocity, in.material, {r.rows, r.counts, r.neighbors, r.first_shape, use, margin},
-      in.wall_offsets, in.walls,    in.planes,   in.first_shape};
+  return {in.position,        in.velocity, in.material, {r.rows, r.counts, r.neighbors, use, margin},
+          in.surface_offsets, in.surfaces, in.planes,   in.ground,
+          in.loads,           in.steps};
 }
 
 // Force, Newton matrix and residual of the particles [first, end).
@@ -154,27 +155,41 @@ struct MixedRequest {
   VerletControl* control;
 };
 
+// Entries of one surface on a body, by_surface[first ... end - 1]: what a thread block evaluates and sums up.
+struct SurfaceChunk {
+  Index surface;  // counts from the first surface on a body
+  Index first, end;
+};
+struct SurfaceChunks {
+  const SurfaceChunk* chunks;
+  Index count;
+};
+
+// Where an implicit step started: particles and surfaces on bodies.
+struct SurfaceStart {
+  StepStart particles;
+  const PlacedSurface* placed;
+};
+
 class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
   virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power) const = 0;
   virtual void system(Device device, const SystemRequest& request) const = 0;
-  // Contacts of shapes over an implicit step, and at one instant.
-  virtual void shapes(Device device, const DeviceViews& in, Index n, const StepStart& start,
-                      ShapeContact* out) const = 0;
-  virtual void shapes(Device device, const DeviceViews& in, const ShapePlaces& places, Index n,
-                      ShapeContact* out) const = 0;
+  // Contacts of particles with surfaces on bodies, at an instant and over an implicit step, and what they sum
+  // to in each chunk.
+  virtual void surface_loads(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
+                             SurfaceLoad* loads, InstantSums* sums) const = 0;
+  virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
+                             const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;
   // Queues the sums over the first n items of WallContactItem; share: as exact_sums() wants it.
   virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                          ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
-  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an
-  // accepted implicit step.
+  // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                      Real* contact_loss, Real* integrator_loss) const = 0;
-  virtual void shape_books(Device device, const DeviceViews& in, Index n, const StepStart& start,
-                           ContactBooks* out) const = 0;
   // n particles that leave, and what they leave to all others: see the items.
   virtual void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
                        Leaver* leavers) const = 0;

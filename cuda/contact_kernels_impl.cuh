@@ -199,6 +199,41 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
   block_max(a_squared, largest);
 }
 
+inline constexpr int kSurfaceThreads = 64;
+
+// Contacts of a chunk, one per thread and turn, and then their sums: each thread adds one term of the
+// contacts, in groups that take turns. The sums are exact, so that it does not matter which.
+template <class Item, class Contact, int kTerms>
+__global__ void __launch_bounds__(kSurfaceThreads)
+    surface_kernel(const SurfaceChunk* chunks, const __grid_constant__ Item item, const Contact* contacts,
+                   SurfaceSums<kTerms>* sums) {
+  constexpr int kGroup = kTerms <= 8 ? 8 : kSurfaceThreads, kGroups = kSurfaceThreads / kGroup;
+  static_assert(kTerms <= kGroup);
+  __shared__ ExactSum shared[kSurfaceThreads];
+  __shared__ Index count;
+  const SurfaceChunk chunk = chunks[blockIdx.x];
+  const int thread = static_cast<int>(threadIdx.x), term = thread % kGroup, group = thread / kGroup;
+  if (thread == 0) count = 0;
+  for (Index k = chunk.first + thread; k < chunk.end; k += kSurfaceThreads) item(k);
+  __syncthreads();
+  ExactSum sum;
+  Index touching = 0;
+  for (Index k = chunk.first + group; k < chunk.end; k += kGroups) {
+    const Contact& contact = contacts[item.in.entries.by_surface[k]];
+    if (!contact.touches) continue;
+    ++touching;
+    if (term < kTerms) sum.add(sum_term(contact, term));
+  }
+  if (term == 0) atomicAdd(&count, touching);
+  shared[thread] = sum;
+  __syncthreads();
+  SurfaceSums<kTerms>& out = sums[blockIdx.x];
+  if (thread == 0) out.surface = chunk.surface, out.contacts = count;
+  if (count == 0 || group > 0 || term >= kTerms) return;
+  for (int other = 1; other < kGroups; ++other) sum.add(shared[other * kGroup + term]);
+  out.sum[term] = sum;
+}
+
 template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
@@ -216,13 +251,14 @@ class ContactKernelsOf : public DeviceContactKernels {
         <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
     require_cuda(cudaGetLastError(), "system");
   }
-  void shapes(Device device, const DeviceViews& in, Index n, const StepStart& start,
-              ShapeContact* out) const override {
-    for_each(device, n, ShapeStepItem<Laws, SlicedRows>{{in, laws_, {start}}, out});
+  void surface_loads(Device device, const SurfaceViews& in, const SurfaceChunks& chunks, SurfaceLoad* loads,
+                     InstantSums* sums) const override {
+    launch_surfaces(device, chunks, SurfaceLoadItem<Laws>{in, laws_, loads}, loads, sums);
   }
-  void shapes(Device device, const DeviceViews& in, const ShapePlaces& places, Index n,
-              ShapeContact* out) const override {
-    for_each(device, n, ShapeContactItem<Laws, SlicedRows>{{in, laws_, {{}, places}}, out});
+  void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
+                     const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const override {
+    launch_surfaces(device, chunks, SurfaceStepItem<Laws>{in, start.particles, start.placed, laws_, steps},
+                    steps, sums);
   }
   void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                  ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const override {
@@ -236,10 +272,6 @@ class ContactKernelsOf : public DeviceContactKernels {
              Real* integrator_loss) const override {
     for_each(device, n,
              ContactBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
-  }
-  void shape_books(Device device, const DeviceViews& in, Index n, const StepStart& start,
-                   ContactBooks* out) const override {
-    for_each(device, n, ShapeBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, out});
   }
   void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
                Leaver* leavers) const override {
@@ -284,6 +316,15 @@ class ContactKernelsOf : public DeviceContactKernels {
     config.stream = device.stream, config.attrs = &overlap,
     config.numAttrs = overlaps_ && r.rows.follows ? 1 : 0;
     require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");
+  }
+
+  template <class Item, class Contact, int kTerms>
+  void launch_surfaces(Device device, const SurfaceChunks& chunks, const Item& item, const Contact* contacts,
+                       SurfaceSums<kTerms>* sums) const {
+    if (chunks.count == 0) return;
+    surface_kernel<<<static_cast<unsigned>(chunks.count), kSurfaceThreads, 0, device.stream>>>(
+        chunks.chunks, item, contacts, sums);
+    require_cuda(cudaGetLastError(), "contacts with bodies");
   }
 
   Laws laws_;

@@ -5,11 +5,11 @@ namespace scree {
 
 CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
     : items_(model, ranks, idle_work_),
-      shapes_(items_),
-      list_(items_, shapes_, implicit_arrays_),
-      particles_(items_, shapes_, list_),
-      reports_(items_, shapes_),
-      run_workspace_(model.integrator.precision == Precision::mixed && shapes_.side().shapes().size() == 0) {}
+      bodies_(items_),
+      list_(items_, bodies_, implicit_arrays_),
+      particles_(items_, bodies_, list_),
+      reports_(items_, bodies_),
+      run_workspace_(model.integrator.precision == Precision::mixed && !bodies_.have_surfaces()) {}
 
 std::string CudaBackend::description() const {
   const bool asked = items_.model.integrator.precision == Precision::mixed;
@@ -24,11 +24,11 @@ std::string CudaBackend::description() const {
 }
 
 std::unique_ptr<ImplicitStep> CudaBackend::open_step(Real h) {
-  return std::make_unique<CudaImplicitStep>(items_, shapes_, implicit_arrays_, h);
+  return std::make_unique<CudaImplicitStep>(items_, bodies_, implicit_arrays_, h);
 }
 
 std::unique_ptr<ExplicitRun> CudaBackend::start_run(Real h) {
-  return std::make_unique<CudaExplicitRun>(items_, shapes_, list_, run_workspace_, h);
+  return std::make_unique<CudaExplicitRun>(items_, bodies_, list_, run_workspace_, h);
 }
 
 DeviceClaim claim_device(const Model& model) {

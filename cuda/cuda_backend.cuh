@@ -28,7 +28,7 @@ class CudaBackend : public Backend {
 
  private:
   CudaItems items_;
-  CudaShapes shapes_;
+  CudaBodies bodies_;
   CudaImplicitArrays implicit_arrays_;
   CudaList list_;
   CudaParticles particles_;

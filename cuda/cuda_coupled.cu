@@ -1,26 +1,26 @@
-// Explicit steps beside bodies: one at a time, the contacts of the bodies' shapes on a stream of their own.
+// Explicit steps beside bodies: one at a time, the contacts with their surfaces on a stream of their own.
 #include "cuda_explicit.cuh"
 
 namespace scree {
 
-StepsTaken CudaExplicitRun::take_steps_with_shapes(Index most, bool keep_open, StageTimers& timers) {
+StepsTaken CudaExplicitRun::take_steps_with_bodies(Index most, bool keep_open, StageTimers& timers) {
   StepsTaken taken{0, true};
   for (; taken.closed < most && taken.open; ++taken.closed)
-    taken.open = step_with_shapes(keep_open || taken.closed + 1 < most, timers);
+    taken.open = step_with_bodies(keep_open || taken.closed + 1 < most, timers);
   return taken;
 }
 
-// One step with bodies; returns whether the next is open. The host waits for the contacts of the shapes only,
-// and solves for the bodies' motion while the particles' kernel runs.
-bool CudaExplicitRun::step_with_shapes(bool keep_open, StageTimers& timers) {
+// One step with bodies; returns whether the next is open. The host waits for the contacts with bodies
+// only, and solves for the bodies' motion while the particles' kernel runs.
+bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   for (;;) {
-    if (!list_.current() || !shapes_.covered_by(list_.skin()))
+    if (!list_.current() || !(bodies_.side().list_displacement() < list_.skin() / 2))
       list_.build(items_.model.contact.skin, timers), control_.resume();
     const auto scope = timers.time(Stage::contact_force);
-    queue_shape_contacts();
+    queue_loads();
     if (keep_open) queue_.queue(1);
     items_.idle();
-    shapes_.take_contacts();
+    bodies_.take_loads();
     const VerletControl& control = control_.seen();
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
     if (before.expired) {  // what was queued has done nothing
@@ -28,7 +28,7 @@ bool CudaExplicitRun::step_with_shapes(bool keep_open, StageTimers& timers) {
       renew_list(timers);
       continue;
     }
-    shapes_.side().book_losses(h_);
+    bodies_.side().book_losses(h_);
     if (!keep_open || before.leaves) {
       list_.set_bound(control.bound);
       finish();
@@ -41,17 +41,18 @@ bool CudaExplicitRun::step_with_shapes(bool keep_open, StageTimers& timers) {
   }
 }
 
-// Queues, beside the step's own kernel, the shapes' contacts with the open step.
-void CudaExplicitRun::queue_shape_contacts() {
+// Queues the open step's contacts with bodies, which its kernel reads; what they sum to goes to the host
+// beside it.
+void CudaExplicitRun::queue_loads() {
   workspace_.step_queued.record(items_.stream);
-  shapes_.queue_contacts(control_.open_position(), control_.open_velocity(), workspace_.step_queued);
-  items_.results.copy(&Results::control, shapes_.stream());
-  shapes_.hold_until_placed(items_.stream);
+  bodies_.queue_loads(control_.open_position(), control_.open_velocity(), workspace_.step_queued);
+  items_.results.copy(&Results::control, bodies_.stream());
+  bodies_.hold_until_found(items_.stream);
 }
 
-// Beside the step that was queued last: its kernel reads the same arrays.
+// Beside the step that was queued last: its kernel reads the same arrays, but contacts of its own.
 void CudaExplicitRun::shape_contacts() {
-  shapes_.find_contacts_beside(closed_step_.position, closed_step_.velocity);
+  bodies_.find_loads_beside(closed_step_.position, closed_step_.velocity);
 }
 
 }  // namespace scree

@@ -14,10 +14,10 @@ constexpr Real kWornList = 0.9;
 
 }  // namespace
 
-CudaExplicitRun::CudaExplicitRun(CudaItems& items, CudaShapes& shapes, CudaList& list,
+CudaExplicitRun::CudaExplicitRun(CudaItems& items, CudaBodies& bodies, CudaList& list,
                                  RunWorkspace& workspace, Real h)
     : items_(items),
-      shapes_(shapes),
+      bodies_(bodies),
       list_(list),
       workspace_(workspace),
       control_(items, list),
@@ -33,8 +33,8 @@ CudaExplicitRun::~CudaExplicitRun() {
 }
 
 StepsTaken CudaExplicitRun::take_steps(Index most, bool keep_open, StageTimers& timers) {
-  return shapes_.count() > 0 ? take_steps_with_shapes(most, keep_open, timers)
-                             : take_steps_alone(most, keep_open, timers);
+  return bodies_.have_surfaces() ? take_steps_with_bodies(most, keep_open, timers)
+                                 : take_steps_alone(most, keep_open, timers);
 }
 
 StepsTaken CudaExplicitRun::take_steps_alone(Index most, bool keep_open, StageTimers& timers) {
@@ -97,7 +97,7 @@ void CudaExplicitRun::finish() {
   items_.open_run = nullptr;
   items_.seen_velocity = other.velocity.data();
   closed_step_ = {now.position.data(), other.velocity.data()};
-  shapes_.put();
+  bodies_.put();
   items_.refresh_ghosts();
 }
 

@@ -9,14 +9,14 @@ namespace scree {
 
 class CudaExplicitRun : public ExplicitRun {
  public:
-  CudaExplicitRun(CudaItems& items, CudaShapes& shapes, CudaList& list, RunWorkspace& workspace, Real h);
+  CudaExplicitRun(CudaItems& items, CudaBodies& bodies, CudaList& list, RunWorkspace& workspace, Real h);
   ~CudaExplicitRun() override;
   CudaExplicitRun(const CudaExplicitRun&) = delete;  // the items know its address
   CudaExplicitRun& operator=(const CudaExplicitRun&) = delete;
 
   StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
   void shape_contacts() override;
-  void reduce_wrench(std::vector<BodyWrench>& wrench) override { shapes_.reduce_wrench(wrench); }
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
 
   // Brings the open step into the arrays of the state; the run goes on from there.
   void settle();
@@ -27,12 +27,12 @@ class CudaExplicitRun : public ExplicitRun {
   Index steps_ahead(const VerletControl& control) const;
   void finish();
   // cuda_coupled.cu
-  StepsTaken take_steps_with_shapes(Index most, bool keep_open, StageTimers& timers);
-  bool step_with_shapes(bool keep_open, StageTimers& timers);
-  void queue_shape_contacts();
+  StepsTaken take_steps_with_bodies(Index most, bool keep_open, StageTimers& timers);
+  bool step_with_bodies(bool keep_open, StageTimers& timers);
+  void queue_loads();
 
   CudaItems& items_;
-  CudaShapes& shapes_;
+  CudaBodies& bodies_;
   CudaList& list_;
   RunWorkspace& workspace_;
   RunControl control_;

@@ -1,8 +1,8 @@
 // The schedule of src/dem/cpu_implicit.cpp and block_solver.cpp.
 #include <cmath>
 
+#include "cuda_bodies.cuh"
 #include "cuda_implicit.cuh"
-#include "cuda_shapes.cuh"
 #include "dem/block_solver.hpp"
 
 namespace scree {
@@ -81,8 +81,8 @@ void CudaImplicitArrays::resize(const CudaItems& items) {
 }
 
 // The state is put aside by a swap.
-CudaImplicitStep::CudaImplicitStep(CudaItems& items, CudaShapes& shapes, CudaImplicitArrays& arrays, Real h)
-    : items_(items), shapes_(shapes), arrays_(arrays), h_(h) {
+CudaImplicitStep::CudaImplicitStep(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& arrays, Real h)
+    : items_(items), bodies_(bodies), arrays_(arrays), h_(h) {
   std::swap(items.now.position, items.other.position), std::swap(items.now.velocity, items.other.velocity);
 }
 
@@ -109,17 +109,19 @@ StepStart CudaImplicitStep::step_start() const {
           items_.model.integrator.resolve_events};
 }
 
+NewtonWeights CudaImplicitStep::newton_weights() const {
+  return {newmark_position_gain(items_.hht, h_), newmark_velocity_gain(items_.hht, h_)};
+}
+
 ContactMatrix CudaImplicitStep::matrix() {
   return {arrays_.matrix_count.data(), arrays_.matrix_entries.data(), arrays_.matrix_diagonal.data()};
 }
 
 void CudaImplicitStep::predict() {
-  const auto n = static_cast<std::size_t>(items_.owned), shapes = static_cast<std::size_t>(shapes_.count());
-  const Index first_shape = items_.layout.first_shape;
+  const auto n = static_cast<std::size_t>(items_.owned);
   ParticleArrays &now = items_.now, &start = items_.other;
   copy_async(start.acceleration.data(), now.acceleration.data(), n, items_.stream);
-  copy_async(now.position.data() + first_shape, start.position.data() + first_shape, shapes, items_.stream);
-  copy_async(now.velocity.data() + first_shape, start.velocity.data() + first_shape, shapes, items_.stream);
+  bodies_.side().keep_start(), items_.surfaces.keep_start(items_.device());
   for_each(items_.device(), items_.owned, NewmarkItem{step_views()});
   ghosts_stale_ = true;
 }
@@ -134,20 +136,17 @@ void CudaImplicitStep::undo() {
 
 Real CudaImplicitStep::step_displacement() {
   DeviceResults& results = items_.results;
-  const Index first_shape = items_.layout.first_shape;
   const DisplacementItem moved{items_.other.position.data(), items_.now.position.data()};
-  const DisplacementItem shapes{moved.from + first_shape, moved.to + first_shape};
   max_over(items_.device(), items_.layout.active, moved, results.at(&Results::largest));
-  max_over(items_.device(), shapes_.count(), shapes, results.at(&Results::displacement));
-  const Real particles = results.fetch(&Results::largest);
-  return std::sqrt(items_.ranks.max(std::max(particles, results.fetch(&Results::displacement))));
+  const Real particles = std::sqrt(results.fetch(&Results::largest));
+  return items_.ranks.max(std::max(particles, bodies_.side().step_displacement()));
 }
 
 // Forces, Newton matrix and residual, with the ghosts refreshed where they must be.
 void CudaImplicitStep::queue_forces() {
   SystemRequest r;
   r.in = items_.views(), r.gravity = items_.model.gravity;
-  r.weights = {newmark_position_gain(items_.hht, h_), newmark_velocity_gain(items_.hht, h_)};
+  r.weights = newton_weights();
   r.start = step_start();
   r.forces = step_forces(), r.matrix = matrix(), r.step = step_views();
   r.residual = arrays_.residual.data(), r.stiffening = arrays_.stiffening.data();
@@ -178,8 +177,9 @@ StepNorms CudaImplicitStep::largest_norms() {
 }
 
 ParticleNorms CudaImplicitStep::contact_force() {
+  bodies_.find_steps(step_start());
   queue_forces();
-  shapes_.find_contacts(step_start());
+  bodies_.take_steps(h_);
   DeviceResults& results = items_.results;
   if (line_search_.is_open())
     items_.queue_sums(SlopeItem{arrays_.residual.data(), arrays_.correction.data()}, &Results::slope);
@@ -200,7 +200,7 @@ GlobalId CudaImplicitStep::worst_particle() {
 }
 
 void CudaImplicitStep::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {
-  shapes_.side().reduce(items_.layout, items_.ranks, step, end);
+  bodies_.side().reduce(step, end);
 }
 
 CorrectItem CudaImplicitStep::correct_item(Real share) {
@@ -216,15 +216,11 @@ void CudaImplicitStep::shorten_correction() {
 }
 
 // The bodies have already taken their correction: as a known part of the solution it moves to the right.
-void CudaImplicitStep::subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix) {
-  if (shapes_.count() == 0) return;
-  Vec4* direction = arrays_.direction[0].data();
-  const Vec3* steps = shapes_.upload_steps();
-  for_each(
-      items_.device(), items_.layout.items,
-      ShapeDirectionItem{steps, newmark_position_gain(items_.hht, h_), items_.layout.first_shape, direction});
-  matrix.d = direction;
-  for_each(items_.device(), items_.owned, matrix);
+void CudaImplicitStep::subtract_surface_steps() {
+  if (!bodies_.have_surfaces()) return;
+  for_each(items_.device(), items_.owned,
+           SurfaceShiftItem<SlicedRows>{items_.views(), newton_weights(), bodies_.upload_steps(),
+                                        arrays_.residual.data()});
   max_over(items_.device(), items_.owned, NormItem{arrays_.residual.data()},
            items_.results.at(&Results::largest));
   right_hand_side_norm_ = items_.ranks.max(items_.results.fetch(&Results::largest));
@@ -242,12 +238,6 @@ int CudaImplicitStep::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real t
   DeviceHalo& halo = items_.lane.halo;
   h_control = {tolerance, 0, 0, 0, 0, items_.ranks.alone()};
   copy_async(control, &h_control, 1, items_.stream);
-  // Ghosts are refreshed, shapes do not move.
-  const std::size_t shapes = static_cast<std::size_t>(shapes_.count()) * sizeof(Vec4);
-  for (DeviceArray<Vec4>& direction : arrays_.direction)
-    if (shapes > 0)
-      require_cuda(cudaMemsetAsync(direction.data() + items_.layout.first_shape, 0, shapes, items_.stream),
-                   "cudaMemsetAsync");
   ChebyshevWeights weights = solver_weights(largest_stiffening_);
   const auto direction = [&] {
     return DirectionItem{arrays_.inverse_block.data(), residual, weights.from_last, weights.from_residual};
@@ -291,7 +281,7 @@ ParticleCorrection CudaImplicitStep::particle_correct() {
   const SubtractMatrixItem<SlicedRows> system{
       matrix(), items_.list.rows(), items_.now.velocity.data(), hht_inertia_weight(items_.hht), nullptr,
       residual};
-  subtract_shape_steps(system);
+  subtract_surface_steps();
   const Real norm = right_hand_side_norm_;
   ParticleCorrection out;
   line_search_ = {};
@@ -319,11 +309,13 @@ Real CudaImplicitStep::error() {
 
 void CudaImplicitStep::accept() {
   ParticleArrays& now = items_.now;
+  bodies_.find_steps(step_start());
   items_.kernels->books(items_.device(), items_.views(), items_.owned, step_start(), now.contact_loss.data(),
                         now.integrator_loss.data());
   for_each(items_.device(), items_.owned,
            AcceptItem{step_views(), step_forces(), now.force.data(), now.integrator_loss.data()});
-  shapes_.book_step(step_start());
+  bodies_.take_steps(h_);
+  bodies_.side().book_step();
 }
 
 }  // namespace scree

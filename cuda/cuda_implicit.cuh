@@ -7,7 +7,7 @@
 
 namespace scree {
 
-class CudaShapes;
+class CudaBodies;
 
 // Progress of a linear solve: written by the last block of each product.
 struct SolverControl {
@@ -39,7 +39,7 @@ struct CudaImplicitArrays {
 
 class CudaImplicitStep : public ImplicitStep {
  public:
-  CudaImplicitStep(CudaItems& items, CudaShapes& shapes, CudaImplicitArrays& arrays, Real h);
+  CudaImplicitStep(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& arrays, Real h);
 
   void predict() override;
   Real step_displacement() override;
@@ -56,15 +56,16 @@ class CudaImplicitStep : public ImplicitStep {
   StepViews step_views();
   StepForces step_forces();
   StepStart step_start() const;
+  NewtonWeights newton_weights() const;
   ContactMatrix matrix();
   CorrectItem correct_item(Real share);
   void queue_forces();
   StepNorms largest_norms();
-  void subtract_shape_steps(SubtractMatrixItem<SlicedRows> matrix);
+  void subtract_surface_steps();
   int solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance);
 
   CudaItems& items_;
-  CudaShapes& shapes_;
+  CudaBodies& bodies_;
   CudaImplicitArrays& arrays_;
   const Real h_;
   bool ghosts_stale_ = false;  // the next contact_force refreshes them

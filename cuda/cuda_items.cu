@@ -17,14 +17,12 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       hht(hht_coefficients(of.integrator.hht_alpha)),
       idle_work(work),
       kernels(make_device_contact_kernels(of.contact)),
+      surfaces(wall_planes(of), SurfaceSet(of).on_bodies(), subdomain.period(), stream),
       lane(on, of.parallel.transport),
-      results(on, stream) {
-  planes.upload(wall_planes(of), stream);
-}
+      results(on, stream) {}
 
 DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity) const {
-  return {position,     velocity,      now.material.data(), list.rows(), list.wall_offsets(),
-          list.walls(), planes.data(), layout.first_shape};
+  return surfaces.views(position, velocity, now.material.data(), list.rows());
 }
 
 void CudaItems::reorder(const Index* order, Index n) {

@@ -8,6 +8,7 @@
 #include "cuda_results.cuh"
 #include "device_halo.cuh"
 #include "device_list.cuh"
+#include "device_surfaces.cuh"
 #include "for_each.cuh"
 #include "model/model.hpp"
 #include "particle_arrays.cuh"
@@ -37,7 +38,6 @@ struct CudaItems {
   Device device() const { return {stream}; }
   DeviceViews views() const { return views(now.position.data(), now.velocity.data()); }
   DeviceViews views(const Vec4* position, const Vec4* velocity) const;
-  Index shape_items() const { return layout.items - layout.first_shape; }
   void idle() const {
     if (idle_work) idle_work();
   }
@@ -71,7 +71,7 @@ struct CudaItems {
   const std::function<void()>& idle_work;
   Stream stream;  // everything that follows the particles
   std::unique_ptr<DeviceContactKernels> kernels;
-  DeviceArray<WallPlane> planes;
+  DeviceSurfaces surfaces;
 
   // `now` holds the state. `other` is what sorting writes, the start of an open implicit step, or what the
   // open explicit step reads or writes.

@@ -51,23 +51,18 @@ struct GhostNameItem {
   }
 };
 
-// Shapes that reach no particle of this rank would crowd the edges of its cells: they are left out.
-struct OtherKeyItem {
-  const Vec4* position;  // of the first item that is no owned particle
-  Index ghosts;
+struct GhostKeyItem {
+  const Vec4* position;  // of the ghosts
   BrickGrid grid;
   unsigned outside;
   unsigned* keys;
-  SCREE_HD void operator()(Index k) const {
-    const Vec3 p = xyz(position[k]);
-    const CellPlace c = grid.cells.place(p);
-    keys[k] = c.x < 0 || (k >= ghosts && !grid.cells.reaches(p))
-                  ? outside
-                  : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
+  SCREE_HD void operator()(Index g) const {
+    const CellPlace c = grid.cells.place(xyz(position[g]));
+    keys[g] = c.x < 0 ? outside : static_cast<unsigned>(grid.key(c.x, c.y, c.z));
   }
 };
 
-struct OtherItem {
+struct GhostItem {
   const Index* order;
   Index first;
   Index* out;
@@ -82,11 +77,11 @@ void CudaList::settle() {
 }
 
 void CudaList::place_bodies(std::span<const BodyMotion> motion) {
-  shapes_.side().set_motion(motion);
+  bodies_.side().set_motion(motion);
   if (!current_) return;
-  shapes_.place();
-  // An explicit run brings the shapes to the arrays of its open step itself.
-  if (items_.open_run == nullptr) shapes_.put();
+  bodies_.side().place();
+  // An explicit run brings the surfaces to the device itself, beside its steps.
+  if (items_.open_run == nullptr) bodies_.put();
 }
 
 void CudaList::wrap_positions() {
@@ -104,7 +99,7 @@ void CudaList::sort_cells(Real skin, std::int64_t particles) {
                               ? builder_.cells(skin, particles)
                               : builder_.cells(skin, particles,
                                                owners_.decomposition().box(ranks.rank(), items_.subdomain),
-                                               items_.owned + shapes_.side().shapes().size()));
+                                               items_.owned));
   const auto outside = static_cast<unsigned>(grid_.count());
   for_each(items_.device(), items_.owned,
            CellKeyItem{items_.now.position.data(), items_.now.drifting.data(), grid_, outside,
@@ -129,11 +124,9 @@ void CudaList::find_ghosts(Real width) {
   ParticleArrays &now = items_.now, &other = items_.other;
   halo.count(items_.device(), HaloPlan(items_.ranks, owners_.decomposition(), items_.subdomain, width),
              now.position.data(), layout.active);
-  layout.shapes_meet = items_.ranks.is_root();
   items_.ranks.together([&] {
     const auto owned = static_cast<std::size_t>(items_.owned);
-    layout.first_shape = countable(owned + static_cast<std::size_t>(halo.size()), kTooManyItems);
-    shapes_.side().lay_out(width, layout);
+    layout.items = countable(owned + static_cast<std::size_t>(halo.size()), kTooManyItems);
     halo.list(items_.device(), now.position.data(), layout.active);
     const auto items = static_cast<std::size_t>(layout.items);
     now.grow(items, owned, owned, items_.stream), other.grow(items, owned, 0, items_.stream);
@@ -158,46 +151,45 @@ void CudaList::name_ghosts() {
 
 void CudaList::lay_out_items(Real skin) {
   find_ghosts(builder_.cutoff(skin));
-  shapes_.name();
   items_.refresh_ghosts();
-  shapes_.place();
-  shapes_.put();
+  bodies_.side().bring_into_box();
+  bodies_.side().place();
 }
 
-// Ghosts and shapes by cell.
-void CudaList::index_others() {
-  const Index others = items_.layout.items - items_.owned;
-  if (others == 0) return;
+// Ghosts by cell.
+void CudaList::index_ghosts() {
+  const Index ghosts = items_.lane.halo.size();
+  if (ghosts == 0) return;
   const auto outside = static_cast<unsigned>(grid_.count());
-  for_each(items_.device(), others,
-           OtherKeyItem{items_.now.position.data() + items_.owned, items_.lane.halo.size(), grid_, outside,
-                        other_sort_.keys(static_cast<std::size_t>(others))});
-  other_sort_.sort(items_.device(), others, outside);
-  other_items_.resize(static_cast<std::size_t>(others));
-  for_each(items_.device(), others, OtherItem{other_sort_.order(), items_.owned, other_items_.data()});
+  for_each(items_.device(), ghosts,
+           GhostKeyItem{items_.now.position.data() + items_.owned, grid_, outside,
+                        ghost_sort_.keys(static_cast<std::size_t>(ghosts))});
+  ghost_sort_.sort(items_.device(), ghosts, outside);
+  ghost_items_.resize(static_cast<std::size_t>(ghosts));
+  for_each(items_.device(), ghosts, GhostItem{ghost_sort_.order(), items_.owned, ghost_items_.data()});
 }
 
 void CudaList::search(Real skin) {
-  const ItemLayout& layout = items_.layout;
+  const ParticleArrays& now = items_.now;
   ListInput in;
-  in.position = items_.now.position.data(), in.row_key = items_.now.row_key.data();
+  in.position = now.position.data(), in.row_key = now.row_key.data();
   in.grid = grid_;
   in.particle_starts = particle_sort_.starts();
-  const bool others = layout.items > items_.owned;
-  in.other_starts = others ? other_sort_.starts() : nullptr;
-  in.other_items = others ? other_items_.data() : nullptr;
-  in.bodies = shapes_.bodies();
-  in.planes = items_.planes.data(), in.walls = static_cast<Index>(items_.planes.size());
-  in.active = layout.active, in.owned = items_.owned, in.first_shape = layout.first_shape;
-  in.first_image = layout.first_shape + layout.shapes, in.items = layout.items;
-  in.shapes_meet = layout.shapes_meet;
+  const bool ghosts = items_.lane.halo.size() > 0;
+  in.ghost_starts = ghosts ? ghost_sort_.starts() : nullptr;
+  in.ghost_items = ghosts ? ghost_items_.data() : nullptr;
+  in.active = items_.layout.active, in.owned = items_.owned;
   in.skin = skin;
   items_.list.build(items_.device(), in);
+  const DeviceSurfaces::Particles particles{
+      now.position.data(),     now.material.data(),      items_.owned, items_.layout.active, &grid_,
+      particle_sort_.starts(), builder_.largest_radius()};
+  items_.surfaces.build(items_.device(), particles, bodies_.side().placed(), skin);
 }
 
 // What of the list each rank makes alone: what takes most of the memory.
 void CudaList::find_rows(Real skin) {
-  index_others();
+  index_ghosts();
   search(skin);
   const auto items = static_cast<std::size_t>(items_.layout.items);
   built_at_.resize(items);
@@ -206,7 +198,7 @@ void CudaList::find_rows(Real skin) {
   if (items_.model.integrator.particles == ParticleIntegrator::hht)
     step_arrays_.resize(items_);
   else
-    items_.list.pruned_rows(items_.layout.first_shape);  // makes room for them
+    items_.list.pruned_rows();  // makes room for them
 }
 
 // Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:
@@ -231,7 +223,7 @@ void CudaList::build(Real skin, StageTimers& timers) {
   }
   const auto scope = timers.time(Stage::neighbors);
   items_.ranks.together([&] { find_rows(skin); });
-  shapes_.note_places();
+  bodies_.side().build_list(skin);
   items_.seen_velocity = nullptr;
   skin_ = skin, bound_ = 0;
   current_ = true;
@@ -243,15 +235,12 @@ Real CudaList::displacement() {
   if (!current_) return 2;
   settle();
   const DisplacementItem moved{built_at_.data(), items_.now.position.data()};
-  const Index first_shape = items_.layout.first_shape;
-  const DisplacementItem shapes{moved.from + first_shape, moved.to + first_shape};
   DeviceResults& results = items_.results;
   max_over(items_.device(), items_.layout.active, moved, results.at(&Results::largest));
-  max_over(items_.device(), items_.shape_items(), shapes, results.at(&Results::displacement));
-  Real squared[2] = {results.fetch(&Results::largest), results.fetch(&Results::displacement)};
-  items_.ranks.max(squared);
-  if (!std::isfinite(squared[0]) || !std::isfinite(squared[1])) return 2;
-  bound_ = std::sqrt(std::max(squared[0], squared[1]));
+  Real largest[2] = {std::sqrt(results.fetch(&Results::largest)), bodies_.side().list_displacement()};
+  items_.ranks.max(largest);
+  if (!std::isfinite(largest[0]) || !std::isfinite(largest[1])) return 2;
+  bound_ = std::max(largest[0], largest[1]);
   return bound_ / (skin_ / 2);
 }
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "cell_sort.cuh"
+#include "cuda_bodies.cuh"
 #include "cuda_implicit.cuh"
 #include "cuda_owners.cuh"
-#include "cuda_shapes.cuh"
 #include "dem/rank_list.hpp"
 
 namespace scree {
@@ -14,11 +14,11 @@ namespace scree {
 class CudaList : public RankList {
  public:
   // step_arrays: those of implicit steps, which grow with the list.
-  CudaList(CudaItems& items, CudaShapes& shapes, CudaImplicitArrays& step_arrays)
+  CudaList(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& step_arrays)
       : items_(items),
-        shapes_(shapes),
+        bodies_(bodies),
         step_arrays_(step_arrays),
-        builder_(items.model, shapes.side().shapes()),
+        builder_(items.model),
         owners_(items, builder_) {}
 
   void place_bodies(std::span<const BodyMotion> motion) override;
@@ -46,17 +46,17 @@ class CudaList : public RankList {
   void find_ghosts(Real width);
   void name_ghosts();
   void find_rows(Real skin);
-  void index_others();
+  void index_ghosts();
   void search(Real skin);
 
   CudaItems& items_;
-  CudaShapes& shapes_;
+  CudaBodies& bodies_;
   CudaImplicitArrays& step_arrays_;
   NeighborBuilder builder_;  // its grid and reach; the search is the device's
   CudaOwners owners_;
-  CellSort particle_sort_, other_sort_;
+  CellSort particle_sort_, ghost_sort_;
   BrickGrid grid_;
-  DeviceArray<Index> other_items_;
+  DeviceArray<Index> ghost_items_;
   DeviceArray<Vec4> built_at_;  // positions of all items when the list was built
   bool current_ = false;
   Real skin_ = 0, bound_ = 0;

@@ -59,14 +59,14 @@ struct GatherItem {
 
 }  // namespace
 
-CudaParticles::CudaParticles(CudaItems& items, CudaShapes& shapes, CudaList& list)
-    : items_(items), shapes_(shapes), list_(list) {
+CudaParticles::CudaParticles(CudaItems& items, CudaBodies& bodies, CudaList& list)
+    : items_(items), bodies_(bodies), list_(list) {
   records_.resize_clean(kRecordsAtOnce, items.stream);
 }
 
 void CudaParticles::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
   const cudaStream_t stream = items_.stream;
-  shapes_.side().losses() = items_.ranks.is_root() ? shapes : ShapeLosses{};
+  bodies_.side().losses() = items_.ranks.is_root() ? shapes : ShapeLosses{};
   items_.owned = count_on_rank(records.size(), items_.model.particles.totals);
   items_.now.grow(records.size(), records.size(), 0, stream);
   const auto at_once = static_cast<Index>(records_.size());
@@ -102,13 +102,13 @@ std::vector<Particle> CudaParticles::records() {
 void CudaParticles::initial_forces() {
   ParticleArrays& now = items_.now;
   items_.refresh_ghosts();
+  bodies_.find_loads();
   items_.kernels->forces(items_.device(), items_.views(), items_.model.gravity, items_.owned,
                          now.force.data(), now.loss_power.data());
   for_each(items_.device(), items_.owned,
            StartAccelerationItem{now.force.data(), now.velocity.data(), now.acceleration.data()});
-  shapes_.find_contacts();
   if (is_verlet(items_.model))
-    shapes_.side().book_losses(0);
+    bodies_.side().book_losses(0);
   else
     now.loss_power.zero(items_.stream);
 }
@@ -133,6 +133,7 @@ std::vector<Leaver> CudaParticles::outside() {
     leavers_.resize_clean(leavers.size(), items_.stream);
     find_leavers();
   }
+  bodies_.find_loads();
   items_.kernels->leavers(items_.device(), items_.views(), items_.subdomain.box(),
                           static_cast<Index>(leavers.size()), leavers_.data());
   copy_async(leavers.data(), leavers_.data(), leavers.size(), items_.stream);

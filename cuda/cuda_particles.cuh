@@ -10,13 +10,13 @@ namespace scree {
 
 class CudaParticles : public RankParticles {
  public:
-  CudaParticles(CudaItems& items, CudaShapes& shapes, CudaList& list);
+  CudaParticles(CudaItems& items, CudaBodies& bodies, CudaList& list);
 
   void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
   std::vector<Particle> records() override;
-  ShapeLosses shape_losses() const override { return shapes_.side().losses(); }
+  ShapeLosses shape_losses() const override { return bodies_.side().losses(); }
   void initial_forces() override;
-  void reduce_wrench(std::vector<BodyWrench>& wrench) override { shapes_.reduce_wrench(wrench); }
+  void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
   std::vector<Leaver> outside() override;
   void take_out(const std::vector<Leaver>& leavers) override;
 
@@ -26,7 +26,7 @@ class CudaParticles : public RankParticles {
   void take_contacts_out();
 
   CudaItems& items_;
-  CudaShapes& shapes_;
+  CudaBodies& bodies_;
   CudaList& list_;
   DeviceArray<Particle> records_;  // on their way between host and device
   DeviceArray<Leaver> leavers_;

@@ -36,8 +36,8 @@ void CudaReports::queue_energies() {
 ParticleLedger CudaReports::ledger(Real verlet_step) {
   ParticleArrays& now = items_.now;
   DeviceResults& results = items_.results;
+  bodies_.find_loads();
   queue_energies();
-  shapes_.find_contacts();
   const LedgerItem item{now.position.data(),
                         now.velocity.data(),
                         now.acceleration.data(),
@@ -55,7 +55,7 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   for_each(items_.device(), items_.owned, CountDriftingItem{now.drifting.data(), drifting});
   results.copy(&Results::index);
   const std::array<Real, kLedgerTerms> sums = results.totals(results.fetch(&Results::ledger));
-  ParticleLedger out = make_particle_ledger(sums.data(), shapes_.side());
+  ParticleLedger out = make_particle_ledger(sums.data(), bodies_.side());
   out.drifting = items_.ranks.sum(std::int64_t{results.host().index});
   return out;
 }
@@ -69,6 +69,7 @@ void CudaReports::start_pack() {
                   p.h_packed);
   p.h_ids.resize(n);
   p.ids.resize(n), p.sorted_ids.resize(n), p.order.resize(n), p.sorted_order.resize(n);
+  bodies_.find_loads();
   queue_energies();
   queue_pack();
   p.packed_now.record(items_.stream);
@@ -112,8 +113,8 @@ ParticlePack CudaReports::pack_particles() {
 }
 
 ShapePack CudaReports::pack_shapes() {
-  shapes_.find_contacts();
-  return shapes_.side().pack(items_.layout, items_.ranks);
+  bodies_.find_loads();
+  return bodies_.side().pack();
 }
 
 std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> wanted) {
@@ -134,18 +135,20 @@ std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> wanted
 }
 
 std::vector<ContactSum> CudaReports::body_contacts() {
-  shapes_.find_contacts();
-  return shapes_.side().body_contacts(items_.layout, items_.ranks);
+  bodies_.find_loads();
+  return bodies_.side().body_contacts();
 }
 
 std::vector<ContactSum> CudaReports::wall_contacts(std::span<const int> walls) {
   const auto share = [&](Real* largest) { items_.lane.halo.max(items_.device(), largest, kWallTerms); };
   std::vector<ContactSum> contacts;
+  bodies_.find_loads();
   for (const int wall : walls) {
-    items_.kernels->wall_sums(items_.device(), items_.views(), items_.owned + items_.shape_items(),
-                              {wall, items_.owned, items_.model.space.min, items_.subdomain.period()},
+    items_.kernels->wall_sums(items_.device(), items_.views(), items_.owned,
+                              {wall, items_.model.space.min, items_.subdomain.period()},
                               items_.results.at(&Results::wall), share);
     contacts.push_back(make_wall_contact(items_.results.totals(items_.results.fetch(&Results::wall)).data()));
+    if (items_.ranks.is_root()) contacts.back() += bodies_.side().on_wall(wall);
   }
   return contacts;
 }

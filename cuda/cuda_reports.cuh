@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "cuda_shapes.cuh"
+#include "cuda_bodies.cuh"
 #include "dem/reports.hpp"
 #include "pack_items.cuh"
 
@@ -11,7 +11,7 @@ namespace scree {
 
 class CudaReports : public Reports {
  public:
-  CudaReports(CudaItems& items, CudaShapes& shapes) : items_(items), shapes_(shapes) {}
+  CudaReports(CudaItems& items, CudaBodies& bodies) : items_(items), bodies_(bodies) {}
 
   ParticleLedger ledger(Real verlet_step) override;
   void start_pack() override;
@@ -36,7 +36,7 @@ class CudaReports : public Reports {
   void queue_pack();
 
   CudaItems& items_;
-  CudaShapes& shapes_;
+  CudaBodies& bodies_;
   Stream copy_stream_;  // for what goes out beside the steps
   PackArrays pack_;
   // Of each particle's contacts.

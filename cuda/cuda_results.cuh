@@ -18,7 +18,8 @@ inline constexpr long long kNoId = 0x7f7f7f7f7f7f7f7f;
 
 struct Results {
   StepNorms norms;
-  Real displacement, largest;
+  Real largest;
+  Index index, leavers;
   ExactSums<1> slope;
   ExactSums<kLedgerTerms> ledger;
   // All blocks of a step add to its first members and read the others. Here a line of the cache ends within
@@ -26,8 +27,6 @@ struct Results {
   // longer on an H200.
   VerletControl control;
   long long worst_id;
-  Index index;
-  Index leavers;
   Index interior, active,
       staying;  // particles in the interior, in the search, and on this rank from now on
   ExactSums<kWallTerms> wall;

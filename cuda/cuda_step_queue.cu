@@ -53,9 +53,7 @@ MixedViews MixedArrays::views() {
 }
 
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
-  const DeviceViews v = items_.views(position, nullptr);
-  return {v.position,     v.velocity, v.material, items_.list.pruned_rows(v.first_shape),
-          v.wall_offsets, v.walls,    v.planes,   v.first_shape};
+  return items_.surfaces.views(position, nullptr, items_.now.material.data(), items_.list.pruned_rows());
 }
 
 // The launch of a step on the particles [first, end): all of them, or one of the step's two parts.

@@ -1,5 +1,3 @@
-#include <cub/device/device_scan.cuh>
-
 #include "dem/device.hpp"
 #include "device_list.cuh"
 #include "for_each.cuh"
@@ -9,7 +7,7 @@ namespace scree {
 // Where the search puts what it finds.
 struct RowOutputs {
   std::int64_t* slice_start;
-  Index *counts, *neighbors, *wall_counts;
+  Index *counts, *neighbors;
   unsigned long long capacity;  // slots
   DeviceList::Totals* totals;
 };
@@ -24,15 +22,6 @@ struct RowBuffer {
   Index neighbor[kEntries][kThreads];
 };
 
-// Which pairs a row leaves out: see NeighborBuilder::excluded.
-__device__ bool excluded(const ListInput& in, Index i, Index j) {
-  if (i == j) return true;
-  if (i < in.first_shape) return false;
-  if (j < in.owned) return false;
-  if (j < in.first_shape || i >= in.first_image || !in.shapes_meet) return true;
-  return !in.bodies.may_touch(i - in.first_shape, j - in.first_shape);
-}
-
 // Calls visit(j) for every entry of row i, in the order of the cells.
 template <class Visit>
 __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
@@ -46,13 +35,6 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
     const Real reach = p.w + q.w + in.skin;
     return dot(d, d) < reach * reach;
   };
-  // The cells of one rank of several hold only the shapes that reach its particles: where shapes meet, they
-  // look at each other one by one.
-  const bool shapes_apart = i >= in.first_shape && in.shapes_meet && !in.grid.cells.same;
-  const Index end = shapes_apart ? in.first_shape : in.items;
-  if (shapes_apart)
-    for (Index j = in.first_shape; j < in.items; ++j)
-      if (reaches(j) && in.grid.cells.place(xyz(in.position[j])).x >= 0 && !excluded(in, i, j)) visit(j);
   const Index x0 = max(c.x - 1, 0), x1 = min(c.x + 1, cells.cells[0] - 1);
   // Cells of one brick beside each other in x are contiguous: one run of items, or two where a brick ends.
   const Index split = min(x1 + 1, in.grid.next_brick(x0));
@@ -67,12 +49,12 @@ __device__ void visit_row(const ListInput& in, Index i, const Visit& visit) {
         for (Index k = 0; k < all; k += 2) {  // two at once: loads that do not wait for each other
           const Index j[2] = {at(k), k + 1 < all ? at(k + 1) : at(k)};
           const bool reached = reaches(j[1]), hit[2] = {reaches(j[0]), reached && k + 1 < all};
-          if (hit[0] && j[0] < end && !excluded(in, i, j[0])) visit(j[0]);
-          if (hit[1] && j[1] < end && !excluded(in, i, j[1])) visit(j[1]);
+          if (hit[0] && j[0] != i) visit(j[0]);
+          if (hit[1] && j[1] != i) visit(j[1]);
         }
       };
       visit_runs(in.particle_starts, [](Index k) { return k; });
-      if (in.other_starts != nullptr) visit_runs(in.other_starts, [&](Index k) { return in.other_items[k]; });
+      if (in.ghost_starts != nullptr) visit_runs(in.ghost_starts, [&](Index k) { return in.ghost_items[k]; });
     }
 }
 
@@ -95,21 +77,6 @@ __device__ void sort_row(const std::int64_t* row_key, Index* row, Index n) {
     at(0) = at(end), at(end) = held;
     sift(0, end);
   }
-}
-
-__device__ bool near(const ListInput& in, Vec4 p, const WallPlane& wall) {
-  return wall_pair(p, wall).distance < p.w + in.skin;
-}
-
-__device__ bool collides_with_walls(const ListInput& in, Index i) {
-  return i < in.active || (i >= in.first_shape && i < in.first_image && in.shapes_meet);
-}
-
-__device__ Index near_walls(const ListInput& in, Index i) {
-  Index count = 0;
-  if (collides_with_walls(in, i))
-    for (Index w = 0; w < in.walls; ++w) count += near(in, in.position[i], in.planes[w]);
-  return count;
 }
 
 // Finds row i, sorted in the thread's column of the buffer as far as it fits there; returns its length.
@@ -142,8 +109,7 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
     find_rows_kernel(const __grid_constant__ ListInput in, RowOutputs out) {
   __shared__ RowBuffer<kEntries> buffer;
   const Index i = thread_index(), lane = static_cast<Index>(threadIdx.x) % kSlice;
-  const bool has_row = i < in.active || (i >= in.first_shape && i < in.items);
-  const Index found = has_row ? find_row(in, i, buffer) : 0;
+  const Index found = i < in.active ? find_row(in, i, buffer) : 0;
 
   const auto width = static_cast<Index>(__reduce_max_sync(~0u, static_cast<unsigned>(found)));
   const auto sum = __reduce_add_sync(~0u, static_cast<unsigned>(found));
@@ -152,12 +118,11 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
     start = atomicAdd(&out.totals->used, static_cast<unsigned long long>(width) * kSlice);
     atomicAdd(&out.totals->entries, static_cast<unsigned long long>(sum));
     if (width > *static_cast<volatile Index*>(&out.totals->longest)) atomicMax(&out.totals->longest, width);
-    if (i < in.items) out.slice_start[i / kSlice] = static_cast<std::int64_t>(start);
+    if (i < in.owned) out.slice_start[i / kSlice] = static_cast<std::int64_t>(start);
   }
   start = __shfl_sync(~0u, start, 0);
-  if (i >= in.items) return;
+  if (i >= in.owned) return;
   out.counts[i] = found;
-  out.wall_counts[i] = near_walls(in, i);
   if (start + static_cast<unsigned long long>(width) * kSlice > out.capacity)
     return;  // the host repeats the search
   Index* row = out.neighbors + start + lane;
@@ -171,69 +136,42 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
   }
 }
 
-__global__ void fill_walls_kernel(const __grid_constant__ ListInput in, const Index* offsets, Index* walls) {
-  const Index i = thread_index();
-  if (i >= in.items || offsets[i] == offsets[i + 1]) return;
-  Index slot = offsets[i];
-  for (Index w = 0; w < in.walls; ++w)
-    if (near(in, in.position[i], in.planes[w])) walls[slot++] = w;
-}
-
 constexpr int kShortRow = 16, kLongRow = 48;
 
 }  // namespace
 
 DeviceList::DeviceList() : totals_(1), h_totals_(1) { h_totals_[0] = {}; }
 
-PrunedRows<0> DeviceList::pruned_rows(Index first_shape) {
+PrunedRows<0> DeviceList::pruned_rows() {
   pruned_counts_.resize(counts_.size()), pruned_.resize(neighbors_.size());
-  return {rows(), pruned_counts_.data(), pruned_.data(), first_shape, RowUse::all, 0};
+  return {rows(), pruned_counts_.data(), pruned_.data(), RowUse::all, 0};
 }
 
 void DeviceList::search(Device device, const ListInput& in) {
   const bool long_rows = h_totals_[0].longest > kShortRow;
   totals_.zero(device.stream);
-  const RowOutputs out{slice_start_.data(), counts_.data(),    neighbors_.data(),
-                       wall_counts_.data(), neighbors_.size(), totals_.data()};
+  const RowOutputs out{slice_start_.data(), counts_.data(), neighbors_.data(), neighbors_.size(),
+                       totals_.data()};
   if (long_rows)
-    find_rows_kernel<kLongRow><<<blocks_for(in.items, 64), 64, 0, device.stream>>>(in, out);
+    find_rows_kernel<kLongRow><<<blocks_for(in.owned, 64), 64, 0, device.stream>>>(in, out);
   else
-    find_rows_kernel<kShortRow><<<blocks_for(in.items, 128), 128, 0, device.stream>>>(in, out);
+    find_rows_kernel<kShortRow><<<blocks_for(in.owned, 128), 128, 0, device.stream>>>(in, out);
   require_cuda(cudaGetLastError(), "neighbour list");
   copy_async(h_totals_.data(), totals_.data(), 1, device.stream);
 }
 
 void DeviceList::build(Device device, const ListInput& in) {
-  const auto items = static_cast<std::size_t>(in.items);
-  slice_start_.resize(items / kSlice + 1), counts_.resize(items);
-  wall_counts_.resize(items + 1), wall_offsets_.resize(items + 1);
-  if (neighbors_.size() == 0) neighbors_.resize(kSlotsPerItem * items + kSlice);
+  const auto owned = static_cast<std::size_t>(in.owned);
+  slice_start_.resize(owned / kSlice + 1), counts_.resize(owned);
+  if (neighbors_.size() == 0) neighbors_.resize(kSlotsPerItem * owned + kSlice);
   h_totals_[0].entries = 0;
-  if (in.items == 0) return;
+  if (in.owned == 0) return;
   search(device, in);
-
-  // The entry past the end is read, though no sum depends on it.
-  require_cuda(cudaMemsetAsync(wall_counts_.data() + items, 0, sizeof(Index), device.stream),
-               "cudaMemsetAsync");
-  with_space(scan_space_, [&](void* at, std::size_t& bytes) {
-    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, wall_counts_.data(), wall_offsets_.data(),
-                                               in.items + 1, device.stream),
-                 "scan");
-  });
-  copy_async(&h_totals_.data()->wall_entries, wall_offsets_.data() + in.items, 1, device.stream);
   wait_for(device.stream);
-  if (h_totals_[0].used > neighbors_.size()) {
-    neighbors_.resize(static_cast<std::size_t>(kListSlack * static_cast<double>(h_totals_[0].used)));
-    const Index wall_entries = h_totals_[0].wall_entries;
-    search(device, in);
-    wait_for(device.stream);
-    h_totals_[0].wall_entries = wall_entries;
-  }
-  walls_.resize(static_cast<std::size_t>(h_totals_[0].wall_entries));
-  if (h_totals_[0].wall_entries == 0) return;
-  fill_walls_kernel<<<blocks_for(in.items), launches().block, 0, device.stream>>>(in, wall_offsets_.data(),
-                                                                                  walls_.data());
-  require_cuda(cudaGetLastError(), "walls");
+  if (h_totals_[0].used <= neighbors_.size()) return;
+  neighbors_.resize(static_cast<std::size_t>(kListSlack * static_cast<double>(h_totals_[0].used)));
+  search(device, in);
+  wait_for(device.stream);
 }
 
 }  // namespace scree

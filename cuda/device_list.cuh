@@ -81,7 +81,6 @@ template <int kAtOnce>
 struct PrunedRows {
   SlicedRows rows;
   Index *counts, *neighbors;  // the pruned rows: [items], [slots]
-  Index first_shape;          // entries from here on stay: bodies move otherwise than particles
   RowUse use;
   Real margin;  // [m]
 
@@ -101,41 +100,24 @@ struct PrunedRows {
     Index *const first_kept = neighbors + rows.first(i), *kept = first_kept;
     for (Index left = rows.counts[i]; left > 0; --left, row += kSlice) {
       const Index j = *row;
-      if (j >= first_shape || test.near(j, margin)) *kept = j, kept += kSlice;
+      if (test.near(j, margin)) *kept = j, kept += kSlice;
       if (test(j)) add(evaluate(j));
     }
     counts[i] = static_cast<Index>((kept - first_kept) / kSlice);
   }
 };
 
-// TouchRule::may_touch for the shape items on the device, from its lists.
-struct ShapeBodies {
-  const Index* body;                           // [shape items]
-  const Index *connected_offsets, *connected;  // bodies that body b must not touch besides itself
-
-  SCREE_HD bool may_touch(Index a, Index b) const {
-    if (body[a] == body[b]) return false;
-    for (Index k = connected_offsets[body[a]]; k < connected_offsets[body[a] + 1]; ++k)
-      if (connected[k] == body[b]) return false;
-    return true;
-  }
-};
-
-// What the search reads. Active particles stand in the order of their cells; ghosts and shapes are found
-// through an index of their own.
+// What the search reads. Active particles stand in the order of their cells; ghosts are found through an
+// index of their own.
 struct ListInput {
   const Vec4* position;         // all items
   const std::int64_t* row_key;  // all items: orders the entries of a row, by global id and image
   BrickGrid grid;
   const Index* particle_starts;  // [cells + 1] into the active particles
-  const Index* other_starts;     // [cells + 1] into other_items: ghosts and shapes; null without any
-  const Index* other_items;
-  ShapeBodies bodies;
-  const WallPlane* planes;
-  Index walls;
-  Index active, owned, first_shape, first_image, items;  // first_image: of the shapes' images
-  bool shapes_meet;  // whether this rank has the contacts of shapes with each other and with walls
-  Real skin;         // [m]
+  const Index* ghost_starts;     // [cells + 1] into ghost_items; null without any
+  const Index* ghost_items;
+  Index active, owned;  // owned particles have rows, those that are not active empty ones
+  Real skin;            // [m]
 };
 
 class DeviceList {
@@ -149,9 +131,7 @@ class DeviceList {
   SlicedRows rows() const { return {slice_start_.data(), counts_.data(), neighbors_.data()}; }
   // Room for the pruned rows is made here. After a build they hold nothing of use until a step with
   // RowUse::prune.
-  PrunedRows<0> pruned_rows(Index first_shape);
-  const Index* wall_offsets() const { return wall_offsets_.data(); }
-  const Index* walls() const { return walls_.data(); }
+  PrunedRows<0> pruned_rows();
   std::int64_t slots() const { return static_cast<std::int64_t>(neighbors_.size()); }
   std::int64_t entries() const { return h_totals_[0].entries; }
 
@@ -160,13 +140,11 @@ class DeviceList {
     unsigned long long used;     // slots
     unsigned long long entries;  // of them filled
     Index longest;               // row
-    Index wall_entries;
   };
   void search(Device device, const ListInput& in);
 
   DeviceArray<std::int64_t> slice_start_;
-  DeviceArray<Index> counts_, neighbors_, pruned_counts_, pruned_, wall_counts_, wall_offsets_, walls_;
-  DeviceArray<unsigned char> scan_space_;
+  DeviceArray<Index> counts_, neighbors_, pruned_counts_, pruned_;
   DeviceArray<Totals> totals_;
   PinnedArray<Totals> h_totals_;
   friend struct RowOutputs;

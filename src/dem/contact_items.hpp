@@ -6,11 +6,18 @@
 
 namespace scree {
 
+// A particle's share of a contact's energies with another particle; those with surfaces are all its own.
+inline constexpr Real kPairShare = 0.5;
+
 // What a contact does at an instant.
 struct LoadOf {
   template <class Law, class Pair>
   SCREE_HD auto operator()(const Law& law, const Pair& pair) const {
     return law.load(pair);
+  }
+  template <class Views>
+  SCREE_HD const ContactLoadOf<Real, Vec3>* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry].load : nullptr;
   }
 };
 
@@ -36,23 +43,19 @@ struct ContactForceItem {
   SCREE_HD TotalForce total(Index i) const {
     const auto self = walk.self(i);
     Vec3 f = self.u.w * gravity;
-    Real loss = 0, shape_loss = 0;
-    walk.neighbors(self, LoadOf{}, [&](const auto& load, Index j) {
+    Real loss = 0;
+    walk.neighbors(self, LoadOf{}, [&](const auto& load, Index) {
       f += load.force;
       loss += load.loss;
-      if (walk.in.is_shape(j)) shape_loss += load.loss;
     });
-    loss = Real(0.5) * (loss + shape_loss);  // the particle's share: half with particles, all with shapes
-    walk.walls(self, LoadOf{}, [&](const auto& load, Index) {
+    loss *= kPairShare;
+    walk.surfaces(self, LoadOf{}, [&](const auto& load, Index) {
       f += load.force;
       loss += load.loss;
     });
     return {f, loss};
   }
 };
-
-// A particle's share of a contact's energies: half with another particle, all with a body's shape or a wall.
-SCREE_HD Real particle_share(Index j, Index first_shape) { return j < first_shape ? Real(0.5) : Real(1); }
 
 // Over the contacts of a particle, each with its weight.
 struct TouchSums {
@@ -67,9 +70,13 @@ struct EnergyOf {
   SCREE_HD Real operator()(const Law& law, const PairState& pair) const {
     return law.normal.of_pair(pair.size).energy(pair.geometry.overlap);
   }
+  template <class Views>
+  SCREE_HD const Real* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry].energy : nullptr;
+  }
 };
 
-// share(j): the weight of a contact with item j; those with walls count in full.
+// share(j): the weight of a contact with item j; those with surfaces count in full.
 template <class Laws, class Rows, class Share>
 SCREE_HD TouchSums touch_sums(const ContactWalk<Laws, Rows>& walk, Index i, const Share& share) {
   TouchSums sum;
@@ -80,7 +87,7 @@ SCREE_HD TouchSums touch_sums(const ContactWalk<Laws, Rows>& walk, Index i, cons
   };
   const auto self = walk.self(i);
   walk.neighbors(self, EnergyOf{}, [&](Real energy, Index j) { add(energy, share(j)); });
-  walk.walls(self, EnergyOf{}, [&](Real energy, Index) { add(energy, 1); });
+  walk.surfaces(self, EnergyOf{}, [&](Real energy, Index) { add(energy, 1); });
   return sum;
 }
 
@@ -93,8 +100,7 @@ struct ContactEnergyItem {
   Real* pairs;  // half of each contact with another particle, all of any other
 
   SCREE_HD void operator()(Index i) const {
-    const TouchSums sum =
-        touch_sums(walk, i, [&](Index j) { return particle_share(j, walk.in.first_shape); });
+    const TouchSums sum = touch_sums(walk, i, [](Index) { return kPairShare; });
     energy[i] = sum.energy;
     contacts[i] = sum.contacts;
     pairs[i] = sum.share;

@@ -32,13 +32,20 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n,
              ContactSystemItem<Laws, PackedRows>{{in, laws_, {start}}, gravity, weights, out, matrix});
   }
-  void shapes(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
-              ShapeContact* out) const override {
-    for_each(Serial{}, n, ShapeStepItem<Laws, PackedRows>{{in, laws_, {start}}, out});
+  void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const override {
+    for_each(Serial{}, n, SurfaceLoadItem<Laws>{in, laws_, loads});
   }
-  void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
-              ShapeContact* out) const override {
-    for_each(Serial{}, n, ShapeContactItem<Laws, PackedRows>{{in, laws_, {{}, places}}, out});
+  void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
+                     const PlacedSurface* start_placed, SurfaceStep* steps) const override {
+    for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_placed, laws_, steps});
+  }
+  void body_loads(const ContactViews<PackedRows>& in, Index n, const Vec3* arm,
+                  BodyLoad* out) const override {
+    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows>{{in, laws_}, arm, out});
+  }
+  void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
+                  BodyStep* out) const override {
+    for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out});
   }
   void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
                  Real (&sums)[kWallTerms]) const override {
@@ -52,10 +59,6 @@ class CpuContactKernels : public ContactKernels {
              Real* integrator_loss) const override {
     for_each(Serial{}, n,
              ContactBooksItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
-  }
-  void shape_books(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
-                   ContactBooks* out) const override {
-    for_each(Serial{}, n, ShapeBooksItem<Laws, PackedRows>{{in, laws_, {start}}, out});
   }
   void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
                Leaver* leavers) const override {
@@ -82,12 +85,6 @@ class CpuTableKernels : public CpuContactKernels<LawTable<Law>> {
 };
 
 }  // namespace
-
-std::vector<WallPlane> wall_planes(const Model& model) {
-  std::vector<WallPlane> planes;
-  for (const Wall& wall : model.walls) planes.push_back({wall.point, wall.normal, wall.material});
-  return planes;
-}
 
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact) {
   return with_contact_laws(contact,

@@ -4,10 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "dem/body_items.hpp"
 #include "dem/contact_items.hpp"
 #include "dem/leaver_items.hpp"
-#include "dem/shape_items.hpp"
 #include "dem/step_items.hpp"
+#include "dem/surface_items.hpp"
 #include "dem/system_items.hpp"
 #include "dem/wall_items.hpp"
 #include "model/model.hpp"
@@ -34,30 +35,28 @@ class ContactKernels {
                               const VerletViews& state) const = 0;
   virtual void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
                       const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const = 0;
-  // Contacts of shapes over an implicit step, and at one instant.
-  virtual void shapes(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
-                      ShapeContact* out) const = 0;
-  virtual void shapes(const ContactViews<PackedRows>& in, const ShapePlaces& places, Index n,
-                      ShapeContact* out) const = 0;
+  // n entries of particles with surfaces on bodies, at an instant and over an implicit step.
+  virtual void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const = 0;
+  virtual void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
+                             const PlacedSurface* start_placed, SurfaceStep* steps) const = 0;
+  // The surfaces on bodies as items: what n of them get from each other and from walls.
+  virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const Vec3* arm,
+                          BodyLoad* out) const = 0;
+  virtual void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
+                          const Vec3* arm, BodyStep* out) const = 0;
   // Of the first n items of WallContactItem, over all ranks.
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
-  // What the contacts of the particles, and of the shapes among themselves, add to the ledger over an
-  // accepted implicit step.
+  // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;
-  virtual void shape_books(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
-                           ContactBooks* out) const = 0;
   // n particles that leave, and what they leave to all others: see the items.
   virtual void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
                        Leaver* leavers) const = 0;
   virtual void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
                           const StartViews& start) const = 0;
 };
-
-// The walls in the form the items read.
-std::vector<WallPlane> wall_planes(const Model& model);
 
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact);
 

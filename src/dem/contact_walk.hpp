@@ -1,5 +1,5 @@
-// The one place that walks over what touches an item: the row of its neighbours, and its walls. One text for
-// the CPU and CUDA; what is done with a contact its visitors say.
+// The one place that walks over what touches an item: the row of its neighbours, and the surfaces near it.
+// One text for the CPU and CUDA; what is done with a contact its visitors say.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,12 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "dem/surface_sums.hpp"
+#include "dem/surfaces.hpp"
 #include "physics/contact_law.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {
-
-// Half space in the form the items read.
-struct WallPlane {
-  Vec3 point, normal;
-  int material;
-};
 
 // The law of every contact: one pair of materials, or a table of them.
 template <class Law>
@@ -56,15 +52,15 @@ struct PackedRows {
 template <class Rows>
 struct ContactViews {
   const Vec4* position;  // x, y, z, radius
-  const Vec4* velocity;  // x, y, z, mass; infinite for shapes of bodies
+  const Vec4* velocity;  // x, y, z, mass
   const int* material;
   Rows rows;
-  const Index* wall_offsets;
-  const Index* walls;
+  const Index* surface_offsets;  // [particles + 1]
+  const Index* surfaces;         // the first `ground` are planes, on the ground; the others are on bodies
   const WallPlane* planes;
-  Index first_shape;  // items from here on are shapes of bodies
-
-  SCREE_HD bool is_shape(Index j) const { return j >= first_shape; }
+  Index ground;
+  const SurfaceLoad* loads;  // per entry of the surfaces: what those on bodies do at this instant,
+  const SurfaceStep* steps;  // and over an implicit step
 };
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
@@ -181,8 +177,6 @@ struct OverStep {
   SCREE_HD static bool closed(const ContactPath& path) {
     return path.step.overlap1 > 0 || path.step.overlap0 > 0;
   }
-
- private:
   SCREE_HD ContactPath path(const ContactGeometry& end, Vec3 end_velocity, const ContactGeometry& begin,
                             Vec3 begin_velocity, Vec3 travel, const PairSize& size) const {
     const Vec3 normal0 = begin.normal(), normal1 = end.normal();
@@ -194,8 +188,10 @@ struct OverStep {
   }
 };
 
-// Visits what touches item i: visit(of(law, pair), j) with j the neighbour's item, or the wall's number. `of`
-// is pure: it may be called for neighbours that do not touch, and what it returns for them is dropped.
+// Visits what touches item i: visit(of(law, pair), j) with j the neighbour's item, or the surface's number.
+// `of` is pure: it may be called for neighbours that do not touch, and what it returns for them is dropped.
+// Contacts with surfaces on bodies were evaluated before, once for particle and body: of.stored(in, entry)
+// has what `of` would return, null where they do not touch.
 template <class Laws, class Rows, class Look = AtInstant>
 struct ContactWalk {
   ContactViews<Rows> in;
@@ -217,12 +213,16 @@ struct ContactWalk {
         self, [&](Index j) { return only(j) && test(j); }, of, visit);
   }
   template <class Of, class Visit>
-  SCREE_HD void walls(const Self& self, const Of& of, const Visit& visit) const {
-    for (Index k = in.wall_offsets[self.i]; k < in.wall_offsets[self.i + 1]; ++k) {
-      const Index wall = in.walls[k];
-      const WallPlane& plane = in.planes[wall];
+  SCREE_HD void surfaces(const Self& self, const Of& of, const Visit& visit) const {
+    for (Index entry = in.surface_offsets[self.i]; entry < in.surface_offsets[self.i + 1]; ++entry) {
+      const Index surface = in.surfaces[entry];
+      if (surface >= in.ground) {
+        if (const auto* stored = of.stored(in, entry)) visit(*stored, surface);
+        continue;
+      }
+      const WallPlane& plane = in.planes[surface];
       const auto pair = look.wall(in, self, plane);
-      if (Look::closed(pair)) visit(of(laws.get(self.material, plane.material), pair), wall);
+      if (Look::closed(pair)) visit(of(laws.get(self.material, plane.material), pair), surface);
     }
   }
 

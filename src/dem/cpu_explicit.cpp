@@ -55,12 +55,12 @@ StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& t
 
 // Particles as the last step left them before it opened the next: with the velocities that the law saw.
 void CpuExplicitRun::shape_contacts() {
-  items_.find_shape_contacts(
-      items_.views(open_ ? items_.spare_position : items_.store.position, items_.spare_velocity));
+  items_.surfaces.find_loads(items_.store, items_.list.surfaces,
+                             open_ ? items_.spare_position : items_.store.position, items_.spare_velocity);
 }
 
 void CpuExplicitRun::advance() {
-  items_.find_shape_contacts();
+  items_.find_loads();
   items_.side.book_losses(h_);
   step_bound_ =
       std::sqrt(items_.kernels->verlet_advance(items_.views(), items_.model.gravity, items_.layout.owned,
@@ -70,7 +70,7 @@ void CpuExplicitRun::advance() {
 }
 
 void CpuExplicitRun::finish() {
-  items_.find_shape_contacts();
+  items_.find_loads();
   items_.side.book_losses(h_);
   std::vector<Vec3>& force = items_.store.force;
   const Real squared =

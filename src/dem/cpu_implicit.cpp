@@ -24,6 +24,7 @@ CpuImplicitStep::CpuImplicitStep(CpuItems& items, CpuImplicitArrays& arrays, Rea
   arrays_.start_velocity = items.store.velocity;
   arrays_.start_acceleration = items.store.acceleration;
   arrays_.start_force = items.store.force;
+  items.side.keep_start();
 }
 
 StepViews CpuImplicitStep::step_views() {
@@ -46,6 +47,10 @@ StepForces CpuImplicitStep::step_forces() {
 StepStart CpuImplicitStep::step_start() const {
   return {arrays_.start_position.data(), arrays_.start_velocity.data(), h_,
           items_.model.integrator.resolve_events};
+}
+
+NewtonWeights CpuImplicitStep::newton_weights() const {
+  return {newmark_position_gain(items_.hht, h_), newmark_velocity_gain(items_.hht, h_)};
 }
 
 ContactMatrix CpuImplicitStep::matrix() {
@@ -71,11 +76,9 @@ void CpuImplicitStep::undo() {
 }
 
 Real CpuImplicitStep::step_displacement() {
-  const ItemLayout& layout = items_.layout;
   const DisplacementItem moved{arrays_.start_position.data(), items_.store.position.data()};
-  const DisplacementItem shapes{moved.from + layout.first_shape, moved.to + layout.first_shape};
-  const Real particles = max_over(Serial{}, layout.active, moved);
-  return std::sqrt(items_.ranks.max(std::max(particles, max_over(Serial{}, items_.shape_items(), shapes))));
+  const Real particles = std::sqrt(max_over(Serial{}, items_.layout.active, moved));
+  return items_.ranks.max(std::max(particles, items_.side.step_displacement()));
 }
 
 // Over the particles of all ranks. Throws as report_not_finite where a residual is not.
@@ -103,10 +106,9 @@ StepNorms CpuImplicitStep::largest_norms() {
 
 ParticleNorms CpuImplicitStep::contact_force() {
   const Index n = items_.layout.owned;
-  const CpuItems::Views views = items_.views();
-  const NewtonWeights weights{newmark_position_gain(items_.hht, h_), newmark_velocity_gain(items_.hht, h_)};
-  items_.kernels->system(views, items_.model.gravity, n, weights, step_start(), step_forces(), matrix());
-  items_.kernels->shapes(views, items_.shape_items(), step_start(), items_.side.contacts().data());
+  find_steps();
+  items_.kernels->system(items_.views(), items_.model.gravity, n, newton_weights(), step_start(),
+                         step_forces(), matrix());
   for_each(Serial{}, n,
            ResidualItem{step_views(), arrays_.step_force.data(), matrix(), arrays_.residual.data(),
                         arrays_.inverse_block.data(), arrays_.stiffening.data()});
@@ -130,7 +132,7 @@ GlobalId CpuImplicitStep::worst_particle() {
 }
 
 void CpuImplicitStep::reduce_wrench(ContactWrenches& step, std::vector<BodyWrench>& end) {
-  items_.side.reduce(items_.layout, items_.ranks, step, end);
+  items_.side.reduce(step, end);
 }
 
 Real CpuImplicitStep::along_correction(const std::vector<Vec3>& residual) const {
@@ -151,15 +153,11 @@ void CpuImplicitStep::shorten_correction() {
 }
 
 // The bodies have already taken their correction: as a known part of the solution it moves to the right.
-void CpuImplicitStep::subtract_shape_steps(const SubtractMatrixItem<PackedRows>& matrix) {
-  if (items_.shape_items() == 0) return;
-  std::vector<Vec4>& direction = arrays_.direction;
-  const Index first_shape = items_.layout.first_shape;
-  for_each(Serial{}, items_.layout.items,
-           ShapeDirectionItem{items_.side.step().data(), newmark_position_gain(items_.hht, h_), first_shape,
-                              direction.data()});
-  for_each(Serial{}, items_.layout.owned, matrix);
-  std::fill(direction.begin() + first_shape, direction.end(), Vec4{});
+void CpuImplicitStep::subtract_surface_steps() {
+  if (items_.side.size() == 0) return;
+  for_each(Serial{}, items_.layout.owned,
+           SurfaceShiftItem<PackedRows>{items_.views(), newton_weights(), items_.side.step().data(),
+                                        arrays_.residual.data()});
 }
 
 ParticleCorrection CpuImplicitStep::particle_correct() {
@@ -173,10 +171,11 @@ ParticleCorrection CpuImplicitStep::particle_correct() {
       hht_inertia_weight(items_.hht),
       arrays_.direction.data(),
       residual.data()};
-  subtract_shape_steps(system_matrix);
+  subtract_surface_steps();
   arrays_.right_hand_side = residual;
   const Real right_hand_side = ranks.max(max_over(Serial{}, n, NormItem{residual.data()}));
-  // The shapes' displacements may be what is not finite: without a correction the bodies alone would notice.
+  // The surfaces' displacements may be what is not finite: without a correction the bodies alone would
+  // notice.
   if (!std::isfinite(right_hand_side)) items_.report_not_finite(residual);
   const Real tolerance =
       solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, right_hand_side);
@@ -199,11 +198,10 @@ Real CpuImplicitStep::error() {
 
 void CpuImplicitStep::accept() {
   ParticleStore& store = items_.store;
+  find_steps();
   items_.kernels->books(items_.views(), items_.layout.owned, step_start(), store.contact_loss.data(),
                         store.integrator_loss.data());
-  std::vector<ContactBooks> shapes(static_cast<std::size_t>(items_.shape_items()));
-  items_.kernels->shape_books(items_.views(), items_.shape_items(), step_start(), shapes.data());
-  items_.side.book_step(shapes);
+  items_.side.book_step();
   for_each(Serial{}, items_.layout.owned,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
 }

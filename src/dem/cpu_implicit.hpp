@@ -49,10 +49,12 @@ class CpuImplicitStep : public ImplicitStep {
   StepViews step_views();
   StepForces step_forces();
   StepStart step_start() const;
+  NewtonWeights newton_weights() const;
+  void find_steps() { items_.surfaces.find_steps(items_.store, items_.list.surfaces, step_start()); }
   ContactMatrix matrix();
   CorrectItem correct_item(Real share);
   StepNorms largest_norms();
-  void subtract_shape_steps(const SubtractMatrixItem<PackedRows>& matrix);
+  void subtract_surface_steps();
   Real along_correction(const std::vector<Vec3>& residual) const;
 
   CpuItems& items_;

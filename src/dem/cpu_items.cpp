@@ -11,25 +11,14 @@ CpuItems::CpuItems(const Model& of, const Ranks& on)
     : model(of),
       ranks(on),
       subdomain(of.space),
-      side(of, subdomain),
+      side(of, subdomain, on),
       kernels(make_contact_kernels(of.contact)),
-      planes(wall_planes(of)),
+      surfaces(of, subdomain, side, *kernels),
       hht(hht_coefficients(of.integrator.hht_alpha)) {}
 
 CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const {
-  return {position.data(),
-          velocity.data(),
-          store.material.data(),
-          {list.offsets.data(), list.neighbors.data()},
-          list.wall_offsets.data(),
-          list.walls.data(),
-          planes.data(),
-          layout.first_shape};
-}
-
-void CpuItems::find_shape_contacts(const Views& with) {
-  kernels->shapes(with, {side.position().data(), side.velocity().data()}, shape_items(),
-                  side.contacts().data());
+  return surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()},
+                        list.surfaces);
 }
 
 bool CpuItems::any_outside() const {

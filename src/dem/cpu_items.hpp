@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "dem/contact_kernels.hpp"
+#include "dem/cpu_surfaces.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/particle_store.hpp"
-#include "dem/shape_side.hpp"
+#include "dem/surface_side.hpp"
 #include "model/model.hpp"
 #include "partition/halo.hpp"
 #include "partition/ranks.hpp"
@@ -27,12 +28,10 @@ struct CpuItems {
 
   Views views() const { return views(store.position, store.velocity); }
   Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const;
-  Index shape_items() const { return layout.items - layout.first_shape; }
   void refresh_ghosts() { halo.update_motion(store.position, store.velocity, layout.owned); }
-  // Into side.contacts(), where the shapes are now.
-  void find_shape_contacts() { find_shape_contacts(views()); }
-  void find_shape_contacts(const Views& with);
-  void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(layout, ranks, end); }
+  // Contacts with surfaces on bodies, where all are now: what forces and reports read next.
+  void find_loads() { surfaces.find_loads(store, list.surfaces, store.position, store.velocity); }
+  void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }
   bool any_outside() const;
   // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.
   void report_not_finite(const std::vector<Vec3>& force) const;
@@ -42,9 +41,9 @@ struct CpuItems {
   const Model& model;
   Ranks ranks;
   Subdomain subdomain;
-  ShapeSide side;
+  SurfaceSide side;
   std::unique_ptr<ContactKernels> kernels;
-  std::vector<WallPlane> planes;
+  CpuSurfaces surfaces;
   HhtCoefficients hht;
 
   ParticleStore store;

@@ -62,7 +62,7 @@ void CpuList::sort_cells(Real skin) {
   const std::int64_t particles = ranks.sum(static_cast<std::int64_t>(store.owned));
   cells_ = ranks.alone() ? builder_.cells(skin, particles)
                          : builder_.cells(skin, particles, decomposition_.box(ranks.rank(), items_.subdomain),
-                                          store.owned + items_.side.shapes().size());
+                                          store.owned);
   const Index outside = cells_.own.count();
   std::vector<Index> cell(store.owned), start(outside + 2, 0), from(store.owned);
   store.active = 0;
@@ -81,17 +81,12 @@ void CpuList::lay_out_items(Real skin) {
   ParticleStore& store = items_.store;
   ItemLayout& layout = items_.layout;
   Halo& halo = items_.halo;
-  ShapeSide& side = items_.side;
   layout.owned = store.owned, layout.active = store.active;
   const Real width = builder_.cutoff(skin);
   halo.exchange(items_.ranks, decomposition_, items_.subdomain,
                 {store.position.data(), static_cast<std::size_t>(store.active)}, width);
-  layout.first_shape = countable(
-      static_cast<std::size_t>(layout.owned) + static_cast<std::size_t>(halo.size()), kTooManyItems);
-  layout.shapes_meet = items_.ranks.is_root();
-
-  side.lay_out(width, layout);
-
+  layout.items = countable(static_cast<std::size_t>(layout.owned) + static_cast<std::size_t>(halo.size()),
+                           kTooManyItems);
   store.resize_items(layout.items);
   for_each_array<kNames | kGhostCopies>([&](auto& array) { halo.update(std::span(array), layout.owned); },
                                         store);
@@ -99,24 +94,11 @@ void CpuList::lay_out_items(Real skin) {
     std::int64_t& key = store.row_key[layout.owned + g];
     key = row_key(id_of(key), halo.images()[g]);
   }
-  for (Index item = layout.first_shape; item < layout.items; ++item) {
-    store.material[item] = side.shapes().items()[layout.shape_of(item)].material;
-    store.row_key[item] = side.row_key_of(layout, item);
-  }
-}
-
-void CpuList::place_shapes() {
-  ParticleStore& store = items_.store;
-  const ItemLayout& layout = items_.layout;
-  ShapeSide& side = items_.side;
-  shape_bound_ += side.place(layout);
-  std::copy(side.position().begin(), side.position().end(), store.position.begin() + layout.first_shape);
-  std::copy(side.velocity().begin(), side.velocity().end(), store.velocity.begin() + layout.first_shape);
 }
 
 void CpuList::place_bodies(std::span<const BodyMotion> motion) {
   items_.side.set_motion(motion);
-  if (current_) place_shapes();
+  if (current_) surface_bound_ += items_.side.place();
 }
 
 void CpuList::build(Real skin, StageTimers& timers) {
@@ -133,14 +115,16 @@ void CpuList::build(Real skin, StageTimers& timers) {
     const auto scope = timers.time(Stage::exchange_halo);
     lay_out_items(skin);
     items_.refresh_ghosts();
-    place_shapes();
+    items_.side.bring_into_box();
+    items_.side.place();
   }
   const auto scope = timers.time(Stage::neighbors);
   const ParticleStore& store = items_.store;
-  builder_.build(store, items_.layout, cells_, skin, items_.list);
+  builder_.build(store, items_.layout, cells_, items_.side.placed(), skin, items_.list);
+  items_.side.build_list(skin);
   built_at_ = store.position;
   items_.spare_position = store.position, items_.spare_velocity = store.velocity;
-  bound_ = shape_bound_ = 0;
+  bound_ = surface_bound_ = 0;
   current_ = true;
   ++builds_;
   const Halo& halo = items_.halo;
@@ -152,25 +136,23 @@ void CpuList::build(Real skin, StageTimers& timers) {
 // The sum of the steps' largest displacements is cheap; the exact value follows past it.
 bool CpuList::covers(Real step) {
   if (!current_) return false;
-  bound_ += std::max(step, shape_bound_);
-  shape_bound_ = 0;
+  bound_ += std::max(step, surface_bound_);
+  surface_bound_ = 0;
   return bound_ < items_.list.skin / 2 || displacement() <= 1;
 }
 
 Real CpuList::displacement() {
   if (!current_) return 2;
-  const ItemLayout& layout = items_.layout;
   Real squared = 0;
-  const auto add = [&](Index i) {
+  for (Index i = 0; i < items_.layout.active; ++i) {
     const Vec3 d = xyz(items_.store.position[i]) - xyz(built_at_[i]);
     const Real value = dot(d, d);
     if (!(value <= squared) && !std::isnan(squared)) squared = value;  // a NaN counts as expired
-  };
-  for (Index i = 0; i < layout.active; ++i) add(i);
-  for (Index i = layout.first_shape; i < layout.items; ++i) add(i);
-  squared = items_.ranks.max(squared);
-  if (!std::isfinite(squared)) return 2;
-  bound_ = std::sqrt(squared), shape_bound_ = 0;
+  }
+  Real largest[2] = {std::sqrt(squared), items_.side.list_displacement()};
+  items_.ranks.max(largest);
+  if (!std::isfinite(largest[0]) || !std::isfinite(largest[1])) return 2;
+  bound_ = std::max(largest[0], largest[1]), surface_bound_ = 0;
   return bound_ / (items_.list.skin / 2);
 }
 

@@ -10,7 +10,7 @@ namespace scree {
 
 class CpuList : public RankList {
  public:
-  explicit CpuList(CpuItems& items) : items_(items), builder_(items.model, items.side.shapes()) {}
+  explicit CpuList(CpuItems& items) : items_(items), builder_(items.model) {}
 
   void place_bodies(std::span<const BodyMotion> motion) override;
   Real displacement() override;
@@ -33,9 +33,8 @@ class CpuList : public RankList {
   void migrate();
   void decompose();
   void sort_cells(Real skin);
-  // Sizes all item arrays, fills in ghosts and shapes.
+  // Sizes all item arrays, fills in ghosts.
   void lay_out_items(Real skin);
-  void place_shapes();
   void measure_balance();
 
   CpuItems& items_;
@@ -47,8 +46,8 @@ class CpuList : public RankList {
   std::vector<Vec4> built_at_;  // positions of all items when the list was built
   bool current_ = false;        // whether the items are those that the list was built of
   std::int64_t builds_ = 0;
-  Real bound_ = 0;        // displacement of any item since the list was built, at most [m]
-  Real shape_bound_ = 0;  // of any shape since `bound_` was last brought up to date, at most [m]
+  Real bound_ = 0;          // displacement of any item since the list was built, at most [m]
+  Real surface_bound_ = 0;  // of any surface since `bound_` was last brought up to date, at most [m]
 };
 
 }  // namespace scree

@@ -25,11 +25,11 @@ std::vector<Particle> CpuParticles::records() {
 void CpuParticles::initial_forces() {
   ParticleStore& store = items_.store;
   items_.refresh_ghosts();
+  items_.find_loads();
   items_.kernels->forces(items_.views(), items_.model.gravity, items_.layout.owned, store.force.data(),
                          store.loss_power.data());
   for_each(Serial{}, items_.layout.owned,
            StartAccelerationItem{store.force.data(), store.velocity.data(), store.acceleration.data()});
-  items_.find_shape_contacts();
   if (is_verlet(items_.model))
     items_.side.book_losses(0);
   else
@@ -51,6 +51,7 @@ std::vector<Leaver> CpuParticles::outside() {
     leavers.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.beyond_wall(p), energy,
                        store.contact_loss[i], store.integrator_loss[i] - shift, 0, ranks.rank()});
   }
+  items_.find_loads();
   items_.kernels->leavers(items_.views(), items_.subdomain.box(), static_cast<Index>(leavers.size()),
                           leavers.data());
   leavers = ranks.gather_everywhere(std::move(leavers));

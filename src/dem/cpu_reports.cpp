@@ -12,8 +12,8 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   const Index n = store.owned;
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
+  items_.find_loads();
   items_.kernels->energies(items_.views(), n, {elastic.data(), touching.data(), pairs.data()});
-  items_.find_shape_contacts();
 
   const LedgerItem item{store.position.data(),
                         store.velocity.data(),
@@ -40,6 +40,7 @@ void CpuReports::start_pack() {
   ParticlePack& pack = pack_ = {};
   std::vector<Real> energy(n), pairs(n);
   pack.contacts.resize(n);
+  items_.find_loads();
   items_.kernels->energies(items_.views(), n, {energy.data(), pack.contacts.data(), pairs.data()});
   for (Index i = 0; i < n; ++i) {
     ImageCount unused;
@@ -52,8 +53,8 @@ void CpuReports::start_pack() {
 }
 
 ShapePack CpuReports::pack_shapes() {
-  items_.find_shape_contacts();
-  return items_.side.pack(items_.layout, items_.ranks);
+  items_.find_loads();
+  return items_.side.pack();
 }
 
 std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> wanted) {
@@ -71,19 +72,19 @@ std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> wanted)
 }
 
 std::vector<ContactSum> CpuReports::body_contacts() {
-  items_.find_shape_contacts();
-  return items_.side.body_contacts(items_.layout, items_.ranks);
+  items_.find_loads();
+  return items_.side.body_contacts();
 }
 
 std::vector<ContactSum> CpuReports::wall_contacts(std::span<const int> walls) {
-  const ItemLayout& layout = items_.layout;
   std::vector<ContactSum> contacts;
+  items_.find_loads();
   for (const int wall : walls) {
     Real sums[kWallTerms];
-    items_.kernels->wall_sums(items_.views(), layout.owned + items_.shape_items(),
-                              {wall, layout.owned, items_.model.space.min, items_.subdomain.period()},
-                              items_.ranks, sums);
+    items_.kernels->wall_sums(items_.views(), items_.layout.owned,
+                              {wall, items_.model.space.min, items_.subdomain.period()}, items_.ranks, sums);
     contacts.push_back(make_wall_contact(sums));
+    if (items_.ranks.is_root()) contacts.back() += items_.side.on_wall(wall);
   }
   return contacts;
 }

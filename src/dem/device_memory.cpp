@@ -7,6 +7,7 @@
 #include "dem/backend.hpp"
 #include "dem/device.hpp"
 #include "dem/mixed_items.hpp"
+#include "dem/neighbor_list.hpp"
 #include "partition/halo.hpp"
 
 namespace scree {
@@ -16,8 +17,8 @@ namespace {
 constexpr double kItemFields = 2 * bytes_in_arrays<kItemArrays>();
 constexpr double kOwnedFields = 2 * bytes_in_arrays<kOwnedArrays>();
 constexpr double kSortArrays =
-    4 * sizeof(Index) + 2 * sizeof(Index);  // keys and order twice, the library's buffers
-constexpr double kListArrays = 3 * sizeof(Index) + sizeof(Vec4);  // counts, walls, positions at the build
+    4 * sizeof(Index) + 2 * sizeof(Index);        // keys and order twice, the library's buffers
+constexpr double kRowArrays = 4 * sizeof(Index);  // lengths of rows, and three for those of the surfaces
 constexpr double kGhostArrays = sizeof(Ghost) + kSortArrays + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
@@ -33,7 +34,7 @@ constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
 struct Sizes {
   double particles, ghosts, items, cells, slots;
-  bool shapes;  // whether bodies have some
+  bool on_bodies;  // whether there are surfaces
 };
 
 bool equal_radii(const Model& model) {
@@ -47,11 +48,11 @@ double slots_at_start(const ParticleStore& store, const ItemLayout& layout, Neig
                       Real skin) {
   constexpr Index kSlice = 32;
   NeighborList list;
-  builder.build(store, layout, builder.cells(skin, layout.owned), skin, list);
+  builder.build(store, layout, builder.cells(skin, layout.owned), {}, skin, list);
   double slots = 0;
-  for (Index first = 0; first < layout.items; first += kSlice) {
+  for (Index first = 0; first < layout.owned; first += kSlice) {
     Index width = 0;
-    for (Index i = first; i < std::min(first + kSlice, layout.items); ++i)
+    for (Index i = first; i < std::min(first + kSlice, layout.owned); ++i)
       width = std::max(width, list.offsets[i + 1] - list.offsets[i]);
     slots += static_cast<double>(width) * kSlice;
   }
@@ -60,26 +61,24 @@ double slots_at_start(const ParticleStore& store, const ItemLayout& layout, Neig
 
 Sizes sizes_of(const Model& model) {
   const Subdomain subdomain(model.space);
-  const BodyShapes shapes(model);
-  NeighborBuilder builder(model, shapes);
+  NeighborBuilder builder(model);
   const Real skin = model.contact.skin;
   const bool periodic = subdomain.period() != Vec3{}, equal = equal_radii(model);
   const Index particles = count_on_rank(model.particles.size(), model.particles.totals);
   Sizes sizes{};
-  sizes.shapes = shapes.size() > 0;
+  sizes.on_bodies = SurfaceSet(model).on_bodies() > 0;
   sizes.particles = static_cast<double>(particles);
   ParticleStore store;  // only where it is needed: it is as large as the model
   if (periodic || !equal) store.load(initial_records(model.particles, subdomain));
   if (periodic)
     sizes.ghosts =
         static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
-  sizes.items = sizes.particles + sizes.ghosts + static_cast<double>(shapes.size());
-  const Index counted = particles + shapes.size();
-  sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, counted).count());
-  sizes.slots = kSlotsPerItem * sizes.items;
+  sizes.items = sizes.particles + sizes.ghosts;
+  sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, particles).count());
+  sizes.slots = kSlotsPerItem * sizes.particles;
   if (equal) return sizes;
   ItemLayout layout;
-  layout.owned = layout.active = layout.first_shape = layout.items = store.owned;
+  layout.owned = layout.active = layout.items = store.owned;
   sizes.slots = std::max(sizes.slots, kListSlack * slots_at_start(store, layout, builder, skin));
   return sizes;
 }
@@ -93,11 +92,12 @@ std::size_t device_memory(const Model& model) {
   double bytes = n.items * kItemFields * spare + n.particles * kOwnedFields;
   bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays : 0);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
-  bytes += n.items * kListArrays + n.slots * sizeof(Index);
-  if (explicit_steps) bytes += (n.items + n.slots) * sizeof(Index);  // pruned rows
+  bytes +=
+      n.particles * kRowArrays + n.items * sizeof(Vec4) + n.slots * sizeof(Index);  // places at the build
+  if (explicit_steps) bytes += (n.particles + n.slots) * sizeof(Index);             // pruned rows
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
-  if (model.integrator.precision == Precision::mixed && !n.shapes)
+  if (model.integrator.precision == Precision::mixed && !n.on_bodies)
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
   bytes += n.particles * kOutputArrays + static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
   return static_cast<std::size_t>(bytes);

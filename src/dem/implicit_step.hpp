@@ -26,7 +26,7 @@ class ImplicitStep {
   virtual ~ImplicitStep() = default;
 
   virtual void predict() = 0;            // first
-  virtual Real step_displacement() = 0;  // largest of a particle or shape since the step's start [m]
+  virtual Real step_displacement() = 0;  // largest of a particle or surface since the step's start [m]
   virtual ParticleNorms contact_force() = 0;
   // The particle with the largest residual in the last contact_force; -1 without particles.
   virtual GlobalId worst_particle() = 0;

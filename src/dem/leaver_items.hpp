@@ -29,7 +29,7 @@ template <class Rows>
 struct Leaves {
   const ContactViews<Rows>& in;
   const OpenBox& box;
-  SCREE_HD bool operator()(Index j) const { return j < in.first_shape && !box.inside(xyz(in.position[j])); }
+  SCREE_HD bool operator()(Index j) const { return !box.inside(xyz(in.position[j])); }
 };
 
 // The elastic energy of the contacts that end with a leaver: all of it, but half with one that leaves as
@@ -42,7 +42,7 @@ struct LeaverEnergyItem {
 
   SCREE_HD void operator()(Index k) const {
     const Leaves<Rows> leaves{walk.in, box};
-    const auto share = [&](Index j) { return leaves(j) ? Real(0.5) : Real(1); };
+    const auto share = [&](Index j) { return leaves(j) ? kPairShare : Real(1); };
     leavers[k].elastic = touch_sums(walk, leavers[k].local_index, share).energy;
   }
 };
@@ -86,7 +86,7 @@ struct DepartureItem {
     });
     if (ended == 0) return;
     begin_from(i, mass, start.force[i] - ended_force);
-    if (start.loss_power != nullptr) start.loss_power[i] -= Real(0.5) * ended_loss;
+    if (start.loss_power != nullptr) start.loss_power[i] -= kPairShare * ended_loss;
   }
 
   SCREE_HD void begin_from(Index i, Real mass, Vec3 force) const {

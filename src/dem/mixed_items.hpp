@@ -240,7 +240,7 @@ struct MixedAdvanceItem {
       f += in_double(load.force);
       loss += 0.5f * load.loss;
     });
-    walk.walls(self, LoadOf{}, [&](const auto& load, Index) {
+    walk.surfaces(self, LoadOf{}, [&](const auto& load, Index) {
       f += load.force;
       loss += static_cast<float>(load.loss);
     });

@@ -5,7 +5,7 @@
 
 #include "dem/leaver_items.hpp"
 #include "dem/particle_fields.hpp"
-#include "dem/shape_side.hpp"
+#include "dem/surface_side.hpp"
 #include "model/body_exchange.hpp"
 
 namespace scree {

@@ -7,7 +7,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
-#include "dem/shape_side.hpp"
+#include "dem/surface_side.hpp"
 
 namespace scree {
 
@@ -21,11 +21,9 @@ struct ParticleLedger {
   std::int64_t drifting = 0;                                 // particles outside that drift on
 };
 
-// From the sums of LedgerItem over the particles, indexed by LedgerTerm, and the shapes' shares.
-ParticleLedger make_particle_ledger(const Real* sums, const ShapeSide& shapes);
-
-// From the sums of WallContactItem over what touches a wall, indexed by WallTerm.
-ContactSum make_wall_contact(const Real* sums);
+// From the sums of LedgerItem over the particles, indexed by LedgerTerm, and what the bodies do to each
+// other.
+ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies);
 
 // One entry per particle of this rank, any order.
 struct ParticlePack {
@@ -54,8 +52,8 @@ class Reports {
   virtual ShapePack pack_shapes() = 0;  // complete on rank 0
   // Those of these particles that this rank owns, where they are now, in any order.
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) = 0;
-  // What touches each body, and each of these walls (indices into Model::walls), where all are now; the
-  // bodies' on rank 0.
+  // What touches each body, and each of these walls (indices into Model::walls), where all are now. Complete
+  // on rank 0.
   virtual std::vector<ContactSum> body_contacts() = 0;
   virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
 };

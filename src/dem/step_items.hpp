@@ -163,18 +163,6 @@ struct SubtractMatrixItem {
   }
 };
 
-// Displacements of the shapes, which have been made, as directions of the linear solve; no other item moves.
-struct ShapeDirectionItem {
-  const Vec3* displacement;  // of the shapes [m]
-  Real weight;               // newmark_position_gain [s^2]
-  Index first_shape;
-  Vec4* direction;  // all items
-
-  SCREE_HD void operator()(Index item) const {
-    direction[item] = item < first_shape ? Vec4{} : vec4((1 / weight) * displacement[item - first_shape], 0);
-  }
-};
-
 struct NormItem {
   const Vec3* vector;
 

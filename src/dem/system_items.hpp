@@ -43,13 +43,8 @@ struct StepForces {
 struct NewtonWeights {
   Real stiffness;  // newmark_position_gain [s^2]
   Real damping;    // newmark_velocity_gain [s]
-};
 
-// What the step solves with.
-struct StepContact {
-  StepContactForce step;  // what the step's end must hold for the step to be right: see step_contact_force
-  Real end_force;         // at the end itself [N]
-  Vec3 normal;            // there
+  SCREE_HD Real of(const StepContactForce& c) const { return stiffness * c.stiffness + damping * c.damping; }
 };
 
 struct StepContactOf {
@@ -58,6 +53,10 @@ struct StepContactOf {
   template <class Law>
   SCREE_HD StepContact operator()(const Law& law, const ContactPath& c) const {
     return of(law.normal.of_pair(c.size), c);
+  }
+  template <class Views>
+  SCREE_HD const StepContact* stored(const Views& in, Index entry) const {
+    return in.steps[entry].touches ? &in.steps[entry].contact : nullptr;
   }
   template <class NormalLaw>
   SCREE_HD StepContact of(const NormalLaw& law, const ContactPath& c) const {
@@ -78,6 +77,10 @@ struct StepBooksOf {
     const Real force0 = c.step.overlap0 > 0 ? contact_force(normal, c.step.overlap0, c.step.rate0).force : 0;
     const Real force1 = step.of(normal, c).step.force;
     return contact_books(normal, c.step, Real(0.5) * dot(force0 * c.normal0 + force1 * c.normal1, c.travel));
+  }
+  template <class Views>
+  SCREE_HD const ContactBooks* stored(const Views& in, Index entry) const {
+    return in.steps[entry].touches ? &in.steps[entry].books : nullptr;
   }
 };
 
@@ -104,7 +107,7 @@ struct ContactSystemItem {
       step_force += c.step.force * c.normal;
       end_force += c.end_force * c.normal;
       magnitude += std::abs(c.step.force);
-      const Real s = weights.stiffness * c.step.stiffness + weights.damping * c.step.damping;
+      const Real s = weights.of(c.step);
       diagonal += outer(s, c.normal);
       return s;
     };
@@ -115,7 +118,7 @@ struct ContactSystemItem {
       matrix.entries[slot] = contact_entry(std::sqrt(s) * c.normal, j);
       ++entries, slot += Rows::stride();
     });
-    walk.walls(self, of, [&](const StepContact& c, Index) { add(c); });
+    walk.surfaces(self, of, [&](const StepContact& c, Index) { add(c); });
     out.step_force[i] = step_force, out.end_force[i] = end_force;
     out.magnitude[i] = magnitude;
     matrix.count[i] = entries;
@@ -123,16 +126,14 @@ struct ContactSystemItem {
   }
 };
 
-// What the contacts of item i over a step add to the energy ledger, those with item j by share(j). only(j):
-// which of them count.
-template <class Laws, class Rows, class Only, class Share>
-SCREE_HD ContactBooks books_of(const StepWalk<Laws, Rows>& walk, Index i, const Only& only,
-                               const Share& share) {
+// What the contacts of item i over a step add to the energy ledger; share: that of those with neighbours.
+template <class Laws, class Rows>
+SCREE_HD ContactBooks books_of(const StepWalk<Laws, Rows>& walk, Index i, Real share) {
   ContactBooks sum;
   const auto self = walk.self(i);
   const StepBooksOf of{{walk.look.start.resolve_events}};
-  walk.neighbors_if(self, only, of, [&](const ContactBooks& one, Index j) { sum.add(one, share(j)); });
-  walk.walls(self, of, [&](const ContactBooks& one, Index) { sum.add(one, 1); });
+  walk.neighbors(self, of, [&](const ContactBooks& one, Index) { sum.add(one, share); });
+  walk.surfaces(self, of, [&](const ContactBooks& one, Index) { sum.add(one, 1); });
   return sum;
 }
 
@@ -143,8 +144,7 @@ struct ContactBooksItem {
   Real *contact_loss, *integrator_loss;  // [J]
 
   SCREE_HD void operator()(Index i) const {
-    const ContactBooks sum = books_of(
-        walk, i, [](Index) { return true; }, [&](Index j) { return particle_share(j, walk.in.first_shape); });
+    const ContactBooks sum = books_of(walk, i, kPairShare);
     contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
   }
 };

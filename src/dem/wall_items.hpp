@@ -1,4 +1,4 @@
-// What one particle, or one shape of a body, does to a wall. One text for the CPU and CUDA.
+// What one particle does to a wall. One text for the CPU and CUDA.
 #pragma once
 
 #include "dem/contact_items.hpp"
@@ -22,7 +22,6 @@ struct WallTerms {
 // particle was last wrapped.
 struct WallChoice {
   Index wall;        // index into Model::walls
-  Index owned;       // particles; the shapes of bodies follow them in the sum
   Vec3 min, period;  // of the space [m]
 };
 
@@ -37,6 +36,11 @@ struct WallLoadOf {
   SCREE_HD WallLoad operator()(const Law& law, const PairState& pair) const {
     return {law.load(pair).force, -pair.geometry.distance * pair.geometry.direction};
   }
+  // Bodies book what they do to walls themselves.
+  template <class Views>
+  SCREE_HD const WallLoad* stored(const Views&, Index) const {
+    return nullptr;
+  }
 };
 
 template <class Laws, class Rows>
@@ -44,10 +48,10 @@ struct WallContactItem {
   ContactWalk<Laws, Rows> walk;
   WallChoice choice;
 
-  SCREE_HD WallTerms operator()(Index k) const {
-    const auto self = walk.self(k < choice.owned ? k : walk.in.first_shape + (k - choice.owned));
+  SCREE_HD WallTerms operator()(Index i) const {
+    const auto self = walk.self(i);
     WallTerms sum{};
-    walk.walls(self, WallLoadOf{}, [&](const WallLoad& load, Index wall) {
+    walk.surfaces(self, WallLoadOf{}, [&](const WallLoad& load, Index wall) {
       if (wall == choice.wall) sum = terms(self.p, load);
     });
     return sum;

@@ -21,17 +21,6 @@ bool comes_near(const DomainBox& box, Vec3 shift, const DomainBox& other, Real w
   return along(&Vec3::x) && along(&Vec3::y) && along(&Vec3::z);
 }
 
-// Calls visit(shift [m], image) for the shifts by whole periods, none included.
-template <class Visit>
-void for_each_shift(Vec3 period, const Visit& visit) {
-  const auto most = [](Real length) { return length == 0 ? 0 : 1; };
-  for (int z = -most(period.z); z <= most(period.z); ++z)
-    for (int y = -most(period.y); y <= most(period.y); ++y)
-      for (int x = -most(period.x); x <= most(period.x); ++x)
-        visit(Vec3{x * period.x, y * period.y, z * period.z},
-              static_cast<std::int8_t>((z + 1) * 9 + (y + 1) * 3 + x + 1));
-}
-
 Index countable_ghosts(std::size_t count) { return countable(count, "stage exchange_halo: more ghosts"); }
 
 }  // namespace

@@ -17,6 +17,20 @@ namespace scree {
 
 // Number of no shift among the 27 by whole periods.
 inline constexpr std::int8_t kNoShift = 13;
+// The shift itself [m].
+SCREE_HD Vec3 image_shift(std::int8_t image, Vec3 period) {
+  return {(image % 3 - 1) * period.x, (image / 3 % 3 - 1) * period.y, (image / 9 - 1) * period.z};
+}
+// Calls visit(shift [m], image) for the shifts by at most one period along each periodic axis, none included.
+SCREE_HD_CALLER template <class Visit>
+SCREE_HD void for_each_shift(Vec3 period, const Visit& visit) {
+  const int x1 = period.x != 0, y1 = period.y != 0, z1 = period.z != 0;
+  for (int z = -z1; z <= z1; ++z)
+    for (int y = -y1; y <= y1; ++y)
+      for (int x = -x1; x <= x1; ++x)
+        visit(Vec3{x * period.x, y * period.y, z * period.z},
+              static_cast<std::int8_t>((z + 1) * 9 + (y + 1) * 3 + x + 1));
+}
 
 // A rank that this one exchanges ghosts with. Entries [first_sent, first_sent + sent) of what is sent go
 // there; what comes from there are the ghosts [first_received, first_received + received).

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <ctime>
 
+#include "dem/particle_store.hpp"
 #include "model/memory.hpp"
 #include "output/results_folder.hpp"
 #include "output/run_record.hpp"

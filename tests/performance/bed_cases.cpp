@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "coupling/coupled_step.hpp"
+#include "dem/particle_store.hpp"
 #include "model/particle_file.hpp"
 #include "physics/step_limits.hpp"
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "dem/device.hpp"
+#include "dem/particle_store.hpp"
 #include "partition/shared_model.hpp"
 
 namespace scree {

@@ -38,8 +38,8 @@ import rank_runs
 RANKS = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000]
 BODIES = [0, 20, 1000, 10000]
 # What crosses per body and step: its motion twice, and twice the sums of one shape's contacts, as partition sends them
-# (BodyMotion, ShapeSide::Touched) [B].
-MOTION_BYTES, WRENCH_BYTES = 2 * 64, 2 * 592
+# (BodyMotion, InstantSums) [B].
+MOTION_BYTES, WRENCH_BYTES = 2 * 64, 2 * 200
 TERMS = ["fixed", "per_particle", "per_message", "per_byte", "per_level"]
 
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "dem/particle_store.hpp"
 #include "support/catch.hpp"
 #include "support/particle_bits.hpp"
 #include "support/petsc_run.hpp"
@@ -158,8 +159,7 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
                                     walls_b = many.backend->reports().wall_contacts(walls),
                                     bodies_a = one.backend->reports().body_contacts(),
                                     bodies_b = many.backend->reports().body_contacts();
-      CHECK(same_bits(walls_a, walls_b));
-      CHECK(touched(walls_a) == c.walls);
+      if (world.is_root()) CHECK((same_bits(walls_a, walls_b) && touched(walls_a) == c.walls));
       if (world.is_root()) CHECK((same_bits(bodies_a, bodies_b) && touched(bodies_a) == c.bodies));
       const ParticleLedger p = one.backend->reports().ledger(0), q = many.backend->reports().ledger(0);
       if (!world.is_root()) continue;

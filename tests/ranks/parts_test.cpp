@@ -187,7 +187,7 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
         const Vec3 p = xyz(all.position[i]);
         const bool mine = boxes.owner(p) == ranks.rank();
         if (mine) position.push_back(all.position[i]), id.push_back(static_cast<std::int64_t>(i));
-        for_each_image(period, [&](Vec3 shift, int image) {
+        for_each_shift(period, [&](Vec3 shift, int image) {
           if (image == kNoShift && (mine || ranks.alone())) return;
           const Vec3 q = p + shift;
           if (q.x >= box.min.x - width && q.x <= box.max.x + width && q.y >= box.min.y - width &&

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coupling/ledger.hpp"
+#include "dem/particle_store.hpp"
 #include "run/balance.hpp"
 #include "run/step_loop.hpp"
 #include "run/target_contacts.hpp"

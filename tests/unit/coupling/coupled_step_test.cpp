@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "dem/particle_store.hpp"
 #include "run/state.hpp"
 #include "support/backends.hpp"
 #include "support/catch.hpp"

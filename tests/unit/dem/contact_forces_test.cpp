@@ -21,10 +21,6 @@ struct BruteContacts {
   int count = 0;
 };
 
-bool interact(const BodyShapes& shapes, const BruteItem& a, const BruteItem& b) {
-  return shapes.rule().may_touch(a.body, b.body);
-}
-
 void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal,
                  std::size_t i) {
   const ContactForce c = contact_force(PowerLaw(law), overlap, rate);
@@ -36,15 +32,15 @@ void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real 
 // Every ordered pair and image: forces once per item, energies and counts half from either side.
 BruteContacts brute_contacts(const LoadedBox& box) {
   const std::vector<BruteItem> items = brute_items(box);
-  const BodyShapes shapes(box.model);
+  const TouchRule rule(box.model);
   BruteContacts sum{std::vector<Vec3>(items.size()), std::vector<int>(items.size())};
   Real pairs = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const BruteItem& a = items[i];
     for (std::size_t j = 0; j < items.size(); ++j)
-      for_each_image(Subdomain(box.model.space).period(), [&](Vec3 shift, int image) {
+      for_each_shift(Subdomain(box.model.space).period(), [&](Vec3 shift, int image) {
         const BruteItem& b = items[j];
-        if ((i == j && image == kNoShift) || !interact(shapes, a, b)) return;
+        if ((i == j && image == kNoShift) || !rule.may_touch(a.body, b.body)) return;
         const Vec3 r = a.position - b.position - shift;
         const Real overlap = a.radius + b.radius - norm(r);
         if (overlap <= 0) return;

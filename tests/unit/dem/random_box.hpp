@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dem/backend.hpp"
-#include "dem/body_shapes.hpp"
+#include "dem/particle_store.hpp"
 #include "model/model.hpp"
 #include "model/random.hpp"
 #include "partition/halo.hpp"
@@ -205,17 +205,6 @@ inline std::vector<BruteItem> brute_items(const LoadedBox& box) {
                        point.velocity, shape.radius, shape.material, static_cast<int>(b)});
     }
   return items;
-}
-
-// Calls visit(shift [m], number of the image) for the 27 neighbouring boxes; those of axes without period
-// once.
-template <class Visit>
-void for_each_image(Vec3 period, const Visit& visit) {
-  for (int image = 0; image < 27; ++image) {
-    const int sx = image % 3 - 1, sy = image / 3 % 3 - 1, sz = image / 9 - 1;
-    if ((sx != 0 && period.x == 0) || (sy != 0 && period.y == 0) || (sz != 0 && period.z == 0)) continue;
-    visit(Vec3{sx * period.x, sy * period.y, sz * period.z}, image);
-  }
 }
 
 }  // namespace scree

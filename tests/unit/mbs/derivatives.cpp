@@ -200,6 +200,20 @@ TEST_CASE("the constraint Jacobian and right-hand sides are the derivatives of t
   }
 }
 
+namespace {
+
+// Of a body that a force resists which grows with the motion of the point at `arm` along the normal.
+std::array<Real, 21> block_along(Vec3 normal, Vec3 arm, Real slope) {
+  const Vec3 moment = cross(arm, normal);
+  const Real along[6] = {normal.x, normal.y, normal.z, moment.x, moment.y, moment.z};
+  std::array<Real, 21> packed{};
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) packed[static_cast<std::size_t>(packed6(i, j))] = slope * along[i] * along[j];
+  return packed;
+}
+
+}  // namespace
+
 TEST_CASE("Newton's matrix is the derivative of the residual, contact included") {
   Model model = two_bodies();
   model.integrator.hht_alpha = -0.2;
@@ -232,10 +246,8 @@ TEST_CASE("Newton's matrix is the derivative of the residual, contact included")
     const Vec3 moved{q[3] - arm.y * q[5], q[4] + arm.x * q[5], 0},
         rate{v[3] - arm.y * v[5], v[4] + arm.x * v[5], 0};
     const Vec3 force = -(stiffness * moved) - damping * rate;
-    contacts.wrench[1] = {};
-    add_point_force(contacts.wrench[1], force, arm);
-    contacts.stiffness = {{1}};
-    add_point_stiffness(contacts.stiffness[0], arm, stiffness, damping);
+    contacts.wrench[1] = {force, cross(arm, force)};
+    contacts.stiffness = {{1, block_along(normal, arm, 300), block_along(normal, arm, 5)}};
     probe.system.set_contacts(contacts);
     method.evaluate_residual();
     return method.residual();

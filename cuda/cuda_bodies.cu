@@ -1,0 +1,56 @@
+#include "cuda_bodies.cuh"
+
+namespace scree {
+
+using Loads = DeviceSurfaces::Loads;
+
+void CudaBodies::put() { items_.surfaces.place(items_.device(), side_.placed()); }
+
+const Vec3* CudaBodies::upload_steps() {
+  step_.upload(side_.step(), items_.stream);
+  return step_.data();
+}
+
+void CudaBodies::find_loads() {
+  if (!have_surfaces()) return;
+  const Device on = items_.device();
+  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, items_.now.position.data(),
+                             items_.now.velocity.data());
+  wait_for(items_.stream);
+  side_.take_loads(items_.surfaces.load_sums());
+}
+
+void CudaBodies::find_steps(const StepStart& start) {
+  if (!have_surfaces()) return;
+  items_.surfaces.find_steps(items_.device(), *items_.kernels, items_.now.position.data(),
+                             items_.now.velocity.data(), start);
+}
+
+void CudaBodies::take_steps(Real h) {
+  if (!have_surfaces()) return;
+  wait_for(items_.stream);
+  side_.take_steps(items_.surfaces.step_sums(), h);
+}
+
+void CudaBodies::queue_loads(const Vec4* position, const Vec4* velocity, const Event& ready) {
+  const Device beside{stream_};
+  items_.surfaces.place(beside, side_.placed());
+  ready.hold(stream_);
+  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_step, position, velocity);
+  loads_found_.record(stream_);
+}
+
+void CudaBodies::take_loads() {
+  wait_for(stream_);
+  side_.take_loads(items_.surfaces.load_sums());
+}
+
+void CudaBodies::find_loads_beside(const Vec4* position, const Vec4* velocity) {
+  if (!have_surfaces()) return;
+  const Device beside{stream_};
+  items_.surfaces.place(beside, side_.placed());
+  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, position, velocity);
+  take_loads();
+}
+
+}  // namespace scree

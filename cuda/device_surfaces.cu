@@ -1,0 +1,243 @@
+#include <cub/device/device_scan.cuh>
+
+#include "base/countable.hpp"
+#include "dem/surface_rows.hpp"
+#include "device_surfaces.cuh"
+#include "for_each.cuh"
+
+namespace scree {
+namespace {
+
+constexpr int kSearchThreads = 128;
+constexpr Index kChunk = 128;  // entries
+
+// What the search for entries reads.
+struct SurfaceSearch {
+  const Vec4* position;
+  Index active;
+  BrickGrid grid;
+  const Index* starts;
+  Real reach, skin;  // reach: largest radius of a particle and skin [m]
+  const WallPlane* planes;
+  Index ground;
+  const PlacedSurface* placed;
+  Vec3 period;
+};
+
+__device__ bool is_near(const SurfaceSearch& in, Vec4 p, const WallPlane& plane) {
+  return wall_pair(p, plane).distance < p.w + in.skin;
+}
+
+// Entries with the ground per particle.
+struct GroundCountItem {
+  SurfaceSearch in;
+  Index* counts;
+  __device__ void operator()(Index i) const {
+    Index count = 0;
+    if (i < in.active)
+      for (Index w = 0; w < in.ground; ++w) count += is_near(in, in.position[i], in.planes[w]);
+    counts[i] = count;
+  }
+};
+
+struct EntryOutputs {
+  Index *surfaces, *particles;
+  std::int8_t* images;
+};
+
+struct GroundFillItem {
+  SurfaceSearch in;
+  const Index* offsets;
+  Index* next;
+  EntryOutputs out;
+  __device__ void operator()(Index i) const {
+    Index slot = offsets[i];
+    if (offsets[i + 1] > slot)  // most have none, and their places need not be read
+      for (Index w = 0; w < in.ground; ++w)
+        if (is_near(in, in.position[i], in.planes[w])) {
+          out.surfaces[slot] = w, out.particles[slot] = i, out.images[slot] = kNoShift;
+          ++slot;
+        }
+    next[i] = slot;
+  }
+};
+
+// Calls visit(i, surface, image) for the active particles near the block's surface on a body.
+template <class Visit>
+__device__ void visit_near(const SurfaceSearch& in, const Visit& visit) {
+  const auto s = static_cast<Index>(blockIdx.x);
+  const PlacedSurface surface = in.placed[s];
+  const CellGrid& cells = in.grid.cells.own;
+  for_each_shift(in.period, [&](Vec3 shift, std::int8_t image) {
+    const CellRange range = cells_near(cells, surface.point + shift, surface.radius + in.reach);
+    const Index nx = range.upper.x - range.lower.x + 1, ny = range.upper.y - range.lower.y + 1,
+                nz = range.upper.z - range.lower.z + 1;
+    for (Index c = static_cast<Index>(threadIdx.x); c < nx * ny * nz; c += kSearchThreads) {
+      const Index x = range.lower.x + c % nx, y = range.lower.y + c / nx % ny,
+                  z = range.lower.z + c / (nx * ny);
+      const Index key = in.grid.key(x, y, z);
+      for (Index i = in.starts[key]; i < in.starts[key + 1]; ++i)
+        if (surface_pair(surface, shift, in.position[i]).geometry.overlap > -in.skin)
+          visit(i, in.ground + s, image);
+    }
+  });
+}
+
+__global__ void __launch_bounds__(kSearchThreads)
+    count_near_kernel(const __grid_constant__ SurfaceSearch in, Index* counts) {
+  visit_near(in, [&](Index i, Index, std::int8_t) { atomicAdd(&counts[i], 1); });
+}
+
+__global__ void __launch_bounds__(kSearchThreads)
+    fill_near_kernel(const __grid_constant__ SurfaceSearch in, Index* next, EntryOutputs out) {
+  visit_near(in, [&](Index i, Index surface, std::int8_t image) {
+    const Index slot = atomicAdd(&next[i], 1);
+    out.surfaces[slot] = surface, out.particles[slot] = i, out.images[slot] = image;
+  });
+}
+
+// Orders a row's entries by surface and image: they were written as the threads came.
+struct OrderItem {
+  const Index* offsets;
+  EntryOutputs out;
+  __device__ void operator()(Index i) const {
+    for (Index k = offsets[i] + 1; k < offsets[i + 1]; ++k) {
+      const Index surface = out.surfaces[k];
+      const std::int8_t image = out.images[k];
+      Index to = k;
+      for (; to > offsets[i] && (out.surfaces[to - 1] > surface ||
+                                 (out.surfaces[to - 1] == surface && out.images[to - 1] > image));
+           --to)
+        out.surfaces[to] = out.surfaces[to - 1], out.images[to] = out.images[to - 1];
+      out.surfaces[to] = surface, out.images[to] = image;
+    }
+  }
+};
+
+// Entries with the ground come last, behind all surfaces on bodies.
+struct SurfaceKeyItem {
+  const Index* surfaces;
+  Index ground;
+  unsigned last;
+  unsigned* keys;
+  SCREE_HD void operator()(Index entry) const {
+    keys[entry] = surfaces[entry] < ground ? last : static_cast<unsigned>(surfaces[entry] - ground);
+  }
+};
+
+template <int kTerms>
+std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>& sums) {
+  std::vector<SurfaceSums<kTerms>> out;
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    if (sums[k].contacts > 0) out.push_back(sums[k]);
+  return out;
+}
+
+}  // namespace
+
+DeviceSurfaces::DeviceSurfaces(const std::vector<WallPlane>& planes, Index on_bodies, Vec3 period,
+                               cudaStream_t stream)
+    : period_(period), ground_(static_cast<Index>(planes.size())), on_bodies_(on_bodies), h_index_(1) {
+  planes_.upload(planes, stream);
+}
+
+void DeviceSurfaces::build(Device device, const Particles& particles, std::span<const PlacedSurface> placed,
+                           Real skin) {
+  material_ = particles.material;
+  place(device, placed);
+  find_entries(device, particles, skin);
+  if (on_bodies()) group_by_surface(device);
+}
+
+void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) {
+  const auto owned = static_cast<std::size_t>(p.owned);
+  counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
+  const SurfaceSearch in{p.position, p.active,       *p.grid, p.starts,       p.largest_radius + skin,
+                         skin,       planes_.data(), ground_, places_.data(), period_};
+  const auto blocks = static_cast<unsigned>(on_bodies_);
+  // The entry past the end is read, though no sum depends on it.
+  require_cuda(cudaMemsetAsync(counts_.data() + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
+  for_each(device, p.owned, GroundCountItem{in, counts_.data()});
+  if (on_bodies() && p.active > 0)
+    count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts_.data());
+  require_cuda(cudaGetLastError(), "surfaces near particles");
+  with_space(space_, [&](void* at, std::size_t& bytes) {
+    require_cuda(
+        cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), offsets_.data(), p.owned + 1, device.stream),
+        "scan");
+  });
+  copy_async(h_index_.data(), offsets_.data() + owned, 1, device.stream);
+  wait_for(device.stream);
+  entries_ = h_index_[0];
+  const auto entries = static_cast<std::size_t>(entries_);
+  surfaces_.resize(entries), particles_.resize(entries), images_.resize(entries);
+  if (entries_ == 0) return;
+  const EntryOutputs out{surfaces_.data(), particles_.data(), images_.data()};
+  for_each(device, p.owned, GroundFillItem{in, offsets_.data(), next_.data(), out});
+  if (!on_bodies() || p.active == 0) return;
+  fill_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, next_.data(), out);
+  require_cuda(cudaGetLastError(), "surfaces near particles");
+  for_each(device, p.owned, OrderItem{offsets_.data(), out});
+}
+
+void DeviceSurfaces::group_by_surface(Device device) {
+  const auto last = static_cast<unsigned>(on_bodies_);
+  const auto entries = static_cast<std::size_t>(entries_);
+  for_each(device, entries_, SurfaceKeyItem{surfaces_.data(), ground_, last, by_surface_.keys(entries)});
+  by_surface_.sort(device, entries_, last);
+  std::vector<Index> starts(static_cast<std::size_t>(on_bodies_) + 1);
+  require_cuda(cudaMemcpyAsync(starts.data(), by_surface_.starts(), starts.size() * sizeof(Index),
+                               cudaMemcpyDeviceToHost, device.stream),
+               "cudaMemcpyAsync");
+  wait_for(device.stream);
+  h_chunks_.clear();
+  for (Index s = 0; s < on_bodies_; ++s)
+    for (Index first = starts[s]; first < starts[s + 1]; first += kChunk)
+      h_chunks_.push_back({s, first, std::min(first + kChunk, starts[s + 1])});
+  body_entries_ = starts.back();
+  chunks_.upload(h_chunks_, device.stream);
+  for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize(entries);
+  steps_.resize(entries);
+}
+
+void DeviceSurfaces::place(Device device, std::span<const PlacedSurface> placed) {
+  if (!on_bodies()) return;
+  placed_.wait();  // for the last copy
+  h_placed_.resize(placed.size()), places_.resize(placed.size());
+  std::copy(placed.begin(), placed.end(), h_placed_.data());
+  copy_async(places_.data(), h_placed_.data(), placed.size(), device.stream);
+  placed_.record(device.stream);
+}
+
+void DeviceSurfaces::keep_start(Device device) {
+  if (!on_bodies()) return;
+  start_places_.resize(places_.size());
+  copy_async(start_places_.data(), places_.data(), places_.size(), device.stream);
+}
+
+SurfaceViews DeviceSurfaces::entry_views(const Vec4* position, const Vec4* velocity) const {
+  return {position,       velocity,
+          material_,      {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
+          places_.data(), ground_,
+          period_};
+}
+
+void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
+                                const Vec4* position, const Vec4* velocity) {
+  h_load_sums_.resize(h_chunks_.size());
+  kernels.surface_loads(device, entry_views(position, velocity), chunk_list(),
+                        loads_[which == Loads::of_step ? 0 : 1].data(), h_load_sums_.data());
+}
+
+void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
+                                const Vec4* velocity, const StepStart& start) {
+  h_step_sums_.resize(h_chunks_.size());
+  kernels.surface_steps(device, entry_views(position, velocity), chunk_list(), {start, start_places_.data()},
+                        steps_.data(), h_step_sums_.data());
+}
+
+std::vector<InstantSums> DeviceSurfaces::load_sums() const { return touched(h_load_sums_); }
+
+std::vector<StepSums> DeviceSurfaces::step_sums() const { return touched(h_step_sums_); }
+
+}  // namespace scree

@@ -1,0 +1,88 @@
+// Contacts of a rank's particles with surfaces on the device: who is near which, what they do to each other,
+// and what those on bodies sum to.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "brick_grid.cuh"
+#include "cell_sort.cuh"
+#include "contact_kernels.cuh"
+#include "dem/surface_sums.hpp"
+#include "dem/surfaces.hpp"
+#include "device.cuh"
+
+namespace scree {
+
+class DeviceSurfaces {
+ public:
+  // Where the search finds the particles, in the order of their cells.
+  struct Particles {
+    const Vec4* position;  // x, y, z, radius
+    const int* material;
+    Index owned, active;
+    const BrickGrid* grid;
+    const Index* starts;  // [cells + 1] into the active ones
+    Real largest_radius;  // [m]
+  };
+
+  // period: of the space [m].
+  DeviceSurfaces(const std::vector<WallPlane>& planes, Index on_bodies, Vec3 period, cudaStream_t stream);
+
+  // Fills the rows. placed: the surfaces on bodies, where they are now. Waits for the device.
+  void build(Device device, const Particles& particles, std::span<const PlacedSurface> placed, Real skin);
+  bool on_bodies() const { return on_bodies_ > 0; }
+
+  // Which of the two sets of loads: those of the step, which the particles read, or of another look at the
+  // bodies.
+  enum class Loads { of_step, of_look };
+  // Queues the copy of the surfaces' new places, which no longer change once it is done.
+  void place(Device device, std::span<const PlacedSurface> placed);
+  void keep_start(Device device);  // of an implicit step
+  // Queues the contacts with the surfaces on bodies, placed as they are, of particles at these places; their
+  // sums are on the way to the host, too.
+  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const Vec4* position,
+                  const Vec4* velocity);
+  void find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
+                  const Vec4* velocity, const StepStart& start);
+  // The sums of the last contacts found, once the stream is done: a surface may come in several parts.
+  std::vector<InstantSums> load_sums() const;
+  std::vector<StepSums> step_sums() const;
+
+  // For the items' views: everything of them but particles and rows.
+  template <class Rows>
+  ContactViews<Rows> views(const Vec4* position, const Vec4* velocity, const int* material,
+                           const Rows& rows) const {
+    return {position,       velocity, material,         rows,         offsets_.data(), surfaces_.data(),
+            planes_.data(), ground_,  loads_[0].data(), steps_.data()};
+  }
+
+ private:
+  void find_entries(Device device, const Particles& particles, Real skin);
+  void group_by_surface(Device device);
+  SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
+  SurfaceViews entry_views(const Vec4* position, const Vec4* velocity) const;
+
+  Vec3 period_;
+  DeviceArray<WallPlane> planes_;
+  Index ground_ = 0, on_bodies_ = 0;
+  Index entries_ = 0, body_entries_ = 0;
+  DeviceArray<Index> counts_, offsets_, next_, surfaces_, particles_;
+  DeviceArray<std::int8_t> images_;
+  DeviceArray<unsigned char> space_;  // of library calls
+  CellSort by_surface_;
+  std::vector<SurfaceChunk> h_chunks_;
+  DeviceArray<SurfaceChunk> chunks_;
+  const int* material_ = nullptr;
+  PinnedArray<PlacedSurface> h_placed_;
+  Event placed_;
+  DeviceArray<PlacedSurface> places_, start_places_;
+  DeviceArray<SurfaceLoad> loads_[2];
+  DeviceArray<SurfaceStep> steps_;
+  // Written by the device, of chunks with contacts but for their number.
+  PinnedArray<InstantSums> h_load_sums_;
+  PinnedArray<StepSums> h_step_sums_;
+  PinnedArray<Index> h_index_;
+};
+
+}  // namespace scree

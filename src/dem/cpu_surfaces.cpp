@@ -1,0 +1,59 @@
+#include "dem/cpu_surfaces.hpp"
+
+namespace scree {
+namespace {
+
+// Per surface that something touches.
+template <class Sums, class Contact>
+std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRows& rows, Index ground) {
+  std::vector<Sums> sums;
+  for (const Index entry : rows.by_surface) {
+    if (!contacts[entry].touches) continue;
+    const Index surface = rows.surfaces[entry] - ground;
+    if (sums.empty() || sums.back().surface != surface) sums.emplace_back().surface = surface;
+    sums.back().add_contact(contacts[entry]);
+  }
+  return sums;
+}
+
+}  // namespace
+
+CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
+                         const ContactKernels& kernels)
+    : side_(side), kernels_(kernels), planes_(wall_planes(model)), period_(subdomain.period()) {}
+
+SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceRows& rows,
+                                      const std::vector<Vec4>& position,
+                                      const std::vector<Vec4>& velocity) const {
+  return {position.data(), velocity.data(),       store.material.data(),
+          rows.entries(),  side_.placed().data(), side_.surfaces().ground(),
+          period_};
+}
+
+void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows,
+                             const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) {
+  if (side_.size() == 0) return;
+  loads_.resize(rows.surfaces.size());
+  kernels_.surface_loads(entry_views(store, rows, position, velocity),
+                         static_cast<Index>(rows.by_surface.size()), loads_.data());
+  side_.take_loads(sums_of<InstantSums>(loads_, rows, side_.surfaces().ground()));
+}
+
+void CpuSurfaces::find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start) {
+  if (side_.size() == 0) return;
+  steps_.resize(rows.surfaces.size());
+  kernels_.surface_steps(entry_views(store, rows, store.position, store.velocity),
+                         static_cast<Index>(rows.by_surface.size()), start, side_.start().data(),
+                         steps_.data());
+  side_.take_steps(sums_of<StepSums>(steps_, rows, side_.surfaces().ground()), start.h);
+}
+
+ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,
+                                            const std::vector<Vec4>& velocity, const PackedRows& neighbors,
+                                            const SurfaceRows& rows) const {
+  return {position.data(),     velocity.data(),      store.material.data(), neighbors,
+          rows.offsets.data(), rows.surfaces.data(), planes_.data(),        side_.surfaces().ground(),
+          loads_.data(),       steps_.data()};
+}
+
+}  // namespace scree

@@ -1,0 +1,42 @@
+// Contacts of the serial backend's particles with surfaces on bodies.
+#pragma once
+
+#include <vector>
+
+#include "dem/contact_kernels.hpp"
+#include "dem/particle_store.hpp"
+#include "dem/surface_rows.hpp"
+#include "dem/surface_side.hpp"
+
+namespace scree {
+
+class CpuSurfaces {
+ public:
+  CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
+              const ContactKernels& kernels);
+
+  // The surfaces as they are placed, with particles at these places, at an instant: for the loads in views(),
+  // and for the side's sums.
+  void find_loads(const ParticleStore& store, const SurfaceRows& rows, const std::vector<Vec4>& position,
+                  const std::vector<Vec4>& velocity);
+  // The same over an implicit step, with the particles of the store.
+  void find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start);
+
+  // What items see of particles at these places, with the contacts found last.
+  ContactViews<PackedRows> views(const ParticleStore& store, const std::vector<Vec4>& position,
+                                 const std::vector<Vec4>& velocity, const PackedRows& neighbors,
+                                 const SurfaceRows& rows) const;
+
+ private:
+  SurfaceViews entry_views(const ParticleStore& store, const SurfaceRows& rows,
+                           const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const;
+
+  SurfaceSide& side_;
+  const ContactKernels& kernels_;
+  std::vector<WallPlane> planes_;
+  Vec3 period_;
+  std::vector<SurfaceLoad> loads_;  // per entry
+  std::vector<SurfaceStep> steps_;
+};
+
+}  // namespace scree

@@ -1,0 +1,53 @@
+// Which surfaces each particle of a rank is near: for surfaces what the neighbour list is for particles.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "dem/contact_walk.hpp"
+#include "dem/surfaces.hpp"
+#include "partition/cell_grid.hpp"
+
+namespace scree {
+
+// Row i has every surface that can touch particle i before the list expires: those of the ground first, then
+// those on bodies by surface and image.
+struct SurfaceRows {
+  std::vector<Index> offsets;       // [particles + 1]
+  std::vector<Index> surfaces;      // [entries]
+  std::vector<std::int8_t> images;  // [entries]
+  std::vector<Index> particles;     // [entries]
+  std::vector<Index> by_surface;    // [entries with surfaces on bodies], surface by surface
+
+  SurfaceEntries entries() const {
+    return {surfaces.data(), images.data(), particles.data(), by_surface.data()};
+  }
+};
+
+// Particles in the order of their cells.
+struct SortedParticles {
+  const CellGrid& grid;
+  const std::vector<Index>& start;  // [cells + 1] into items
+  const std::vector<Index>& items;  // particles, and ghosts, which count from `active` on
+  std::span<const Vec4> position;   // x, y, z, radius
+  Index active;                     // particles in the search
+  Real largest_radius;              // of one [m]
+};
+
+// The cells that particles can be in which touch a sphere at p within the reach: lower, and upper one
+// included.
+struct CellRange {
+  CellPlace lower, upper;
+};
+SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real reach) {
+  return {grid.nearest_place(p - Vec3{reach, reach, reach}),
+          grid.nearest_place(p + Vec3{reach, reach, reach})};
+}
+
+// owned: particles that have a row, of which the first `active` are in the search.
+void build_rows(const SortedParticles& sorted, Index owned, std::span<const WallPlane> planes,
+                std::span<const PlacedSurface> placed, Vec3 period, Real skin, SurfaceRows& rows);
+
+}  // namespace scree

@@ -1,0 +1,102 @@
+// The surfaces on bodies beside the particles of a backend: where they are, what their contacts sum to, what
+// the bodies lose among each other. Few and small, they live on the host for every backend.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dem/body_contacts.hpp"
+#include "dem/surface_sums.hpp"
+#include "dem/surfaces.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+#include "partition/ranks.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+// Of the contacts of bodies with each other and with walls.
+struct ShapeLosses {
+  Real contact_loss = 0;     // dissipated since t = 0 [J]
+  Real loss_power = 0;       // the same at t_n, with velocity-Verlet [W]
+  Real integrator_loss = 0;  // taken out by HHT since t = 0 [J]
+};
+
+// Of the shapes of all bodies.
+struct ShapePack {
+  std::vector<int> body;
+  std::vector<Real> radius;
+  std::vector<Vec3> position, velocity, force;
+  std::vector<int> contacts;
+};
+
+class SurfaceSide {
+ public:
+  SurfaceSide(const Model& model, const Subdomain& subdomain, const Ranks& ranks);
+
+  const SurfaceSet& surfaces() const { return surfaces_; }
+  Index size() const { return surfaces_.on_bodies(); }
+  void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
+  // When a list is built: brings each surface into the periodic box, where it stays until the next one.
+  void bring_into_box();
+  // What bodies can touch, until a surface has moved by half the skin.
+  void build_list(Real skin);
+  // Moves the surfaces to where the bodies are; returns the largest displacement of one [m].
+  Real place();
+  // One entry per surface on a body.
+  const std::vector<PlacedSurface>& placed() const { return placed_; }
+  const std::vector<Vec3>& step() const { return step_; }  // displacement by the last place() [m]
+
+  // Start of an implicit step, to look back at.
+  void keep_start() { start_ = placed_; }
+  const std::vector<PlacedSurface>& start() const { return start_; }
+  Real step_displacement() const { return largest_displacement(start_); }   // [m]
+  Real list_displacement() const { return largest_displacement(listed_); }  // since the list was built [m]
+
+  // What touches the surfaces at an instant, and over an implicit step: the backend hands over what its
+  // particles do, in any order and a surface in any number of parts; rank 0 adds what the bodies do to each
+  // other.
+  void take_loads(std::span<const InstantSums> of_particles);
+  void take_steps(std::span<const StepSums> of_particles, Real h);
+
+  // reduce_wrench: brings the sums of all ranks to rank 0, one message per rank, and adds them up to the
+  // contact wrenches on the bodies for the step and at its end, or at an instant; on other ranks they come
+  // out as zero. Collective.
+  void reduce(ContactWrenches& step, std::vector<BodyWrench>& end) const;
+  void reduce(std::vector<BodyWrench>& end) const;
+
+  // Of the bodies among each other. book_losses: of an explicit step of length h from the last loads,
+  // trapezoidal like the particles'; book_step: of an accepted implicit step from the last take_steps().
+  void book_losses(Real h);
+  void book_step();
+  ShapeLosses& losses() { return losses_; }
+  const ShapeLosses& losses() const { return losses_; }
+  Real elastic_energy() const { return bodies_.elastic_energy(); }  // at the last take_loads() [J]
+  Real pairs() const { return bodies_.pairs(); }
+
+  // From the last take_loads(). Collective; complete on rank 0.
+  std::vector<ContactSum> body_contacts() const;
+  ShapePack pack() const;
+  ContactSum on_wall(int wall) const { return bodies_.on_wall(wall); }
+
+ private:
+  Vec3 arm_of(Index surface) const;  // from the centre of its body [m]
+  Real largest_displacement(const std::vector<PlacedSurface>& from) const;
+  template <class Sums>
+  std::vector<Sums> merged(std::vector<Sums> sums) const;
+
+  const Model& model_;
+  const Subdomain& subdomain_;
+  Ranks ranks_;
+  SurfaceSet surfaces_;
+  BodyContacts bodies_;
+  std::vector<BodyMotion> motion_;  // of the bodies as last set
+  std::vector<ImageCount> image_;   // of each surface when it was brought into the box
+  std::vector<PlacedSurface> placed_, start_, listed_;
+  std::vector<Vec3> step_;
+  std::vector<InstantSums> loads_;
+  std::vector<StepSums> steps_;
+  ShapeLosses losses_;
+};
+
+}  // namespace scree

@@ -1,0 +1,89 @@
+// Surfaces that particles touch, in the frame of what carries them: the ground or a body.
+#pragma once
+
+#include <vector>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+#include "partition/subdomain.hpp"
+#include "physics/contact_geometry.hpp"
+
+namespace scree {
+
+enum class SurfaceKind : int { plane, sphere };  // discs are spheres: their centres lie in one plane
+
+// Constant.
+struct Surface {
+  SurfaceKind kind;
+  int carrier;  // index into Model::bodies, or kGround
+  int material;
+  Vec3 point;   // of a plane, or a sphere's centre; in the carrier's frame [m]
+  Vec3 normal;  // of a plane: unit, into its free side
+  Real radius;  // of a sphere [m]
+};
+
+// A surface of the ground in the form the items read: half space.
+struct WallPlane {
+  Vec3 point, normal;
+  int material;
+};
+std::vector<WallPlane> wall_planes(const Model& model);
+
+// All surfaces of a model: the walls in the deck's order, on the ground, then the shapes of the bodies.
+class SurfaceSet {
+ public:
+  explicit SurfaceSet(const Model& model);
+  // Of the ground; they come first, and do not move.
+  Index ground() const { return ground_; }
+  Index on_bodies() const { return static_cast<Index>(all_.size()) - ground_; }
+  // moving: counts from the first surface on a body.
+  const Surface& on_body(Index moving) const { return all_[static_cast<std::size_t>(ground_ + moving)]; }
+  const std::vector<Surface>& all() const { return all_; }
+
+ private:
+  std::vector<Surface> all_;
+  Index ground_ = 0;
+};
+
+// A surface on a body where it is at one instant, as the items read it.
+struct PlacedSurface {
+  SurfaceKind kind;
+  int material;
+  Real radius;          // [m]
+  Vec3 point, normal;   // as in Surface, in the global frame
+  Vec3 arm;             // of the point, from the body's centre [m]
+  Vec3 velocity, spin;  // of the body [m/s], [rad/s]
+
+  // Of the place on the body at `from_point` from the point.
+  SCREE_HD Vec3 velocity_at(Vec3 from_point) const { return velocity + cross(spin, arm + from_point); }
+};
+
+// A sphere at p (x, y, z, radius) as it lies to a surface that is moved by `shift`.
+struct SurfacePair {
+  ContactGeometry geometry;
+  Vec3 contact;  // where they touch, on the surface, from its point [m]
+};
+
+SCREE_HD SurfacePair surface_pair(const PlacedSurface& surface, Vec3 shift, Vec4 p) {
+  if (surface.kind == SurfaceKind::plane) {
+    const Vec3 place = xyz(p) - shift;
+    const ContactGeometry g = plane_pair(place, p.w, surface.point, surface.normal);
+    return {g, place - g.distance * g.direction - surface.point};
+  }
+  const ContactGeometry g = sphere_pair(xyz(p) - (surface.point + shift), p.w + surface.radius);
+  return {g, surface.radius * g.normal()};
+}
+
+// Near which surfaces each particle is: a list of the same reach as the neighbour list. An entry stands in
+// the row of its particle, ordered by surface and image.
+struct SurfaceEntries {
+  const Index* surfaces;      // per entry; those of the ground have the lowest numbers
+  const std::int8_t* images;  // number of the shift of the surface, 13 for none
+  const Index* particles;     // whose row it stands in
+  const Index* by_surface;    // the entries with surfaces on bodies, surface by surface
+};
+
+}  // namespace scree
