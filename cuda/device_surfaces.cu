@@ -194,7 +194,6 @@ void DeviceSurfaces::group_by_surface(Device device) {
   for (Index s = 0; s < on_bodies_; ++s)
     for (Index first = starts[s]; first < starts[s + 1]; first += kChunk)
       h_chunks_.push_back({s, first, std::min(first + kChunk, starts[s + 1])});
-  body_entries_ = starts.back();
   chunks_.upload(h_chunks_, device.stream);
   for (DeviceArray<SurfaceLoad>& loads : loads_) loads.resize(entries);
   steps_.resize(entries);

@@ -66,7 +66,7 @@ class DeviceSurfaces {
   Vec3 period_;
   DeviceArray<WallPlane> planes_;
   Index ground_ = 0, on_bodies_ = 0;
-  Index entries_ = 0, body_entries_ = 0;
+  Index entries_ = 0;
   DeviceArray<Index> counts_, offsets_, next_, surfaces_, particles_;
   DeviceArray<std::int8_t> images_;
   DeviceArray<unsigned char> space_;  // of library calls

@@ -9,11 +9,9 @@ std::vector<WallPlane> wall_planes(const Model& model) {
 }
 
 SurfaceSet::SurfaceSet(const Model& model) : ground_(static_cast<Index>(model.walls.size())) {
-  for (const Wall& wall : model.walls)
-    all_.push_back({SurfaceKind::plane, kGround, wall.material, wall.point, wall.normal, 0});
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const Shape& shape : model.bodies[b].shapes)
-      all_.push_back(
+      on_bodies_.push_back(
           {SurfaceKind::sphere, static_cast<int>(b), shape.material, shape.offset, {}, shape.radius});
 }
 

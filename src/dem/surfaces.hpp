@@ -15,10 +15,10 @@ namespace scree {
 
 enum class SurfaceKind : int { plane, sphere };  // discs are spheres: their centres lie in one plane
 
-// Constant.
+// A surface on a body; constant.
 struct Surface {
   SurfaceKind kind;
-  int carrier;  // index into Model::bodies, or kGround
+  int carrier;  // index into Model::bodies
   int material;
   Vec3 point;   // of a plane, or a sphere's centre; in the carrier's frame [m]
   Vec3 normal;  // of a plane: unit, into its free side
@@ -32,20 +32,19 @@ struct WallPlane {
 };
 std::vector<WallPlane> wall_planes(const Model& model);
 
-// All surfaces of a model: the walls in the deck's order, on the ground, then the shapes of the bodies.
+// The surfaces of a model are numbered: the walls in the deck's order, on the ground, then the shapes of the
+// bodies.
 class SurfaceSet {
  public:
   explicit SurfaceSet(const Model& model);
-  // Of the ground; they come first, and do not move.
-  Index ground() const { return ground_; }
-  Index on_bodies() const { return static_cast<Index>(all_.size()) - ground_; }
+  Index ground() const { return ground_; }  // how many are on the ground; they do not move
+  Index on_bodies() const { return static_cast<Index>(on_bodies_.size()); }
   // moving: counts from the first surface on a body.
-  const Surface& on_body(Index moving) const { return all_[static_cast<std::size_t>(ground_ + moving)]; }
-  const std::vector<Surface>& all() const { return all_; }
+  const Surface& on_body(Index moving) const { return on_bodies_[static_cast<std::size_t>(moving)]; }
 
  private:
-  std::vector<Surface> all_;
-  Index ground_ = 0;
+  Index ground_;
+  std::vector<Surface> on_bodies_;
 };
 
 // A surface on a body where it is at one instant, as the items read it.
