@@ -187,6 +187,8 @@ class DeviceContactKernels {
   virtual void wall_sums(Device device, const DeviceViews& in, Index n, const WallChoice& choice,
                          ExactSums<kWallTerms>* sums, const std::function<void(Real*)>& share) const = 0;
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
+  // An output field that reads contacts.
+  virtual void output(Device device, const DeviceViews& in, const OutputRequest& request) const = 0;
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                      Real* contact_loss, Real* integrator_loss) const = 0;

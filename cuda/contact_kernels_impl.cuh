@@ -268,6 +268,10 @@ class ContactKernelsOf : public DeviceContactKernels {
     for_each(device, n,
              ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});
   }
+  void output(Device device, const DeviceViews& in, const OutputRequest& request) const override {
+    with_contact_output(request, ContactWalk<Laws, SlicedRows>{in, laws_},
+                        [&](const auto& item) { for_each(device, request.n, item); });
+  }
   void books(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
              Real* integrator_loss) const override {
     for_each(device, n,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 #include <cub/device/device_radix_sort.cuh>
 
 #include "cuda_reports.cuh"
@@ -25,6 +26,13 @@ struct CountDriftingItem {
 };
 
 }  // namespace
+
+CudaReports::CudaReports(CudaItems& items, CudaBodies& bodies) : items_(items), bodies_(bodies) {
+  const std::vector<OutputField> wanted = wanted_fields(items.model.output);
+  std::vector<FieldColumn> columns(wanted.size());
+  for (std::size_t k = 0; k < wanted.size(); ++k) columns[k].field = wanted[k];
+  output_.columns.swap(columns);
+}
 
 void CudaReports::queue_energies() {
   const auto n = static_cast<std::size_t>(items_.owned);
@@ -60,56 +68,71 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   return out;
 }
 
-void CudaReports::start_pack() {
-  PackArrays& p = pack_;
+void CudaReports::start_output() {
+  OutputArrays& o = output_;
   const auto n = static_cast<std::size_t>(items_.owned);
-  p.ready.wait();  // for the last pack, whose arrays are written now
-  p.n = n;
-  for_each_column([&](auto& on_device, auto& on_host) { on_device.resize(n), on_host.resize(n); }, p.packed,
-                  p.h_packed);
-  p.h_ids.resize(n);
-  p.ids.resize(n), p.sorted_ids.resize(n), p.order.resize(n), p.sorted_order.resize(n);
+  o.ready.wait();  // for the last output, whose arrays are written now
+  o.n = n;
+  o.h_ids.resize(n), o.position.resize(n), o.h_position.resize(n);
+  for (FieldColumn& column : o.columns) {
+    const std::size_t bytes = n * column.field.bytes;
+    column.values.resize(bytes), column.h_values.resize(bytes);
+  }
+  o.ids.resize(n), o.sorted_ids.resize(n), o.order.resize(n), o.sorted_order.resize(n);
   bodies_.find_loads();
-  queue_energies();
-  queue_pack();
-  p.packed_now.record(items_.stream);
-  p.packed_now.hold(copy_stream_);
-  copy_async(p.h_ids.data(), p.sorted_ids.data(), n, copy_stream_);
-  for_each_column([&](auto& to, auto& from) { copy_async(to.data(), from.data(), n, copy_stream_); },
-                  p.h_packed, p.packed);
-  p.ready.record(copy_stream_);
+  queue_order();
+  queue_values();
+  o.filled.record(items_.stream);
+  o.filled.hold(copy_stream_);
+  copy_async(o.h_ids.data(), o.sorted_ids.data(), n, copy_stream_);
+  copy_async(o.h_position.data(), o.position.data(), n, copy_stream_);
+  for (FieldColumn& column : o.columns)
+    copy_async(column.h_values.data(), column.values.data(), n * column.field.bytes, copy_stream_);
+  o.ready.record(copy_stream_);
 }
 
-// In the order of the global ids.
-void CudaReports::queue_pack() {
-  PackArrays& p = pack_;
-  for_each(items_.device(), items_.owned, IdItem{items_.now.row_key.data(), p.ids.data(), p.order.data()});
+// By global id.
+void CudaReports::queue_order() {
+  OutputArrays& o = output_;
+  for_each(items_.device(), items_.owned, IdItem{items_.now.row_key.data(), o.ids.data(), o.order.data()});
   const auto sort = [&](void* at, std::size_t& bytes) {
-    require_cuda(cub::DeviceRadixSort::SortPairs(at, bytes, p.ids.data(), p.sorted_ids.data(), p.order.data(),
-                                                 p.sorted_order.data(), items_.owned, 0, 8 * sizeof(GlobalId),
+    require_cuda(cub::DeviceRadixSort::SortPairs(at, bytes, o.ids.data(), o.sorted_ids.data(), o.order.data(),
+                                                 o.sorted_order.data(), items_.owned, 0, 8 * sizeof(GlobalId),
                                                  items_.stream),
                  "sort");
   };
-  if (p.n > 0) with_space(items_.space, sort);
-  PackItem item{views_of(items_.now),
-                p.sorted_order.data(),
-                contacts_.data(),
-                items_.model.gravity,
-                items_.model.space.min,
-                items_.subdomain.period(),
-                {}};
-  for_each_column([](auto*& to, auto& array) { to = array.data(); }, item.out, p.packed);
-  for_each(items_.device(), items_.owned, item);
+  if (o.n > 0) with_space(items_.space, sort);
 }
 
-ParticlePack CudaReports::pack_particles() {
-  PackArrays& p = pack_;
-  p.ready.wait();
-  ParticlePack pack;
-  pack.global_id.assign(p.h_ids.data(), p.h_ids.data() + p.n);
-  for_each_column([&](auto& values, auto& array) { values.assign(array.data(), array.data() + p.n); }, pack,
-                  p.h_packed);
-  return pack;
+// In that order.
+void CudaReports::queue_values() {
+  OutputArrays& o = output_;
+  const OutputSource source{views_of(items_.now), items_.model.gravity, items_.model.space.min,
+                            items_.subdomain.period()};
+  const Index* const order = o.sorted_order.data();
+  for_each(items_.device(), items_.owned, OwnOutputItem<PositionOutput>{source, order, o.position.data()});
+  for (FieldColumn& column : o.columns) {
+    const OutputRequest request{source, order, items_.owned, column.field.head.name, column.values.data()};
+    if (column.field.reads_contacts)
+      items_.kernels->output(items_.device(), items_.views(), request);
+    else
+      with_own_output(request, [&](const auto& item) { for_each(items_.device(), items_.owned, item); });
+  }
+}
+
+ParticleOutput CudaReports::output() {
+  OutputArrays& o = output_;
+  o.ready.wait();
+  ParticleOutput out;
+  out.global_id.assign(o.h_ids.data(), o.h_ids.data() + o.n);
+  out.position.assign(o.h_position.data(), o.h_position.data() + o.n);
+  for (const FieldColumn& column : o.columns) {
+    const auto copy = [&](auto& values) {
+      std::memcpy(values.data(), column.h_values.data(), o.n * column.field.bytes);
+    };
+    std::visit(copy, out.fields.emplace_back(column.field.values(o.n)));
+  }
+  return out;
 }
 
 ShapePack CudaReports::pack_shapes() {

@@ -1,44 +1,52 @@
-// What the GPU's backend tells about its particles: sums, packs for output.
+// What the GPU's backend tells about its particles: sums, values for output.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "cuda_bodies.cuh"
 #include "dem/reports.hpp"
-#include "pack_items.cuh"
+#include "trace_item.cuh"
 
 namespace scree {
 
 class CudaReports : public Reports {
  public:
-  CudaReports(CudaItems& items, CudaBodies& bodies) : items_(items), bodies_(bodies) {}
+  CudaReports(CudaItems& items, CudaBodies& bodies);
 
   ParticleLedger ledger(Real verlet_step) override;
-  void start_pack() override;
-  ParticlePack pack_particles() override;
+  void start_output() override;
+  ParticleOutput output() override;
   ShapePack pack_shapes() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
   std::vector<ContactSum> body_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
 
  private:
-  // Arrays of a snapshot on their way out.
-  struct PackArrays {
-    SnapshotArrays<DeviceArray> packed;
-    SnapshotArrays<PinnedArray> h_packed;
+  // The values of a snapshot on their way out: those of one field, and all.
+  struct FieldColumn {
+    OutputField field;
+    DeviceArray<std::byte> values;
+    PinnedArray<std::byte> h_values;
+  };
+  struct OutputArrays {
+    std::vector<FieldColumn> columns;
+    DeviceArray<Vec3> position;
+    PinnedArray<Vec3> h_position;
     PinnedArray<unsigned long long> h_ids;
     DeviceArray<unsigned long long> ids, sorted_ids;
     DeviceArray<Index> order, sorted_order;
-    Event packed_now, ready;
+    Event filled, ready;
     std::size_t n = 0;
   };
   void queue_energies();
-  void queue_pack();
+  void queue_order();
+  void queue_values();
 
   CudaItems& items_;
   CudaBodies& bodies_;
   Stream copy_stream_;  // for what goes out beside the steps
-  PackArrays pack_;
+  OutputArrays output_;
   // Of each particle's contacts.
   DeviceArray<Real> elastic_, pairs_;
   DeviceArray<Index> contacts_;

@@ -16,13 +16,6 @@ struct ParticleArrays : FieldArrays<DeviceArray> {
   }
 };
 
-// The arrays as plain pointers, for items.
-inline ParticleViews views_of(ParticleArrays& arrays) {
-  ParticleViews views;
-  for_each_array<kAllArrays>([](auto*& view, auto& array) { view = array.data(); }, views, arrays);
-  return views;
-}
-
 // to[i] = from[order[i]].
 struct ReorderItem {
   ParticleViews from, to;

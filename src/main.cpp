@@ -16,6 +16,7 @@
 #include "base/version.hpp"
 #include "deck/choices.hpp"
 #include "deck/deck.hpp"
+#include "dem/output_fields.hpp"
 #include "mbs/multibody.hpp"
 #include "mbs/petsc_session.hpp"
 #include "model/build.hpp"
@@ -97,10 +98,16 @@ auto naming_deck(const std::string& deck, const Action& action) {
   }
 }
 
+Deck checked_deck(const Arguments& arguments) {
+  Deck deck = load_deck(arguments.deck, arguments.overrides);
+  check_output_fields(deck);
+  return deck;
+}
+
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
-  const Deck deck = load_deck(arguments.deck, arguments.overrides);
+  const Deck deck = checked_deck(arguments);
   const std::string directory = output_directory(arguments, deck);
   ranks.on_root([&] { ResultsFolder({directory, arguments.restart, arguments.overwrite}).check(); });
   const Model model = build_model(deck, log, RanksShare(ranks));
@@ -128,7 +135,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
 ExitCode check(const Arguments& arguments) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
-  const Model model = build_model(load_deck(arguments.deck, arguments.overrides), log, RanksShare(ranks));
+  const Model model = build_model(checked_deck(arguments), log, RanksShare(ranks));
   std::string constraints = "solver         none";
   if (!model.bodies.empty()) {
     naming_deck(arguments.deck, [&] {
@@ -208,7 +215,7 @@ ExitCode dispatch(const CommandLine& line) {
   }
   if (*run_command) return run(arguments, line);
   if (*check_command) return check(arguments);
-  if (*keys_command && mpi_value(MPI_Comm_rank) == 0) std::cout << keys_text();
+  if (*keys_command && mpi_value(MPI_Comm_rank) == 0) std::cout << keys_text() << output_fields_text();
   return ExitCode::done;
 }
 

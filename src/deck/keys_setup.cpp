@@ -212,6 +212,10 @@ const TableKeys& output_keys() {
            .at_least(0)
            .otherwise("0.0")
            .about("Simulated time between snapshots; 0: only the first and the last state."),
+       texts("fields")
+           .otherwise("[\"radius\", \"velocity\", \"force\", \"contacts\"]")
+           .about("What snapshots hold of each particle beside its position and its global id; the fields "
+                  "that there are stand at the end of this manual."),
        real("history_interval", "s")
            .at_least(0)
            .otherwise("0.0")

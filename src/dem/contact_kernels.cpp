@@ -55,6 +55,10 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n,
              ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});
   }
+  void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const override {
+    with_contact_output(request, ContactWalk<Laws, PackedRows>{in, laws_},
+                        [&](const auto& item) { for_each(Serial{}, request.n, item); });
+  }
   void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
              Real* integrator_loss) const override {
     for_each(Serial{}, n,

@@ -7,6 +7,7 @@
 #include "dem/body_items.hpp"
 #include "dem/contact_items.hpp"
 #include "dem/leaver_items.hpp"
+#include "dem/output_fields.hpp"
 #include "dem/step_items.hpp"
 #include "dem/surface_items.hpp"
 #include "dem/system_items.hpp"
@@ -48,6 +49,8 @@ class ContactKernels {
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
+  // An output field that reads contacts.
+  virtual void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const = 0;
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;

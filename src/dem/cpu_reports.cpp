@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/for_each.hpp"
 #include "base/reproducible_sum.hpp"
 #include "dem/ledger_items.hpp"
 
@@ -34,21 +35,24 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   return out;
 }
 
-void CpuReports::start_pack() {
-  const ParticleStore& store = items_.store;
+void CpuReports::start_output() {
+  ParticleStore& store = items_.store;
   const Index n = store.owned;
-  ParticlePack& pack = pack_ = {};
-  std::vector<Real> energy(n), pairs(n);
-  pack.contacts.resize(n);
+  const OutputSource source{views_of(store), items_.model.gravity, items_.model.space.min,
+                            items_.subdomain.period()};
+  ParticleOutput& out = output_ = {};
+  for (Index i = 0; i < n; ++i) out.global_id.push_back(id_of(store.row_key[i]));
+  out.position.resize(static_cast<std::size_t>(n));
+  for_each(Serial{}, n, OwnOutputItem<PositionOutput>{source, nullptr, out.position.data()});
   items_.find_loads();
-  items_.kernels->energies(items_.views(), n, {energy.data(), pack.contacts.data(), pairs.data()});
-  for (Index i = 0; i < n; ++i) {
-    ImageCount unused;
-    pack.global_id.push_back(id_of(store.row_key[i]));
-    pack.radius.push_back(store.position[i].w);
-    pack.position.push_back(items_.subdomain.wrap(xyz(store.position[i]), unused));
-    pack.velocity.push_back(xyz(store.velocity[i]));
-    pack.force.push_back(store.force[i] - store.velocity[i].w * items_.model.gravity);
+  for (const OutputField& field : fields_) {
+    OutputValues& values = out.fields.emplace_back(field.values(static_cast<std::size_t>(n)));
+    void* const to = std::visit([](auto& v) -> void* { return v.data(); }, values);
+    const OutputRequest request{source, nullptr, n, field.head.name, to};
+    if (field.reads_contacts)
+      items_.kernels->output(items_.views(), request);
+    else
+      with_own_output(request, [&](const auto& item) { for_each(Serial{}, n, item); });
   }
 }
 

@@ -1,7 +1,8 @@
-// What the serial backend tells about its particles: sums, packs for output.
+// What the serial backend tells about its particles: sums, values for output.
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "dem/cpu_items.hpp"
 #include "dem/reports.hpp"
@@ -10,11 +11,11 @@ namespace scree {
 
 class CpuReports : public Reports {
  public:
-  explicit CpuReports(CpuItems& items) : items_(items) {}
+  explicit CpuReports(CpuItems& items) : items_(items), fields_(wanted_fields(items.model.output)) {}
 
   ParticleLedger ledger(Real verlet_step) override;
-  void start_pack() override;
-  ParticlePack pack_particles() override { return std::move(pack_); }
+  void start_output() override;
+  ParticleOutput output() override { return std::move(output_); }
   ShapePack pack_shapes() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
   std::vector<ContactSum> body_contacts() override;
@@ -22,7 +23,8 @@ class CpuReports : public Reports {
 
  private:
   CpuItems& items_;
-  ParticlePack pack_;  // of start_pack
+  std::vector<OutputField> fields_;
+  ParticleOutput output_;  // of start_output
 };
 
 }  // namespace scree

@@ -8,6 +8,7 @@
 #include "dem/device.hpp"
 #include "dem/mixed_items.hpp"
 #include "dem/neighbor_list.hpp"
+#include "dem/output_fields.hpp"
 #include "partition/halo.hpp"
 
 namespace scree {
@@ -25,12 +26,17 @@ constexpr double kStepArrays =
 constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
 constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
-constexpr double kSnapshotArrays = sizeof(Real) + 3 * sizeof(Vec3) + sizeof(Index);
-constexpr double kOutputArrays = kSnapshotArrays + 2 * sizeof(Real) + 3 * sizeof(Index) +
-                                 2 * sizeof(GlobalId) + sizeof(GlobalId) +
-                                 sizeof(Index);  // the last two: the library's buffers
+constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
+                                 sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kCellBytes = 2 * sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
+
+// Of a snapshot.
+double output_bytes(const Output& output) {
+  double bytes = sizeof(Vec3);
+  for (const OutputField& field : wanted_fields(output)) bytes += static_cast<double>(field.bytes);
+  return bytes;
+}
 
 struct Sizes {
   double particles, ghosts, items, cells, slots;
@@ -99,7 +105,8 @@ std::size_t device_memory(const Model& model) {
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.on_bodies)
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
-  bytes += n.particles * kOutputArrays + static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
+  bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
+           static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
   return static_cast<std::size_t>(bytes);
 }
 

@@ -24,15 +24,15 @@
 // clang-format off
 #define SCREE_PARTICLE_FIELDS(FIELD, PACKED)                                                                 \
   PACKED(position, "m", "centre, within the periodic sides unless the particle drifts", kState,              \
-         radius, "m", "radius", kConstant)                                                                   \
-  PACKED(velocity, "m/s", "velocity", kState, mass, "kg", "mass", kConstant)                                 \
-  FIELD(material, int, "1", "place of its material among the deck's", kConstant | kGhost)                    \
-  FIELD(acceleration, Vec3, "m/s^2", "acceleration that the next step starts from", kState)                  \
+         radius, "m", "radius", kConstant | kOutput)                                                         \
+  PACKED(velocity, "m/s", "velocity", kState | kOutput, mass, "kg", "mass", kConstant | kOutput)             \
+  FIELD(material, int, "1", "place of its material among the deck's", kConstant | kGhost | kOutput)          \
+  FIELD(acceleration, Vec3, "m/s^2", "acceleration that the next step starts from", kState | kOutput)        \
   FIELD(force, Vec3, "N", "gravity and contacts", kState)                                                    \
-  FIELD(contact_loss, Real, "J", "dissipated in its share of its contacts since t = 0", kState)              \
-  FIELD(loss_power, Real, "W", "dissipation in its share of its contacts now", kState)                       \
-  FIELD(integrator_loss, Real, "J", "taken out by HHT since t = 0", kState)                                  \
-  FIELD(image, ImageCount, "1", "periods that were taken off the position", kState)                          \
+  FIELD(contact_loss, Real, "J", "dissipated in its share of its contacts since t = 0", kState | kOutput)    \
+  FIELD(loss_power, Real, "W", "dissipation in its share of its contacts now", kState | kOutput)             \
+  FIELD(integrator_loss, Real, "J", "taken out by HHT since t = 0", kState | kOutput)                        \
+  FIELD(image, ImageCount, "1", "periods that were taken off the position", kState | kOutput)                \
   FIELD(drifting, std::uint8_t, "1", "1 if it has left through an open side", kState)
 // clang-format on
 
@@ -42,6 +42,7 @@ enum FieldParts : unsigned {
   kState = 1,     // changes in time
   kConstant = 2,  // given by the deck: take_constants()
   kGhost = 4,     // a FIELD that ghosts have, too: copied when a list is built
+  kOutput = 8,    // offered to snapshots (output.fields)
 };
 
 // Orders the entries of a neighbour list's row, by global id and then by image, whatever the local indices
@@ -138,6 +139,14 @@ SCREE_HD void put_particle(Arrays& arrays, Index i, const Particle& p) {
   SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
 #undef SCREE_FIELD
 #undef SCREE_PACKED
+}
+
+// The arrays as plain pointers, for items.
+template <class Arrays>
+ParticleViews views_of(Arrays& arrays) {
+  ParticleViews views;
+  for_each_array<kAllArrays>([](auto*& view, auto& array) { view = array.data(); }, views, arrays);
+  return views;
 }
 
 // What the table says of a field.

@@ -7,6 +7,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "dem/output_fields.hpp"
 #include "dem/surface_side.hpp"
 
 namespace scree {
@@ -26,11 +27,10 @@ struct ParticleLedger {
 ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies);
 
 // One entry per particle of this rank, any order.
-struct ParticlePack {
+struct ParticleOutput {
   std::vector<GlobalId> global_id;
-  std::vector<Real> radius;
-  std::vector<Vec3> position, velocity, force;  // force: contacts only
-  std::vector<int> contacts;
+  std::vector<Vec3> position;        // inside the periodic box [m]
+  std::vector<OutputValues> fields;  // of wanted_fields()
 };
 
 // A particle whose motion is recorded.
@@ -39,16 +39,16 @@ struct TracedParticle {
   Vec3 position, velocity;  // position inside the periodic box [m], [m/s]
 };
 
-// All functions but pack_particles() and traced() are collective (see Backend).
+// All functions but output() and traced() are collective (see Backend).
 class Reports {
  public:
   virtual ~Reports() = default;
 
   // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s]. Complete on rank 0.
   virtual ParticleLedger ledger(Real verlet_step) = 0;
-  // Begins to copy out what pack_particles returns: the particles as they are now, whatever steps follow.
-  virtual void start_pack() = 0;
-  virtual ParticlePack pack_particles() = 0;
+  // Begins to copy out what output() returns: the particles as they are now, whatever steps follow.
+  virtual void start_output() = 0;
+  virtual ParticleOutput output() = 0;
   virtual ShapePack pack_shapes() = 0;  // complete on rank 0
   // Those of these particles that this rank owns, where they are now, in any order.
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) = 0;

@@ -195,6 +195,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.history_csv = table.boolean("history_csv");
   output.compression = static_cast<int>(table.integer("compression"));
   output.history_reactions = table.integer("history_reactions");
+  output.fields = table.texts("fields");
   for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
     const Real interval = table.real(key);
     if (interval > 0 && interval * kMostOutputs < model.time.end)

@@ -9,6 +9,8 @@ namespace scree {
 
 namespace {
 
+constexpr const char* kGlobalId = "global_id";
+
 static_assert(sizeof(Vec3) == 3 * sizeof(Real), "a Vec3 array is written as a [n][3] dataset");
 
 PointField scalar(const char* name, const char* unit, const char* description, std::span<const Real> values) {
@@ -30,14 +32,11 @@ PointSnapshot particle_points(Real time, const ParticleSnapshot& particles, cons
   const std::int64_t own = std::ssize(particles.position);
   PointSnapshot snapshot{
       time, ranks.sum(own), {ranks.sum_below(own), own}, components(particles.position), {}};
-  snapshot.fields = {{"global_id",
+  snapshot.fields = {{kGlobalId,
                       {"1", "identity of the particle, counted from 0 in the deck's order"},
                       1,
-                      particles.global_id.data()},
-                     scalar("radius", "m", "radius", particles.radius),
-                     vector("velocity", "m/s", "velocity", particles.velocity),
-                     vector("force", "N", "total contact force on the particle", particles.force),
-                     number("contacts", "touching neighbours and walls", particles.contacts)};
+                      particles.global_id.data()}};
+  snapshot.fields.insert(snapshot.fields.end(), particles.fields.begin(), particles.fields.end());
   return snapshot;
 }
 
@@ -55,13 +54,20 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
   return snapshot;
 }
 
+SeriesOptions with_global_id(SeriesOptions options) {
+  if (options.fields) options.fields->emplace_back(kGlobalId);
+  return options;
+}
+
 }  // namespace
 
 SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions& options)
-    : ranks_(options.ranks), particles_(directory, "particles", options), snapshots_(options.keep) {
+    : ranks_(options.ranks),
+      particles_(directory, "particles", with_global_id(options)),
+      snapshots_(options.keep) {
   ranks_.on_root([&] {
     SeriesOptions alone = options;
-    alone.ranks = {};
+    alone.ranks = {}, alone.fields = {};
     bodies_.emplace(directory, "bodies", alone);
   });
   if (particles_.snapshots() != snapshots_)

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
@@ -15,11 +16,8 @@ namespace scree {
 // and from rank to rank.
 struct ParticleSnapshot {
   std::span<const GlobalId> global_id;
-  std::span<const Real> radius;    // [m]
   std::span<const Vec3> position;  // [m]
-  std::span<const Vec3> velocity;  // [m/s]
-  std::span<const Vec3> force;     // total contact force [N]
-  std::span<const int> contacts;   // number of touching neighbours and walls
+  std::vector<PointField> fields;  // those that the series was opened with
 };
 
 // One entry per shape (disc or sphere) of every body; on rank 0.
@@ -41,7 +39,8 @@ struct BodySnapshot {
 class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
-  // cut off); 0 starts new files and removes old ones. Throws IoError where the files hold fewer.
+  // cut off); 0 starts new files and removes old ones. options.fields: those of the particles beside
+  // the global id. Throws IoError where the files hold fewer snapshots, or other fields.
   SnapshotWriter(const std::string& directory, const SeriesOptions& options);
   // Both throw IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies);

@@ -1,6 +1,7 @@
 #include "output/vtkhdf_series.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -109,7 +110,10 @@ VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name
     remove_xdmf();
     return;
   }
-  options.ranks.together([&] { read_places(); });
+  options.ranks.together([&] {
+    read_places();
+    if (options.fields) require_fields();
+  });
   if (snapshots() < keep) {
     throw IoError(fmt::format("{}: holds {} snapshots, but the restarted run has written {}", path(),
                               snapshots(), keep));
@@ -137,6 +141,17 @@ void VtkHdfSeries::read_places() {
     places_[s] = {time[s], points[static_cast<std::size_t>(part[s])], first_point[s], part[s],
                   first_cell[4 * s]};
   }
+}
+
+void VtkHdfSeries::require_fields() const {
+  std::vector<std::string> held = Hdf5File(path(), Hdf5Access::read).dataset_names(kPointData),
+                           wanted = *options_.fields;
+  std::ranges::sort(held), std::ranges::sort(wanted);
+  if (held == wanted) return;
+  throw IoError(
+      fmt::format("{}: holds the fields {}, but the restarted run is to write {}; keep "
+                  "output.fields as it was, or choose another folder",
+                  path(), fmt::join(held, ", "), fmt::join(wanted, ", ")));
 }
 
 void VtkHdfSeries::cut(std::size_t keep) {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,7 +21,8 @@
 
 namespace scree {
 
-// One field of this rank's points of one snapshot: values[point][width], width 1 or 3.
+// One field of this rank's points of one snapshot: values[point][width], width 1, 3, or 9 for a tensor, row
+// by row.
 struct PointField {
   std::string name;
   DatasetLabel label;
@@ -48,12 +50,14 @@ struct SeriesOptions {
   int keep = 0;         // snapshots to keep
   int compression = 0;  // of new files, RowStorage::compression
   Ranks ranks = {};     // that have the points; the constructor and append() are collective
+  // Those of the snapshots to come, where files that are continued are to be looked at for them.
+  std::optional<std::vector<std::string>> fields = {};
 };
 
 class VtkHdfSeries {
  public:
   // Continues DIRECTORY/NAME.vtkhdf where there is one and keep > 0, cutting off all but its first `keep`
-  // snapshots; otherwise starts anew. Throws IoError where the file has fewer.
+  // snapshots; otherwise starts anew. Throws IoError where the file has fewer, or other fields.
   VtkHdfSeries(const std::string& directory, const std::string& name, const SeriesOptions& options);
 
   // Adds a snapshot, in parts for series that grow together (TwinFile): all prepare() it, then all show() it,
@@ -69,6 +73,7 @@ class VtkHdfSeries {
 
  private:
   void read_places();
+  void require_fields() const;
   void cut(std::size_t keep);
   void lay_out(Hdf5File& file, const PointSnapshot& first) const;
   SnapshotPlace next_place(const PointSnapshot& snapshot) const;

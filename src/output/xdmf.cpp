@@ -62,6 +62,8 @@ XdmfArray field_array(const PointField& field) {
   return array;
 }
 
+const char* attribute_type(int width) { return width == 9 ? "Tensor" : width == 3 ? "Vector" : "Scalar"; }
+
 }  // namespace
 
 std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
@@ -74,7 +76,7 @@ std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
                       slab(series, {"Points", 3, "Float", 8}, place.first_point, place.points));
   for (const PointField& field : *series.fields) {
     text += fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
-                        escaped(field.name), field.width == 3 ? "Vector" : "Scalar",
+                        escaped(field.name), attribute_type(field.width),
                         slab(series, field_array(field), place.first_point, place.points));
   }
   return text + "</Grid>\n";

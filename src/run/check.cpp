@@ -10,6 +10,7 @@
 #include "base/host_memory.hpp"
 #include "base/printable.hpp"
 #include "dem/device.hpp"
+#include "dem/output_fields.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
@@ -18,9 +19,9 @@ namespace scree {
 
 namespace {
 
-// In files without compression, of a particle, of a shape or body [B]; tests/performance/bytes_per_item.py.
-constexpr Real kSnapshotParticle = 102, kSnapshotShape = 120, kCheckpointParticle = 186,
-               kCheckpointBody = 170;
+// In files without compression, of a particle (in a snapshot without its fields), of a shape or body [B];
+// tests/performance/bytes_per_item.py.
+constexpr Real kSnapshotPoint = 42, kSnapshotShape = 120, kCheckpointParticle = 186, kCheckpointBody = 170;
 
 constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
@@ -155,10 +156,12 @@ Real outputs(Real end, Real interval) {
 
 std::string output_lines(const Model& model) {
   const auto particles = static_cast<Real>(model.particles.totals.count);
-  Real shapes = 0;
+  Real shapes = 0, snapshot_particle = kSnapshotPoint;
+  for (const OutputField& field : wanted_fields(model.output))
+    snapshot_particle += static_cast<Real>(field.bytes);
   for (const Body& body : model.bodies) shapes += static_cast<Real>(body.shapes.size());
   const Real snapshots = outputs(model.time.end, model.output.snapshot_interval),
-             size = kSnapshotParticle * particles + kSnapshotShape * shapes,
+             size = snapshot_particle * particles + kSnapshotShape * shapes,
              state =
                  kCheckpointParticle * particles + kCheckpointBody * static_cast<Real>(model.bodies.size());
   const Real interval = model.output.checkpoint_interval;

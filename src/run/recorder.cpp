@@ -38,12 +38,27 @@ std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Ba
 }
 
 // The part of all ranks' particles that this rank writes.
-ParticlePack in_id_order(const Ranks& ranks, std::int64_t particles, ParticlePack p) {
+ParticleOutput in_id_order(const Ranks& ranks, std::int64_t particles, ParticleOutput p) {
   const IdOrder order(ranks, particles, p.global_id);
-  p.global_id = order.apply(std::move(p.global_id)), p.radius = order.apply(std::move(p.radius));
-  p.position = order.apply(std::move(p.position)), p.velocity = order.apply(std::move(p.velocity));
-  p.force = order.apply(std::move(p.force)), p.contacts = order.apply(std::move(p.contacts));
+  p.global_id = order.apply(std::move(p.global_id)), p.position = order.apply(std::move(p.position));
+  for (OutputValues& of_field : p.fields)
+    std::visit([&](auto& values) { values = order.apply(std::move(values)); }, of_field);
   return p;
+}
+
+std::vector<PointField> point_fields(const Output& output, const ParticleOutput& p) {
+  const std::vector<OutputField> wanted = wanted_fields(output);
+  std::vector<PointField> fields;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const OutputHead& head = wanted[k].head;
+    const auto field = [&]<class Value>(const std::vector<Value>& values) -> PointField {
+      using Number = OutputNumber<Value>;
+      const auto* const numbers = reinterpret_cast<const Number*>(values.data());
+      return {head.name, {head.unit, head.description}, sizeof(Value) / sizeof(Number), numbers};
+    };
+    fields.push_back(std::visit(field, p.fields[k]));
+  }
+  return fields;
 }
 
 }  // namespace
@@ -58,7 +73,7 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
   });
   snapshots_.emplace(directory, SeriesOptions{model.title, static_cast<int>(state.snapshots),
-                                              model.output.compression, link.ranks()});
+                                              model.output.compression, link.ranks(), model.output.fields});
   if (writes_late()) backend.set_idle_work([this] { write_pending(); });
 }
 
@@ -116,7 +131,7 @@ void Recorder::balance(State& state, HistorySample& sample) const {
 
 void Recorder::snapshot(State& state) {
   write_pending();
-  backend_.reports().start_pack();
+  backend_.reports().start_output();
   PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
   for (const int body : next.shapes.body) {
@@ -131,10 +146,10 @@ void Recorder::snapshot(State& state) {
 void Recorder::write_pending() {
   if (!pending_) return;
   const PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticlePack p =
-      in_id_order(link_.ranks(), model_.particles.totals.count, backend_.reports().pack_particles());
+  const ParticleOutput p =
+      in_id_order(link_.ranks(), model_.particles.totals.count, backend_.reports().output());
   const ShapePack& s = snapshot.shapes;
-  snapshots_->append(snapshot.time, {p.global_id, p.radius, p.position, p.velocity, p.force, p.contacts},
+  snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
                       s.force, s.contacts});
 }

@@ -232,14 +232,10 @@ TEST_CASE("snapshots of several ranks read back as those of one") {
       for (const int n : counts) {
         const PredictableSnapshot whole(writer.snapshots(), n, ranks.is_root() ? 2 : 0);
         const RowPart own = uneven_part(n, ranks.rank(), ranks.size());
-        const auto cut = [&](auto all) {
-          return all.subspan(static_cast<std::size_t>(own.first), static_cast<std::size_t>(own.count));
-        };
-        const ParticleSnapshot p = whole.particles();
-        writer.append(whole.time,
-                      {cut(p.global_id), cut(p.radius), cut(p.position), cut(p.velocity), cut(p.force),
-                       cut(p.contacts)},
-                      whole.bodies());
+        writer.append(
+            whole.time,
+            whole.particles(static_cast<std::size_t>(own.first), static_cast<std::size_t>(own.count)),
+            whole.bodies());
       }
     }
     CHECK(read_predictable_particles(folder / "particles.vtkhdf") == counts);

@@ -8,6 +8,8 @@ from mpi_case import DAM, DONE, EXPLICIT, FAILED, IMPLICIT, INPUT, RanksTest, h5
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
 NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
        'output.history_contacts=["net", "net.9"]']
+FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_loss", "loss_power", "integrator_loss", '
+          '"image", "force", "contacts"]')
 # The three cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
@@ -86,7 +88,7 @@ class SameBitsTest(RanksTest):
     def test_every_number_of_ranks_writes_the_same_files(self):
         for compression in (0, 3):
             settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.02", "output.snapshot_interval=0.01",
-                        f"output.compression={compression}"]
+                        f"output.compression={compression}", f"output.fields={FIELDS}"]
             for ranks in (1, 2, 4):
                 with self.subTest(compression=compression, ranks=ranks):
                     self.run_deck(DONE, ranks, DAM[0], f"{compression} {ranks}", settings)

@@ -7,15 +7,17 @@ Needs vtk >= 9.5, h5py and numpy. Exits with 1 at the first mismatch, which it n
 """
 
 import argparse
+import json
 import pathlib
 import sys
+import tomllib
 
 import h5py
 import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-PARTICLE_FIELDS = {"global_id": 1, "radius": 1, "velocity": 3, "force": 3, "contacts": 1}
+WIDTHS = {"velocity": 3, "force": 3, "acceleration": 3, "image": 3, "stress": 9}  # of particles' fields; else 1
 BODY_FIELDS = {
     "body": 1,
     "radius": 1,
@@ -107,7 +109,7 @@ def check_step(path, step, polydata, raw, fields):
         values = vtk_to_numpy(array)
         require(np.isfinite(values).all(), f"{where}: {name} is not finite")
         require(np.array_equal(values, raw[name]), f"{where}: {name} differs")
-    require((raw["radius"] > 0).all(), f"{where}: a radius is not positive")
+    require((raw.get("radius", np.ones(1)) > 0).all(), f"{where}: a radius is not positive")
     identity = raw["global_id" if "global_id" in raw else "body"]
     require((np.diff(identity) >= 0).all(), f"{where}: not in the order of the ids")
 
@@ -142,6 +144,13 @@ def check_file(path, fields):
     return len(times)
 
 
+def particle_fields(directory):
+    """{name: width} of what the run's deck wants."""
+    deck = json.loads((directory / "run_record.json").read_text())["run"]["resolved_deck"]
+    wanted = tomllib.loads(deck)["output"]["fields"]
+    return {name: WIDTHS.get(name, 1) for name in ["global_id", *wanted]}
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -149,7 +158,8 @@ def main():
     parser.add_argument("result_directory", type=pathlib.Path)
     parser.add_argument("--steps", type=int, help="number of snapshots that must be there")
     arguments = parser.parse_args()
-    steps = check_file(arguments.result_directory / "particles.vtkhdf", PARTICLE_FIELDS)
+    directory = arguments.result_directory
+    steps = check_file(directory / "particles.vtkhdf", particle_fields(directory))
     require(arguments.steps in (None, steps), f"{steps} snapshots where {arguments.steps} must be")
     bodies = arguments.result_directory / "bodies.vtkhdf"
     if bodies.exists():

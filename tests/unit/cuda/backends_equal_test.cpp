@@ -287,8 +287,8 @@ TEST_CASE("what is said about device memory before a run is what the run takes")
         backend->start_run(1e-7)->take_steps(4, false, timers);
       }
       backend->reports().ledger(0);
-      backend->reports().start_pack();
-      backend->reports().pack_particles();
+      backend->reports().start_output();
+      backend->reports().output();
       const auto taken = static_cast<double>(device_memory_in_use() - before);
       CHECK(near(static_cast<double>(device_memory(model)), taken, {.relative = 0.1}));
     }

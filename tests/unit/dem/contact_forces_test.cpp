@@ -69,12 +69,11 @@ TEST_CASE("contact forces on particles and shapes are those of all pairs and wal
     LoadedBox box(random_box(c, kParticles, 11));
     const BruteContacts expected = brute_contacts(box);
     REQUIRE(expected.count > 20);
-    box.backend->reports().start_pack();
-    const ParticlePack particles = box.backend->reports().pack_particles();
-    for (std::size_t i = 0; i < particles.global_id.size(); ++i) {
-      const auto id = static_cast<std::size_t>(particles.global_id[i]);
-      CHECK(norm(particles.force[i] - expected.force[id]) <= kRoundOff * expected.magnitude);
-      CHECK(particles.contacts[i] == expected.contacts[id]);
+    const BoxOutput output(*box.backend);
+    for (std::size_t i = 0; i < output.all.global_id.size(); ++i) {
+      const auto id = static_cast<std::size_t>(output.all.global_id[i]);
+      CHECK(norm(output.of<Vec3>("force")[i] - expected.force[id]) <= kRoundOff * expected.magnitude);
+      CHECK(output.of<int>("contacts")[i] == expected.contacts[id]);
     }
     const ShapePack shapes = box.backend->reports().pack_shapes();
     for (std::size_t s = 0; s < shapes.force.size(); ++s) {
@@ -114,11 +113,11 @@ TEST_CASE("particles and bodies push each other with opposite forces and torques
     LoadedBox box(model);
     Vec3 force, torque;
     Real magnitude = 0;
-    box.backend->reports().start_pack();
-    const ParticlePack particles = box.backend->reports().pack_particles();
-    for (std::size_t i = 0; i < particles.force.size(); ++i) {
-      force += particles.force[i], torque += cross(particles.position[i], particles.force[i]);
-      magnitude += norm(particles.force[i]);
+    const BoxOutput output(*box.backend);
+    const std::vector<Vec3>& forces = output.of<Vec3>("force");
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      force += forces[i], torque += cross(output.all.position[i], forces[i]);
+      magnitude += norm(forces[i]);
     }
     std::vector<BodyWrench> end(box.motion.size());
     box.backend->particles().reduce_wrench(end);

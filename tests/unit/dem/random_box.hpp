@@ -49,6 +49,23 @@ inline Vec3 random_velocity(RandomNumbers& random, int dimension) {
   return {x, y, dimension == 3 ? random.normal() : 0};
 }
 
+// What a backend hands out for a snapshot of a random box: all fields that there are.
+struct BoxOutput {
+  explicit BoxOutput(Backend& backend) {
+    backend.reports().start_output();
+    all = backend.reports().output();
+  }
+  template <class T>
+  const std::vector<T>& of(const char* name) const {
+    for (std::size_t k = 0; k < output_fields().size(); ++k)
+      if (std::string(output_fields()[k].head.name) == name)
+        return std::get<std::vector<T>>(all.fields.at(k));
+    throw std::logic_error(name);
+  }
+
+  ParticleOutput all;
+};
+
 inline Space random_space(const BoxCase& box) {
   Space space;
   space.dimension = box.dimension;
@@ -91,6 +108,7 @@ inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
   Model model;
   model.space = random_space(box);
   model.gravity = {0.5, -9.8, box.dimension == 3 ? 0.3 : 0.0};
+  for (const OutputField& field : output_fields()) model.output.fields.emplace_back(field.head.name);
   model.contact.material_names.assign(static_cast<std::size_t>(box.materials), "material");
   for (int k = 0; k < box.materials * box.materials; ++k) {
     const int i = k / box.materials, j = k % box.materials;

@@ -200,12 +200,11 @@ TEST_CASE("a particle that drifts feels gravity alone") {
   box.backend->particles().load(box.records, {});
   box.backend->list().build(0.02, box.timers);
   box.backend->particles().initial_forces();
-  box.backend->reports().start_pack();
-  const ParticlePack pack = box.backend->reports().pack_particles();
-  for (std::size_t i = 0; i < pack.global_id.size(); ++i) {
-    if (pack.global_id[i] < 3 || pack.global_id[i] > 5) continue;
-    CHECK(norm(pack.force[i]) == 0);
-    CHECK(pack.contacts[i] == 0);
+  const BoxOutput output(*box.backend);
+  for (std::size_t i = 0; i < output.all.global_id.size(); ++i) {
+    if (output.all.global_id[i] < 3 || output.all.global_id[i] > 5) continue;
+    CHECK(norm(output.of<Vec3>("force")[i]) == 0);
+    CHECK(output.of<int>("contacts")[i] == 0);
   }
 }
 

@@ -1,4 +1,4 @@
-// Single particles that are traced, against the pack of all of them.
+// Single particles that are traced, against the output of all of them.
 #include <algorithm>
 #include <map>
 
@@ -6,7 +6,7 @@
 
 namespace scree {
 
-TEST_CASE("traced particles are where the pack of all particles has them") {
+TEST_CASE("traced particles are where the output of all particles has them") {
   for (const BoxCase& c : {kBoxes[0], kBoxes[4]}) {
     CAPTURE(c.name);
     LoadedBox box(random_box(c, 200, 5));
@@ -21,13 +21,12 @@ TEST_CASE("traced particles are where the pack of all particles has them") {
 
     box.backend->list().build(0.02, box.timers);
     box.backend->particles().initial_forces();
-    box.backend->reports().start_pack();
-    const ParticlePack pack = box.backend->reports().pack_particles();
-    for (std::size_t i = 0; i < pack.global_id.size(); ++i) {
-      const auto traced = found.find(pack.global_id[i]);
+    const BoxOutput output(*box.backend);
+    for (std::size_t i = 0; i < output.all.global_id.size(); ++i) {
+      const auto traced = found.find(output.all.global_id[i]);
       if (traced == found.end()) continue;
-      CHECK(traced->second.position == pack.position[i]);
-      CHECK(traced->second.velocity == pack.velocity[i]);
+      CHECK(traced->second.position == output.all.position[i]);
+      CHECK(traced->second.velocity == output.of<Vec3>("velocity")[i]);
     }
     CHECK(box.backend->reports().traced({}).empty());
   }

@@ -47,7 +47,19 @@ struct PredictableSnapshot {
     for (int i = 0; i < shapes; ++i) vector.push_back({value(step, i), 0, 1}), number.push_back(step);
   }
   static Real value(int step, int i) { return 1000.0 * step + i; }
-  ParticleSnapshot particles() const { return {global_id, radius, position, velocity, velocity, contacts}; }
+  // Of its points [first, first + count).
+  ParticleSnapshot particles(std::size_t first, std::size_t count) const {
+    const auto reals = [&](const std::vector<Vec3>& v) {
+      return reinterpret_cast<const Real*>(v.data() + first);
+    };
+    return {std::span(global_id).subspan(first, count),
+            std::span(position).subspan(first, count),
+            {{"radius", {"m", "radius"}, 1, radius.data() + first},
+             {"velocity", {"m/s", "velocity"}, 3, reals(velocity)},
+             {"force", {"N", "total contact force on the particle"}, 3, reals(velocity)},
+             {"contacts", {"1", "touching neighbours and walls"}, 1, contacts.data() + first}}};
+  }
+  ParticleSnapshot particles() const { return particles(0, position.size()); }
   BodySnapshot bodies() const { return {body, scalar, vector, vector, scalar, scalar, vector, number}; }
   void append_to(SnapshotWriter& writer) const { writer.append(time, particles(), bodies()); }
 

@@ -56,10 +56,10 @@ class FailingReports : public Reports {
  public:
   explicit FailingReports(Reports& of) : of_(of) {}
   ParticleLedger ledger(Real verlet_step) override { return of_.ledger(verlet_step); }
-  void start_pack() override { of_.start_pack(); }
-  ParticlePack pack_particles() override {
+  void start_output() override { of_.start_output(); }
+  ParticleOutput output() override {
     if (failed) throw DeviceError("the device has failed");
-    return of_.pack_particles();
+    return of_.output();
   }
   ShapePack pack_shapes() override { return of_.pack_shapes(); }
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override { return of_.traced(wanted); }

@@ -1,0 +1,67 @@
+#include "dem/output_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "deck/suggestion.hpp"
+
+namespace scree {
+
+namespace {
+
+const OutputField* find_field(std::string_view name) {
+  const auto found =
+      std::ranges::find_if(output_fields(), [&](const OutputField& f) { return name == f.head.name; });
+  return found == output_fields().end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const std::vector<OutputField>& output_fields() {
+  static const std::vector<OutputField> fields = [] {
+    std::vector<OutputField> all;
+    for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
+      using Value = typename Of::Value;
+      all.push_back({head, sizeof(Value), kReadsContacts<Of>,
+                     [](std::size_t n) -> OutputValues { return std::vector<Value>(n); }});
+    });
+    return all;
+  }();
+  return fields;
+}
+
+std::vector<OutputField> wanted_fields(const Output& output) {
+  std::vector<OutputField> wanted;
+  for (const std::string& name : output.fields) {
+    const OutputField* const field = find_field(name);
+    if (field == nullptr) throw std::logic_error("no output field is named " + name);
+    wanted.push_back(*field);
+  }
+  return wanted;
+}
+
+void check_output_fields(const Deck& deck) {
+  const DeckTable& table = deck.root.table("output");
+  const std::vector<std::string>& names = table.texts("fields");
+  std::vector<std::string> known;
+  for (const OutputField& field : output_fields()) known.emplace_back(field.head.name);
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (find_field(*name) == nullptr)
+      table.fail("fields", fmt::format("there is no output field \"{}\"{}; they are {}", *name,
+                                       suggestion(*name, known), fmt::join(known, ", ")));
+    if (std::find(names.begin(), name, *name) != name)
+      table.fail("fields", fmt::format("\"{}\" is repeated; every entry must be another one", *name));
+  }
+}
+
+std::string output_fields_text() {
+  std::string text =
+      "Output fields (output.fields), beside the position and the global id that every snapshot has:\n";
+  for (const OutputField& field : output_fields())
+    text += fmt::format("  {:<16} [{}] {}.\n", field.head.name, field.head.unit, field.head.description);
+  return text;
+}
+
+}  // namespace scree

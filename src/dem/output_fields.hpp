@@ -1,0 +1,158 @@
+// What a snapshot may hold of a particle (output.fields): fields of the table in particle_fields.hpp, and
+// what is derived from them or from contacts. Each is declared once; one text for the CPU and CUDA.
+#pragma once
+
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "base/hd.hpp"
+#include "base/vec3.hpp"
+#include "deck/deck.hpp"
+#include "dem/contact_items.hpp"
+#include "dem/particle_fields.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+// What an output field is computed from.
+struct OutputSource {
+  ParticleViews particles;
+  Vec3 gravity;          // [m/s^2]
+  Vec3 box_min, period;  // of the space [m]
+
+  // With its position inside the periodic box.
+  SCREE_HD Particle particle(Index i) const {
+    Particle p = particle_at(particles, i);
+    p.position = wrap(box_min, period, p.position, p.image);
+    return p;
+  }
+};
+
+struct OutputHead {
+  const char *name, *unit, *description;
+};
+
+// An output field is a type with a Value and one of
+//   operator()(source, i)         of particle i
+//   operator()(source, walk, i)   of particle i and its contacts, by any ContactWalk at an instant
+// Those that are not of the table have a head, too, and are named in DerivedOutputs.
+
+template <auto kMember>
+struct TableOutput {
+  using Value = std::remove_cvref_t<decltype(std::declval<Particle>().*kMember)>;
+  SCREE_HD Value operator()(const OutputSource& in, Index i) const { return in.particle(i).*kMember; }
+};
+using PositionOutput = TableOutput<&Particle::position>;  // where the snapshot's point is
+
+struct ForceOutput {
+  static constexpr OutputHead head{"force", "N", "total contact force on the particle"};
+  using Value = Vec3;
+  SCREE_HD Value operator()(const OutputSource& in, Index i) const {
+    return in.particles.force[i] - in.particles.velocity[i].w * in.gravity;
+  }
+};
+
+struct ContactsOutput {
+  static constexpr OutputHead head{"contacts", "1", "touching neighbours and walls"};
+  using Value = int;
+  template <class Walk>
+  SCREE_HD Value operator()(const OutputSource&, const Walk& walk, Index i) const {
+    return touch_sums(walk, i, [](Index) { return kPairShare; }).contacts;
+  }
+};
+
+using DerivedOutputs = std::tuple<ForceOutput, ContactsOutput>;
+
+// Calls visit(head, of) for each output field.
+template <class Visit>
+void for_each_output_field(const Visit& visit) {
+#define SCREE_FIELD(name, type, unit, sentence, parts) \
+  if constexpr (((parts)&kOutput) != 0)                \
+    visit(OutputHead{#name, unit, sentence}, TableOutput<&Particle::name>{});
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
+  SCREE_FIELD(name, Vec3, unit, sentence, parts)               \
+  SCREE_FIELD(scalar, Real, __VA_ARGS__)
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+  std::apply([&](auto... of) { (visit(of.head, of), ...); }, DerivedOutputs{});
+}
+
+template <class Of>
+inline constexpr bool kReadsContacts = !std::is_invocable_v<const Of&, const OutputSource&, Index>;
+
+// The k-th value is that of particle order[k]; without an order, of particle k.
+template <class Of>
+struct OwnOutputItem {
+  OutputSource in;
+  const Index* order;
+  typename Of::Value* out;
+  SCREE_HD void operator()(Index k) const { out[k] = Of{}(in, order != nullptr ? order[k] : k); }
+};
+
+template <class Of, class Walk>
+struct ContactOutputItem {
+  Walk walk;
+  OutputSource in;
+  const Index* order;
+  typename Of::Value* out;
+  SCREE_HD void operator()(Index k) const { out[k] = Of{}(in, walk, order != nullptr ? order[k] : k); }
+};
+
+// The values of n particles; out: room for n of the field's type.
+struct OutputRequest {
+  OutputSource in;
+  const Index* order;
+  Index n;
+  std::string_view field;
+  void* out;
+};
+
+// Calls run(item) with the item of the request's field, if that field reads no contacts; with a walk, if it
+// does.
+template <class Run>
+void with_own_output(const OutputRequest& r, const Run& run) {
+  for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
+    if constexpr (!kReadsContacts<Of>)
+      if (r.field == head.name)
+        run(OwnOutputItem<Of>{r.in, r.order, static_cast<typename Of::Value*>(r.out)});
+  });
+}
+template <class Walk, class Run>
+void with_contact_output(const OutputRequest& r, const Walk& walk, const Run& run) {
+  for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
+    if constexpr (kReadsContacts<Of>)
+      if (r.field == head.name)
+        run(ContactOutputItem<Of, Walk>{walk, r.in, r.order, static_cast<typename Of::Value*>(r.out)});
+  });
+}
+
+// The values of one field, one entry per particle.
+using OutputValues =
+    std::variant<std::vector<Real>, std::vector<Vec3>, std::vector<int>, std::vector<ImageCount>>;
+
+// What a value consists of, one number after the other.
+template <class Value>
+using OutputNumber =
+    std::conditional_t<std::is_same_v<Value, int> || std::is_same_v<Value, ImageCount>, int, Real>;
+
+// An output field for the host.
+struct OutputField {
+  OutputHead head;
+  std::size_t bytes;  // of a value
+  bool reads_contacts;
+  OutputValues (*values)(std::size_t n);  // n zeros
+};
+
+const std::vector<OutputField>& output_fields();
+// Those that the deck wants (Output::fields), in its order. Throws std::logic_error for an unknown name.
+std::vector<OutputField> wanted_fields(const Output& output);
+// Throws InputError where the deck's output.fields names one that there is not, or one twice.
+void check_output_fields(const Deck& deck);
+// A line per field, as `scree keys` prints them.
+std::string output_fields_text();
+
+}  // namespace scree
