@@ -107,8 +107,7 @@ void CudaReports::queue_order() {
 // In that order.
 void CudaReports::queue_values() {
   OutputArrays& o = output_;
-  const OutputSource source{views_of(items_.now), items_.model.gravity, items_.model.space.min,
-                            items_.subdomain.period()};
+  const OutputSource source = output_source(views_of(items_.now), items_.model, items_.subdomain.period());
   const Index* const order = o.sorted_order.data();
   for_each(items_.device(), items_.owned, OwnOutputItem<PositionOutput>{source, order, o.position.data()});
   for (FieldColumn& column : o.columns) {

@@ -32,7 +32,7 @@ struct BodyLoadOf {
   SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
     auto load = law.load(pair);
     load = {-load.force, load.loss, load.torque_j, load.torque_i};
-    return {{true, load, EnergyOf{}(law, pair), {}}, pair.geometry.normal()};
+    return {{true, load, EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
   }
   template <class Views>
   SCREE_HD const Found* stored(const Views&, Index) const {

@@ -38,8 +38,7 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
 void CpuReports::start_output() {
   ParticleStore& store = items_.store;
   const Index n = store.owned;
-  const OutputSource source{views_of(store), items_.model.gravity, items_.model.space.min,
-                            items_.subdomain.period()};
+  const OutputSource source = output_source(views_of(store), items_.model, items_.subdomain.period());
   ParticleOutput& out = output_ = {};
   for (Index i = 0; i < n; ++i) out.global_id.push_back(id_of(store.row_key[i]));
   out.position.resize(static_cast<std::size_t>(n));

@@ -20,6 +20,7 @@ namespace scree {
 // What an output field is computed from.
 struct OutputSource {
   ParticleViews particles;
+  int dimension;         // 2 or 3
   Vec3 gravity;          // [m/s^2]
   Vec3 box_min, period;  // of the space [m]
 
@@ -30,6 +31,10 @@ struct OutputSource {
     return p;
   }
 };
+
+inline OutputSource output_source(const ParticleViews& particles, const Model& model, Vec3 period) {
+  return {particles, model.space.dimension, model.gravity, model.space.min, period};
+}
 
 struct OutputHead {
   const char *name, *unit, *description;

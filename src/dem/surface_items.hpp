@@ -43,7 +43,7 @@ struct SurfaceLoadItem {
     const auto& law = laws.get(in.material[i], surface.material);
     out.load = law.load(state);
     out.energy = EnergyOf{}(law, state);
-    out.arm = surface.arm + pair.contact;
+    out.arm = surface.arm + pair.contact, out.particle_arm = contact_arm(state);
   }
 };
 

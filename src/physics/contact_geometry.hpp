@@ -59,4 +59,11 @@ struct PairStateOf {
 };
 using PairState = PairStateOf<Real, Vec3>;
 
+// From i's centre to where the two touch [m]. Spheres share the distance of their centres in the ratio of
+// their radii, so that the arms of both add to it; on a plane it is the foot of the perpendicular.
+SCREE_HD Vec3 contact_arm(const PairState& pair) {
+  const Real i = pair.size.radius_i, j = pair.size.radius_j;
+  return pair.geometry.along(j < kInfinity ? -i / (i + j) * pair.geometry.distance : -pair.geometry.distance);
+}
+
 }  // namespace scree

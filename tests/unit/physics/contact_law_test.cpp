@@ -152,4 +152,16 @@ TEST_CASE("masses from densities") {
   CHECK(near(disc_mass(0.5, 0.1, 1000), 78.5398163397448, {.relative = kRoundOff}));
 }
 
+TEST_CASE("the arms of two spheres add to the distance of their centres; a plane's is the perpendicular") {
+  const Vec3 r{0.3, -0.1, 0.2};
+  const PairState pair{sphere_pair(r, Real(0.4)), {}, {0.3, 0.1, 1, 1}};
+  const PairState mirrored{sphere_pair(-r, Real(0.4)), {}, {0.1, 0.3, 1, 1}};
+  const Vec3 arm = contact_arm(pair);
+  CHECK(norm(arm + 0.75 * r) < 1e-16);
+  CHECK(norm(arm - contact_arm(mirrored) + r) < 1e-16);
+  const PairState wall{
+      plane_pair({0, 0, 0.09}, 0.1, {5, 5, 0}, {0, 0, 1}), {}, {0.1, kInfinity, 1, kInfinity}};
+  CHECK(contact_arm(wall) == Vec3{0, 0, -0.09});
+}
+
 }  // namespace scree
