@@ -14,6 +14,7 @@
 #include "dem/contact_items.hpp"
 #include "dem/particle_fields.hpp"
 #include "partition/subdomain.hpp"
+#include "physics/particle_mass.hpp"
 
 namespace scree {
 
@@ -69,7 +70,50 @@ struct ContactsOutput {
   }
 };
 
-using DerivedOutputs = std::tuple<ForceOutput, ContactsOutput>;
+// Row by row.
+struct Tensor {
+  Vec3 x, y, z;
+};
+
+// (1/V) sum over the contacts of F x^T: F the force on the particle, x from its centre to where it acts, V
+// the particle's volume, of discs the area (J. Weber, Bull. Liaison Ponts Chauss. 20, 1966; Christoffersen,
+// Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 1981). Its mean over a volume of particles at rest, times their
+// share of it, is the stress of the granular material.
+struct StressOutput {
+  static constexpr OutputHead head{
+      "stress", "Pa (2D: N/m)",
+      "mean stress of the particle from its contacts, row by row; tension is positive"};
+  using Value = Tensor;
+
+  struct Acting {
+    template <class Law>
+    SCREE_HD SurfaceLoad operator()(const Law& law, const PairState& pair) const {
+      return {true, law.load(pair), 0, {}, contact_arm(pair)};
+    }
+    template <class Views>
+    SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
+      return in.loads[entry].touches ? &in.loads[entry] : nullptr;
+    }
+  };
+
+  template <class Walk>
+  SCREE_HD Value operator()(const OutputSource& in, const Walk& walk, Index i) const {
+    const auto self = walk.self(i);
+    const Real radius = self.p.w;
+    const Real volume = in.dimension == 2 ? disc_mass(radius, 1, 1) : sphere_mass(radius, 1);
+    Tensor sum;
+    const auto add = [&](const SurfaceLoad& contact, Index) {
+      const Vec3 f = (1 / volume) * contact.load.force;
+      sum.x += f.x * contact.particle_arm, sum.y += f.y * contact.particle_arm;
+      sum.z += f.z * contact.particle_arm;
+    };
+    walk.neighbors(self, Acting{}, add);
+    walk.surfaces(self, Acting{}, add);
+    return sum;
+  }
+};
+
+using DerivedOutputs = std::tuple<ForceOutput, ContactsOutput, StressOutput>;
 
 // Calls visit(head, of) for each output field.
 template <class Visit>
@@ -136,8 +180,8 @@ void with_contact_output(const OutputRequest& r, const Walk& walk, const Run& ru
 }
 
 // The values of one field, one entry per particle.
-using OutputValues =
-    std::variant<std::vector<Real>, std::vector<Vec3>, std::vector<int>, std::vector<ImageCount>>;
+using OutputValues = std::variant<std::vector<Real>, std::vector<Vec3>, std::vector<Tensor>, std::vector<int>,
+                                  std::vector<ImageCount>>;
 
 // What a value consists of, one number after the other.
 template <class Value>

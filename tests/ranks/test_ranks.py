@@ -9,7 +9,7 @@ GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.e
 NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
        'output.history_contacts=["net", "net.9"]']
 FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_loss", "loss_power", "integrator_loss", '
-          '"image", "force", "contacts"]')
+          '"image", "force", "contacts", "stress"]')
 # The three cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),

@@ -1,5 +1,6 @@
 // Contact forces, wrenches and sums of the CPU backend against a sum over all pairs.
 #include <cmath>
+#include <numbers>
 
 #include "random_box.hpp"
 #include "support/catch.hpp"
@@ -14,17 +15,22 @@ constexpr Real kSum = 32 * kUlp;   // of the particles in another order, relativ
 constexpr int kParticles = 120;
 
 struct BruteContacts {
-  std::vector<Vec3> force;    // per item [N]
-  std::vector<int> contacts;  // per item
-  Real elastic = 0;           // of all contacts [J]
-  Real magnitude = 0;         // sum of |force| over all contacts [N]
+  std::vector<Vec3> force;     // per item [N]
+  std::vector<int> contacts;   // per item
+  std::vector<Tensor> virial;  // per item: stress times volume [J]
+  Real elastic = 0;            // of all contacts [J]
+  Real magnitude = 0;          // sum of |force| over all contacts [N]
   int count = 0;
 };
 
-void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal,
+// arm: of the force, from the centre of item i against the normal [m].
+void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal, Real arm,
                  std::size_t i) {
   const ContactForce c = contact_force(PowerLaw(law), overlap, rate);
   sum.force[i] += c.force * normal;
+  Tensor& virial = sum.virial[i];
+  const Vec3 f = c.force * normal, x = -arm * normal;
+  virial.x += f.x * x, virial.y += f.y * x, virial.z += f.z * x;
   sum.magnitude += std::abs(c.force);
   ++sum.contacts[i];
 }
@@ -33,7 +39,8 @@ void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real 
 BruteContacts brute_contacts(const LoadedBox& box) {
   const std::vector<BruteItem> items = brute_items(box);
   const TouchRule rule(box.model);
-  BruteContacts sum{std::vector<Vec3>(items.size()), std::vector<int>(items.size())};
+  BruteContacts sum{std::vector<Vec3>(items.size()), std::vector<int>(items.size()),
+                    std::vector<Tensor>(items.size())};
   Real pairs = 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const BruteItem& a = items[i];
@@ -46,14 +53,15 @@ BruteContacts brute_contacts(const LoadedBox& box) {
         if (overlap <= 0) return;
         const Vec3 normal = (1 / norm(r)) * r;
         const KelvinVoigt& law = box.model.contact.law(a.material, b.material);
-        add_contact(sum, law, overlap, -dot(normal, a.velocity - b.velocity), normal, i);
+        add_contact(sum, law, overlap, -dot(normal, a.velocity - b.velocity), normal,
+                    norm(r) * a.radius / (a.radius + b.radius), i);
         sum.elastic += PowerLaw(law).energy(overlap) / 2, pairs += 0.5;
       });
     for (const Wall& wall : box.model.walls) {
       const Real overlap = a.radius - dot(a.position - wall.point, wall.normal);
       if (overlap <= 0) continue;
       const KelvinVoigt& law = box.model.contact.law(a.material, wall.material);
-      add_contact(sum, law, overlap, -dot(wall.normal, a.velocity), wall.normal, i);
+      add_contact(sum, law, overlap, -dot(wall.normal, a.velocity), wall.normal, a.radius - overlap, i);
       sum.elastic += PowerLaw(law).energy(overlap), pairs += 1;
     }
   }
@@ -74,6 +82,14 @@ TEST_CASE("contact forces on particles and shapes are those of all pairs and wal
       const auto id = static_cast<std::size_t>(output.all.global_id[i]);
       CHECK(norm(output.of<Vec3>("force")[i] - expected.force[id]) <= kRoundOff * expected.magnitude);
       CHECK(output.of<int>("contacts")[i] == expected.contacts[id]);
+      const Tensor &stress = output.of<Tensor>("stress")[i], &virial = expected.virial[id];
+      const Real r = box.model.particles.radius[id];
+      const Real volume =
+          c.dimension == 2 ? std::numbers::pi * r * r : 4.0 / 3 * std::numbers::pi * r * r * r;
+      const Real bound = kRoundOff * expected.magnitude * r;
+      CHECK(norm(volume * stress.x - virial.x) <= bound);
+      CHECK(norm(volume * stress.y - virial.y) <= bound);
+      CHECK(norm(volume * stress.z - virial.z) <= bound);
     }
     const ShapePack shapes = box.backend->reports().pack_shapes();
     for (std::size_t s = 0; s < shapes.force.size(); ++s) {
