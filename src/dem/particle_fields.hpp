@@ -33,7 +33,6 @@
   FIELD(loss_power, Real, "W", "dissipation in its share of its contacts now", kState | kOutput)             \
   FIELD(integrator_loss, Real, "J", "taken out by HHT since t = 0", kState | kOutput)                        \
   FIELD(image, ImageCount, "1", "periods that were taken off the position", kState | kOutput)                \
-  FIELD(temperature, Real, "K", "temperature", kState | kGhost | kOutput)                                    \
   FIELD(drifting, std::uint8_t, "1", "1 if it has left through an open side", kState)
 // clang-format on
 
