@@ -17,28 +17,28 @@ struct ContactBooks {
   }
 };
 
-// Kelvin-Voigt with the rate linear in time, in contact and not cut: C times the integral of rate^2 [J].
+// With the rate linear in time, in contact and not cut: the mean damping C times the integral of rate^2 [J].
 SCREE_HD Real damper_work(Real damping, const ContactStep& c) {
   return damping * c.h / 3 * (c.rate0 * c.rate0 + c.rate0 * c.rate1 + c.rate1 * c.rate1);
 }
 
 // The same along the straight line between the overlaps at both ends, d_dot = (d1 - d0) / h, which
-// step_contact_force() takes, too: over its part in contact the damper takes C d_dot times the way. A force
-// that is cut at zero (F = 0 while d > 0, from the overlap down at which K d^n = -C d_dot) loses the elastic
-// energy left then: the integral of -K d^n d_dot.
+// step_contact_force() takes, too: over its part in contact the damper takes C d_dot times the way, C its
+// mean there. A force that is cut at zero (F = 0 while d > 0, from the overlap down at which the elastic
+// force is -C d_dot) loses the elastic energy left then.
 template <class NormalLaw>
 SCREE_HD Real straight_dissipation(const NormalLaw& law, const ContactStep& c) {
   const Real start = c.overlap0 > 0 ? c.overlap0 : 0, end = c.overlap1 > 0 ? c.overlap1 : 0;
-  const Real pull = law.normal_damping / c.h * std::abs(c.overlap1 - c.overlap0);
-  if (end >= start) return pull * (end - start);
+  const auto pull = [&](Real damping) { return damping / c.h * std::abs(c.overlap1 - c.overlap0); };
+  if (end >= start) return pull(law.mean_damping(start, end)) * (end - start);
   Real cut = end;  // the overlap from which on the force is cut
-  if (!law.tension && law.elastic(start) <= pull)
-    cut = start;
-  else if (!law.tension && law.elastic(end) < pull)
-    cut = law.overlap(pull);
-  if (!(cut > end)) return pull * (start - end);
+  if (!law.tension) {
+    const Real pull_at_start = pull(law.damping(start));
+    cut = law.elastic(start) <= pull_at_start ? start : law.cut(start, pull_at_start);
+  }
+  if (!(cut > end)) return pull(law.mean_damping(end, start)) * (start - end);
   if (cut > start) cut = start;
-  return pull * (start - cut) + (law.energy(cut) - law.energy(end));
+  return pull(law.mean_damping(cut, start)) * (start - cut) + (law.energy(cut) - law.energy(end));
 }
 
 // What the law dissipates over a step [J].
@@ -47,7 +47,8 @@ SCREE_HD Real step_dissipation(const NormalLaw& law, const ContactStep& c) {
   const auto holds = [&](Real overlap, Real rate) {  // the contact is closed there and its force not cut
     return overlap > 0 && (law.tension || contact_force(law, overlap, rate).force > 0);
   };
-  if (holds(c.overlap0, c.rate0) && holds(c.overlap1, c.rate1)) return damper_work(law.normal_damping, c);
+  if (holds(c.overlap0, c.rate0) && holds(c.overlap1, c.rate1))
+    return damper_work(law.mean_damping(c.overlap0, c.overlap1), c);
   return straight_dissipation(law, c);
 }
 

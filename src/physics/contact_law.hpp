@@ -12,7 +12,7 @@ namespace scree {
 template <class T>
 struct ContactForceOf {
   T force;      // F [N]
-  T stiffness;  // dF/dd [N/m]
+  T stiffness;  // of the elastic part, [N/m]: dF/dd where the damping does not depend on d
   T damping;    // dF/d(d_dot) [N s/m]
   T loss;       // power taken out of the mechanical energy, (F - elastic force) d_dot [W]
 };
@@ -21,10 +21,10 @@ using ContactForce = ContactForceOf<Real>;
 // Of a closed contact: overlap d > 0 [m], overlap rate d_dot [m/s], positive when approaching.
 template <class NormalLaw, class T>
 SCREE_HD ContactForceOf<T> contact_force(const NormalLaw& law, T d, T d_dot) {
-  const T elastic = law.elastic(d);
-  const T force = elastic + law.normal_damping * d_dot;
+  const T elastic = law.elastic(d), damping = law.damping(d);
+  const T force = elastic + damping * d_dot;
   if (force < 0 && !law.tension) return {0, 0, 0, -elastic * d_dot};
-  return {force, law.slope(d), law.normal_damping, law.normal_damping * d_dot * d_dot};
+  return {force, law.slope(d), damping, damping * d_dot * d_dot};
 }
 
 // What one contact does to its partners.

@@ -1,5 +1,5 @@
-// Normal laws: the force along the normal from overlap and overlap rate. Each is a small type with its own
-// parameters that knows the elastic part; damping is alike in all of them.
+// Normal laws: the force along the normal, a spring beside a damper, F = elastic(d) + damping(d) d_dot. Each
+// is a small type with its own parameters.
 #pragma once
 
 #include <cmath>
@@ -20,11 +20,16 @@ struct KelvinVoigt {
 };
 
 // Every law below has
-//   Law(const KelvinVoigt&)        its parameters, from a deck's; accepts() says of which
-//   of_pair(size)                  the law for partners of these sizes, with the functions of the overlap d >
-//   0 [m] elastic(d), slope(d)           elastic force [N] and its derivative [N/m] energy(d), overlap(force)
-//   elastic energy [J]; the overlap [m] with this elastic force [N] normal_damping, tension        as in
-//   KelvinVoigt as<T>()                        the same with numbers of type T
+//   Law(const KelvinVoigt&)   its parameters, from a deck's; accepts() says of which
+//   tension                   as in KelvinVoigt
+//   as<T>()                   the same with numbers of type T
+//   of_pair(size)             the law for partners of these sizes, with the functions of the overlap d > 0
+//   elastic(d), slope(d)      elastic force [N] and its derivative [N/m]
+//   energy(d)                 elastic energy [J]
+//   damping(d)                of the damper [N s/m]
+//   mean_damping(d0, d1)      its mean over the overlaps between these two, which may be 0
+//   cut(d0, pull)             where the force of a contact that parts evenly from d0 on is cut [m]: the
+//                             elastic force is down to the damper's, which is `pull` [N] at d0
 
 // F = K d + C d_dot.
 template <class T>
@@ -49,7 +54,9 @@ struct LinearLawOf {
   SCREE_HD T elastic(T d) const { return normal_stiffness * d; }
   SCREE_HD T slope(T) const { return normal_stiffness; }
   SCREE_HD T energy(T d) const { return T(0.5) * normal_stiffness * d * d; }
-  SCREE_HD T overlap(T force) const { return force / normal_stiffness; }
+  SCREE_HD T damping(T) const { return normal_damping; }
+  SCREE_HD T mean_damping(T, T) const { return normal_damping; }
+  SCREE_HD T cut(T, T pull) const { return pull / normal_stiffness; }
 };
 using LinearLaw = LinearLawOf<Real>;
 
@@ -78,7 +85,9 @@ struct PowerLawOf {
   SCREE_HD T elastic(T d) const { return normal_stiffness * std::pow(d, exponent); }
   SCREE_HD T slope(T d) const { return normal_stiffness * exponent * std::pow(d, exponent - 1); }
   SCREE_HD T energy(T d) const { return normal_stiffness / (exponent + 1) * std::pow(d, exponent + 1); }
-  SCREE_HD T overlap(T force) const { return std::pow(force / normal_stiffness, 1 / exponent); }
+  SCREE_HD T damping(T) const { return normal_damping; }
+  SCREE_HD T mean_damping(T, T) const { return normal_damping; }
+  SCREE_HD T cut(T, T pull) const { return std::pow(pull / normal_stiffness, 1 / exponent); }
 };
 using PowerLaw = PowerLawOf<Real>;
 

@@ -26,25 +26,26 @@ struct StepContactForce {
 // With that part from the straight line between the overlaps, the elastic work (F0 + F) / 2 (d1 - d0) is
 // exactly the change of the elastic energy: no step size creates energy at impacts. This is the discrete
 // gradient of LaBudde and Greenspan (1974) and of Simo, Tarnow and Wong (1992). F is continuous at d1 = 0,
-// where the force itself jumps by C d_dot: a Newton loop cannot cycle between open and closed. stiffness and
-// damping are cut at 0.
+// where the force itself may jump by C d_dot: a Newton loop cannot cycle between open and closed. stiffness
+// and damping are cut at 0.
 
 // d0 <= 0 < d1: in contact over the share d1 / (d1 - d0), at the rate (d1 - d0) / h.
 template <class NormalLaw>
 SCREE_HD StepContactForce touching_force(const NormalLaw& law, const ContactStep& c) {
-  const Real travel = c.overlap1 - c.overlap0, twice_damping = 2 * law.normal_damping;
+  const Real travel = c.overlap1 - c.overlap0;
   const Real elastic = 2 * law.energy(c.overlap1) / travel;
-  const Real slope = (2 * law.elastic(c.overlap1) - elastic) / travel + twice_damping / c.h;
-  return {elastic + twice_damping * c.overlap1 / c.h, slope, 0};
+  const Real slope = (2 * law.elastic(c.overlap1) - elastic) / travel + 2 * law.damping(c.overlap1) / c.h;
+  return {elastic + 2 * law.mean_damping(0, c.overlap1) * c.overlap1 / c.h, slope, 0};
 }
 
 // d1 <= 0 < d0 with tension: in contact over the share d0 / (d0 - d1).
 template <class NormalLaw>
 SCREE_HD StepContactForce releasing_force(const NormalLaw& law, const ContactStep& c,
                                           const ContactForce& start) {
-  const Real travel = c.overlap0 - c.overlap1, twice_damping = 2 * law.normal_damping;
+  const Real travel = c.overlap0 - c.overlap1;
   const Real elastic = 2 * law.energy(c.overlap0) / travel;
-  return {elastic - twice_damping * c.overlap0 / c.h - start.force, elastic / travel, 0};
+  const Real damper = 2 * law.mean_damping(0, c.overlap0) * c.overlap0 / c.h;
+  return {elastic - damper - start.force, elastic / travel, 0};
 }
 
 // d0 > 0 without tension, the law's force F1 at the end negative (end_force, beyond release along the slope
@@ -66,8 +67,9 @@ SCREE_HD StepContactForce step_contact_force(const NormalLaw& law, const Contact
   if (law.tension) return releasing_force(law, c, start);
   const Real stiffness = c.overlap1 > 0 ? law.slope(c.overlap1) : law.slope(c.overlap0);
   const Real elastic = c.overlap1 > 0 ? law.elastic(c.overlap1) : stiffness * c.overlap1;
-  const Real end_force = elastic + law.normal_damping * c.rate1;
-  if (end_force > 0) return {end_force, stiffness, law.normal_damping};
+  const Real damping = law.damping(c.overlap1 > 0 ? c.overlap1 : 0);
+  const Real end_force = elastic + damping * c.rate1;
+  if (end_force > 0) return {end_force, stiffness, damping};
   return fading_force(start, end_force);
 }
 
