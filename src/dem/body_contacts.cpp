@@ -96,7 +96,8 @@ void BodyContacts::place(std::span<const PlacedSurface> placed, std::vector<Vec4
   for (const Item& item : items_) {
     const PlacedSurface& s = placed[item.surface];
     position.push_back(vec4(s.point + image_shift(item.image, subdomain_.period()), s.radius));
-    velocity.push_back(vec4(s.velocity_at({}), kInfinity));
+    const Body& body = model_.bodies[static_cast<std::size_t>(surfaces_.on_body(item.surface).carrier)];
+    velocity.push_back(vec4(s.velocity_at({}), body.mass));
     arm.push_back(s.arm);
   }
 }

@@ -38,8 +38,8 @@ SCREE_HD ContactGeometry plane_pair(Vec3 center, Real radius, Vec3 point, Vec3 n
   return {radius - distance, distance, normal, 1};
 }
 
-// What a law may want to know of the two partners. A wall has no curvature; walls and bodies count as
-// unmovable.
+// What a law may want to know of the two partners. A wall has no curvature; walls, and bodies that a particle
+// touches, count as unmovable.
 template <class T>
 struct PairSizeOf {
   T radius_i, radius_j;  // [m]; infinite for a plane
