@@ -13,22 +13,10 @@ void take_smaller(Real& smallest, Real value) {
   if (smallest == 0 || value < smallest) smallest = value;
 }
 
-// Smallest mass of the relative motion of something of use a against something of use b [kg]; walls do not
-// move.
-Real smallest_reduced_mass(const MaterialUse& a, const MaterialUse& b) {
-  const auto lightest = [](const MaterialUse& use) {
-    if (use.smallest_particle_mass == 0) return use.smallest_body_mass;
-    if (use.smallest_body_mass == 0) return use.smallest_particle_mass;
-    return std::min(use.smallest_particle_mass, use.smallest_body_mass);
-  };
-  const Real mass_a = lightest(a), mass_b = lightest(b);
-  if (mass_a == 0 || mass_b == 0) return std::max(mass_a, mass_b);
-  return reduced_mass(mass_a, mass_b);
-}
-
-Real smaller_radius(const MaterialUse& a, const MaterialUse& b) {
-  if (a.smallest_radius == 0 || b.smallest_radius == 0) return std::max(a.smallest_radius, b.smallest_radius);
-  return std::min(a.smallest_radius, b.smallest_radius);
+// Mass of the relative motion [kg].
+Real smallest_reduced_mass(const PairSize& size) {
+  if (size.mass_i == kInfinity || size.mass_j == kInfinity) return std::min(size.mass_i, size.mass_j);
+  return reduced_mass(size.mass_i, size.mass_j);
 }
 
 // Of the lightest particle of use `use`: in a dense packing of such particles, or, where the other material
@@ -76,23 +64,33 @@ bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, i
   return first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch();
 }
 
+PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b) {
+  const auto given = [](Real value) { return value > 0 ? value : kInfinity; };
+  const auto lightest = [&](const MaterialUse& use) {
+    return std::min(given(use.smallest_particle_mass), given(use.smallest_body_mass));
+  };
+  return {given(a.smallest_radius), given(b.smallest_radius), lightest(a), lightest(b)};
+}
+
 std::vector<PairLimit> pair_limits(const Model& model) {
   const std::vector<MaterialUse> uses = material_uses(model);
   std::vector<PairLimit> limits;
   for (int a = 0; a < model.contact.materials(); ++a) {
     for (int b = a; b < model.contact.materials(); ++b) {
       const KelvinVoigt& law = model.contact.law(a, b);
-      if (!can_meet(model, uses, a, b) || law.normal_stiffness == 0) continue;
+      if (!can_meet(model, uses, a, b) || !law.acts()) continue;
       const MaterialUse &first = uses[static_cast<std::size_t>(a)],
                         &second = uses[static_cast<std::size_t>(b)];
-      const Real stiffness = typical_stiffness(law, smaller_radius(first, second));
+      const PairSize size = smallest_partners(first, second);
+      const KelvinVoigt sized = law.of_size(size);
+      const Real stiffness = typical_stiffness(law, size);
       const bool dense = first.particles > 0 && second.particles > 0;
-      const Real step_a = explicit_step(model, first, dense, law, stiffness);
-      const Real step_b = explicit_step(model, second, dense, law, stiffness);
+      const Real step_a = explicit_step(model, first, dense, sized, stiffness);
+      const Real step_b = explicit_step(model, second, dense, sized, stiffness);
       limits.push_back({{a, b},
-                        law,
+                        sized,
                         stiffness,
-                        contact_time(stiffness, smallest_reduced_mass(first, second)),
+                        contact_time(stiffness, smallest_reduced_mass(size)),
                         step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b)});
     }
   }

@@ -21,6 +21,8 @@ std::vector<MaterialUse> material_uses(const Model& model);
 // Whether something of material a can touch something of material b; shapes of bodies that are all connected
 // with each other cannot.
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
+// The smallest and the lightest of each material; infinite where it has walls alone.
+PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 
 // Fixed steps up to this share of the contact time keep rebounds within this share of their speed, up to
 // damping ratios of 0.2 (README, "Impacts at any step").
@@ -31,8 +33,8 @@ inline Real resolved_error(ParticleIntegrator integrator) {
 
 struct PairLimit {
   int material[2] = {0, 0};
-  KelvinVoigt law;         // for its smallest partners
-  Real stiffness = 0;      // [N/m], typical_stiffness()
+  KelvinVoigt law;         // of its smallest partners
+  Real stiffness = 0;      // of these [N/m], typical_stiffness()
   Real contact_time = 0;   // shortest, undamped and head-on [s]
   Real explicit_step = 0;  // stability limit of velocity-verlet in dense contact [s]; 0: no particles
 };

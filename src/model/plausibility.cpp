@@ -68,7 +68,7 @@ std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
   const std::vector<MaterialUse> uses = material_uses(model);
   for (int a = 0; a < model.contact.materials(); ++a)
     for (int b = a; b < model.contact.materials(); ++b)
-      if (model.contact.law(a, b).normal_stiffness > 0 && !can_meet(model, uses, a, b))
+      if (model.contact.law(a, b).acts() && !can_meet(model, uses, a, b))
         only = fmt::format("contact.pairs has a law for \"{}\" on \"{}\", which nothing here can use",
                            model.contact.material_names[static_cast<std::size_t>(a)],
                            model.contact.material_names[static_cast<std::size_t>(b)]);
@@ -141,7 +141,8 @@ std::string gyration_beyond_extent(const Model& model) {
 }
 
 std::string overdamped(const Model& model, const PairLimit& limit) {
-  const Real mass = lightest_mass(limit), damping = limit.law.normal_damping,
+  const Real mass = lightest_mass(limit),
+             damping = model.contact.law(limit.material[0], limit.material[1]).normal_damping,
              ratio = damping_ratio(damping, limit.stiffness, mass);
   if (ratio <= 1) return "";
   return fmt::format(

@@ -17,6 +17,12 @@ struct KelvinVoigt {
   Real normal_damping = 0;    // C [N s/m]
   Real exponent = 1;          // n [-]
   bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
+
+  // Whether the two feel each other.
+  bool acts() const { return normal_stiffness > 0; }
+  // For estimates: K, C and n of partners of these sizes that overlap by some 1 % of a radius.
+  static constexpr bool depends_on_size() { return false; }
+  KelvinVoigt of_size(const PairSize&) const { return *this; }
 };
 
 // Every law below has

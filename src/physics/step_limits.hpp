@@ -1,6 +1,7 @@
 // Step limits that follow from the contact law.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,11 +14,13 @@ namespace scree {
 // Mass of the relative motion of two bodies [kg].
 SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 
-// Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the radius
-// [m].
-SCREE_HD Real typical_stiffness(const KelvinVoigt& law, Real radius) {
+// Stiffness [N/m] for estimates: the slope of K d^n, for n other than 1 at an overlap of 1 % of the smaller
+// radius.
+inline Real typical_stiffness(const KelvinVoigt& of, const PairSize& size) {
+  const KelvinVoigt law = of.of_size(size);
   if (law.exponent == 1) return law.normal_stiffness;
-  return law.normal_stiffness * law.exponent * std::pow(Real(0.01) * radius, law.exponent - 1);
+  const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
+  return law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1);
 }
 
 // Circular frequency of a single undamped contact [1/s].

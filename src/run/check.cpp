@@ -106,10 +106,12 @@ std::string limit_lines(const Model& model) {
   const std::vector<std::string>& names = model.contact.material_names;
   for (const PairLimit& limit : pair_limits(model)) {
     const KelvinVoigt& law = limit.law;
-    lines += fmt::format("contact        \"{}\" on \"{}\": K = {:.6g} N/m{}, C = {:.6g} N s/m, {}\n",
+    const bool sized = model.contact.law(limit.material[0], limit.material[1]).depends_on_size();
+    lines += fmt::format("contact        \"{}\" on \"{}\": K = {:.6g} N/m{}, C = {:.6g} N s/m{}, {}\n",
                          names[static_cast<std::size_t>(limit.material[0])],
                          names[static_cast<std::size_t>(limit.material[1])], law.normal_stiffness,
                          law.exponent == 1 ? "" : fmt::format("^{}", law.exponent), law.normal_damping,
+                         sized ? " (smallest partners, at 1 % overlap)" : "",
                          law.tension ? "may pull" : "cut at zero");
     lines += fmt::format(
         "               shortest contact {:.4g} s{}, rebounds within {:.0f} % at steps up to {:.2g} s\n",

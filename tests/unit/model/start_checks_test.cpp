@@ -209,6 +209,28 @@ TEST_CASE("exponents other than 1 are estimated at an overlap of 1 % of the radi
   CHECK(contains(warnings[0], "unstable"));
 }
 
+TEST_CASE("beside explicit particles the bodies' step must be short against their oscillation on a contact") {
+  // sqrt(K / m) = 1e3 / s for n = 1; for n = 1.5 at an overlap of 0.5 mm: an error and a warning.
+  const std::string deck =
+      kDeck + "[[bodies]]\nname = \"ram\"\nposition = [-0.5, 0.5]\nmass = 0.01\ninertia = 1e-5\n" +
+      "shapes = [{ radius = 0.05 }]\n";
+  const auto with_step = [](const std::string& step) {
+    return std::vector<std::string>{"integrator.particles=velocity-verlet", "time.step=" + step,
+                                    "contact.pairs.0.exponent=1.0"};
+  };
+  CHECK(model_error(deck, with_step("6.9e-4")).empty());
+  CHECK(contains(
+      model_error(deck, with_step("7.1e-4")),
+      "a body on a contact oscillates with 1000 rad/s; with velocity-verlet particles the bodies' step "
+      "must be at most 0.0007 s"));
+  const std::vector<std::string> warnings =
+      model_warnings(deck, {"integrator.particles=velocity-verlet", "time.step=6e-3",
+                            "contact.pairs.0.exponent=1.5", "contact.pairs.0.stiffness=1e5"});
+  const Real frequency = std::sqrt(1e5 * 1.5 * std::sqrt(5e-4) / 0.01);
+  REQUIRE(!warnings.empty());
+  CHECK(contains(warnings[0], fmt::format("oscillates with {:.4g} rad/s", frequency)));
+}
+
 TEST_CASE("a particle may start periods outside a periodic space, but not where its place is lost") {
   const std::string deck = kSmallDeck +
                            "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"list\"\n" +

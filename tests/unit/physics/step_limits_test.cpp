@@ -48,8 +48,9 @@ TEST_CASE("contact time and typical stiffness") {
   CHECK(reduced_mass(2, 2) == 1);
   CHECK(near(reduced_mass(1, 1e12), 1 - 1e-12, {.relative = kRoundOff}));
   CHECK(near(contact_time(100, 1), std::numbers::pi / 10, {.relative = kRoundOff}));
-  CHECK(typical_stiffness({5e3, 0, 1, false}, 0.1) == 5e3);
-  CHECK(near(typical_stiffness({5e3, 0, 1.5, false}, 0.01), 5e3 * 1.5 * 0.01, {.relative = kRoundOff}));
+  constexpr PairSize kSize{0.02, 0.01, 1, 1};
+  CHECK(typical_stiffness({5e3, 0, 1, false}, kSize) == 5e3);
+  CHECK(near(typical_stiffness({5e3, 0, 1.5, false}, kSize), 5e3 * 1.5 * 0.01, {.relative = kRoundOff}));
   CHECK(dense_frequency(6, 1, 2) == 6);
   CHECK(dense_frequency(2, 1, 3) == 4);
 }
