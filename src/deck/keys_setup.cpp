@@ -132,14 +132,23 @@ const TableKeys& integrator_keys() {
 
 const TableKeys& contact_keys() {
   static const TableKeys pairs{
-      "The contact law F = K d^n + C d' of a pair of materials; d: overlap.",
+      "The contact law of a pair of materials: F = K d^n + C d', d: overlap; or Hertz's law of spheres, "
+      "where "
+      "there is no stiffness and both materials have a Young's modulus.",
       {texts("materials").entries(2).left_out("the only material").about("The two materials, in any order."),
        real("stiffness", "N/m^n")
            .at_least(0)
-           .required()
+           .left_out("Hertz's law from the materials")
            .about("K; 0 with damping 0: the two do not interact."),
        real("damping", "N s/m").at_least(0).otherwise("0.0").about("C."),
-       real("exponent", "").within(0.5, 4).otherwise("1.0").about("n; 1.5 for Hertz."),
+       real("exponent", "").within(0.5, 4).otherwise("1.0").about("n."),
+       real("restitution", "")
+           .within(0, 1)
+           .above(0)
+           .left_out("no damping, as with 1")
+           .about(
+               "Of Hertz's law: speed after over speed before a head-on impact, the same at every speed; a "
+               "body that particles meet counts as unmovable in it."),
        boolean("tension").otherwise("false").about(
            "Whether the force may pull just before separation; false cuts it at zero.")},
       ""};
@@ -186,7 +195,12 @@ const TableKeys& material_keys() {
        real("density", "kg/m^3")
            .above(0)
            .left_out("none")
-           .about("For particles that give neither mass nor density.")},
+           .about("For particles that give neither mass nor density."),
+       real("young_modulus", "Pa")
+           .above(0)
+           .left_out("none")
+           .about("With poisson_ratio: pairs of such materials follow Hertz's law."),
+       real("poisson_ratio", "").within(-1, 0.5).above(-1).left_out("none").about("With young_modulus.")},
       ""};
   return keys;
 }

@@ -11,7 +11,82 @@ namespace scree {
 
 namespace {
 
-void build_pair(const DeckTable& table, Contact& contact, const ModelNames& names, std::vector<bool>& given) {
+// F = K d^n + C d_dot, K given.
+KelvinVoigt stiffness_law(const DeckTable& table, bool has_moduli) {
+  const KelvinVoigt law{table.real("stiffness"), table.real("damping"), table.real("exponent"),
+                        table.boolean("tension")};
+  if (law.normal_stiffness == 0 && law.normal_damping > 0)
+    table.fail("damping", "must be 0 where the stiffness is 0");
+  if (table.has("restitution"))
+    table.fail("restitution", "belongs to Hertz's law; a pair with a stiffness has damping instead");
+  if (law.acts() && has_moduli)
+    table.fail("stiffness",
+               "both materials have a young_modulus, too; leave out the stiffness for Hertz's law, or the "
+               "moduli for this one");
+  return law;
+}
+
+void check_moduli(const DeckTable& material) {
+  const bool has_modulus = material.has("young_modulus"), has_ratio = material.has("poisson_ratio");
+  if (has_modulus != has_ratio)
+    material.fail(has_modulus ? "poisson_ratio" : "young_modulus",
+                  "missing; Hertz's law takes young_modulus and poisson_ratio together");
+}
+
+// Young's modulus over 1 - nu^2 [Pa], or 0 where the material has none.
+Real plane_strain_modulus(const DeckTable& material) {
+  if (!material.has("young_modulus")) return 0;
+  const Real ratio = material.real("poisson_ratio");
+  return material.real("young_modulus") / (1 - ratio * ratio);
+}
+
+// Hertz's law of spheres; moduli: of the two materials.
+KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&moduli)[2],
+                      const int (&material)[2]) {
+  for (int side = 0; side < 2; ++side)
+    if (moduli[side] == 0)
+      table.fail("stiffness",
+                 fmt::format("missing; give it or, for Hertz's law, young_modulus and poisson_ratio of both "
+                             "materials: \"{}\" has none",
+                             model.contact.material_names[static_cast<std::size_t>(material[side])]));
+  if (model.space.dimension == 2)
+    table.fail("stiffness",
+               "missing; Hertz's law is one of spheres, and in 2D there are discs: give a stiffness");
+  if (table.real("damping") > 0)
+    table.fail("damping", "must be left out for Hertz's law, whose damping follows from restitution");
+  if (table.real("exponent") != 1)
+    table.fail("exponent", "must be left out for Hertz's law, which has its own");
+  KelvinVoigt law;
+  law.tension = table.boolean("tension");
+  law.effective_modulus = 1 / (1 / moduli[0] + 1 / moduli[1]);
+  if (table.has("restitution")) law.damping_ratio = damping_ratio_of(table.real("restitution"), law.tension);
+  return law;
+}
+
+KelvinVoigt build_law(const DeckTable& deck, const DeckTable& table, const Model& model,
+                      const int (&material)[2]) {
+  const std::vector<DeckTable>& materials = deck.tables("materials");
+  Real moduli[2] = {0, 0};
+  for (std::size_t side = 0; side < 2 && !materials.empty(); ++side)
+    moduli[side] = plane_strain_modulus(materials[static_cast<std::size_t>(material[side])]);
+  if (table.has("stiffness")) return stiffness_law(table, moduli[0] > 0 && moduli[1] > 0);
+  return hertz_law(table, model, moduli, material);
+}
+
+// A run has one form of law.
+void check_mixing(const DeckTable& table, const Contact& contact, const KelvinVoigt& law) {
+  for (const KelvinVoigt& other : contact.laws)
+    if (law.acts() && other.acts() && (law.effective_modulus > 0) != (other.effective_modulus > 0))
+      table.fail("stiffness",
+                 fmt::format("{}, while a pair before has {}; a deck follows Hertz's law for all pairs "
+                             "(none with a stiffness but 0) or for none",
+                             law.effective_modulus > 0 ? "missing" : "given",
+                             law.effective_modulus > 0 ? "one" : "none"));
+}
+
+void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, const ModelNames& names,
+                std::vector<bool>& given) {
+  Contact& contact = model.contact;
   int material[2] = {0, 0};
   if (table.has("materials")) {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -20,11 +95,8 @@ void build_pair(const DeckTable& table, Contact& contact, const ModelNames& name
   } else if (contact.materials() > 1) {
     table.fail("materials", "missing; it must be a list of two materials, as the deck has more than one");
   }
-  const KelvinVoigt law{table.real("stiffness"), table.real("damping"), table.real("exponent"),
-                        table.boolean("tension")};
-  if (law.normal_stiffness == 0 && law.normal_damping > 0) {
-    table.fail("damping", "must be 0 where the stiffness is 0");
-  }
+  const KelvinVoigt law = build_law(deck, table, model, material);
+  check_mixing(table, contact, law);
   for (int side = 0; side < 2; ++side) {
     const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
     if (given[slot] && (side == 0 || material[0] != material[1])) {
@@ -72,6 +144,7 @@ void build_materials(const DeckTable& deck, Model& model, ModelNames& names) {
   for (const DeckTable& table : deck.tables("materials")) {
     const std::string& name = table.text("name");
     add_name(names.materials, name, model.contact.materials(), table);
+    check_moduli(table);
     names.densities.push_back(table.has("density") ? table.real("density") : 0);
     model.contact.material_names.push_back(name);
   }
@@ -89,7 +162,7 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   contact.laws.assign(slots, {});
   contact.connected_bodies_touch = table.boolean("connected_bodies_touch");
   std::vector<bool> given(slots, false);
-  for (const DeckTable& pair : table.tables("pairs")) build_pair(pair, contact, names, given);
+  for (const DeckTable& pair : table.tables("pairs")) build_pair(deck, pair, model, names, given);
   check_pairs(table, model, given);
   const auto [smallest, largest] = radius_range(model);
   // With nothing to search for, any positive length serves.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "base/hd.hpp"
@@ -10,19 +11,21 @@
 
 namespace scree {
 
-// What a deck says of a pair of materials: F = K d^n + C d_dot, Kelvin-Voigt with exponent; Jung, Jun, Sohn
-// (2013), Eqs. 18-24.
+// What a deck says of a pair of materials, a spring beside a damper: F = K d^n + C d_dot (Jung, Jun, Sohn,
+// 2013, Eqs. 18-24), or with a modulus E* Hertz's law in place of K, C and n.
 struct KelvinVoigt {
   Real normal_stiffness = 0;  // K [N/m^n]
   Real normal_damping = 0;    // C [N s/m]
   Real exponent = 1;          // n [-]
   bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
+  Real effective_modulus = 0;  // E* [Pa]
+  Real damping_ratio = 0;      // zeta of Hertz's law [-]
 
   // Whether the two feel each other.
-  bool acts() const { return normal_stiffness > 0; }
+  bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
   // For estimates: K, C and n of partners of these sizes that overlap by some 1 % of a radius.
-  static constexpr bool depends_on_size() { return false; }
-  KelvinVoigt of_size(const PairSize&) const { return *this; }
+  bool depends_on_size() const { return effective_modulus > 0; }
+  KelvinVoigt of_size(const PairSize& size) const;
 };
 
 // Every law below has
@@ -50,7 +53,7 @@ struct LinearLawOf {
       : normal_stiffness(stiffness), normal_damping(damping), tension(pulls) {}
   explicit LinearLawOf(const KelvinVoigt& p)
       : LinearLawOf(T(p.normal_stiffness), T(p.normal_damping), p.tension) {}
-  static bool accepts(const KelvinVoigt& p) { return p.exponent == 1; }
+  static bool accepts(const KelvinVoigt& p) { return p.exponent == 1 && p.effective_modulus == 0; }
 
   SCREE_HD LinearLawOf of_pair(const PairSizeOf<T>&) const { return *this; }
   template <class S>
@@ -80,7 +83,7 @@ struct PowerLawOf {
       : normal_stiffness(stiffness), normal_damping(damping), exponent(n), tension(pulls) {}
   explicit PowerLawOf(const KelvinVoigt& p)
       : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension) {}
-  static bool accepts(const KelvinVoigt&) { return true; }
+  static bool accepts(const KelvinVoigt& p) { return p.effective_modulus == 0; }
 
   SCREE_HD PowerLawOf of_pair(const PairSizeOf<T>&) const { return *this; }
   template <class S>
@@ -97,8 +100,94 @@ struct PowerLawOf {
 };
 using PowerLaw = PowerLawOf<Real>;
 
+// Hertz's law for two partners: F = K d^(3/2) + c d^(1/4) d_dot, K = 4/3 E* sqrt(R*), c = 2 zeta sqrt(5/4 m*
+// K). In dtau = d^(1/4) dt and y = 4/5 d^(5/4), whose rate is d_dot, that is a linear oscillator of damping
+// ratio zeta: the restitution is the same at every speed. Roots and quotients alone: a GPU gives the CPU's
+// bits.
+template <class T>
+struct HertzPairOf {
+  T modulus;         // 4/3 E* [Pa]
+  T damping_factor;  // sqrt(5) zeta [-]
+  bool tension;
+  T radius, mass;  // R* [m], m* [kg]
+
+  // Of the disc in which the two touch [m].
+  SCREE_HD T contact_radius(T d) const { return std::sqrt(radius * d); }
+  SCREE_HD T elastic(T d) const { return modulus * contact_radius(d) * d; }
+  SCREE_HD T slope(T d) const { return T(1.5) * modulus * contact_radius(d); }
+  SCREE_HD T energy(T d) const { return T(0.4) * modulus * contact_radius(d) * d * d; }
+  SCREE_HD T damping(T d) const { return damping_factor * std::sqrt(mass * modulus * contact_radius(d)); }
+  // 4/5 c (q^5 - p^5) / (q^4 - p^4) with p, q = d^(1/4), without its differences.
+  SCREE_HD T mean_damping(T d0, T d1) const {
+    const T p2 = std::sqrt(d0), q2 = std::sqrt(d1), p = std::sqrt(p2), q = std::sqrt(q2);
+    const T parts = (p + q) * (p2 + q2);
+    if (!(parts > 0)) return 0;
+    const T c = damping_factor * std::sqrt(mass * modulus * std::sqrt(radius));
+    return T(0.8) * c * (p2 * p2 + p * q * (p2 + p * q + q2) + q2 * q2) / parts;
+  }
+  // d0 x^4 where x^5 is the damper's share of the elastic force at d0, by Newton's method, which falls.
+  SCREE_HD T cut(T d0, T pull) const {
+    const T share = pull / elastic(d0);
+    if (!(share > 0)) return 0;
+    T x = 1, x4 = 1;
+    for (T next = (4 + share) / 5; next < x; next = (4 * x + share / x4) / 5) x = next, x4 = x * x * x * x;
+    return d0 * x4;
+  }
+};
+
+template <class T>
+struct HertzLawOf {
+  using Scalar = T;
+  T modulus = 0;         // 4/3 E* [Pa]
+  T damping_factor = 0;  // sqrt(5) zeta [-]
+  bool tension = false;
+
+  HertzLawOf() = default;
+  SCREE_HD HertzLawOf(T m, T factor, bool pulls) : modulus(m), damping_factor(factor), tension(pulls) {}
+  explicit HertzLawOf(const KelvinVoigt& p)
+      : HertzLawOf(T(4 * p.effective_modulus / 3), T(std::sqrt(Real(5)) * p.damping_ratio), p.tension) {}
+  // Pairs that do not act are of any law.
+  static bool accepts(const KelvinVoigt& p) { return p.effective_modulus > 0 || !p.acts(); }
+
+  SCREE_HD HertzPairOf<T> of_pair(const PairSizeOf<T>& size) const {
+    return {modulus, damping_factor, tension, size.effective_radius(), size.effective_mass()};
+  }
+  template <class S>
+  SCREE_HD HertzLawOf<S> as() const {
+    return {static_cast<S>(modulus), static_cast<S>(damping_factor), tension};
+  }
+};
+using HertzLaw = HertzLawOf<Real>;
+
+inline KelvinVoigt KelvinVoigt::of_size(const PairSize& size) const {
+  if (effective_modulus == 0) return *this;
+  const auto pair = HertzLaw(*this).of_pair(size);
+  const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
+  return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), tension};
+}
+
+// Restitution of an impact with the damping ratio z [-], the same for all laws F = K d^n + c d^((n-1)/2)
+// d_dot with c = 2 z sqrt(m* K (n+1)/2): that of the linear one, over which tau = w t runs until the force is
+// 0, or, with tension, the overlap.
+inline Real restitution_of(Real z, bool tension) {
+  const Real s = std::sqrt(std::abs((1 - z) * (1 + z)));
+  if (tension) return z < 1 ? std::exp(-std::numbers::pi_v<Real> * z / s) : 0;
+  const Real half = z < 1 ? std::atan2(s, z) : std::asinh(s);
+  return std::exp(-2 * z * (s > 0 ? half / s : 1));
+}
+
+// The damping ratio of a restitution above 0, at most 1: bisection, as e falls with z.
+inline Real damping_ratio_of(Real restitution, bool tension) {
+  if (restitution == 1) return 0;
+  Real low = 0, high = 1;
+  while (restitution_of(high, tension) > restitution) high *= 2;
+  for (Real z = high / 2; low < z && z < high; z = low + (high - low) / 2)
+    (restitution_of(z, tension) > restitution ? low : high) = z;
+  return high;
+}
+
 // A run takes the first that accepts the parameters of all its pairs; each has its own kernels
 // (cuda/contact_kernels_*.cu).
-using NormalLaws = std::tuple<LinearLaw, PowerLaw>;
+using NormalLaws = std::tuple<LinearLaw, PowerLaw, HertzLaw>;
 
 }  // namespace scree

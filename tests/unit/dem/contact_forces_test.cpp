@@ -23,16 +23,36 @@ struct BruteContacts {
   int count = 0;
 };
 
-// arm: of the force, from the centre of item i against the normal [m].
-void add_contact(BruteContacts& sum, const KelvinVoigt& law, Real overlap, Real rate, Vec3 normal, Real arm,
-                 std::size_t i) {
-  const ContactForce c = contact_force(PowerLaw(law), overlap, rate);
-  sum.force[i] += c.force * normal;
+// One contact of item i: its force, and `share` of its energy and number.
+struct BruteContact {
+  Real overlap, rate;
+  Vec3 normal;
+  Real arm;  // of the force, from the centre of item i against the normal [m]
+  PairSize size;
+  Real share;
+};
+
+template <class NormalLaw>
+void add_contact(BruteContacts& sum, const NormalLaw& law, const BruteContact& contact, std::size_t i) {
+  const ContactForce c = contact_force(law, contact.overlap, contact.rate);
+  const Vec3 f = c.force * contact.normal, x = -contact.arm * contact.normal;
+  sum.force[i] += f;
   Tensor& virial = sum.virial[i];
-  const Vec3 f = c.force * normal, x = -arm * normal;
   virial.x += f.x * x, virial.y += f.y * x, virial.z += f.z * x;
   sum.magnitude += std::abs(c.force);
+  sum.elastic += contact.share * law.energy(contact.overlap);
   ++sum.contacts[i];
+}
+
+void add_contact(BruteContacts& sum, const KelvinVoigt& law, const BruteContact& c, std::size_t i) {
+  if (law.effective_modulus > 0) return add_contact(sum, HertzLaw(law).of_pair(c.size), c, i);
+  add_contact(sum, PowerLaw(law), c, i);
+}
+
+// A body counts as unmovable for a particle, and has its mass among bodies.
+PairSize size_of(const BruteItem& a, const BruteItem& b) {
+  return {a.radius, b.radius, a.body >= 0 && b.body < 0 ? kInfinity : a.mass,
+          b.body >= 0 && a.body < 0 ? kInfinity : b.mass};
 }
 
 // Every ordered pair and image: forces once per item, energies and counts half from either side.
@@ -53,16 +73,19 @@ BruteContacts brute_contacts(const LoadedBox& box) {
         if (overlap <= 0) return;
         const Vec3 normal = (1 / norm(r)) * r;
         const KelvinVoigt& law = box.model.contact.law(a.material, b.material);
-        add_contact(sum, law, overlap, -dot(normal, a.velocity - b.velocity), normal,
-                    norm(r) * a.radius / (a.radius + b.radius), i);
-        sum.elastic += PowerLaw(law).energy(overlap) / 2, pairs += 0.5;
+        const Real arm = norm(r) * a.radius / (a.radius + b.radius);
+        add_contact(sum, law,
+                    {overlap, -dot(normal, a.velocity - b.velocity), normal, arm, size_of(a, b), 0.5}, i);
+        pairs += 0.5;
       });
     for (const Wall& wall : box.model.walls) {
       const Real overlap = a.radius - dot(a.position - wall.point, wall.normal);
       if (overlap <= 0) continue;
       const KelvinVoigt& law = box.model.contact.law(a.material, wall.material);
-      add_contact(sum, law, overlap, -dot(wall.normal, a.velocity), wall.normal, a.radius - overlap, i);
-      sum.elastic += PowerLaw(law).energy(overlap), pairs += 1;
+      const PairSize size{a.radius, kInfinity, a.mass, kInfinity};
+      add_contact(sum, law,
+                  {overlap, -dot(wall.normal, a.velocity), wall.normal, a.radius - overlap, size, 1}, i);
+      pairs += 1;
     }
   }
   sum.count = static_cast<int>(std::lround(pairs));

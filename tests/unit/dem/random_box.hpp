@@ -27,15 +27,18 @@ struct BoxCase {
   int materials;
   Real exponent;
   bool tension;
+  Real modulus = 0;  // E* of Hertz's law [Pa]; 0: a stiffness
 };
 
-inline const BoxCase kBoxes[] = {{"2D, equal, open", 2, 0, 1.0, false, false, 1, 1, false},
-                                 {"2D, polydisperse, periodic", 2, 2, 0.2, false, false, 2, 1, true},
-                                 {"2D, bodies and walls", 2, 0, 0.4, true, true, 2, 1.5, false},
-                                 {"2D, bodies, periodic in x", 2, 1, 0.4, true, true, 1, 1, true},
-                                 {"3D, equal, periodic", 3, 3, 1.0, false, false, 1, 1.5, false},
-                                 {"3D, polydisperse, bodies, periodic", 3, 3, 0.3, false, true, 2, 1, false},
-                                 {"3D, polydisperse, walls", 3, 0, 0.3, true, false, 1, 1, false}};
+inline const BoxCase kBoxes[] = {
+    {"2D, equal, open", 2, 0, 1.0, false, false, 1, 1, false},
+    {"2D, polydisperse, periodic", 2, 2, 0.2, false, false, 2, 1, true},
+    {"2D, bodies and walls", 2, 0, 0.4, true, true, 2, 1.5, false},
+    {"2D, bodies, periodic in x", 2, 1, 0.4, true, true, 1, 1, true},
+    {"3D, equal, periodic", 3, 3, 1.0, false, false, 1, 1.5, false},
+    {"3D, polydisperse, bodies, periodic", 3, 3, 0.3, false, true, 2, 1, false},
+    {"3D, polydisperse, walls", 3, 0, 0.3, true, false, 1, 1, false},
+    {"3D, Hertz, polydisperse, bodies and walls", 3, 1, 0.3, true, true, 2, 1, false, 2e4}};
 
 inline constexpr Real kLargestRadius = 0.1;
 
@@ -112,7 +115,9 @@ inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
   model.contact.material_names.assign(static_cast<std::size_t>(box.materials), "material");
   for (int k = 0; k < box.materials * box.materials; ++k) {
     const int i = k / box.materials, j = k % box.materials;
-    model.contact.laws.push_back({1e3 * (1 + i + j), 5.0 + i * j, box.exponent, box.tension});
+    KelvinVoigt law{1e3 * (1 + i + j), 5.0 + i * j, box.exponent, box.tension};
+    if (box.modulus > 0) law = {0, 0, 1, box.tension, box.modulus * (1 + i + j), 0.1 + 0.1 * i * j};
+    model.contact.laws.push_back(law);
   }
   for (int i = 0; i < particles; ++i) {
     const Real radius = kLargestRadius * random.uniform(box.smallest_radius, 1);
@@ -204,7 +209,7 @@ inline Index verlet_steps(LoadedBox& box, Real h, Index steps) {
 // A particle or a shape for the search by brute force.
 struct BruteItem {
   Vec3 position, velocity;
-  Real radius;
+  Real radius, mass;
   int material;
   int body;  // -1: a particle
 };
@@ -213,14 +218,15 @@ inline std::vector<BruteItem> brute_items(const LoadedBox& box) {
   std::vector<BruteItem> items;
   for (std::size_t i = 0; i < box.records.size(); ++i)
     items.push_back({box.records[i].position, box.records[i].velocity, box.model.particles.radius[i],
-                     box.model.particles.material[i], -1});
+                     box.model.particles.mass[i], box.model.particles.material[i], -1});
   const Subdomain subdomain(box.model.space);
   for (std::size_t b = 0; b < box.motion.size(); ++b)
     for (const Shape& shape : box.model.bodies[b].shapes) {
       const PointMotion point = point_motion(box.motion[b], shape.offset);
       ImageCount unused;
       items.push_back({subdomain.wrap(snap(point.position, subdomain.snap_constant()), unused),
-                       point.velocity, shape.radius, shape.material, static_cast<int>(b)});
+                       point.velocity, shape.radius, box.model.bodies[b].mass, shape.material,
+                       static_cast<int>(b)});
     }
   return items;
 }
