@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "mbs/rank_check.hpp"
+#include "model/connections.hpp"
 
 namespace scree {
 
@@ -60,13 +61,27 @@ SystemTerms terms_at(PlanarSystem& system, const std::vector<Real>& position,
   return terms;
 }
 
-void check_gaps(const PlanarSystem& system, const SystemTerms& terms, Real limit, Real t) {
+// gap: per row of Phi [m, rad].
+void check_gaps(const PlanarSystem& system, const std::vector<Real>& gap, Real limit, Real t) {
   const std::string what =
       fmt::format("its two sides do not meet at t = {:.9g}{}, they miss by", t, t > 0 ? " s" : "");
   for (const ConstraintGroup& group : system.groups()) {
-    const std::string trouble = row_trouble(system, group, terms.constraint, limit, what.c_str(), "");
+    const std::string trouble = row_trouble(system, group, gap, limit, what.c_str(), "");
     if (!trouble.empty()) throw InputError(trouble);
   }
+}
+
+// Whether a joint's points meet at t = 0 the model's rule says; of angles and drivers the rows of Phi.
+void check_start_gaps(const Model& model, const PlanarSystem& system, std::vector<Real> gap) {
+  for (const Joint& joint : model.joints)
+    if (const JointGap ends = joint_gap(model, joint); !ends.meets())
+      throw InputError(fmt::format(
+          "joint '{}': its two sides do not meet at t = 0, they miss by {:.6g} m, allowed is {:.3g}",
+          joint.name, ends.size, ends.allowed));
+  for (std::size_t k = 0; k < model.joints.size(); ++k)  // the first groups are the joints'
+    for (int row = system.groups()[k].first_row; row < system.groups()[k].end_row; ++row)
+      if (!system.is_angle(row)) gap[at(row)] = 0;
+  check_gaps(system, gap, kPositionGap, 0);
 }
 
 // The direction of a spring-damper or a distance is not defined where its points coincide.
@@ -109,7 +124,7 @@ void check_start(const Model& model, PlanarSystem& system, const std::vector<Rea
   motion.set(position, velocity);
   check_directions(model, motion);
   const SystemTerms terms = terms_at(system, position, velocity, 0);
-  check_gaps(system, terms, kPositionGap, 0);
+  check_start_gaps(model, system, terms.constraint);
   check_redundancy(system, terms.constraint_jacobian);
 }
 
@@ -129,7 +144,7 @@ std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>
 
 void check_joints_hold(PlanarSystem& system, const std::vector<Real>& position,
                        const std::vector<Real>& velocity, Real t) {
-  check_gaps(system, terms_at(system, position, velocity, t), kKeptGap, t);
+  check_gaps(system, terms_at(system, position, velocity, t).constraint, kKeptGap, t);
 }
 
 std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& pattern,

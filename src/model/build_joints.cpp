@@ -38,36 +38,21 @@ Vec3 global_axis(const DeckTable& table) {
   return (1 / norm(axis)) * axis;
 }
 
-// How far the joint's two sides are from meeting at t = 0 [m].
-Real joint_gap(const Joint& joint, Vec3 ends) {
-  const Real length = std::hypot(ends.x, ends.y);
-  if (joint.kind == JointKind::distance) return std::abs(length - joint.distance);
-  return length;
-}
-
 std::string body_name(const Model& model, int body) {
   return body == kGround ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
 }
 
-// Round-off of coordinates is far below 1e-9 of them.
 void check_joint_meets(const DeckTable& table, const Model& model, const Joint& joint) {
-  const Vec3 a = to_global_point(model, joint.body[0], joint.point[0]);
-  const Vec3 b = to_global_point(model, joint.body[1], joint.point[1]);
-  Vec3 ends = b - a;
-  if (joint.kind == JointKind::translational) {
-    const Vec3 axis = to_global_direction(model, joint.body[0], joint.axis);
-    ends = ends - dot(ends, axis) * axis;
-  }
-  const Real gap = joint_gap(joint, ends);
-  if (gap <= 1e-9 * (1 + norm(a) + norm(b))) return;
+  const JointGap gap = joint_gap(model, joint);
+  if (gap.meets()) return;
   const std::string key = joint.kind == JointKind::distance ? "distance" : "local_points";
   table.fail(
       table.has(key) ? key : "name",
       fmt::format(
           "the two sides of joint \"{}\" do not meet: at t = 0 the point of {} is at ({}, {}), that of "
           "{} at ({}, {}), off by {:.6g} m",
-          joint.name, body_name(model, joint.body[0]), a.x, a.y, body_name(model, joint.body[1]), b.x, b.y,
-          gap));
+          joint.name, body_name(model, joint.body[0]), gap.end[0].x, gap.end[0].y,
+          body_name(model, joint.body[1]), gap.end[1].x, gap.end[1].y, gap.size));
 }
 
 Joint build_joint(const DeckTable& table, const Model& model, const Connection& connection) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/rotation.hpp"
 
@@ -93,6 +94,20 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
 
 void check_single(const DeckTable& table, const std::string& key) {
   if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
+}
+
+JointGap joint_gap(const Model& model, const Joint& joint) {
+  const Vec3 a = to_global_point(model, joint.body[0], joint.point[0]),
+             b = to_global_point(model, joint.body[1], joint.point[1]);
+  Vec3 apart = b - a;
+  if (joint.kind == JointKind::translational) {
+    const Vec3 axis = to_global_direction(model, joint.body[0], joint.axis);
+    apart = apart - dot(apart, axis) * axis;
+  }
+  const Real length = std::hypot(apart.x, apart.y);
+  return {{a, b},
+          joint.kind == JointKind::distance ? std::abs(length - joint.distance) : length,
+          1e-9 * (1 + norm(a) + norm(b))};
 }
 
 std::vector<bool> driven_joints(const Model& model) {

@@ -35,6 +35,16 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
 // Refuses `key` together with chain or each: one global point cannot hold for several elements.
 void check_single(const DeckTable& table, const std::string& key);
 
+// Whether the two sides of a joint meet at t = 0.
+struct JointGap {
+  Vec3 end[2];   // the joint's point on either body [m]
+  Real size;     // how far they are from meeting [m]
+  Real allowed;  // round-off of coordinates is far below [m]
+
+  bool meets() const { return size <= allowed; }
+};
+JointGap joint_gap(const Model& model, const Joint& joint);
+
 // Per joint, whether a driver prescribes it.
 std::vector<bool> driven_joints(const Model& model);
 // Of joints and drivers: the number of the multibody side's constraint equations.

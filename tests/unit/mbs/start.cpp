@@ -69,6 +69,10 @@ TEST_CASE("joints whose sides do not meet are named with their gap") {
   model.joints[0].point[0] = {0, 0.03, 0};
   CHECK(contains(refusal(model), "joint 'pivot'"));
   CHECK(contains(refusal(model), "0.03 m"));
+  model.joints[0].point[0] = {0, 3e-9, 0};
+  CHECK(contains(refusal(model), "miss by 3e-09 m, allowed is 1e-09"));
+  model.joints[0].point[0] = {0, 9e-10, 0};  // what a deck is refused for is refused here, and nothing else
+  CHECK(refusal(model) == "nothing was refused");
   model = hanging_disc();
   model.joints[0].kind = JointKind::fixed;
   model.joints[0].angle_offset = 0.25;
