@@ -3,7 +3,10 @@
 
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
+#include "physics/contact_motion.hpp"
 #include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 
@@ -35,16 +38,24 @@ struct ContactLoadOf {
   Vector torque_i, torque_j;  // about the centres [N m]
 };
 
-// No force across the normal, no torque against rolling: laws that add nothing. One that does has acts = true
-// and
-//   add(pair state, normal force, load)
-struct Frictionless {
-  static constexpr bool acts = false;
-};
-struct FreeRolling {
-  static constexpr bool acts = false;
+// What a contact remembers from step to step; what its law does not use stays zero.
+struct ContactHistory {
+  Vec3 spring;           // force of the tangential spring [N]; odd under exchange of the partners
+  Vec3 moment;           // of the springs of rolling and twisting [N m]; odd
+  bool touched = false;  // the surfaces have met: a law with a neck may hold them beyond touch
 };
 
+// A contact over the step that ends at the instant of its PairState.
+struct ContactOutcome {
+  ContactLoadOf<Real, Vec3> load;  // at that instant; loss: of the normal law there, and of the step's others
+  ContactHistory history;
+  SpringLosses friction, rolling;  // of the step [J]
+};
+
+// The law of a contact. Without friction, rolling and neck (kMoves false) it is a function of the instant:
+// load(pair). With them it needs to know how the partners moved over the step, and what it remembers:
+// load(pair, motion, history), which is pure: the new history is returned, and only who accepts the step
+// stores it.
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
   using Normal = NormalLaw;
@@ -52,15 +63,98 @@ struct ContactLaw {
   TangentialLaw tangential{};
   RollingLaw rolling{};
 
+  static constexpr bool kNeck = has_neck<NormalLaw>();
+  static constexpr bool kMoves = TangentialLaw::acts || RollingLaw::acts || kNeck;
+  // Numbers that a contact remembers: spring, moment, whether it has touched, in this order.
+  static constexpr int kHistory = TangentialLaw::kHistory + RollingLaw::kHistory + (kNeck ? 1 : 0);
+
   // The load of a closed contact. Pure: the same for both partners but for the sign of what is odd.
   template <class T, class Vector>
   SCREE_HD ContactLoadOf<T, Vector> load(const PairStateOf<T, Vector>& pair) const {
+    static_assert(!kMoves);
     const auto law = normal.template as<T>().of_pair(pair.size);
     const ContactForceOf<T> f = contact_force(law, pair.geometry.overlap, pair.geometry.rate(pair.velocity));
-    ContactLoadOf<T, Vector> load{pair.geometry.along(f.force), f.loss, {}, {}};
-    if constexpr (TangentialLaw::acts) tangential.add(pair, f.force, load);
-    if constexpr (RollingLaw::acts) rolling.add(pair, f.force, load);
-    return load;
+    return {pair.geometry.along(f.force), f.loss, {}, {}};
+  }
+
+  // Whether there is a contact, of partners that may be apart.
+  SCREE_HD bool closed(const PairState& pair, const ContactHistory& old) const {
+    if (pair.geometry.overlap > 0) return true;
+    if constexpr (kNeck) return old.touched && pair.geometry.overlap > -normal.of_pair(pair.size).reach();
+    return false;
+  }
+
+  // All zero where there is no contact.
+  SCREE_HD ContactOutcome load(const PairState& pair, const ContactMotion& step,
+                               const ContactHistory& old) const {
+    ContactOutcome out{};
+    if (!closed(pair, old)) return out;
+    const auto law = normal.of_pair(pair.size);
+    const ContactGeometry& g = pair.geometry;
+    const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
+    const bool fresh = step.overlap0 < 0 && !old.touched;
+    const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
+    const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);
+    out.load = {g.along(f.force), f.loss, {}, {}};
+    out.history.touched = true;
+    SpringSlider slider{};
+    if constexpr (TangentialLaw::acts) {
+      slider = tangential.slider(pair.size, motion, contact);
+      rub(spring_step(slider, turned_across(motion, old.spring), motion.slip, motion.h), motion, out);
+    }
+    if constexpr (RollingLaw::acts)
+      roll(rolling.step({pair.size, motion, contact, slider}, turned_with(motion, old.moment)), motion.h,
+           out);
+    return out;
+  }
+
+  // Elastic energy of the springs that a closed contact remembers [J]; that of its normal force not counted.
+  SCREE_HD Real spring_energy_of(const PairState& pair, const ContactHistory& history) const {
+    const Real d = pair.geometry.overlap;
+    const NormalContact contact = normal_contact(normal.of_pair(pair.size), pair.size, 0, d, d);
+    Real out = 0, stiffness = 0;
+    if constexpr (TangentialLaw::acts) {
+      stiffness = tangential.stiffness_at(contact.radius);
+      out += spring_energy(history.spring, stiffness);
+    }
+    if constexpr (RollingLaw::acts)
+      out += rolling.energy(pair.size, contact, stiffness, pair.geometry.normal(), history.moment);
+    return out;
+  }
+
+  // The kHistory numbers of a contact: number(k) reads the k-th, store(k, value) writes it.
+  template <class Number>
+  SCREE_HD static ContactHistory read_history(const Number& number) {
+    ContactHistory out;
+    if constexpr (TangentialLaw::kHistory > 0) out.spring = {number(0), number(1), number(2)};
+    constexpr int first = TangentialLaw::kHistory;
+    if constexpr (RollingLaw::kHistory > 0)
+      out.moment = {number(first), number(first + 1), number(first + 2)};
+    if constexpr (kNeck) out.touched = number(kHistory - 1) != 0;
+    return out;
+  }
+  template <class Store>
+  SCREE_HD static void write_history(const ContactHistory& history, const Store& store) {
+    const auto put = [&](int first, Vec3 a) {
+      store(first, a.x), store(first + 1, a.y), store(first + 2, a.z);
+    };
+    if constexpr (TangentialLaw::kHistory > 0) put(0, history.spring);
+    if constexpr (RollingLaw::kHistory > 0) put(TangentialLaw::kHistory, history.moment);
+    if constexpr (kNeck) store(kHistory - 1, history.touched ? 1 : 0);
+  }
+
+ private:
+  SCREE_HD static void rub(const SpringStep& step, const ContactMotion& motion, ContactOutcome& out) {
+    out.load.force -= motion.leverage * step.acting;
+    const Vec3 moment = cross(motion.normal1, step.acting);
+    out.load.torque_i = motion.arm_i * moment, out.load.torque_j = motion.arm_j * moment;
+    out.load.loss += step.losses.sum() / motion.h;
+    out.history.spring = step.spring, out.friction = step.losses;
+  }
+  SCREE_HD static void roll(const SpringStep& step, Real h, ContactOutcome& out) {
+    out.load.torque_i -= step.acting, out.load.torque_j += step.acting;
+    out.load.loss += step.losses.sum() / h;
+    out.history.moment = step.spring, out.rolling = step.losses;
   }
 };
 

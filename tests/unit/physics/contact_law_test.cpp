@@ -65,41 +65,6 @@ TEST_CASE("the sizes of a pair: a plane is flat and does not give way") {
   CHECK(PairSize{2, kInfinity, 4, kInfinity}.effective_mass() == 4);
 }
 
-namespace {
-
-// Laws of this test: drag against the sliding speed, and a torque on both sides.
-struct Drag {
-  static constexpr bool acts = true;
-  Real factor;
-  void add(const PairState& pair, Real normal_force, ContactLoadOf<Real, Vec3>& load) const {
-    const Vec3 n = pair.geometry.normal(), sliding = pair.velocity - dot(n, pair.velocity) * n;
-    load.force += -factor * normal_force * sliding;
-    load.loss += factor * normal_force * dot(sliding, sliding);
-  }
-};
-struct Twist {
-  static constexpr bool acts = true;
-  void add(const PairState& pair, Real normal_force, ContactLoadOf<Real, Vec3>& load) const {
-    load.torque_i = normal_force * pair.geometry.normal(), load.torque_j = -load.torque_i;
-  }
-};
-
-}  // namespace
-
-TEST_CASE("a law is composed of a normal, a tangential and a rolling law") {
-  const PairState pair{sphere_pair(Vec3{0, 2, 0}, Real(2.5)), {3, -1, 0}, {1, 1.5, 1, 1}};
-  const LinearLaw normal(100, 10, false);
-  const auto alone = ContactLaw<LinearLaw>{normal}.load(pair);
-  CHECK(alone.force == Vec3{0, 60, 0});  // 100 x 0.5 + 10 x 1
-  CHECK(alone.loss == 10);
-  CHECK(alone.torque_i == Vec3{});
-  const auto both = ContactLaw<LinearLaw, Drag, Twist>{normal, {0.5}, {}}.load(pair);
-  CHECK(both.force == Vec3{-90, 60, 0});
-  CHECK(both.loss == 280);
-  CHECK(both.torque_i == Vec3{0, 60, 0});
-  CHECK(both.torque_j == Vec3{0, -60, 0});
-}
-
 TEST_CASE("stiffness and damping are the derivatives of the force") {
   for (const LawCase& c : kLaws)
     for (const Real rate : kRates) {

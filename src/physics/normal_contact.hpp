@@ -1,0 +1,56 @@
+// What laws of friction, rolling and twisting need to know of a contact along its normal.
+#pragma once
+
+#include <cmath>
+
+#include "base/hd.hpp"
+#include "physics/contact_geometry.hpp"
+
+namespace scree {
+
+// At the end of a step, and at its start (0), where all is zero if the contact was open.
+struct NormalContact {
+  Real grip;  // what Coulomb's limit counts: the force after the cut, and what adhesion adds; >= 0 [N]
+  Real radius, radius0;        // of the circle of contact [m]
+  Real stiffness, stiffness0;  // elastic, of the normal force [N/m]
+};
+
+// A normal law may say more of itself than the functions of the overlap that normal_laws.hpp lists:
+//   kNeck = true and reach()       a contact, once made, holds down to the overlap -reach() [m]
+//   contact_radius(d)              of the circle of contact [m]; else sqrt(R* d)
+//   contact_stiffness(d)           for rolling [N/m], where slope(d) will not do
+//   adhesion()                     load that attraction adds to the friction's limit [N]; else none
+
+template <class NormalLaw>
+constexpr bool has_neck() {
+  if constexpr (requires { NormalLaw::kNeck; }) return NormalLaw::kNeck;
+  return false;
+}
+
+template <class NormalLaw>
+SCREE_HD Real contact_radius(const NormalLaw& law, const PairSize& size, Real d) {
+  if constexpr (requires { law.contact_radius(d); })
+    return law.contact_radius(d);
+  else
+    return d > 0 ? std::sqrt(size.effective_radius() * d) : 0;
+}
+
+template <class NormalLaw>
+SCREE_HD Real contact_stiffness(const NormalLaw& law, Real d) {
+  if constexpr (requires { law.contact_stiffness(d); })
+    return law.contact_stiffness(d);
+  else
+    return d > 0 ? law.slope(d) : 0;
+}
+
+// Of a closed contact; force: after the cut [N]; d, d0: overlaps at the end and the start of the step [m].
+template <class NormalLaw>
+SCREE_HD NormalContact normal_contact(const NormalLaw& law, const PairSize& size, Real force, Real d,
+                                      Real d0) {
+  Real grip = force;
+  if constexpr (requires { law.adhesion(); }) grip += law.adhesion();
+  return {grip > 0 ? grip : 0, contact_radius(law, size, d), contact_radius(law, size, d0),
+          contact_stiffness(law, d), contact_stiffness(law, d0)};
+}
+
+}  // namespace scree

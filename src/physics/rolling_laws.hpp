@@ -1,0 +1,128 @@
+// Rolling and twisting laws: moments against rolling and against twisting. Both springs are parts of one
+// remembered vector M [N m], on i against its rotation: across the normal and along it.
+#pragma once
+
+#include "base/hd.hpp"
+#include "physics/contact_geometry.hpp"
+#include "physics/spring_slider.hpp"
+#include "physics/tangential_laws.hpp"
+
+namespace scree {
+
+// What a rolling law sees of a contact over a step.
+struct RollingContact {
+  const PairSize& size;
+  const ContactMotion& motion;
+  const NormalContact& normal;
+  const SpringSlider& friction;  // of the tangential law; all zero without one
+};
+
+// Every rolling law has acts, kHistory, the stiffness of its spring, and rolling(contact, old): the step of
+// the moment across the normal, from the one of before, turned with the contact. Every twisting law has the
+// same with twisting(contact, old), of the moment along the normal.
+
+// No moment.
+struct FreeRolling {
+  static constexpr bool acts = false;
+  static constexpr int kHistory = 0;
+};
+
+// Mass that rolling about the contact moves: 1/I_r = sum 1/(I + m R^2) [kg m^2].
+SCREE_HD Real rolling_inertia(const PairSize& size, const ContactMotion& c) {
+  const auto inverse = [](Real inertia, Real mass, Real arm) {
+    return inertia < kInfinity ? 1 / (inertia + mass * arm * arm) : 0;
+  };
+  return 1 / (inverse(c.inertia_i, size.mass_i, c.arm_i) + inverse(c.inertia_j, size.mass_j, c.arm_j));
+}
+
+// Elastic-plastic spring and dashpot, "EPSD": M' = k_r w while |M| < mu_r R* F_n, w the rolling rate; dashpot
+// 2 zeta sqrt(I_r k_r), within the limit together with the spring. k_r = factor K mu_r^2 R*^2, K the elastic
+// stiffness dF/dd of the contact; a factor of 2.25 in space and 3 in the plane is the authors'. Ai, Chen,
+// Rotter, Ooi, Powder Technol. 206 (2011), model C, who let the dashpot exceed the limit.
+struct ElasticPlasticRolling {
+  static constexpr bool acts = true;
+  static constexpr int kHistory = 3;
+  Real friction = 0;          // mu_r [-]
+  Real damping_ratio = 0;     // zeta [-]
+  Real stiffness_factor = 0;  // [-]; 0: the stiffness is given
+  Real stiffness = 0;         // k_r [N m]
+
+  // k_r [N m]; of the contact: [N/m].
+  SCREE_HD Real stiffness_at(const PairSize& size, Real of_contact) const {
+    const Real arm = friction * size.effective_radius();
+    return stiffness + stiffness_factor * arm * arm * of_contact;
+  }
+  SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
+    const Real k = stiffness_at(c.size, c.normal.stiffness), k0 = stiffness_at(c.size, c.normal.stiffness0);
+    const Real dashpot = dashpot_of(damping_ratio, rolling_inertia(c.size, c.motion), k);
+    const Real limit = friction * c.size.effective_radius() * c.normal.grip;
+    return spring_step({k, k0, dashpot, limit}, old, c.motion.rolling, c.motion.h);
+  }
+};
+
+// M = C w: nothing is remembered, nothing holds at rest.
+struct ViscousRolling {
+  static constexpr bool acts = true;
+  static constexpr int kHistory = 0;
+  Real damping = 0;  // C [N m s]
+
+  SCREE_HD Real stiffness_at(const PairSize&, Real) const { return 0; }
+  SCREE_HD SpringStep rolling(const RollingContact& c, Vec3) const {
+    SpringStep out{};
+    out.acting = (damping / c.motion.h) * c.motion.rolling;
+    out.losses.dashpot = dot(out.acting, c.motion.rolling);
+    return out;
+  }
+};
+
+// M' = (k_t a^2 / 2) w while |M| < 2/3 a mu F_n, w the twisting rate, with the tangential law's stiffness and
+// (a^2 / 2) times its dashpot: what a slider at each point of the circle of contact amounts to. Marshall,
+// J. Comput. Phys. 228 (2009).
+struct MarshallTwisting {
+  static constexpr bool acts = true;
+  static constexpr int kHistory = 3;
+  Real friction = 0;  // mu [-]
+
+  // [N m]; a: radius of the circle of contact [m], of_slip: k_t [N/m].
+  SCREE_HD Real stiffness_at(Real a, Real of_slip) const { return a * a / 2 * of_slip; }
+  SCREE_HD SpringStep twisting(const RollingContact& c, Vec3 old) const {
+    const Real a = c.normal.radius;
+    return spring_step(
+        {stiffness_at(a, c.friction.stiffness), stiffness_at(c.normal.radius0, c.friction.stiffness0),
+         a * a / 2 * c.friction.dashpot, Real(2) / 3 * a * friction * c.normal.grip},
+        old, c.motion.twisting * c.motion.normal1, c.motion.h);
+  }
+};
+
+// Rolling and twisting laws as one, over one remembered vector.
+template <class Rolling, class Twisting = FreeRolling>
+struct RollingAndTwisting {
+  static constexpr bool acts = true;
+  static constexpr int kHistory = Rolling::kHistory > 0 || Twisting::kHistory > 0 ? 3 : 0;
+  Rolling rolling{};
+  Twisting twisting{};
+
+  // old: turned with the contact.
+  SCREE_HD SpringStep step(const RollingContact& c, Vec3 old) const {
+    const Vec3 along = dot(old, c.motion.normal1) * c.motion.normal1;
+    SpringStep out{};
+    if constexpr (Rolling::acts) out = rolling.rolling(c, old - along);
+    if constexpr (Twisting::acts) {
+      const SpringStep twist = twisting.twisting(c, along);
+      out.spring += twist.spring, out.acting += twist.acting, out.losses += twist.losses;
+    }
+    return out;
+  }
+  // Elastic energy of the moment [J].
+  SCREE_HD Real energy(const PairSize& size, const NormalContact& normal, Real of_slip, Vec3 normal1,
+                       Vec3 moment) const {
+    const Vec3 along = dot(moment, normal1) * normal1;
+    Real out = 0;
+    if constexpr (Rolling::acts)
+      out += spring_energy(moment - along, rolling.stiffness_at(size, normal.stiffness));
+    if constexpr (Twisting::acts) out += spring_energy(along, twisting.stiffness_at(normal.radius, of_slip));
+    return out;
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,83 @@
+// Tangential laws: the force across the normal from the slip. Each remembers the force of its spring, T [N],
+// on i against the slip: a force rather than a way, because it is what stays where a stiffness changes.
+#pragma once
+
+#include <cmath>
+
+#include "base/hd.hpp"
+#include "physics/contact_geometry.hpp"
+#include "physics/normal_contact.hpp"
+#include "physics/spring_slider.hpp"
+
+namespace scree {
+
+// Every law below has
+//   acts, kHistory                 whether there is anything to evaluate; how many numbers it remembers
+//   stiffness_at(radius)           of the spring, from the radius of the circle of contact [N/m]
+//   slider(size, motion, normal)   spring and slider of a contact for a step
+
+// Mass that a slip moves: 1/m_t = 1/m* + R_i^2/I_i + R_j^2/I_j [kg]; 2/7 of m* for spheres.
+SCREE_HD Real slip_mass(const PairSize& size, const ContactMotion& c) {
+  return 1 / ((1 / size.mass_i + 1 / size.mass_j) +
+              (c.arm_i * c.arm_i / c.inertia_i + c.arm_j * c.arm_j / c.inertia_j));
+}
+
+// 2 zeta sqrt(m k): the dashpot of a damping ratio [N s/m].
+SCREE_HD Real dashpot_of(Real damping_ratio, Real mass, Real stiffness) {
+  return damping_ratio > 0 ? 2 * damping_ratio * std::sqrt(mass * stiffness) : 0;
+}
+
+// The spring force T may reach mu F_n |r| / (R_i + R_j), for the force on the centres to obey Coulomb.
+SCREE_HD Real coulomb_limit(Real friction, const NormalContact& normal, const ContactMotion& c) {
+  return friction * normal.grip / c.leverage;
+}
+
+// No force across the normal.
+struct Frictionless {
+  static constexpr bool acts = false;
+  static constexpr int kHistory = 0;
+};
+
+// T' = k_t c while |T| < mu F_n, c the slip rate; dashpot 2 zeta sqrt(m_t k_t). Cundall and Strack,
+// Geotechnique 29 (1979).
+struct LinearSlider {
+  static constexpr bool acts = true;
+  static constexpr int kHistory = 3;
+  Real stiffness = 0;      // k_t > 0 [N/m]; usually 2/7 to 1 of the normal stiffness
+  Real friction = 0;       // mu [-]
+  Real damping_ratio = 0;  // zeta [-]
+
+  SCREE_HD Real stiffness_at(Real) const { return stiffness; }
+  SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
+                               const NormalContact& normal) const {
+    return {stiffness, stiffness, dashpot_of(damping_ratio, slip_mass(size, c), stiffness),
+            coulomb_limit(friction, normal, c)};
+  }
+};
+
+// G* of two materials [Pa]: 1/G* = sum 2 (2 - nu) (1 + nu) / E = sum (2 - nu) / G. A rigid partner has E
+// infinite.
+SCREE_HD Real effective_shear_modulus(Real young_i, Real poisson_i, Real young_j, Real poisson_j) {
+  return 1 /
+         (2 * (2 - poisson_i) * (1 + poisson_i) / young_i + 2 * (2 - poisson_j) * (1 + poisson_j) / young_j);
+}
+
+// k_t = 8 G* a, a the radius of the circle of contact, with the rescale rule when a changes. Mindlin,
+// J. Appl. Mech. 16 (1949), without the partial slip of a ring; damping as above.
+struct MindlinSlider {
+  static constexpr bool acts = true;
+  static constexpr int kHistory = 3;
+  Real shear_modulus = 0;  // G* [Pa]
+  Real friction = 0;       // mu [-]
+  Real damping_ratio = 0;  // zeta [-]
+
+  SCREE_HD Real stiffness_at(Real radius) const { return 8 * shear_modulus * radius; }
+  SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
+                               const NormalContact& normal) const {
+    const Real stiffness = stiffness_at(normal.radius);
+    return {stiffness, stiffness_at(normal.radius0), dashpot_of(damping_ratio, slip_mass(size, c), stiffness),
+            coulomb_limit(friction, normal, c)};
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,111 @@
+// How contacts move and what they remember turns: symmetry, lengths, rigid turns, momentum.
+#include "physics/contact_motion.hpp"
+
+#include "random_contact.hpp"
+#include "support/catch.hpp"
+#include "support/near.hpp"
+#include "support/reference_table.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kRoundOff = 64 * kUlp;
+constexpr int kCases = 1000;
+
+using Law = ContactLaw<LinearLaw, MindlinSlider, RollingAndTwisting<ElasticPlasticRolling, MarshallTwisting>>;
+
+Law all_laws() { return {LinearLaw(100, 3, false), {40, 0.4, 0.2}, {{0.2, 0.3, 2.25, 0}, {0.4}}}; }
+
+Vec3 vector(const ReferenceTable::Row& row, const std::string& name) {
+  return {row[name + "x"], row[name + "y"], row[name + "z"]};
+}
+
+}  // namespace
+
+TEST_CASE("both sides of a pair see the same contact, odd or even, to the last bit") {
+  RandomNumbers random;
+  for (int k = 0; k < kCases; ++k, random.vector()) {
+    const RandomContact one = contact_of(random, 0.05, false), other = contact_of(random, 0.05, true);
+    const ContactMotion &a = one.motion, &b = other.motion;
+    CHECK((a.normal0 == -b.normal0 && a.normal1 == -b.normal1 && a.overlap0 == b.overlap0));
+    CHECK((a.slip == -b.slip && a.rolling == -b.rolling));
+    CHECK((a.twisting == b.twisting && a.turn == -b.turn && a.leverage == b.leverage));
+    const ContactOutcome f = all_laws().load(one.pair, a, one.history);
+    const ContactOutcome g = all_laws().load(other.pair, b, other.history);
+    CHECK((f.load.force == -g.load.force && f.load.loss == g.load.loss));
+    CHECK((f.load.torque_i == g.load.torque_j && f.load.torque_j == g.load.torque_i));
+    CHECK((f.history.spring == -g.history.spring && f.history.moment == -g.history.moment));
+    CHECK(f.friction.sum() == g.friction.sum());
+  }
+}
+
+TEST_CASE("a contact gives no linear and no angular momentum") {
+  RandomNumbers random;
+  for (int k = 0; k < kCases; ++k, random.vector()) {
+    const RandomContact c = contact_of(random, 0.05, false);
+    const ContactOutcome out = all_laws().load(c.pair, c.motion, c.history);
+    // The forces are opposite; their moment about j, and both torques:
+    const Vec3 moment =
+        cross(c.pair.geometry.direction, out.load.force) + out.load.torque_i + out.load.torque_j;
+    CHECK(norm(moment) <= kRoundOff * norm(out.load.force) * c.pair.geometry.distance);
+  }
+}
+
+TEST_CASE("the power of force and torques is that of the spring over the slip") {
+  RandomNumbers random;
+  constexpr Real h = 1e-8;  // so short that nothing turns
+  for (int k = 0; k < kCases; ++k, random.vector()) {
+    const RandomContact c = contact_of(random, h, false);
+    const ContactLaw<LinearLaw, LinearSlider> law{LinearLaw(100, 0, false), {40, 1e9, 0}};
+    const ContactOutcome out = law.load(c.pair, c.motion, c.history);
+    const Real power = dot(out.load.force, c.pair.velocity) + dot(out.load.torque_i, c.spin_i) +
+                       dot(out.load.torque_j, c.spin_j);
+    const Real normal_power = -100 * c.pair.geometry.overlap * c.pair.geometry.rate(c.pair.velocity);
+    CHECK(near(power - normal_power, -dot(out.history.spring, c.motion.slip) / h, {.absolute = 200 * h}));
+  }
+}
+
+TEST_CASE("what is remembered keeps its length, and its part along the normal") {
+  RandomNumbers random;
+  for (int k = 0; k < kCases; ++k, random.vector()) {
+    const RandomContact c = contact_of(random, 0.05, false);
+    const Vec3 spring = turned_across(c.motion, c.history.spring),
+               moment = turned_with(c.motion, c.history.moment);
+    CHECK(near(norm(spring), norm(c.history.spring), {.relative = kRoundOff}));
+    CHECK(std::abs(dot(spring, c.motion.normal1)) <= kRoundOff * norm(spring));
+    CHECK(near(norm(moment), norm(c.history.moment), {.relative = kRoundOff}));
+    CHECK(near(dot(moment, c.motion.normal1), dot(c.history.moment, c.motion.normal0),
+               {.absolute = kRoundOff}));
+    const Vec3 same = turned_with(c.motion, c.history.spring);
+    CHECK(near(same, spring, {.relative = kRoundOff}));
+  }
+}
+
+TEST_CASE("a pair that turns as one body takes its spring with it, to second order") {
+  const ReferenceTable table("contact/spring_turned_rigidly.csv");
+  for (const auto& row : table.rows()) {
+    const Vec3 omega = vector(row, "Om"), n = vector(row, "n"), xi = vector(row, "xi");
+    const auto error_after = [&](int steps) {
+      const Real h = row["t"] / steps, radius[2] = {0.02, 0.03}, reach = radius[0] + radius[1];
+      const TurningPartner i{omega, radius[0], 1}, j{omega, radius[1], 1};
+      Vec3 r = Real(0.99) * reach * vector(row, "n0"), spring = vector(row, "xi0"), slip{};
+      for (int k = 0; k < steps; ++k) {
+        const Vec3 half = r + (h / 2) * cross(omega, r);  // the midpoint rule, kept at its length
+        const Vec3 raw = r + h * cross(omega, half), next = (norm(r) / norm(raw)) * raw;
+        const ContactMotion c = sphere_motion(sphere_pair(next, reach), next - r, i, j, h);
+        spring = turned_across(c, spring), slip += c.slip;
+        r = next;
+      }
+      CHECK(norm(slip) <= 10 * reach / (static_cast<Real>(steps) * steps));
+      CHECK(norm((1 / norm(r)) * r - n) <= 100.0 / (static_cast<Real>(steps) * steps));
+      return norm(spring - xi) / norm(xi);
+    };
+    const Real coarse = error_after(200), fine = error_after(400);
+    CAPTURE(coarse, fine);
+    CHECK(fine < 1e-3);
+    CHECK((coarse / fine > 3.7 && coarse / fine < 4.3));
+  }
+}
+
+}  // namespace scree

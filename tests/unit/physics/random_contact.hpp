@@ -1,0 +1,54 @@
+// Two spheres that touch and move at random, for tests of what must hold for all.
+#pragma once
+
+#include <random>
+
+#include "physics/contact_law.hpp"
+
+namespace scree {
+
+// Numbers in [-1, 1), the same ones each time.
+class RandomNumbers {
+ public:
+  Real operator()() { return static_cast<Real>(engine_()) / 2147483648.0 - 1; }
+  Vec3 vector() {
+    const Real x = (*this)(), y = (*this)(), z = (*this)();
+    return {x, y, z};
+  }
+
+ private:
+  std::mt19937 engine_{12345};
+};
+
+struct RandomContact {
+  PairState pair;
+  ContactMotion motion;
+  ContactHistory history;
+  Vec3 spin_i, spin_j;
+};
+
+// Of partners i and j of sizes around 1; swapped: the same contact seen from j.
+inline RandomContact contact_of(RandomNumbers random, Real h, bool swapped) {
+  const Vec3 place[2] = {random.vector(), random.vector()};
+  const Vec3 velocity[2] = {random.vector(), random.vector()}, spin[2] = {random.vector(), random.vector()};
+  const Real mass[2] = {2 + random(), 2 + random()};
+  const Real distance = norm(place[0] - place[1]), share = 0.5 + 0.3 * random();
+  const Real radius[2] = {share * 1.05 * distance, (1 - share) * 1.05 * distance};
+  const Vec3 along = random.vector();
+  const int i = swapped, j = 1 - i;
+  const auto partner = [&](int k) {
+    return TurningPartner{spin[k], radius[k], 0.4 * mass[k] * radius[k] * radius[k]};
+  };
+  RandomContact out{};
+  const Vec3 relative = velocity[i] - velocity[j];
+  out.pair = {sphere_pair(place[i] - place[j], radius[i] + radius[j]),
+              relative,
+              {radius[i], radius[j], mass[i], mass[j]}};
+  out.motion = sphere_motion(out.pair.geometry, h * relative, partner(i), partner(j), h);
+  const Vec3 spring = across(swapped ? -along : along, out.motion.normal0);
+  out.spin_i = spin[i], out.spin_j = spin[j];
+  out.history = {10 * spring, Real(0.1) * (swapped ? -along : along), true};
+  return out;
+}
+
+}  // namespace scree

@@ -1,0 +1,70 @@
+// A sphere that lies on the plane z = 0, with its overlap at rest: its motion along x at given times.
+#pragma once
+
+#include <vector>
+
+#include "verification/contact/leapfrog.hpp"
+
+namespace scree {
+
+// Stiff against what the tables ask of the normal spring: nothing but to carry the weight.
+inline constexpr Real kRestStiffness = 1e5;  // [N/m]
+
+// Gravity of a plane inclined by this angle [rad], down along +x.
+inline Vec3 inclined_gravity(Real angle) {
+  constexpr Real g = 9.81;
+  return {g * std::sin(angle), 0, -g * std::cos(angle)};
+}
+
+// The run of a sphere whose weight its normal spring carries from the start on.
+template <class Law>
+PlaneRun<Law> resting_run(const Law& law, Grain grain, Vec3 gravity, Real h) {
+  grain.position = {0, 0, grain.radius + grain.mass * gravity.z / law.normal.normal_stiffness};
+  PlaneRun<Law> run{.law = law, .grain = grain, .gravity = gravity, .h = h};
+  run.start();
+  return run;
+}
+
+struct OnPlane {
+  Real t, x, v, w;     // [s], [m], [m/s], [rad/s]
+  Real spring, force;  // of the slider, and with the dashpot, against +x [N]
+  Real held, moment;   // of the rolling spring, and with the dashpot, against rolling along +x [N m]
+};
+
+template <class Law>
+OnPlane on_plane(const PlaneRun<Law>& run, Real t) {
+  const ContactOutcome& out = run.outcome;
+  // About y the force's torque is -R n x T; the rest is the rolling law's.
+  const Real of_force = -run.grain.radius * out.load.force.x;
+  return {t,
+          run.grain.position.x,
+          run.velocity().x,
+          run.spin().y,
+          out.history.spring.x,
+          -out.load.force.x,
+          out.history.moment.y,
+          of_force - out.load.torque_i.y};
+}
+
+inline Real between(Real share, Real a, Real b) { return a + share * (b - a); }
+inline OnPlane between(Real share, const OnPlane& a, const OnPlane& b) {
+  return {between(share, a.t, b.t),           between(share, a.x, b.x),
+          between(share, a.v, b.v),           between(share, a.w, b.w),
+          between(share, a.spring, b.spring), between(share, a.force, b.force),
+          between(share, a.held, b.held),     between(share, a.moment, b.moment)};
+}
+
+// Calls visit(state) for the times, which rise; between two steps along a straight line.
+template <class Law, class Visit>
+void visit_times(PlaneRun<Law>& run, const std::vector<Real>& times, const Visit& visit) {
+  OnPlane before = on_plane(run, 0), now = before;
+  std::size_t next = 0;
+  for (int step = 1; next < times.size(); ++step) {
+    run.step();
+    before = now, now = on_plane(run, step * run.h);
+    for (; next < times.size() && times[next] <= now.t * (1 + 1e-12); ++next)
+      visit(between((times[next] - before.t) / run.h, before, now));
+  }
+}
+
+}  // namespace scree
