@@ -79,9 +79,8 @@ struct ContactLaw {
 
   // Whether there is a contact, of partners that may be apart.
   SCREE_HD bool closed(const PairState& pair, const ContactHistory& old) const {
-    if (pair.geometry.overlap > 0) return true;
-    if constexpr (kNeck) return old.touched && pair.geometry.overlap > -normal.of_pair(pair.size).reach();
-    return false;
+    const Real d = pair.geometry.overlap;
+    return d > 0 || ((!kNeck || old.touched) && d > -reach_beyond_touch(normal, pair.size));
   }
 
   // All zero where there is no contact.
@@ -92,11 +91,11 @@ struct ContactLaw {
     const auto law = normal.of_pair(pair.size);
     const ContactGeometry& g = pair.geometry;
     const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
-    const bool fresh = step.overlap0 < 0 && !old.touched;
+    const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
     const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);
     out.load = {g.along(f.force), f.loss, {}, {}};
-    out.history.touched = true;
+    out.history.touched = old.touched || g.overlap > 0;
     SpringSlider slider{};
     if constexpr (TangentialLaw::acts) {
       slider = tangential.slider(pair.size, motion, contact);

@@ -15,11 +15,12 @@ struct NormalContact {
   Real stiffness, stiffness0;  // elastic, of the normal force [N/m]
 };
 
-// A normal law may say more of itself than the functions of the overlap that normal_laws.hpp lists:
-//   kNeck = true and reach()       a contact, once made, holds down to the overlap -reach() [m]
-//   contact_radius(d)              of the circle of contact [m]; else sqrt(R* d)
-//   contact_stiffness(d)           for rolling [N/m], where slope(d) will not do
-//   adhesion()                     load that attraction adds to the friction's limit [N]; else none
+// Of its partners a normal law may say more than the functions of the overlap that normal_laws.hpp lists:
+//   reach()                how far beyond touch they can have a contact [m]; else none
+//   kNeck = true           they have it there only if they have touched: it is made at d = 0, and holds to
+//   -reach() contact_radius(d)      of the circle of contact [m]; else sqrt(R* d) contact_stiffness(d)   for
+//   rolling [N/m], where slope(d) will not do adhesion(d)            what attraction adds to the load that
+//   limits friction [N]; else none
 
 template <class NormalLaw>
 constexpr bool has_neck() {
@@ -27,17 +28,32 @@ constexpr bool has_neck() {
   return false;
 }
 
+// How far beyond touch partners of these sizes can have a contact [m]: what a search for contacts adds to the
+// sum of their radii.
+template <class NormalLaw>
+SCREE_HD Real reach_beyond_touch(const NormalLaw& law, const PairSize& size) {
+  const auto pair = law.of_pair(size);
+  if constexpr (requires { pair.reach(); })
+    return pair.reach();
+  else
+    return 0;
+}
+
 template <class NormalLaw>
 SCREE_HD Real contact_radius(const NormalLaw& law, const PairSize& size, Real d) {
-  if constexpr (requires { law.contact_radius(d); })
-    return law.contact_radius(d);
+  if constexpr (has_neck<NormalLaw>())
+    return d > -law.reach() ? law.contact_radius(d) : 0;
+  else if constexpr (requires { law.contact_radius(d); })
+    return d > 0 ? law.contact_radius(d) : 0;
   else
     return d > 0 ? std::sqrt(size.effective_radius() * d) : 0;
 }
 
 template <class NormalLaw>
 SCREE_HD Real contact_stiffness(const NormalLaw& law, Real d) {
-  if constexpr (requires { law.contact_stiffness(d); })
+  if constexpr (has_neck<NormalLaw>())
+    return d > -law.reach() ? law.contact_stiffness(d) : 0;
+  else if constexpr (requires { law.contact_stiffness(d); })
     return law.contact_stiffness(d);
   else
     return d > 0 ? law.slope(d) : 0;
@@ -48,7 +64,7 @@ template <class NormalLaw>
 SCREE_HD NormalContact normal_contact(const NormalLaw& law, const PairSize& size, Real force, Real d,
                                       Real d0) {
   Real grip = force;
-  if constexpr (requires { law.adhesion(); }) grip += law.adhesion();
+  if constexpr (requires { law.adhesion(d); }) grip += law.adhesion(d);
   return {grip > 0 ? grip : 0, contact_radius(law, size, d), contact_radius(law, size, d0),
           contact_stiffness(law, d), contact_stiffness(law, d0)};
 }

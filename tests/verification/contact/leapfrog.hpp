@@ -55,7 +55,7 @@ struct PlaneRun {
   void start() {
     const PairState state = pair();
     const ContactMotion rest =
-        face_motion(state.geometry, state.geometry.normal(), {}, {{}, grain.radius}, {}, h);
+        face_motion(state.geometry, state.geometry.normal(), {}, {{}, grain.radius, grain.inertia}, {}, h);
     kick(law.load(state, rest, outcome.history), h / 2);
   }
   void step() {

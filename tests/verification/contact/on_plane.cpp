@@ -20,17 +20,8 @@ Slider slider(Real stiffness, Real friction, Real damping_ratio) {
   return {LinearLaw(kRestStiffness, 0, false), {stiffness, friction, damping_ratio}};
 }
 
-// 2 pi sqrt(m_t / k_t), m_t = 2/7 m: what a step is compared with.
-Real slip_period(Real mass, Real stiffness) {
-  return 2 * std::numbers::pi_v<Real> * std::sqrt(2 * mass / (7 * stiffness));
-}
-
-std::vector<Real> column(const ReferenceTable& table, const std::string& name, std::size_t first,
-                         std::size_t count) {
-  std::vector<Real> out;
-  for (std::size_t k = first; k < first + count; ++k) out.push_back(table.rows().at(k)[name]);
-  return out;
-}
+// m_t = 2/7 m: what a step is compared with.
+Real slip_period(Real mass, Real stiffness) { return swing_period(2 * mass / 7, stiffness); }
 
 struct RollingErrors {
   Errors speed, place, loss;  // over v0; over x_roll; over the slider's loss
@@ -73,12 +64,10 @@ TEST_CASE("a sliding sphere with a dashpot beside the spring, which is off while
   constexpr Real m = 0.1, R = 0.02, mu = 0.3, kt = 1e5, v0 = 1;
   const auto errors_at = [&](Real parts) {
     Errors errors;
-    for (const auto& [first, count] : {std::pair<std::size_t, std::size_t>{0, 40}, {40, 22}}) {
+    for (const auto& rows : {std::pair<std::size_t, std::size_t>{0, 40}, {40, table.rows().size()}}) {
       auto run = resting_run(slider(kt, mu, 0.2), {.velocity = {v0, 0, 0}, .radius = R, .mass = m},
                              inclined_gravity(0), slip_period(m, kt) / parts);
-      std::size_t k = first;
-      visit_times(run, column(table, "t", first, count), [&](const OnPlane& at) {
-        const auto& row = table.rows()[k++];
+      visit_rows(run, table, rows, [&](const OnPlane& at, const auto& row) {
         errors.add((at.x - row["x"]) / 0.1);
         errors.add((at.v - row["v"]) / v0);
         errors.add(R * (at.w - row["w"]) / v0);
@@ -104,9 +93,7 @@ TEST_CASE("a sphere on an incline rolls up to tan = 7/2 mu and slides beyond") {
       const Vec3 gravity = inclined_gravity(head["deg"] * std::numbers::pi_v<Real> / 180);
       auto run = resting_run(slider(kt, head["mu"], 0.3), {.radius = R, .mass = m}, gravity,
                              slip_period(m, kt) / parts);
-      std::size_t k = first;
-      visit_times(run, column(table, "t", first, 4), [&](const OnPlane& at) {
-        const auto& row = table.rows()[k++];
+      visit_rows(run, table, {first, first + 4}, [&](const OnPlane& at, const auto& row) {
         errors.add((at.x - row["x"]) / row["x"]);
         errors.add((at.v - row["v"]) / row["v"]);
         errors.add((at.w - row["w"]) / row["w"]);

@@ -1,8 +1,10 @@
 // A sphere that lies on the plane z = 0, with its overlap at rest: its motion along x at given times.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
+#include "support/reference_table.hpp"
 #include "verification/contact/leapfrog.hpp"
 
 namespace scree {
@@ -34,7 +36,7 @@ struct OnPlane {
 template <class Law>
 OnPlane on_plane(const PlaneRun<Law>& run, Real t) {
   const ContactOutcome& out = run.outcome;
-  // About y the force's torque is -R n x T; the rest is the rolling law's.
+  // About y the torque of the force is R T; the rest is the rolling law's.
   const Real of_force = -run.grain.radius * out.load.force.x;
   return {t,
           run.grain.position.x,
@@ -54,6 +56,11 @@ inline OnPlane between(Real share, const OnPlane& a, const OnPlane& b) {
           between(share, a.held, b.held),     between(share, a.moment, b.moment)};
 }
 
+// Of a mass and a spring, what steps are compared with [s].
+inline Real swing_period(Real inertia, Real stiffness) {
+  return 2 * std::numbers::pi_v<Real> * std::sqrt(inertia / stiffness);
+}
+
 // Calls visit(state) for the times, which rise; between two steps along a straight line.
 template <class Law, class Visit>
 void visit_times(PlaneRun<Law>& run, const std::vector<Real>& times, const Visit& visit) {
@@ -65,6 +72,16 @@ void visit_times(PlaneRun<Law>& run, const std::vector<Real>& times, const Visit
     for (; next < times.size() && times[next] <= now.t * (1 + 1e-12); ++next)
       visit(between((times[next] - before.t) / run.h, before, now));
   }
+}
+
+// The same for rows [first, second) of a table, among which its column t rises: visit(state, row).
+template <class Law, class Visit>
+void visit_rows(PlaneRun<Law>& run, const ReferenceTable& table, std::pair<std::size_t, std::size_t> rows,
+                const Visit& visit) {
+  std::vector<Real> times;
+  for (std::size_t k = rows.first; k < rows.second; ++k) times.push_back(table.rows().at(k)["t"]);
+  std::size_t k = rows.first;
+  visit_times(run, times, [&](const OnPlane& at) { visit(at, table.rows()[k++]); });
 }
 
 }  // namespace scree

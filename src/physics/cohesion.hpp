@@ -1,0 +1,146 @@
+// Normal laws of surfaces that attract each other: the neck of Johnson, Kendall and Roberts, and a pull added
+// to another law, constant or after Derjaguin, Muller and Toporov. The force may pull: nothing is cut. w is
+// the work of adhesion [J/m^2]: twice the surface energy where both surfaces are alike.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <type_traits>
+
+#include "base/hd.hpp"
+#include "physics/contact_geometry.hpp"
+
+namespace scree {
+
+// Cube root of x > 0 by Newton's method, which falls after its first step: + x / and square roots alone, for
+// the same bits on CPU and GPU.
+SCREE_HD Real cube_root(Real x) {
+  const Real fourth = std::sqrt(std::sqrt(x));
+  Real y = fourth * std::sqrt(std::sqrt(fourth));  // x^(5/16)
+  y = (2 * y + x / (y * y)) / 3;
+  for (Real next = y;; y = next) {
+    next = (2 * y + x / (y * y)) / 3;
+    if (!(next < y)) return y;
+  }
+}
+
+// Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971), of two partners:
+//   F = 4 E* a^3 / (3 R*) - sqrt(8 pi w E* a^3),  d = a^2 / R* - sqrt(2 pi w a / E*)
+// with a the radius of the circle of contact. A contact is made at d = 0 and, once made, holds down to d =
+// -reach(), where a_s = (pi w R*^2 / (8 E*))^(1/3). With p = sqrt(a / a_s) >= 1
+//   F = F_c p^3 (p^3 - 6) / 9,  d = reach (p^4 - 4 p) / 3,  F_c = 3/2 pi w R* the largest pull
+// Damping as Hertz's law has it for a restitution that depends on no speed, with a in place of sqrt(R* d):
+// from the stiffness F/d it would be no number where F or d change their signs.
+struct JkrPair {
+  Real modulus;         // 4/3 E* [Pa]
+  Real damping_factor;  // sqrt(5) zeta [-]
+  Real mass;            // m* [kg]
+  Real pull_off;        // F_c [N]
+  Real last_radius;     // a_s [m]
+  Real range;           // reach() [m]
+
+  static constexpr bool kNeck = true;
+  static constexpr bool tension = true;
+
+  SCREE_HD Real reach() const { return range; }
+  // p of an overlap above -reach(): Newton's method from above, on a convex function.
+  SCREE_HD Real root_of(Real d) const {
+    const Real scaled = 3 * d / range;
+    Real p = Real(1.6) + (scaled > 0 ? std::sqrt(std::sqrt(scaled)) : 0);  // 1.6 > 4^(1/3), the root at d = 0
+    for (;;) {
+      const Real cube = p * p * p, next = (3 * cube * p + scaled) / (4 * (cube - 1));
+      if (!(next < p)) return p;
+      p = next;
+    }
+  }
+  SCREE_HD Real contact_radius(Real d) const {
+    const Real p = root_of(d);
+    return last_radius * p * p;
+  }
+  SCREE_HD Real elastic(Real d) const {
+    const Real p = root_of(d), cube = p * p * p;
+    return pull_off / 9 * cube * (cube - 6);
+  }
+  SCREE_HD Real slope(Real d) const {  // infinite at -reach()
+    const Real p = root_of(d), cube = p * p * p;
+    return pull_off * p * p * (cube - 3) / (2 * range * (cube - 1));
+  }
+  // Relative to first touch; what is left where the contact breaks, W = 7.0922 (w^5 R*^4 / E*^2)^(1/3), is
+  // lost there.
+  SCREE_HD Real energy(Real d) const {
+    constexpr Real kTouch = -5.714643787085519;  // -0.9 x 4^(4/3): the bracket below at d = 0
+    const Real p = root_of(d), cube = p * p * p;
+    return 4 * pull_off * range / 27 * (p * cube * (cube * cube / 10 - cube + Real(1.5)) - kTouch);
+  }
+  SCREE_HD Real damping(Real d) const {
+    return damping_factor * std::sqrt(mass * modulus * contact_radius(d));
+  }
+  SCREE_HD Real contact_stiffness(Real d) const { return Real(1.5) * modulus * contact_radius(d); }
+  // The friction's limit is mu (F_n + 2 F_c): Thornton, J. Phys. D 24 (1991).
+  SCREE_HD Real adhesion(Real) const { return 2 * pull_off; }
+};
+
+struct JkrLaw {
+  Real modulus = 0;         // 4/3 E* [Pa]
+  Real damping_factor = 0;  // sqrt(5) zeta [-]
+  Real adhesion_work = 0;   // w > 0 [J/m^2]
+
+  static constexpr bool kNeck = true;
+
+  SCREE_HD JkrPair of_pair(const PairSize& size) const {
+    const Real radius = size.effective_radius(), pi = std::numbers::pi_v<Real>;
+    // 8 E* = 6 x 4/3 E*
+    const Real last = cube_root(pi * adhesion_work * radius * radius / (6 * modulus));
+    return {modulus, damping_factor,          size.effective_mass(), Real(1.5) * pi * adhesion_work * radius,
+            last,    3 * last * last / radius};
+  }
+};
+
+// Another law with a pull on top, for pairs of its partners: the pull acts where the overlap is above 0, and
+// falls evenly to zero over `range` beyond touch. Contacts without range end where they began: without
+// damping they rebound as without the pull.
+template <class Pair>
+struct AttractedPair {
+  Pair repulsion;
+  Real attraction;  // [N]
+  Real range;       // [m]
+
+  static constexpr bool tension = true;
+
+  SCREE_HD Real reach() const { return range; }
+  SCREE_HD Real pull(Real d) const {
+    if (d > 0) return attraction;
+    return d > -range ? attraction * (1 + d / range) : 0;
+  }
+  SCREE_HD Real elastic(Real d) const { return (d > 0 ? repulsion.elastic(d) : 0) - pull(d); }
+  SCREE_HD Real slope(Real d) const {
+    if (d > 0) return repulsion.slope(d);
+    return d > -range ? -attraction / range : 0;
+  }
+  // Relative to partners out of reach [J].
+  SCREE_HD Real energy(Real d) const {
+    if (d > 0) return repulsion.energy(d) - attraction * (range / 2 + d);
+    return d > -range ? -pull(d) * (range + d) / 2 : 0;
+  }
+  SCREE_HD Real damping(Real d) const { return d > 0 ? repulsion.damping(d) : 0; }
+  SCREE_HD Real contact_stiffness(Real d) const { return d > 0 ? repulsion.slope(d) : 0; }
+  SCREE_HD Real adhesion(Real d) const { return pull(d); }
+};
+
+// attraction + adhesion_per_radius x R*. Derjaguin, Muller, Toporov, J. Colloid Interface Sci. 53 (1975):
+// Hertz's law with adhesion_per_radius = 2 pi w.
+template <class NormalLaw>
+struct AttractedLaw {
+  NormalLaw repulsion{};
+  Real attraction = 0;           // [N]
+  Real adhesion_per_radius = 0;  // [N/m]
+  Real range = 0;                // [m]
+
+  SCREE_HD auto of_pair(const PairSize& size) const {
+    const auto pair = repulsion.of_pair(size);
+    return AttractedPair<std::remove_const_t<decltype(pair)>>{
+        pair, attraction + adhesion_per_radius * size.effective_radius(), range};
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,106 @@
+// The neck of Johnson, Kendall and Roberts against its curve, and pulls on top of other laws.
+#include "physics/cohesion.hpp"
+
+#include "physics/contact_law.hpp"
+#include "support/catch.hpp"
+#include "support/near.hpp"
+#include "support/reference_table.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kTable = 1e-13;  // the 15 digits of the tables, less where an overlap is near the break
+constexpr Real kRoundOff = 16 * kUlp;
+
+JkrPair jkr_pair(const ReferenceTable::Row& row) {
+  return JkrLaw{4 * row["E_star"] / 3, 0, row["w"]}.of_pair(
+      {row["R_star"], kInfinity, row["m_star"], kInfinity});
+}
+
+}  // namespace
+
+TEST_CASE("the cube root is one to the last places") {
+  for (const Real x : {1e-30, 3e-7, 0.5, 1.0, 8.0, 27.0, 1e12})
+    CHECK(near(cube_root(x), std::cbrt(x), {.relative = 4 * kUlp}));
+}
+
+TEST_CASE("a neck's characteristic points") {
+  const ReferenceTable table("contact/jkr_points.csv");
+  for (const auto& row : table.rows()) {
+    const JkrPair law = jkr_pair(row);
+    CHECK(near(law.pull_off, row["Fc"], {.relative = kTable}));
+    CHECK(near(law.reach(), -row["d_sep"], {.relative = kTable}));
+    CHECK(near(law.last_radius, row["a_sep"], {.relative = kTable}));
+    CHECK(near(law.contact_radius(0), row["a_d0"], {.relative = kTable}));
+    CHECK(near(law.elastic(0), row["F_d0"], {.relative = kTable}));
+    CHECK(std::abs(law.elastic(row["d_F0"])) <= kTable * row["Fc"]);
+    CHECK(near(law.elastic(row["d_Fc"]), -row["Fc"], {.relative = kTable}));
+    CHECK(std::abs(law.energy(0)) <= kTable * row["W_stick"]);
+    // The root of dF/dd = infinity: half the digits.
+    CHECK(near(law.elastic(row["d_sep"] * (1 - 1e-15)), row["F_sep"], {.relative = 1e-6}));
+    CHECK(near(law.energy(row["d_sep"] * (1 - 1e-15)), row["W_stick"], {.relative = 1e-6}));
+  }
+}
+
+TEST_CASE("a neck's curve: radius, force, stiffness, energy") {
+  const ReferenceTable points("contact/jkr_points.csv"), table("contact/jkr_curve.csv");
+  for (const auto& row : table.rows()) {
+    const auto& head = points.rows().at(row.word("set") == "a" ? 0 : 1);
+    const JkrPair law = jkr_pair(head);
+    const Real d = row["d"];
+    if (!(d > -law.reach() * (1 - 1e-12))) continue;  // the break itself: see above
+    CAPTURE(row.word("set"), d);
+    // Near the break an error of d grows as the root of the distance to it falls.
+    const Real digits = kTable / std::min<Real>(1, std::sqrt(1 + d / law.reach()));
+    CHECK(near(law.contact_radius(d), row["a"], {.relative = digits}));
+    CHECK(near(law.elastic(d), row["F"], {.relative = digits, .absolute = digits * law.pull_off}));
+    CHECK(near(law.slope(d), row["dF_dd"],
+               {.relative = 10 * digits, .absolute = digits * law.pull_off / law.reach()}));
+    CHECK(near(law.energy(d), row["energy"], {.relative = digits, .absolute = digits * head["W_stick"]}));
+  }
+}
+
+TEST_CASE("a neck is made at touch and holds beyond it until it breaks") {
+  const ContactLaw<JkrLaw> law{{1e7, 0, 0.05}};
+  static_assert(decltype(law)::kHistory == 1);
+  const PairSize size{1e-4, kInfinity, 2e-9, kInfinity};
+  const Real reach = reach_beyond_touch(law.normal, size);
+  CHECK(reach > 0);
+  const auto at = [&](Real overlap, bool touched) {
+    const ContactGeometry geometry{overlap, size.radius_i - overlap, {0, 0, 1}, 1};
+    const ContactMotion rest = face_motion(geometry, {0, 0, 1}, {}, {{}, size.radius_i, 1}, {}, 1);
+    return law.load({geometry, {}, size}, rest, {{}, {}, touched});
+  };
+  CHECK(at(-0.1 * reach, false).load.force == Vec3{});
+  CHECK_FALSE(at(-0.1 * reach, false).history.touched);
+  CHECK(at(0.1 * reach, false).history.touched);
+  CHECK(at(-0.1 * reach, true).load.force.z < 0);
+  CHECK(at(-0.1 * reach, true).history.touched);
+  CHECK(at(-1.001 * reach, true).load.force == Vec3{});
+  CHECK_FALSE(at(-1.001 * reach, true).history.touched);
+}
+
+TEST_CASE("a pull on top of another law, with and without range") {
+  const PairSize size{2, 2, 1, 1};
+  const auto near_only = AttractedLaw<LinearLaw>{LinearLaw(100, 0, true), 3, 4, 0}.of_pair(size);
+  CHECK(near_only.elastic(0.5) == 100 * 0.5 - (3 + 4));
+  CHECK(near_only.adhesion(0.5) == 7);
+  CHECK(near_only.elastic(-1e-9) == 0);
+  CHECK(near_only.energy(-1e-9) == 0);
+  const auto far = AttractedLaw<LinearLaw>{LinearLaw(100, 0, true), 3, 0, 0.2}.of_pair(size);
+  CHECK(far.reach() == 0.2);
+  CHECK(near(far.elastic(-0.1), -1.5, {.relative = kRoundOff}));
+  CHECK(far.elastic(-0.3) == 0);
+  for (const Real d : {-0.15, -0.05, 0.05, 0.3}) {  // the force is the slope of the energy
+    const Real step = 1e-6, slope = (far.energy(d + step) - far.energy(d - step)) / (2 * step);
+    CHECK(near(far.elastic(d), slope, {.relative = 1e-8, .absolute = 1e-8}));
+  }
+  const ContactLaw<AttractedLaw<LinearLaw>> law{{LinearLaw(100, 0, true), 3, 0, 0.2}};
+  static_assert(decltype(law)::kHistory == 0);
+  const ContactGeometry apart = sphere_pair(Vec3{0, 0, 4.1}, Real(4));
+  const ContactMotion rest = sphere_motion(apart, {}, {{}, 2, 1}, {{}, 2, 1}, 1);
+  CHECK(near(law.load({apart, {}, size}, rest, {}).load.force.z, -1.5, {.relative = 1e-13}));
+}
+
+}  // namespace scree
