@@ -63,7 +63,7 @@ struct ContactLaw {
   TangentialLaw tangential{};
   RollingLaw rolling{};
 
-  static constexpr bool kNeck = has_neck<NormalLaw>();
+  static constexpr bool kNeck = kHasNeck<NormalLaw>;
   static constexpr bool kMoves = TangentialLaw::acts || RollingLaw::acts || kNeck;
   // Numbers that a contact remembers: spring, moment, whether it has touched, in this order.
   static constexpr int kHistory = TangentialLaw::kHistory + RollingLaw::kHistory + (kNeck ? 1 : 0);

@@ -57,7 +57,7 @@ SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 slide, co
   const auto to_end = [&](Vec3 a) { return across(a + (out.turn / 2) * cross(middle, a), normal1); };
   out.slip = to_end(slide - h * cross(i.arm * i.spin + j.arm * j.spin, middle));
   out.twisting = dot(relative, middle);
-  out.rolling = to_end(relative - (out.twisting / dot(middle, middle)) * middle);
+  out.rolling = to_end(relative - (out.twisting * reciprocal(dot(middle, middle))) * middle);
   return out;
 }
 
@@ -72,7 +72,7 @@ SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 trave
   const RootAndInverse<Real> distance0 = root_and_inverse(dot(r0, r0));
   const Vec3 normal0 = distance0.inverse * r0, normal1 = geometry.normal();
   // normal1 - normal0 without the cancellation of that difference.
-  const Real grown = dot(travel, r0 + r) / (distance0.root + geometry.distance);
+  const Real grown = dot(travel, r0 + r) * reciprocal(distance0.root + geometry.distance);
   const Vec3 turned = geometry.scale * (travel - grown * normal0);
   const Real reach = i.arm + j.arm;
   ContactMotion out = contact_motion(normal0, normal1, reach * turned, i, j, h);
@@ -97,19 +97,20 @@ SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0
 // in the step.
 SCREE_HD Vec3 turned_about(Vec3 a, Vec3 normal, Real turn) {
   const Vec3 b = cross(normal, a);
-  return a + (1 / (1 + turn * turn / 4)) * (turn * b + (turn * turn / 2) * cross(normal, b));
+  return a + reciprocal(1 + turn * turn / 4) * (turn * b + (turn * turn / 2) * cross(normal, b));
 }
 
 // A vector across the normal; what round-off has left along it goes.
 SCREE_HD Vec3 turned_across(const ContactMotion& c, Vec3 a) {
   const Vec3 u = turned_about(a, c.normal0, c.turn);
-  return u - (dot(u, c.normal1) / (1 + dot(c.normal0, c.normal1))) * (c.normal0 + c.normal1);
+  return u - (dot(u, c.normal1) * reciprocal(1 + dot(c.normal0, c.normal1))) * (c.normal0 + c.normal1);
 }
 
 // Any vector.
 SCREE_HD Vec3 turned_with(const ContactMotion& c, Vec3 a) {
   const Vec3 u = turned_about(a, c.normal0, c.turn), sum = c.normal0 + c.normal1;
-  return u - (dot(u, sum) / (1 + dot(c.normal0, c.normal1))) * sum + (2 * dot(u, c.normal0)) * c.normal1;
+  return u - (dot(u, sum) * reciprocal(1 + dot(c.normal0, c.normal1))) * sum +
+         (2 * dot(u, c.normal0)) * c.normal1;
 }
 
 }  // namespace scree

@@ -23,10 +23,10 @@ struct NormalContact {
 //   limits friction [N]; else none
 
 template <class NormalLaw>
-constexpr bool has_neck() {
-  if constexpr (requires { NormalLaw::kNeck; }) return NormalLaw::kNeck;
-  return false;
-}
+inline constexpr bool kHasNeck = false;
+template <class NormalLaw>
+requires requires { NormalLaw::kNeck; }
+inline constexpr bool kHasNeck<NormalLaw> = NormalLaw::kNeck;
 
 // How far beyond touch partners of these sizes can have a contact [m]: what a search for contacts adds to the
 // sum of their radii.
@@ -41,7 +41,7 @@ SCREE_HD Real reach_beyond_touch(const NormalLaw& law, const PairSize& size) {
 
 template <class NormalLaw>
 SCREE_HD Real contact_radius(const NormalLaw& law, const PairSize& size, Real d) {
-  if constexpr (has_neck<NormalLaw>())
+  if constexpr (kHasNeck<NormalLaw>)
     return d > -law.reach() ? law.contact_radius(d) : 0;
   else if constexpr (requires { law.contact_radius(d); })
     return d > 0 ? law.contact_radius(d) : 0;
@@ -51,7 +51,7 @@ SCREE_HD Real contact_radius(const NormalLaw& law, const PairSize& size, Real d)
 
 template <class NormalLaw>
 SCREE_HD Real contact_stiffness(const NormalLaw& law, Real d) {
-  if constexpr (has_neck<NormalLaw>())
+  if constexpr (kHasNeck<NormalLaw>)
     return d > -law.reach() ? law.contact_stiffness(d) : 0;
   else if constexpr (requires { law.contact_stiffness(d); })
     return law.contact_stiffness(d);

@@ -54,7 +54,8 @@ struct ElasticPlasticRolling {
   }
   SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
     const Real k = stiffness_at(c.size, c.normal.stiffness), k0 = stiffness_at(c.size, c.normal.stiffness0);
-    const Real dashpot = dashpot_of(damping_ratio, rolling_inertia(c.size, c.motion), k);
+    const Real dashpot =
+        damping_ratio > 0 ? dashpot_of(damping_ratio, rolling_inertia(c.size, c.motion), k) : 0;
     const Real limit = friction * c.size.effective_radius() * c.normal.grip;
     return spring_step({k, k0, dashpot, limit}, old, c.motion.rolling, c.motion.h);
   }

@@ -24,12 +24,17 @@ SCREE_HD Real slip_mass(const PairSize& size, const ContactMotion& c) {
 
 // 2 zeta sqrt(m k): the dashpot of a damping ratio [N s/m].
 SCREE_HD Real dashpot_of(Real damping_ratio, Real mass, Real stiffness) {
-  return damping_ratio > 0 ? 2 * damping_ratio * std::sqrt(mass * stiffness) : 0;
+  return 2 * damping_ratio * std::sqrt(mass * stiffness);
+}
+
+// Of a slip; most contacts of most runs have none.
+SCREE_HD Real slip_dashpot(Real damping_ratio, const PairSize& size, const ContactMotion& c, Real stiffness) {
+  return damping_ratio > 0 ? dashpot_of(damping_ratio, slip_mass(size, c), stiffness) : 0;
 }
 
 // The spring force T may reach mu F_n |r| / (R_i + R_j), for the force on the centres to obey Coulomb.
 SCREE_HD Real coulomb_limit(Real friction, const NormalContact& normal, const ContactMotion& c) {
-  return friction * normal.grip / c.leverage;
+  return friction * normal.grip * reciprocal(c.leverage);
 }
 
 // No force across the normal.
@@ -50,7 +55,7 @@ struct LinearSlider {
   SCREE_HD Real stiffness_at(Real) const { return stiffness; }
   SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
                                const NormalContact& normal) const {
-    return {stiffness, stiffness, dashpot_of(damping_ratio, slip_mass(size, c), stiffness),
+    return {stiffness, stiffness, slip_dashpot(damping_ratio, size, c, stiffness),
             coulomb_limit(friction, normal, c)};
   }
 };
@@ -75,7 +80,7 @@ struct MindlinSlider {
   SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
                                const NormalContact& normal) const {
     const Real stiffness = stiffness_at(normal.radius);
-    return {stiffness, stiffness_at(normal.radius0), dashpot_of(damping_ratio, slip_mass(size, c), stiffness),
+    return {stiffness, stiffness_at(normal.radius0), slip_dashpot(damping_ratio, size, c, stiffness),
             coulomb_limit(friction, normal, c)};
   }
 };

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "physics/contact_law.hpp"
+#include "physics/energy.hpp"
+#include "physics/particle_mass.hpp"
 
 namespace scree {
 
@@ -11,9 +13,10 @@ struct Grain {
   Vec3 velocity{};  // [m/s]
   Vec3 spin{};      // [rad/s]
   Real radius, mass;
-  Real inertia = 0.4 * mass * radius * radius;  // [kg m^2]
+  Real inertia = sphere_inertia(mass, radius);  // [kg m^2]
 
   TurningPartner partner() const { return {spin, radius, inertia}; }
+  Real energy() const { return kinetic_energy(mass, velocity) + rotational_energy(inertia, spin); }
 };
 
 // Force and torque of the last step over mass and inertia.

@@ -1,0 +1,69 @@
+// Head-on impacts of surfaces that attract each other.
+#include "physics/cohesion.hpp"
+
+#include "support/bars.hpp"
+#include "support/catch.hpp"
+#include "support/reference_table.hpp"
+#include "verification/contact/errors.hpp"
+#include "verification/contact/leapfrog.hpp"
+
+namespace scree {
+
+namespace {
+
+// A sphere of radius R* and mass m* on a plane moves as two spheres do relative to each other.
+template <class Normal>
+PlaneRun<ContactLaw<Normal>> head_on(const Normal& law, const ReferenceTable::Row& row, Real h) {
+  const Real R = row["R_star"];
+  return {.law = {law},
+          .grain = {.position = {0, 0, R + 0.5 * row["v"] * h},
+                    .velocity = {0, 0, -row["v"]},
+                    .radius = R,
+                    .mass = row["m_star"]},
+          .h = h};
+}
+
+// Time in which an impact would be over without attraction, about.
+Real impact_time(const ReferenceTable::Row& row) { return 3 * row["d_max"] / row["v"]; }
+
+struct NeckErrors {
+  Errors energy, overlap, force;  // of the rebound, over the impact's; largest overlap, and force there
+};
+
+void add_neck(const ReferenceTable::Row& row, Real parts, NeckErrors& errors) {
+  const Real v = row["v"];
+  const JkrLaw law{4 * row["E_star"] / 3, std::sqrt(5.0) * row["z"], row["w"]};
+  auto run = head_on(law, row, impact_time(row) / parts);
+  Real largest = 0, force = 0;
+  bool met = false;
+  for (int k = 0; k < 40 * parts && !(met && !run.closed); ++k) {
+    run.step();
+    met = met || run.closed;
+    const Real d = run.geometry().overlap;
+    if (d > largest) largest = d, force = run.law.normal.of_pair(run.pair().size).elastic(d);
+  }
+  const Real rebound = run.closed ? 0 : run.grain.velocity.z / v;
+  CHECK(run.closed == (row["e"] == 0));
+  errors.energy.add(rebound * rebound - row["e"] * row["e"]);
+  errors.overlap.add(largest / row["d_max"] - 1);
+  errors.force.add(force / row["F_at_d_max"] - 1);
+}
+
+}  // namespace
+
+TEST_CASE("impacts of surfaces that form a neck: what rebounds and what sticks") {
+  const ReferenceTable table("contact/jkr_impact.csv");
+  NeckErrors coarse, fine;
+  for (const auto& row : table.rows()) {
+    CAPTURE(row.word("set"), row["z"], row["v"]);
+    add_neck(row, 200, coarse);
+    add_neck(row, 400, fine);
+  }
+  CHECK(keeps(coarse.energy.worst(), {.promise = 2e-2, .measured = 3.1e-3}));
+  CHECK(keeps(fine.energy.worst(), {.promise = 1e-2, .measured = 1.1e-3}));
+  CHECK(keeps(fine.overlap.worst(), {.promise = 1e-4, .measured = 1.2e-5}));
+  CHECK(keeps(fine.force.worst(), {.promise = 2e-4, .measured = 2.3e-5}));
+  CHECK(order_between(coarse.energy, fine.energy) > 0.9);
+}
+
+}  // namespace scree
