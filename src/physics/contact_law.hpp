@@ -54,7 +54,7 @@ struct ContactOutcome {
 
 // The law of a contact. Without friction, rolling and neck (kMoves false) it is a function of the instant:
 // load(pair). With them it needs to know how the partners moved over the step, and what it remembers:
-// load(pair, motion, history), which is pure: the new history is returned, and only who accepts the step
+// load(moving pair, history), which is pure: the new history is returned, and only who accepts the step
 // stores it.
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
@@ -84,13 +84,13 @@ struct ContactLaw {
   }
 
   // All zero where there is no contact.
-  SCREE_HD ContactOutcome load(const PairState& pair, const ContactMotion& step,
-                               const ContactHistory& old) const {
+  SCREE_HD ContactOutcome load(const MovingPair& pair, const ContactHistory& old) const {
     ContactOutcome out{};
     if (!closed(pair, old)) return out;
     const auto law = normal.of_pair(pair.size);
     const ContactGeometry& g = pair.geometry;
     const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
+    const ContactMotion& step = pair.motion;
     const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
     const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);

@@ -42,6 +42,11 @@ struct ContactMotion {
   }
 };
 
+// All that a law with friction, rolling or a neck sees of a contact.
+struct MovingPair : PairState {
+  ContactMotion motion;
+};
+
 // The part of a across the unit vector n.
 SCREE_HD Vec3 across(Vec3 a, Vec3 n) { return a - dot(a, n) * n; }
 

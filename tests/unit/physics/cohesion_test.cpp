@@ -70,7 +70,7 @@ TEST_CASE("a neck is made at touch and holds beyond it until it breaks") {
   const auto at = [&](Real overlap, bool touched) {
     const ContactGeometry geometry{overlap, size.radius_i - overlap, {0, 0, 1}, 1};
     const ContactMotion rest = face_motion(geometry, {0, 0, 1}, {}, {{}, size.radius_i, 1}, {}, 1);
-    return law.load({geometry, {}, size}, rest, {{}, {}, touched});
+    return law.load({{geometry, {}, size}, rest}, {{}, {}, touched});
   };
   CHECK(at(-0.1 * reach, false).load.force == Vec3{});
   CHECK_FALSE(at(-0.1 * reach, false).history.touched);
@@ -100,7 +100,7 @@ TEST_CASE("a pull on top of another law, with and without range") {
   static_assert(decltype(law)::kHistory == 0);
   const ContactGeometry apart = sphere_pair(Vec3{0, 0, 4.1}, Real(4));
   const ContactMotion rest = sphere_motion(apart, {}, {{}, 2, 1}, {{}, 2, 1}, 1);
-  CHECK(near(law.load({apart, {}, size}, rest, {}).load.force.z, -1.5, {.relative = 1e-13}));
+  CHECK(near(law.load({{apart, {}, size}, rest}, {}).load.force.z, -1.5, {.relative = 1e-13}));
 }
 
 }  // namespace scree

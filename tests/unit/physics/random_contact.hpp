@@ -21,8 +21,7 @@ class RandomNumbers {
 };
 
 struct RandomContact {
-  PairState pair;
-  ContactMotion motion;
+  MovingPair pair;
   ContactHistory history;
   Vec3 spin_i, spin_j;
 };
@@ -41,11 +40,10 @@ inline RandomContact contact_of(RandomNumbers random, Real h, bool swapped) {
   };
   RandomContact out{};
   const Vec3 relative = velocity[i] - velocity[j];
-  out.pair = {sphere_pair(place[i] - place[j], radius[i] + radius[j]),
-              relative,
-              {radius[i], radius[j], mass[i], mass[j]}};
-  out.motion = sphere_motion(out.pair.geometry, h * relative, partner(i), partner(j), h);
-  const Vec3 spring = across(swapped ? -along : along, out.motion.normal0);
+  const ContactGeometry geometry = sphere_pair(place[i] - place[j], radius[i] + radius[j]);
+  out.pair = {{geometry, relative, {radius[i], radius[j], mass[i], mass[j]}},
+              sphere_motion(geometry, h * relative, partner(i), partner(j), h)};
+  const Vec3 spring = across(swapped ? -along : along, out.pair.motion.normal0);
   out.spin_i = spin[i], out.spin_j = spin[j];
   out.history = {10 * spring, Real(0.1) * (swapped ? -along : along), true};
   return out;
