@@ -6,6 +6,7 @@
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
 #include "model/touching.hpp"
+#include "physics/restitution.hpp"
 
 namespace scree {
 

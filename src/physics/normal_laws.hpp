@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 #include "base/hd.hpp"
@@ -164,26 +163,6 @@ inline KelvinVoigt KelvinVoigt::of_size(const PairSize& size) const {
   const auto pair = HertzLaw(*this).of_pair(size);
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
   return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), tension};
-}
-
-// Restitution of an impact with the damping ratio z [-], the same for all laws F = K d^n + c d^((n-1)/2)
-// d_dot with c = 2 z sqrt(m* K (n+1)/2): that of the linear one, over which tau = w t runs until the force is
-// 0, or, with tension, the overlap.
-inline Real restitution_of(Real z, bool tension) {
-  const Real s = std::sqrt(std::abs((1 - z) * (1 + z)));
-  if (tension) return z < 1 ? std::exp(-std::numbers::pi_v<Real> * z / s) : 0;
-  const Real half = z < 1 ? std::atan2(s, z) : std::asinh(s);
-  return std::exp(-2 * z * (s > 0 ? half / s : 1));
-}
-
-// The damping ratio of a restitution above 0, at most 1: bisection, as e falls with z.
-inline Real damping_ratio_of(Real restitution, bool tension) {
-  if (restitution == 1) return 0;
-  Real low = 0, high = 1;
-  while (restitution_of(high, tension) > restitution) high *= 2;
-  for (Real z = high / 2; low < z && z < high; z = low + (high - low) / 2)
-    (restitution_of(z, tension) > restitution ? low : high) = z;
-  return high;
 }
 
 // A run takes the first that accepts the parameters of all its pairs; each has its own kernels

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "model/limits.hpp"
+#include "physics/restitution.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

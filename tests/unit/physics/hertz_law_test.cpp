@@ -1,4 +1,4 @@
-// Hertz's law: its force and energy, its damper over parts of a contact, and the damping from a restitution.
+// Hertz's law: its force and energy, and its damper over parts of a contact.
 #include <cmath>
 #include <limits>
 
@@ -6,7 +6,6 @@
 #include "physics/step_limits.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
-#include "support/reference.hpp"
 
 namespace scree {
 
@@ -146,23 +145,6 @@ TEST_CASE("a pair that does not act has no force under Hertz's law") {
                                step_between(kReach, 0.5 * kReach, 1)}) {
     CHECK(step_contact_force(nothing, c).force == 0);
     CHECK(step_dissipation(nothing, c) == 0);
-  }
-}
-
-TEST_CASE("the damping ratio is that of the restitution") {
-  // e, z with tension, z cut, and others.
-  for (const std::vector<Real>& row : reference_rows("damping_from_e.csv")) {
-    CAPTURE(row[0]);
-    CHECK(near(damping_ratio_of(row[0], true), row[1], {.relative = 1e-13}));
-    CHECK(near(damping_ratio_of(row[0], false), row[2], {.relative = 1e-13}));
-  }
-  for (const bool tension : {false, true}) {
-    CHECK(damping_ratio_of(1, tension) == 0);
-    for (const Real e : {1e-200, 1e-6, 0.3, std::exp(-2.0), 1 - 1e-12}) {
-      CAPTURE(e, tension);
-      CHECK(near(std::log(restitution_of(damping_ratio_of(e, tension), tension)), std::log(e),
-                 {.relative = tension && e < 1e-6 ? 1e-1 : 1e-3}));
-    }
   }
 }
 

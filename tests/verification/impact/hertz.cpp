@@ -7,6 +7,7 @@
 #include <iostream>
 #include <string>
 
+#include "physics/restitution.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
