@@ -21,7 +21,7 @@ SCREE_HD Vec3 shortened(Vec3 a, Real limit) {
 struct SpringLosses {
   Real sliding = 0;    // over the limit
   Real dashpot = 0;    // never negative
-  Real unloading = 0;  // by a spring that weakens or stiffens under its force; never negative
+  Real unloading = 0;  // by a spring that weakens or stiffens under its force; not negative but for round-off
 
   SCREE_HD Real sum() const { return sliding + dashpot + unloading; }
   SCREE_HD SpringLosses& operator+=(const SpringLosses& part) {
@@ -49,29 +49,37 @@ SCREE_HD Real spring_energy(Vec3 force, Real stiffness) {
   return stiffness > 0 ? dot(force, force) / (2 * stiffness) : 0;
 }
 
+// Of a stiffness that grows over a step like the radius of a circle of contact, with the root of the overlap:
+// its mean over the overlap.
+SCREE_HD Real mean_stiffness(Real k0, Real k1) {
+  return Real(2) / 3 * (k1 * k1 + k1 * k0 + k0 * k0) * reciprocal(k1 + k0);
+}
+
 // The step of a spring whose force at the start, turned with the contact, was `old`, by `way`, as
 // turned_across() and ContactMotion give them.
-// - A stiffness that depends on the overlap ("rescale rule": Walton; Thornton, Cummins, Cleary, Powder
-//   Technol. 233, 2013, Eq. 18b): the force stays while the contact grows and falls with the stiffness while
-//   it shrinks, which never creates energy.
+// - A stiffness k that depends on the overlap ("rescale rule": Walton; Thornton, Cummins, Cleary, Powder
+//   Technol. 233, 2013, Eq. 18b): T' = k s' while the contact grows, (T/k)' = s' while it shrinks, s the way.
+//   That never creates energy; the second is exact over a step, the first with the mean of k.
 // - Return to the limit along the trial force. While it sticks the dashpot acts, too, and the sum stays
 //   within the limit; while it slides the force is the limit: neither creates energy.
-// Work of the springs' mean force over the way, plus that of the dashpot's, is the change of spring_energy()
+// Work of the spring's mean force over the way, plus that of the dashpot's, is the change of spring_energy()
 // plus the losses, exactly. The sliding loss is the mean force over the way that slid: it could be negative
 // only where within one step the limit falls below the old force and the way turns back by more than both.
 SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 way, Real h) {
   SpringStep out;
   const Vec3 start = p.stiffness < p.stiffness0 ? (p.stiffness / p.stiffness0) * old : old;
-  out.losses.unloading = spring_energy(old, p.stiffness0) - spring_energy(start, p.stiffness);
-  const Vec3 trial = start + p.stiffness * way;
+  const Real stiffness = p.stiffness > p.stiffness0 ? mean_stiffness(p.stiffness0, p.stiffness) : p.stiffness;
+  const Vec3 trial = start + stiffness * way;
   out.spring = shortened(trial, p.limit);
   out.acting = out.spring;
-  const bool slides = dot(trial, trial) > p.limit * p.limit;
-  if (slides)
-    out.losses.sliding = dot(start + out.spring, trial - out.spring) / (2 * p.stiffness);
+  if (dot(trial, trial) > p.limit * p.limit)
+    out.losses.sliding = dot(start + out.spring, trial - out.spring) / (2 * stiffness);
   else if (p.dashpot > 0)
     out.acting = shortened(trial + (p.dashpot / h) * way, p.limit);
   out.losses.dashpot = dot(out.acting - out.spring, way);
+  if (p.stiffness != p.stiffness0)
+    out.losses.unloading = (spring_energy(out.spring, stiffness) - spring_energy(start, stiffness)) -
+                           (spring_energy(out.spring, p.stiffness) - spring_energy(old, p.stiffness0));
   return out;
 }
 

@@ -72,7 +72,18 @@ TEST_CASE("a spring that sticks keeps its force while it stiffens, and loses wit
   const Vec3 old{0.3, 0.1, 0};
   CHECK(spring_step({5, 3, 0, 1}, old, {}, 1).spring == old);
   CHECK(near(spring_step({3, 5, 0, 1}, old, {}, 1).spring, Real(0.6) * old, {.relative = kRoundOff}));
-  CHECK(spring_step({3, 0, 0, 1}, {}, {0.1, 0, 0}, 1).spring == Vec3{3 * 0.1, 0, 0});
+  // From 0, as the root of the overlap: two thirds.
+  CHECK(near(spring_step({3, 0, 0, 1}, {}, {0.1, 0, 0}, 1).spring, Vec3{0.2, 0, 0}, {.relative = kRoundOff}));
+  // Exactly where a radius grows with the root of the overlap, in one step or in parts.
+  const auto grown = [](int parts) {
+    Vec3 spring;
+    for (int k = 0; k < parts; ++k) {
+      const Real k0 = std::sqrt(Real(k) / parts), k1 = std::sqrt(Real(k + 1) / parts);
+      spring = spring_step({k1, k0, 0, 1}, spring, {0.1 / parts, 0, 0}, 1).spring;
+    }
+    return spring;
+  };
+  CHECK(near(grown(7), grown(1), {.relative = kRoundOff}));
 }
 
 TEST_CASE("the dashpot acts while the spring sticks, and not while it slides") {

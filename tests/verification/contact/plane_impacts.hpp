@@ -14,8 +14,8 @@ namespace scree {
 // x along the plane, y the axis of rolling along +x.
 struct PlaneImpact {
   Grain grain;  // on its way down, wherever it is
-  Vec3 velocity_after, spin_after;
-  Real contact_time;  // estimate, in which steps are counted [s]
+  Vec3 velocity_after{}, spin_after{};
+  Real contact_time = 0;  // estimate, in which steps are counted [s]
 };
 
 // speed [m/s] at an angle from the normal [rad].
@@ -44,8 +44,9 @@ struct LinearImpact : PlaneImpact {
   }
 };
 
-// Error of a rebound by steps of contact_time / parts, the first touch `phase` steps after the start [m/s]:
-// the largest of the components of the velocity and of radius times spin.
+// Error of a rebound by steps of contact_time / parts, the first touch `phase` steps after the start, over
+// the speed of approach of the surfaces: the largest of the components of the velocity and of radius times
+// spin.
 template <class Impact>
 Real rebound_error(const Impact& impact, Real parts, Real phase) {
   PlaneRun<decltype(impact.law())> run{.law = impact.law(), .grain = impact.grain};
@@ -54,7 +55,10 @@ Real rebound_error(const Impact& impact, Real parts, Real phase) {
   if (!run_impact(run, static_cast<int>(100 * parts))) return std::numeric_limits<Real>::quiet_NaN();
   const Vec3 v = run.grain.velocity - impact.velocity_after;
   const Vec3 w = run.grain.radius * (run.grain.spin - impact.spin_after);
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(w.x), std::abs(w.y), std::abs(w.z)});
+  const Real speed = norm(impact.grain.velocity - impact.grain.radius * cross(impact.grain.spin, {0, 0, 1}));
+  return std::max(
+             {std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(w.x), std::abs(w.y), std::abs(w.z)}) /
+         speed;
 }
 
 }  // namespace scree
