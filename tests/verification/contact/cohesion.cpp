@@ -3,6 +3,7 @@
 
 #include "support/bars.hpp"
 #include "support/catch.hpp"
+#include "support/near.hpp"
 #include "support/reference_table.hpp"
 #include "verification/contact/errors.hpp"
 #include "verification/contact/leapfrog.hpp"
@@ -64,6 +65,32 @@ TEST_CASE("impacts of surfaces that form a neck: what rebounds and what sticks")
   CHECK(keeps(fine.overlap.worst(), {.promise = 1e-4, .measured = 1.2e-5}));
   CHECK(keeps(fine.force.worst(), {.promise = 2e-4, .measured = 2.3e-5}));
   CHECK(order_between(coarse.energy, fine.energy) > 0.9);
+}
+
+TEST_CASE("a pull after Derjaguin, Muller and Toporov: nothing is lost where it appears and ends") {
+  const ReferenceTable table("contact/dmt.csv");
+  const auto errors_at = [&](Real parts) {
+    NeckErrors errors;
+    for (const auto& row : table.rows()) {
+      const AttractedLaw<HertzLaw> law{HertzLaw(4 * row["E_star"] / 3, 0, true), 0,
+                                       2 * std::numbers::pi_v<Real> * row["w"], 0};
+      auto run = head_on(law, row, impact_time(row) / parts);
+      const auto pair = law.of_pair(run.pair().size);
+      CHECK(near(pair.attraction, row["Fc"], {.relative = 1e-13}));
+      CHECK(std::abs(pair.elastic(row["d_rest"])) <= 1e-13 * row["Fc"]);
+      CHECK(near(pair.elastic(row["d_max"]), row["F_at_d_max"], {.relative = 1e-12}));
+      Real largest = 0;
+      for (int k = 0; k < 3 || run.closed; ++k)
+        run.step(), largest = std::max(largest, run.geometry().overlap);
+      errors.energy.add(run.grain.velocity.z * run.grain.velocity.z / (row["v"] * row["v"]) - 1);
+      errors.overlap.add(largest / row["d_max"] - 1);
+    }
+    return errors;
+  };
+  const NeckErrors coarse = errors_at(100), fine = errors_at(200);
+  CHECK(keeps(fine.energy.worst(), {.promise = 5e-2, .measured = 1.3e-2}));
+  CHECK(keeps(fine.overlap.worst(), {.promise = 1e-3, .measured = 3.3e-5}));
+  CHECK(order_between(coarse.overlap, fine.overlap) > 0.9);
 }
 
 }  // namespace scree

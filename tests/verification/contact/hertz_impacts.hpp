@@ -8,8 +8,8 @@ namespace scree {
 struct Material {
   Real young, poisson, density;  // [Pa], [-], [kg/m^3]
 
-  explicit Material(const ReferenceTable::Row& row)
-      : young(row["E"]), poisson(row["nu"]), density(row["rho"]) {}
+  explicit Material(const ReferenceTable::Row& row) : Material(row, row["rho"]) {}
+  Material(const ReferenceTable::Row& row, Real rho) : young(row["E"]), poisson(row["nu"]), density(rho) {}
   // 4/3 E* and G* against a rigid partner [Pa].
   Real hertz_modulus() const { return Real(4) / 3 * young / (1 - poisson * poisson); }
   Real shear_modulus() const { return effective_shear_modulus(young, poisson, kInfinity, poisson); }

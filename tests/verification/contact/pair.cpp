@@ -89,4 +89,16 @@ TEST_CASE("two spheres in space with a linear spring and slider") {
   }
 }
 
+TEST_CASE("two spheres in space after Hertz and Mindlin") {
+  const auto at = [](Real parts) {
+    return pair_errors<MindlinPairImpact>(parts,
+                                          [](const auto& row) { return row.word("law") == "mindlin"; });
+  };
+  const PairErrors coarse = at(100), fine = at(200);
+  CHECK(keeps(coarse.motion.worst(), {.promise = 2e-3, .measured = 5.0e-4}));
+  CHECK(keeps(fine.motion.worst(), {.promise = 1e-3, .measured = 2.3e-4}));
+  CHECK(keeps(fine.loss.worst(), {.promise = 1e-3, .measured = 3.1e-5}));
+  CHECK(order_between(coarse.motion, fine.motion) > 0.9);
+}
+
 }  // namespace scree

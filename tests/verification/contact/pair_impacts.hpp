@@ -52,6 +52,17 @@ struct LinearPairImpact : PairImpact {
   }
 };
 
+// F = K d^(3/2) + c d^(1/4) d_dot, spring k_t sqrt(d).
+struct MindlinPairImpact : PairImpact {
+  ContactLaw<HertzLaw, MindlinSlider> law;
+
+  explicit MindlinPairImpact(const ReferenceTable::Row& row) : PairImpact(row) {
+    const Real root = std::sqrt(PairSize{i.radius, j.radius, 1, 1}.effective_radius());
+    const Real ratio = damping_ratio_of(row["e"], false);
+    law = {HertzLaw(row["K"] / root, std::sqrt(Real(5)) * ratio, false), {row["kt"] / (8 * root), row["mu"]}};
+  }
+};
+
 // By steps of time / parts, the first touch `phase` steps after the start.
 template <class Impact>
 auto pair_run(const Impact& impact, Real parts, Real phase) {

@@ -5,6 +5,7 @@
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "verification/contact/errors.hpp"
+#include "verification/contact/hertz_impacts.hpp"
 #include "verification/contact/on_plane.hpp"
 
 namespace scree {
@@ -79,6 +80,43 @@ TEST_CASE("a sphere held on an incline by rolling resistance comes to rest there
     for (int k = 0; k < 100000; ++k) run.step();
     CHECK(near(on_plane(run, 0).x, rest.x, {.absolute = 1e-9 * 2 * row["R"]}));
   }
+}
+
+TEST_CASE("a sphere that spins about the vertical slows down evenly, then swings") {
+  const ReferenceTable table("contact/twisting.csv");
+  const auto errors_at = [&](Real parts) {
+    Errors errors;
+    for (const auto& row : table.rows()) {
+      const Material material(row, 0);  // the mass is given
+      const ContactLaw<HertzLaw, MindlinSlider, RollingAndTwisting<FreeRolling, MarshallTwisting>> law{
+          HertzLaw(material.hertz_modulus(), 0, false),
+          {material.shear_modulus(), row["mu"], 0},
+          {{}, {row["mu"]}}};
+      const Real R = row["R"], period = row["period"], w0 = row["w0"], t2 = row["t2"];
+      const Real steps = std::ceil(t2 / period * parts);
+      PlaneRun<decltype(law)> run{
+          .law = law,
+          .grain = {.position = {0, 0, R - row["d"]}, .spin = {0, 0, w0}, .radius = R, .mass = row["m"]},
+          .gravity = inclined_gravity(0),
+          .h = t2 / steps};
+      run.start();
+      for (int k = 0; k < steps; ++k) {
+        run.step();
+        const Real t = (k + 1) * run.h;
+        const Real even = row["w1"] * (t2 - t) / (t2 - row["t1"]);
+        if (t > row["t1"]) errors.add((run.spin().z - even) / w0);
+      }
+      for (int k = 0; k * run.h < 3 * period; ++k, run.step()) {
+        const Real swing = -row["w_ampl"] * std::sin(2 * std::numbers::pi_v<Real> * k * run.h / period);
+        errors.add((run.spin().z - swing) / w0);
+      }
+    }
+    return errors;
+  };
+  const Errors coarse = errors_at(100), fine = errors_at(200);
+  CHECK(keeps(coarse.worst(), {.promise = 1e-3, .measured = 3.3e-4}));
+  CHECK(keeps(fine.worst(), {.promise = 1e-3, .measured = 1.2e-4}));
+  CHECK(order_between(coarse, fine) > 1.3);  // 2 but for where in a step sliding begins and ends
 }
 
 }  // namespace scree
