@@ -65,12 +65,16 @@ struct JkrPair {
     const Real p = root_of(d), cube = p * p * p;
     return pull_off * p * p * (cube - 3) / (2 * range * (cube - 1));
   }
-  // Relative to first touch; what is left where the contact breaks, W = 7.0922 (w^5 R*^4 / E*^2)^(1/3), is
-  // lost there.
+  // Relative to a contact that breaks, at d = -reach(). At first touch it is -making_loss(): that much goes
+  // into waves where a neck snaps in and out, and is counted where it is made.
   SCREE_HD Real energy(Real d) const {
-    constexpr Real kTouch = -5.714643787085519;  // -0.9 x 4^(4/3): the bracket below at d = 0
     const Real p = root_of(d), cube = p * p * p;
-    return 4 * pull_off * range / 27 * (p * cube * (cube * cube / 10 - cube + Real(1.5)) - kTouch);
+    return 4 * pull_off * range / 27 * (p * cube * (cube * cube / 10 - cube + Real(1.5)) - Real(0.6));
+  }
+  // 7.0922 (w^5 R*^4 / E*^2)^(1/3) [J]: impacts below the speed sqrt(2 / m* of it) stick.
+  SCREE_HD Real making_loss() const {
+    constexpr Real kTouch = -6.314643787085519;  // the bracket above at d = 0: -0.9 x 4^(4/3) - 0.6
+    return -4 * pull_off * range / 27 * kTouch;
   }
   SCREE_HD Real damping(Real d) const {
     return damping_factor * std::sqrt(mass * modulus * contact_radius(d));

@@ -95,6 +95,8 @@ struct ContactLaw {
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
     const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);
     out.load = {g.along(f.force), f.loss, {}, {}};
+    if constexpr (kNeck)
+      if (!old.touched) out.load.loss += law.making_loss() / step.h;
     out.history.touched = old.touched || g.overlap > 0;
     SpringSlider slider{};
     if constexpr (TangentialLaw::acts) {

@@ -17,10 +17,11 @@ struct NormalContact {
 
 // Of its partners a normal law may say more than the functions of the overlap that normal_laws.hpp lists:
 //   reach()                how far beyond touch they can have a contact [m]; else none
-//   kNeck = true           they have it there only if they have touched: it is made at d = 0, and holds to
-//   -reach() contact_radius(d)      of the circle of contact [m]; else sqrt(R* d) contact_stiffness(d)   for
-//   rolling [N/m], where slope(d) will not do adhesion(d)            what attraction adds to the load that
-//   limits friction [N]; else none
+//   kNeck = true           only after touch: it is made at d = 0, and holds down to -reach()
+//   making_loss()          with a neck: what making a contact takes [J]
+//   contact_radius(d)      of the circle of contact [m]; else sqrt(R* d)
+//   contact_stiffness(d)   for rolling [N/m], where slope(d) will not do
+//   adhesion(d)            what attraction adds to the load that limits friction [N]; else 0
 
 template <class NormalLaw>
 inline constexpr bool kHasNeck = false;
