@@ -1,0 +1,53 @@
+// A spring with slider and dashpot over an implicit step, whose mean force counts.
+#pragma once
+
+#include "base/hd.hpp"
+#include "physics/spring_slider.hpp"
+
+namespace scree {
+
+// The mean force over a step, and its derivatives with respect to the way at the end of the step and to the
+// limit: dM = stiffness (dw - (direction . dw) direction) + grip dL direction; direction is zero while it
+// sticks. The first part is symmetric and positive; the second comes from a limit that changes with the
+// normal force and makes a Newton matrix unsymmetric; that a force beyond the limit is shortened to it first
+// is left out there.
+struct StepSpring {
+  Vec3 spring;     // the spring's force at the end of the step: what is remembered
+  Vec3 mean;       // with the dashpot's, over the step
+  Real stiffness;  // [N/m]
+  Vec3 direction;  // unit, while it slides
+  Real grip;       // 1 while it slides, else 0
+  SpringLosses losses;
+};
+
+// From the spring's force at the start (committed: iterations never change it), turned with the contact, by
+// the same rules as spring_step(). That force is first shortened to the limit: work of the mean force less
+// the change of spring_energy() is then never negative, whatever the step and the way; while it sticks it is
+// the dashpot's loss exactly, and the step is of second order.
+SCREE_HD StepSpring step_spring(const SpringSlider& p, Vec3 old, Vec3 way, Real h) {
+  StepSpring out{};
+  const Vec3 kept = p.stiffness < p.stiffness0 ? (p.stiffness / p.stiffness0) * old : old;
+  const Real k = p.stiffness > p.stiffness0 ? mean_stiffness(p.stiffness0, p.stiffness) : p.stiffness;
+  const Vec3 start = shortened(kept, p.limit), trial = start + k * way;
+  const Real rate = p.dashpot / h;
+  const Vec3 pull = Real(0.5) * (start + trial) + rate * way;
+  out.spring = shortened(trial, p.limit);
+  out.mean = shortened(pull, p.limit);
+  out.stiffness = k / 2 + rate;
+  const Real square = dot(pull, pull);
+  if (square > p.limit * p.limit) {
+    const Real inverse = root_and_inverse(square).inverse;
+    out.direction = inverse * pull, out.grip = 1;
+    out.stiffness *= p.limit * inverse;
+  }
+  const Real stored = spring_energy(out.spring, k) - spring_energy(start, k);
+  const Real spent = dot(out.mean, way) - stored;
+  out.losses.dashpot = out.grip > 0 || p.dashpot == 0 ? 0 : rate * dot(way, way);
+  out.losses.sliding = spent - out.losses.dashpot + (spring_energy(kept, k) - spring_energy(start, k));
+  if (p.stiffness != p.stiffness0)
+    out.losses.unloading = (spring_energy(out.spring, k) - spring_energy(kept, k)) -
+                           (spring_energy(out.spring, p.stiffness) - spring_energy(old, p.stiffness0));
+  return out;
+}
+
+}  // namespace scree

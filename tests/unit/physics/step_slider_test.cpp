@@ -1,0 +1,101 @@
+// A spring with slider over an implicit step: energy, derivatives, order.
+#include "physics/step_slider.hpp"
+
+#include <cmath>
+
+#include "random_contact.hpp"
+#include "support/catch.hpp"
+#include "support/near.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kRoundOff = 64 * kUlp;
+constexpr int kCases = 100000;
+
+struct RandomStep {
+  SpringSlider slider;
+  Vec3 old, way;
+  Real h = 0.1;
+};
+
+// Of all kinds; old forces beyond the limit, too, and steps of many times the way to it.
+RandomStep random_step(RandomNumbers& random) {
+  RandomStep out;
+  const Real k = 2 + random();
+  out.slider = {k, random() > 0 ? k : 2 + random(), random() > 0 ? 0 : 0.2 + 0.1 * random(),
+                1.001 + random()};
+  out.old = (2 * random()) * random.vector();
+  out.way = (4 * random()) * random.vector();
+  return out;
+}
+
+StepSpring step_of(const RandomStep& s) { return step_spring(s.slider, s.old, s.way, s.h); }
+
+}  // namespace
+
+TEST_CASE("over an implicit step no spring with slider gives energy, and the books close") {
+  RandomNumbers random;
+  int slid = 0;
+  for (int k = 0; k < kCases; ++k) {
+    const RandomStep s = random_step(random);
+    const StepSpring out = step_of(s);
+    const Real work = dot(out.mean, s.way);
+    const Real gain =
+        spring_energy(out.spring, s.slider.stiffness) - spring_energy(s.old, s.slider.stiffness0);
+    REQUIRE(work - gain >= -kRoundOff);
+    REQUIRE(near(work, gain + out.losses.sum(), {.absolute = kRoundOff}));
+    REQUIRE(out.losses.sliding >= -kRoundOff);
+    REQUIRE(out.losses.unloading >= -kRoundOff);
+    REQUIRE(norm(out.mean) <= s.slider.limit * (1 + kRoundOff));
+    slid += out.grip > 0;
+  }
+  CHECK((slid > kCases / 10 && slid < 9 * kCases / 10));
+}
+
+TEST_CASE("while it sticks the dashpot alone takes energy") {
+  const StepSpring out = step_spring({2, 2, 0.3, 100}, {1, 0, 0}, {0.1, 0.2, 0}, 0.5);
+  CHECK(near(out.losses.sum(), 0.3 * 0.05 / 0.5, {.relative = kRoundOff}));
+  CHECK(near(out.mean, Vec3{1 + 0.1 + 0.06, 0.2 + 0.12, 0}, {.relative = kRoundOff}));
+  CHECK(near(out.spring, Vec3{1.2, 0.4, 0}, {.relative = kRoundOff}));
+}
+
+TEST_CASE("the derivatives of the mean force are those of differences") {
+  constexpr Real kDifference = 1e-6, kTruncation = 1e-7;
+  RandomNumbers random;
+  for (int k = 0; k < 1000; ++k) {
+    const RandomStep s = random_step(random);
+    const StepSpring at = step_of(s);
+    const Vec3 direction = random.vector();
+    RandomStep plus = s, minus = s;
+    plus.way = s.way + kDifference * direction, minus.way = s.way - kDifference * direction;
+    if (step_of(plus).grip != step_of(minus).grip) continue;  // a kink between the two
+    const Vec3 by_way = (1 / (2 * kDifference)) * (step_of(plus).mean - step_of(minus).mean);
+    const Vec3 derivative = at.stiffness * (direction - dot(at.direction, direction) * at.direction);
+    CHECK(near(by_way, derivative, {.absolute = kTruncation}));
+    plus = s, minus = s;
+    plus.slider.limit += kDifference, minus.slider.limit -= kDifference;
+    const Vec3 by_limit = (1 / (2 * kDifference)) * (step_of(plus).mean - step_of(minus).mean);
+    if (norm(s.old) < minus.slider.limit)
+      CHECK(near(by_limit, at.grip * at.direction, {.absolute = kTruncation}));
+  }
+}
+
+TEST_CASE("while it sticks steps of half the size halve the error twice") {
+  // A way that swings: T = sin(t) from 0 to 2, stiffness 1.
+  const auto error = [](int steps) {
+    const Real h = 2.0 / steps;
+    Vec3 spring;
+    Real impulse = 0;
+    for (int k = 0; k < steps; ++k) {
+      const Real way = std::sin((k + 1) * h) - std::sin(k * h);
+      const StepSpring out = step_spring({1, 1, 0, 10}, spring, {way, 0, 0}, h);
+      spring = out.spring, impulse += h * out.mean.x;
+    }
+    return std::abs(impulse - (1 - std::cos(2.0)));
+  };
+  CHECK(near(error(100) / error(200), 4, {.absolute = 0.05}));
+}
+
+}  // namespace scree
