@@ -44,7 +44,7 @@ void CudaReports::queue_energies() {
 ParticleLedger CudaReports::ledger(Real verlet_step) {
   ParticleArrays& now = items_.now;
   DeviceResults& results = items_.results;
-  bodies_.find_loads();
+  need_loads();
   queue_energies();
   const LedgerItem item{now.position.data(),
                         now.velocity.data(),
@@ -79,7 +79,7 @@ void CudaReports::start_output() {
     column.values.resize(bytes), column.h_values.resize(bytes);
   }
   o.ids.resize(n), o.sorted_ids.resize(n), o.order.resize(n), o.sorted_order.resize(n);
-  bodies_.find_loads();
+  need_loads();
   queue_order();
   queue_values();
   o.filled.record(items_.stream);
@@ -135,7 +135,7 @@ ParticleOutput CudaReports::output() {
 }
 
 ShapePack CudaReports::pack_shapes() {
-  bodies_.find_loads();
+  need_loads();
   return bodies_.side().pack();
 }
 
@@ -157,14 +157,14 @@ std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> wanted
 }
 
 std::vector<ContactSum> CudaReports::body_contacts() {
-  bodies_.find_loads();
+  need_loads();
   return bodies_.side().body_contacts();
 }
 
 std::vector<ContactSum> CudaReports::wall_contacts(std::span<const int> walls) {
   const auto share = [&](Real* largest) { items_.lane.halo.max(items_.device(), largest, kWallTerms); };
   std::vector<ContactSum> contacts;
-  bodies_.find_loads();
+  need_loads();
   for (const int wall : walls) {
     items_.kernels->wall_sums(items_.device(), items_.views(), items_.owned,
                               {wall, items_.model.space.min, items_.subdomain.period()},

@@ -39,6 +39,7 @@ class CudaReports : public Reports {
     Event filled, ready;
     std::size_t n = 0;
   };
+  void find_loads() override { bodies_.find_loads(); }
   void queue_energies();
   void queue_order();
   void queue_values();

@@ -13,7 +13,7 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   const Index n = store.owned;
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
-  items_.find_loads();
+  need_loads();
   items_.kernels->energies(items_.views(), n, {elastic.data(), touching.data(), pairs.data()});
 
   const LedgerItem item{store.position.data(),
@@ -43,7 +43,7 @@ void CpuReports::start_output() {
   for (Index i = 0; i < n; ++i) out.global_id.push_back(id_of(store.row_key[i]));
   out.position.resize(static_cast<std::size_t>(n));
   for_each(Serial{}, n, OwnOutputItem<PositionOutput>{source, nullptr, out.position.data()});
-  items_.find_loads();
+  need_loads();
   for (const OutputField& field : fields_) {
     OutputValues& values = out.fields.emplace_back(field.values(static_cast<std::size_t>(n)));
     void* const to = std::visit([](auto& v) -> void* { return v.data(); }, values);
@@ -56,7 +56,7 @@ void CpuReports::start_output() {
 }
 
 ShapePack CpuReports::pack_shapes() {
-  items_.find_loads();
+  need_loads();
   return items_.side.pack();
 }
 
@@ -75,13 +75,13 @@ std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> wanted)
 }
 
 std::vector<ContactSum> CpuReports::body_contacts() {
-  items_.find_loads();
+  need_loads();
   return items_.side.body_contacts();
 }
 
 std::vector<ContactSum> CpuReports::wall_contacts(std::span<const int> walls) {
   std::vector<ContactSum> contacts;
-  items_.find_loads();
+  need_loads();
   for (const int wall : walls) {
     Real sums[kWallTerms];
     items_.kernels->wall_sums(items_.views(), items_.layout.owned,

@@ -22,6 +22,8 @@ class CpuReports : public Reports {
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
 
  private:
+  void find_loads() override { items_.find_loads(); }
+
   CpuItems& items_;
   std::vector<OutputField> fields_;
   ParticleOutput output_;  // of start_output

@@ -42,6 +42,24 @@ struct TracedParticle {
 // All functions but output() and traced() are collective (see Backend).
 class Reports {
  public:
+  // While one is there, all reports are of one instant, for which contacts with bodies are found once:
+  // nothing moves, and no list is built. One within another is of the same instant.
+  class Instant {
+   public:
+    explicit Instant(Reports& of) : of_(of) { ++of_.instants_; }
+    ~Instant() {
+      if (--of_.instants_ == 0) of_.loads_found_ = false;
+    }
+    Instant(const Instant&) = delete;
+    Instant& operator=(const Instant&) = delete;
+
+   private:
+    Reports& of_;
+  };
+
+  Reports() = default;
+  Reports(const Reports&) = delete;
+  Reports& operator=(const Reports&) = delete;
   virtual ~Reports() = default;
 
   // verlet_step: 0 for HHT, else the substep whose energy shift belongs to the state [s]. Complete on rank 0.
@@ -56,6 +74,20 @@ class Reports {
   // on rank 0.
   virtual std::vector<ContactSum> body_contacts() = 0;
   virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
+
+ protected:
+  // Before contacts with bodies are read.
+  void need_loads() {
+    if (!loads_found_) find_loads();
+    loads_found_ = instants_ > 0;
+  }
+
+ private:
+  // Contacts with bodies, where all are now.
+  virtual void find_loads() = 0;
+
+  int instants_ = 0;
+  bool loads_found_ = false;  // in the instant that is there
 };
 
 }  // namespace scree

@@ -59,6 +59,7 @@ class Simulation {
     ranks_.on_root([&] { folder_.clear(); });
     recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
     if (options.restart.empty()) {
+      const Reports::Instant now(backend_->reports());
       recorder_->history(state_, 0);
       recorder_->snapshot(state_);
       ranks_.on_root([&] { recorder_->flush_history(); });

@@ -127,8 +127,11 @@ void StepLoop::output(Real h) {
   const bool history = clock_.take_history(), snapshot = clock_.take_snapshot(),
              checkpoint = clock_.take_checkpoint();
   state_.clock = clock_.state();
-  if (history) parts_.records.history(state_, h);
-  if (snapshot) parts_.records.snapshot(state_);
+  {
+    const Reports::Instant now(parts_.backend.reports());
+    if (history) parts_.records.history(state_, h);
+    if (snapshot) parts_.records.snapshot(state_);
+  }
   if (checkpoint) write_checkpoint();
   progress_(state_, h);
   bool stale = !implicit_ && parts_.seconds() - good_age_ > good_cost_ / kGoodStateShare;

@@ -1,0 +1,100 @@
+// Reports of one instant look at the contacts with bodies once, and say what they say one by one.
+#include <numeric>
+
+#include "random_box.hpp"
+#include "support/catch.hpp"
+
+namespace scree {
+namespace {
+
+// Counts its looks.
+class CountedReports : public Reports {
+ public:
+  ParticleLedger ledger(Real) override {
+    need_loads();
+    return {};
+  }
+  void start_output() override { need_loads(); }
+  ParticleOutput output() override { return {}; }
+  ShapePack pack_shapes() override {
+    need_loads();
+    return {};
+  }
+  std::vector<TracedParticle> traced(std::span<const GlobalId>) override { return {}; }
+  std::vector<ContactSum> body_contacts() override { return {}; }
+  std::vector<ContactSum> wall_contacts(std::span<const int>) override { return {}; }
+
+  int looks = 0;
+
+ private:
+  void find_loads() override { ++looks; }
+};
+
+struct Told {
+  ParticleLedger ledger;
+  ShapePack shapes;
+  std::vector<ContactSum> contacts;  // on bodies, then on walls
+};
+
+Told tell(Reports& reports, const std::vector<int>& walls) {
+  Told told{reports.ledger(0), reports.pack_shapes(), reports.body_contacts()};
+  for (const ContactSum& wall : reports.wall_contacts(walls)) told.contacts.push_back(wall);
+  return told;
+}
+
+void check_same(const Told& a, const Told& b) {
+  CHECK((a.ledger.contact_elastic == b.ledger.contact_elastic && a.ledger.contacts == b.ledger.contacts));
+  CHECK((a.shapes.force == b.shapes.force && a.shapes.contacts == b.shapes.contacts));
+  REQUIRE(a.contacts.size() == b.contacts.size());
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    CHECK((a.contacts[k].force == b.contacts[k].force && a.contacts[k].torque == b.contacts[k].torque));
+    CHECK(a.contacts[k].contacts == b.contacts[k].contacts);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("reports look at the contacts with bodies once per instant, without one each time") {
+  CountedReports reports;
+  reports.ledger(0), reports.pack_shapes();
+  CHECK(reports.looks == 2);
+  {
+    const Reports::Instant now(reports);
+    reports.ledger(0), reports.start_output();
+    {
+      const Reports::Instant same(reports);
+      reports.pack_shapes();
+    }
+    reports.pack_shapes();
+    CHECK(reports.looks == 3);
+  }
+  reports.ledger(0), reports.ledger(0);
+  CHECK(reports.looks == 5);
+  const Reports::Instant later(reports);
+  reports.ledger(0);
+  CHECK(reports.looks == 6);
+}
+
+TEST_CASE("reports of one instant say what they say one by one, also after steps") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    LoadedBox box(random_box(c, 120, 17), 0.2);
+    std::vector<int> walls(box.model.walls.size());
+    std::iota(walls.begin(), walls.end(), 0);
+    Reports& reports = box.backend->reports();
+    std::vector<Real> elastic;
+    for (int k = 0; k < 3; ++k) {
+      Told one_by_one = tell(reports, walls), together;
+      {
+        const Reports::Instant now(reports);
+        together = tell(reports, walls);
+      }
+      check_same(one_by_one, together);
+      elastic.push_back(together.ledger.contact_elastic);
+      hht_step(*box.backend, box.motion, 2e-4);
+    }
+    CHECK((elastic[0] != elastic[1] && elastic[1] != elastic[2]));
+  }
+}
+
+}  // namespace scree
