@@ -1,6 +1,7 @@
 // How contacts move and what they remember turns: symmetry, lengths, rigid turns, momentum.
 #include "physics/contact_motion.hpp"
 
+#include "physics/orientation.hpp"
 #include "random_contact.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -9,6 +10,12 @@
 namespace scree {
 
 namespace {
+
+// Of a body that turns evenly for this long.
+Quaternion turned_in(Vec3 omega, Real time) {
+  const Real half = norm(omega) * time / 2, s = std::sin(half) / norm(omega);
+  return {std::cos(half), s * omega.x, s * omega.y, s * omega.z};
+}
 
 constexpr Real kRoundOff = 64 * kUlp;
 constexpr int kCases = 1000;
@@ -107,6 +114,30 @@ TEST_CASE("a pair that turns as one body takes its spring with it, to second ord
     CHECK(fine < 1e-3);
     CHECK((coarse / fine > 3.7 && coarse / fine < 4.3));
   }
+}
+
+TEST_CASE("a sphere that turns with the face it lies on keeps its spring, and does not slip") {
+  const Vec3 omega{0.4, -1.1, 0.7};
+  const Real radius = 0.02;
+  const auto error_after = [&](int steps) {
+    const Real h = 1.0 / steps;
+    Vec3 n{0, 0, 1}, spring{0.3, 0.5, 0}, slip{};
+    const Quaternion whole = turned_in(omega, 1), part = turned_in(omega, h);
+    for (int k = 0; k < steps; ++k) {
+      const Vec3 next = turned(part, n), middle = Real(0.5) * (n + next);
+      // The centre's velocity over that of the face's point under it.
+      const Vec3 travel = h * cross(omega, radius * middle);
+      const ContactGeometry geometry{0, radius, next, 1};
+      const ContactMotion c = face_motion(geometry, n, travel, {omega, radius, 1}, {omega}, h);
+      spring = turned_across(c, spring), slip += c.slip;
+      n = next;
+    }
+    CHECK(norm(slip) <= 10 * kUlp);
+    return norm(spring - turned(whole, {0.3, 0.5, 0}));
+  };
+  const Real coarse = error_after(50), fine = error_after(100);
+  CHECK(fine < 1e-4);
+  CHECK(near(coarse / fine, 4, {.absolute = 0.1}));
 }
 
 }  // namespace scree
