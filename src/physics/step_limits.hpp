@@ -38,6 +38,18 @@ SCREE_HD Real dense_frequency(Real stiffness, Real mass, int dimension) {
   return std::sqrt((dimension == 2 ? 6 : 8) * stiffness / mass);
 }
 
+// The same where they rub: slip_stiffness k_t [N/m], inertia_share I / (m R^2). The higher of two modes,
+// which do not mix. In one every second layer moves across itself against its neighbours, to which two of
+// three contacts lead; in the other all spin alike, so that every contact slips by both spins. Their squares
+// are 8 (K + k_t)/m and 16 k_t/(m share) for spheres, (6 K + 2 k_t)/m and 12 k_t/(m share) for discs.
+SCREE_HD Real dense_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share,
+                                      int dimension) {
+  const bool discs = dimension == 2;
+  const Real moving = discs ? 6 * stiffness + 2 * slip_stiffness : 8 * (stiffness + slip_stiffness);
+  const Real spinning = (discs ? 12 : 16) * slip_stiffness / inertia_share;
+  return std::sqrt((moving > spinning ? moving : spinning) / mass);
+}
+
 // Stability limit [s] of velocity Verlet, whose damping acts on the predicted velocity v + h a, for one mode
 // of circular frequency w [1/s]: h^2 w^2 / 4 + 2 z h w = 1, where the mode's amplification is -1. stiffness
 // [N/m] and damping [N s/m] of the mode's contacts give its damping ratio z = C w / (2 K).

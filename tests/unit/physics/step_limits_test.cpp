@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <numbers>
+#include <vector>
 
+#include "physics/contact_law.hpp"
 #include "physics/time_stepping.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -42,6 +44,70 @@ TEST_CASE("velocity Verlet is stable below its limit and not above") {
     CHECK(largest_swing(stiffness, damping, mass, 1.01 * limit) > 1e6);
   }
   CHECK(near(verlet_step_limit(frequency, stiffness, 0), 2 / frequency, {.relative = kRoundOff}));
+}
+
+namespace {
+
+// Directions to the neighbours of a disc in the triangular lattice or a sphere in the face-centred cubic one,
+// and whether the neighbour is of the next layer.
+struct Neighbor {
+  Vec3 direction;
+  bool next_layer;
+};
+
+std::vector<Neighbor> densest_lattice(int dimension) {
+  const Real a = std::sqrt(0.5), b = std::sqrt(0.75);
+  std::vector<Neighbor> out;
+  for (const Real s : {-1.0, 1.0}) {
+    if (dimension == 2) out.push_back({{s, 0, 0}, false});
+    for (const Real t : {-1.0, 1.0}) {
+      if (dimension == 2) {
+        out.push_back({{s / 2, t * b, 0}, true});
+        continue;
+      }
+      out.push_back({{s * a, t * a, 0}, false});
+      out.push_back({{s * a, 0, t * a}, true});
+      out.push_back({{0, s * a, t * a}, true});
+    }
+  }
+  return out;
+}
+
+// Force and torque on a particle of radius and mass 1 whose contacts, with hardly any overlap, are opened by
+// a small motion of it and of its neighbours.
+ContactLoadOf<Real, Vec3> lattice_load(int dimension, Real slip_stiffness, Vec3 way, Vec3 turn) {
+  ContactLoadOf<Real, Vec3> sum{};
+  constexpr Real kOverlap = 1e-3;
+  const ContactLaw<LinearLaw, LinearSlider> law{LinearLaw(1, 0, false), {slip_stiffness, 1e9, 0}};
+  for (const Neighbor& neighbor : densest_lattice(dimension)) {
+    const Vec3 other = neighbor.next_layer ? -way : way;
+    const ContactGeometry geometry =
+        sphere_pair(-(2 - kOverlap) * neighbor.direction + (way - other), Real(2));
+    const MovingPair pair{{geometry, {}, {1, 1, 1, 1}},
+                          sphere_motion(geometry, way - other, {turn, 1, 1}, {turn, 1, 1}, 1)};
+    const ContactOutcome out = law.load(pair, {});
+    sum.force += out.load.force, sum.torque_i += out.load.torque_i;
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("the highest modes of the densest lattices of particles that rub") {
+  constexpr Real kSmall = 1e-6, kNearly = 5e-3;  // the overlap's share, and the way's
+  for (const int dimension : {2, 3})
+    for (const Real slip : {0.0, 0.2, 0.8}) {
+      CAPTURE(dimension, slip);
+      const Vec3 across = dimension == 2 ? Vec3{0, kSmall, 0} : Vec3{0, 0, kSmall}, about{0, 0, kSmall};
+      const Real moving = norm(lattice_load(dimension, slip, across, {}).force) / kSmall;
+      const Real spinning = norm(lattice_load(dimension, slip, {}, about).torque_i) / kSmall;
+      for (const Real share : {0.4, 0.5, 1.0}) {
+        const Real frequency = dense_rubbing_frequency(1, slip, 1, share, dimension);
+        CHECK(near(frequency * frequency, std::max(moving, spinning / share), {.relative = kNearly}));
+      }
+    }
+  CHECK(dense_rubbing_frequency(2, 0, 1, 0.4, 3) == dense_frequency(2, 1, 3));
+  CHECK(dense_rubbing_frequency(6, 0, 1, 0.5, 2) == dense_frequency(6, 1, 2));
 }
 
 TEST_CASE("contact time and typical stiffness") {
