@@ -102,48 +102,57 @@ struct JkrLaw {
 
 // Another law with a pull on top, for pairs of its partners: the pull acts where the overlap is above 0, and
 // falls evenly to zero over `range` beyond touch. Contacts without range end where they began: without
-// damping they rebound as without the pull.
-template <class Pair>
+// damping they rebound as without the pull, and implicit steps take them like other laws with tension.
+template <class Pair, class T>
 struct AttractedPair {
   Pair repulsion;
-  Real attraction;  // [N]
-  Real range;       // [m]
+  T attraction;  // [N]
+  T range;       // [m]
 
   static constexpr bool tension = true;
 
-  SCREE_HD Real reach() const { return range; }
-  SCREE_HD Real pull(Real d) const {
+  SCREE_HD T reach() const { return range; }
+  SCREE_HD T pull(T d) const {
     if (d > 0) return attraction;
     return d > -range ? attraction * (1 + d / range) : 0;
   }
-  SCREE_HD Real elastic(Real d) const { return (d > 0 ? repulsion.elastic(d) : 0) - pull(d); }
-  SCREE_HD Real slope(Real d) const {
+  SCREE_HD T elastic(T d) const { return (d > 0 ? repulsion.elastic(d) : 0) - pull(d); }
+  SCREE_HD T slope(T d) const {
     if (d > 0) return repulsion.slope(d);
     return d > -range ? -attraction / range : 0;
   }
   // Relative to partners out of reach [J].
-  SCREE_HD Real energy(Real d) const {
+  SCREE_HD T energy(T d) const {
     if (d > 0) return repulsion.energy(d) - attraction * (range / 2 + d);
     return d > -range ? -pull(d) * (range + d) / 2 : 0;
   }
-  SCREE_HD Real damping(Real d) const { return d > 0 ? repulsion.damping(d) : 0; }
-  SCREE_HD Real contact_stiffness(Real d) const { return d > 0 ? repulsion.slope(d) : 0; }
-  SCREE_HD Real adhesion(Real d) const { return pull(d); }
+  SCREE_HD T damping(T d) const { return d > 0 ? repulsion.damping(d) : 0; }
+  SCREE_HD T mean_damping(T d0, T d1) const { return repulsion.mean_damping(d0, d1); }
+  SCREE_HD T cut(T d0, T pull) const { return repulsion.cut(d0, pull); }
+  SCREE_HD T contact_stiffness(T d) const { return d > 0 ? repulsion.slope(d) : 0; }
+  SCREE_HD T adhesion(T d) const { return pull(d); }
 };
 
 // attraction + adhesion_per_radius x R*. Derjaguin, Muller, Toporov, J. Colloid Interface Sci. 53 (1975):
 // Hertz's law with adhesion_per_radius = 2 pi w.
 template <class NormalLaw>
 struct AttractedLaw {
+  using Scalar = typename NormalLaw::Scalar;
   NormalLaw repulsion{};
-  Real attraction = 0;           // [N]
-  Real adhesion_per_radius = 0;  // [N/m]
-  Real range = 0;                // [m]
+  Scalar attraction = 0;           // [N]
+  Scalar adhesion_per_radius = 0;  // [N/m]
+  Scalar range = 0;                // [m]
 
-  SCREE_HD auto of_pair(const PairSize& size) const {
+  SCREE_HD auto of_pair(const PairSizeOf<Scalar>& size) const {
     const auto pair = repulsion.of_pair(size);
-    return AttractedPair<std::remove_const_t<decltype(pair)>>{
+    return AttractedPair<std::remove_const_t<decltype(pair)>, Scalar>{
         pair, attraction + adhesion_per_radius * size.effective_radius(), range};
+  }
+  template <class S>
+  SCREE_HD auto as() const {
+    const auto other = repulsion.template as<S>();
+    return AttractedLaw<std::remove_const_t<decltype(other)>>{
+        other, static_cast<S>(attraction), static_cast<S>(adhesion_per_radius), static_cast<S>(range)};
   }
 };
 

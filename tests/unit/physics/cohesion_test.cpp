@@ -2,6 +2,7 @@
 #include "physics/cohesion.hpp"
 
 #include "physics/contact_law.hpp"
+#include "physics/step_contact.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "support/reference_table.hpp"
@@ -106,6 +107,24 @@ TEST_CASE("a pull on top of another law, with and without range") {
   const ContactGeometry apart = sphere_pair(Vec3{0, 0, 4.1}, Real(4));
   const ContactMotion rest = sphere_motion(apart, {}, {{}, 2, 1}, {{}, 2, 1}, 1);
   CHECK(near(law.load({{apart, {}, size}, rest}, {}).load.force.z, -1.5, {.relative = 1e-13}));
+}
+
+TEST_CASE("a pull without memory is a law of the instant, in double and single, and of implicit steps") {
+  const ContactLaw<AttractedLaw<HertzLaw>> law{{HertzLaw(100, 0.1, true), 0.5, 2, 0}};
+  static_assert(!decltype(law)::kMoves);
+  const PairSize size{2, 2, 1, 1};
+  const PairState pair{sphere_pair(Vec3{0, 3.9, 0}, Real(4)), {0.1, -0.3, 0}, size};
+  const auto load = law.load(pair);
+  const ContactMotion rest = sphere_motion(pair.geometry, {}, {{}, 2, 1}, {{}, 2, 1}, 1);
+  CHECK(load.force == law.load({pair, rest}, {}).load.force);
+  CHECK(load.loss == law.load({pair, rest}, {}).load.loss);
+  const PairStateOf<float, Vec3f> single{
+      {0.1f, 3.9f, {0, 3.9f, 0}, 1 / 3.9f}, {0.1f, -0.3f, 0}, {2, 2, 1, 1}};
+  CHECK(near(in_double(law.load(single).force), load.force, {.relative = 1e-5}));
+  // Undamped, touching on a straight way: the impulse's work is the energy.
+  const auto undamped = AttractedLaw<HertzLaw>{HertzLaw(100, 0, true), 0.5, 2, 0}.of_pair(size);
+  const Real touching = step_contact_force(undamped, {-0.01, 1, 0.02, 1, 0.03}).force;
+  CHECK(near(touching / 2 * 0.03, undamped.energy(0.02), {.relative = kRoundOff}));
 }
 
 }  // namespace scree
