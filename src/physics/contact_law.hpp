@@ -149,12 +149,12 @@ struct ContactLaw {
     out.load.force -= motion.leverage * step.acting;
     const Vec3 moment = cross(motion.normal1, step.acting);
     out.load.torque_i = motion.arm_i * moment, out.load.torque_j = motion.arm_j * moment;
-    out.load.loss += step.losses.sum() / motion.h;
+    out.load.loss += step.losses.sum() * reciprocal(motion.h);
     out.history.spring = step.spring, out.friction = step.losses;
   }
   SCREE_HD static void roll(const SpringStep& step, Real h, ContactOutcome& out) {
     out.load.torque_i -= step.acting, out.load.torque_j += step.acting;
-    out.load.loss += step.losses.sum() / h;
+    out.load.loss += step.losses.sum() * reciprocal(h);
     out.history.moment = step.spring, out.rolling = step.losses;
   }
 };

@@ -57,12 +57,14 @@ SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 slide, co
   ContactMotion out{};
   out.normal0 = normal0, out.normal1 = normal1, out.h = h, out.leverage = 1;
   out.arm_i = i.arm, out.arm_j = j.arm, out.inertia_i = i.inertia, out.inertia_j = j.inertia;
-  const Vec3 middle = Real(0.5) * (normal0 + normal1), relative = h * (i.spin - j.spin);
-  out.turn = h / 2 * dot(i.spin + j.spin, middle);
-  const auto to_end = [&](Vec3 a) { return across(a + (out.turn / 2) * cross(middle, a), normal1); };
-  out.slip = to_end(slide - h * cross(i.arm * i.spin + j.arm * j.spin, middle));
-  out.twisting = dot(relative, middle);
-  out.rolling = to_end(relative - (out.twisting * reciprocal(dot(middle, middle))) * middle);
+  const Vec3 twice_middle = normal0 + normal1, relative = h * (i.spin - j.spin);
+  out.turn = h / 4 * dot(i.spin + j.spin, twice_middle);
+  const auto to_end = [&](Vec3 a) { return across(a + (out.turn / 4) * cross(twice_middle, a), normal1); };
+  out.slip = to_end(slide - (h / 2) * cross(i.arm * i.spin + j.arm * j.spin, twice_middle));
+  const Real twice_twisting = dot(relative, twice_middle);
+  out.twisting = twice_twisting / 2;
+  out.rolling =
+      to_end(relative - (twice_twisting * reciprocal(dot(twice_middle, twice_middle))) * twice_middle);
   return out;
 }
 
@@ -76,11 +78,10 @@ SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 trave
   const Vec3 r = geometry.direction, r0 = r - travel;
   const RootAndInverse<Real> distance0 = root_and_inverse(dot(r0, r0));
   const Vec3 normal0 = distance0.inverse * r0, normal1 = geometry.normal();
-  // normal1 - normal0 without the cancellation of that difference.
-  const Real grown = dot(travel, r0 + r) * reciprocal(distance0.root + geometry.distance);
-  const Vec3 turned = geometry.scale * (travel - grown * normal0);
   const Real reach = i.arm + j.arm;
-  ContactMotion out = contact_motion(normal0, normal1, reach * turned, i, j, h);
+  // The round-off of the difference of normals, some 1e-16 of the reach, does not add up: the next step's
+  // begins where this one's ends.
+  ContactMotion out = contact_motion(normal0, normal1, reach * (normal1 - normal0), i, j, h);
   out.overlap0 = reach - distance0.root;
   out.leverage = reach * geometry.scale;
   return out;
@@ -105,9 +106,10 @@ SCREE_HD Vec3 turned_about(Vec3 a, Vec3 normal, Real turn) {
   return a + reciprocal(1 + turn * turn / 4) * (turn * b + (turn * turn / 2) * cross(normal, b));
 }
 
-// A vector across the normal; what round-off has left along it goes.
+// A vector across the normal, for which normal x (normal x a) = -a; what round-off has left along it goes.
 SCREE_HD Vec3 turned_across(const ContactMotion& c, Vec3 a) {
-  const Vec3 u = turned_about(a, c.normal0, c.turn);
+  const Real share = reciprocal(1 + c.turn * c.turn / 4);
+  const Vec3 u = (1 - c.turn * c.turn / 2 * share) * a + (c.turn * share) * cross(c.normal0, a);
   return u - (dot(u, c.normal1) * reciprocal(1 + dot(c.normal0, c.normal1))) * (c.normal0 + c.normal1);
 }
 

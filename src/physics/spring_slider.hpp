@@ -8,12 +8,13 @@
 
 namespace scree {
 
+inline constexpr Real kNoSquare = 1e-290;  // squares below it have no exact root on a GPU
+
 // a, no longer than limit.
 SCREE_HD Vec3 shortened(Vec3 a, Real limit) {
-  constexpr Real kNothing = 1e-290;  // squares below it have no exact root on a GPU
   const Real square = dot(a, a);
   if (square <= limit * limit) return a;
-  if (square < kNothing) return {};
+  if (square < kNoSquare) return {};
   return (limit * root_and_inverse(square).inverse) * a;
 }
 
@@ -21,7 +22,7 @@ SCREE_HD Vec3 shortened(Vec3 a, Real limit) {
 struct SpringLosses {
   Real sliding = 0;    // over the limit
   Real dashpot = 0;    // never negative
-  Real unloading = 0;  // by a spring that weakens or stiffens under its force; not negative but for round-off
+  Real unloading = 0;  // by a spring that weakens or stiffens under its force; never negative
 
   SCREE_HD Real sum() const { return sliding + dashpot + unloading; }
   SCREE_HD SpringLosses& operator+=(const SpringLosses& part) {
@@ -55,6 +56,26 @@ SCREE_HD Real mean_stiffness(Real k0, Real k1) {
   return Real(2) / 3 * (k1 * k1 + k1 * k0 + k0 * k0) * reciprocal(k1 + k0);
 }
 
+// What a change of the stiffness does to a spring over a step.
+struct StiffnessStep {
+  Real of_way;  // force per way [N/m]
+  Real kept;    // of the old force [-]
+};
+SCREE_HD StiffnessStep stiffness_step(const SpringSlider& p) {
+  if (p.stiffness > p.stiffness0) return {mean_stiffness(p.stiffness0, p.stiffness), 1};
+  if (p.stiffness < p.stiffness0) return {p.stiffness, p.stiffness * reciprocal(p.stiffness0)};
+  return {p.stiffness, 1};
+}
+
+// spring_energy() of the force before and after the step, less what the way does at the stiffness in between.
+SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3 old, Vec3 spring) {
+  if (p.stiffness < p.stiffness0) return dot(old, old) / 2 * (1 - k.kept) * reciprocal(p.stiffness0);
+  if (!(p.stiffness > p.stiffness0)) return 0;
+  const Real after = dot(spring, spring) * (p.stiffness - k.of_way) * reciprocal(p.stiffness * k.of_way);
+  if (!(p.stiffness0 > 0)) return after / 2;
+  return (after + dot(old, old) * (k.of_way - p.stiffness0) * reciprocal(p.stiffness0 * k.of_way)) / 2;
+}
+
 // The step of a spring whose force at the start, turned with the contact, was `old`, by `way`, as
 // turned_across() and ContactMotion give them.
 // - A stiffness k that depends on the overlap ("rescale rule": Walton; Thornton, Cummins, Cleary, Powder
@@ -67,19 +88,16 @@ SCREE_HD Real mean_stiffness(Real k0, Real k1) {
 // only where within one step the limit falls below the old force and the way turns back by more than both.
 SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 way, Real h) {
   SpringStep out;
-  const Vec3 start = p.stiffness < p.stiffness0 ? (p.stiffness / p.stiffness0) * old : old;
-  const Real stiffness = p.stiffness > p.stiffness0 ? mean_stiffness(p.stiffness0, p.stiffness) : p.stiffness;
-  const Vec3 trial = start + stiffness * way;
+  const StiffnessStep k = stiffness_step(p);
+  const Vec3 start = k.kept * old, trial = start + k.of_way * way;
   out.spring = shortened(trial, p.limit);
   out.acting = out.spring;
   if (dot(trial, trial) > p.limit * p.limit)
-    out.losses.sliding = dot(start + out.spring, trial - out.spring) / (2 * stiffness);
+    out.losses.sliding = dot(start + out.spring, trial - out.spring) * reciprocal(2 * k.of_way);
   else if (p.dashpot > 0)
-    out.acting = shortened(trial + (p.dashpot / h) * way, p.limit);
+    out.acting = shortened(trial + (p.dashpot * reciprocal(h)) * way, p.limit);
   out.losses.dashpot = dot(out.acting - out.spring, way);
-  if (p.stiffness != p.stiffness0)
-    out.losses.unloading = (spring_energy(out.spring, stiffness) - spring_energy(start, stiffness)) -
-                           (spring_energy(out.spring, p.stiffness) - spring_energy(old, p.stiffness0));
+  out.losses.unloading = unloading_loss(p, k, old, out.spring);
   return out;
 }
 

@@ -26,27 +26,23 @@ struct StepSpring {
 // the dashpot's loss exactly, and the step is of second order.
 SCREE_HD StepSpring step_spring(const SpringSlider& p, Vec3 old, Vec3 way, Real h) {
   StepSpring out{};
-  const Vec3 kept = p.stiffness < p.stiffness0 ? (p.stiffness / p.stiffness0) * old : old;
-  const Real k = p.stiffness > p.stiffness0 ? mean_stiffness(p.stiffness0, p.stiffness) : p.stiffness;
-  const Vec3 start = shortened(kept, p.limit), trial = start + k * way;
-  const Real rate = p.dashpot / h;
+  const StiffnessStep k = stiffness_step(p);
+  const Vec3 kept = k.kept * old, start = shortened(kept, p.limit), trial = start + k.of_way * way;
+  const Real rate = p.dashpot * reciprocal(h);
   const Vec3 pull = Real(0.5) * (start + trial) + rate * way;
   out.spring = shortened(trial, p.limit);
   out.mean = shortened(pull, p.limit);
-  out.stiffness = k / 2 + rate;
+  out.stiffness = k.of_way / 2 + rate;
   const Real square = dot(pull, pull);
-  if (square > p.limit * p.limit) {
+  if (square > p.limit * p.limit && square >= kNoSquare) {
     const Real inverse = root_and_inverse(square).inverse;
     out.direction = inverse * pull, out.grip = 1;
     out.stiffness *= p.limit * inverse;
   }
-  const Real stored = spring_energy(out.spring, k) - spring_energy(start, k);
-  const Real spent = dot(out.mean, way) - stored;
-  out.losses.dashpot = out.grip > 0 || p.dashpot == 0 ? 0 : rate * dot(way, way);
-  out.losses.sliding = spent - out.losses.dashpot + (spring_energy(kept, k) - spring_energy(start, k));
-  if (p.stiffness != p.stiffness0)
-    out.losses.unloading = (spring_energy(out.spring, k) - spring_energy(kept, k)) -
-                           (spring_energy(out.spring, p.stiffness) - spring_energy(old, p.stiffness0));
+  const Real stored = spring_energy(out.spring, k.of_way) - spring_energy(kept, k.of_way);
+  out.losses.dashpot = out.grip > 0 ? 0 : rate * dot(way, way);
+  out.losses.sliding = dot(out.mean, way) - stored - out.losses.dashpot;
+  out.losses.unloading = unloading_loss(p, k, old, out.spring);
   return out;
 }
 
