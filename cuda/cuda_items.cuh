@@ -45,7 +45,7 @@ struct CudaItems {
   void reorder(const Index* order, Index n);
 
   void refresh_ghosts(Device on) {
-    lane.halo.update_motion(on, now.position.data(), now.velocity.data(), owned);
+    lane.halo.update_motion(on, now.position.data(), now.velocity.data(), now.angular_velocity.data(), owned);
   }
   void refresh_ghosts() { refresh_ghosts(device()); }
   // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.

@@ -38,6 +38,12 @@ struct MotionGhostItem {
   }
 };
 
+struct SpinGhostItem {
+  const Ghost* ghosts;
+  GhostField<Vec4> spin;
+  SCREE_HD void operator()(Index entry) const { spin.put(entry, spin.field[ghosts[entry].source]); }
+};
+
 // Looks at some halos of positions and velocities: one of every batch of explicit steps, those of implicit
 // forces. How long each took, and how long the rows that need none left it waited for.
 class HaloClock {
@@ -94,8 +100,8 @@ class DeviceHalo {
   void exchange(Device device, const GhostField<T>&... fields) {
     exchange(device, std::array{fields.message()...});
   }
-  // update_halo of positions and velocities.
-  void update_motion(Device device, Vec4* position, Vec4* velocity, Index first_ghost);
+  // update_halo of positions, velocities, and angular velocities unless that is null.
+  void update_motion(Device device, Vec4* position, Vec4* velocity, Vec4* spin, Index first_ghost);
 
   // Maxima over all ranks of n values >= 0 in device memory, queued. Collective.
   void max(Device device, Real* values, Index n) {
@@ -112,7 +118,7 @@ class DeviceHalo {
   DeviceArray<unsigned long long> counts_;
   // For motion, and for what ghosts get once.
   static constexpr std::size_t kBuffers =
-      std::max(count_arrays<kMotion>(), count_arrays<kNames | kGhostCopies>());
+      std::max(count_arrays<kMotion | kSpins>(), count_arrays<kNames | kGhostCopies>());
   DeviceArray<Vec4> packed_[kBuffers];
 };
 

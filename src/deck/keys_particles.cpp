@@ -70,6 +70,11 @@ const TableKeys& particle_keys() {
        real("thickness", "m").above(0).otherwise("1.0").about("2D: thickness of the discs, for density."),
        text("material").left_out("the only material").about("Material."),
        vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0, added to a file's."),
+       reals("angular_velocity", "rad/s")
+           .otherwise("[]")
+           .about(
+               "Of each particle at t = 0, where particles rotate: a pair of materials has friction. Three "
+               "numbers; in 2D one, about z. Empty: zero."),
        real("random_velocity", "m/s")
            .at_least(0)
            .otherwise("0.0")

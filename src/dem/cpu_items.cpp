@@ -14,7 +14,9 @@ CpuItems::CpuItems(const Model& of, const Ranks& on)
       side(of, subdomain, on),
       kernels(make_contact_kernels(of.contact)),
       surfaces(of, subdomain, side, *kernels),
-      hht(hht_coefficients(of.integrator.hht_alpha)) {}
+      hht(hht_coefficients(of.integrator.hht_alpha)) {
+  store.rotates = of.rotates();
+}
 
 CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const {
   return surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()},

@@ -28,7 +28,9 @@ struct CpuItems {
 
   Views views() const { return views(store.position, store.velocity); }
   Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const;
-  void refresh_ghosts() { halo.update_motion(store.position, store.velocity, layout.owned); }
+  void refresh_ghosts() {
+    halo.update_motion(store.position, store.velocity, store.angular_velocity, layout.owned);
+  }
   // Contacts with surfaces on bodies, where all are now: what forces and reports read next.
   void find_loads() { surfaces.find_loads(store, list.surfaces, store.position, store.velocity); }
   void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }

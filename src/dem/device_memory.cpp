@@ -17,6 +17,8 @@ namespace {
 // Bytes per particle or item, by the array groups of cuda/cuda_*.cuh.
 constexpr double kItemFields = 2 * bytes_in_arrays<kItemArrays>();
 constexpr double kOwnedFields = 2 * bytes_in_arrays<kOwnedArrays>();
+constexpr double kSpinFields = 2 * bytes_in_arrays<kSpins>();  // where particles rotate
+constexpr double kOwnedSpinFields = 2 * bytes_in_arrays<kOwnedSpins>();
 constexpr double kSortArrays =
     4 * sizeof(Index) + 2 * sizeof(Index);        // keys and order twice, the library's buffers
 constexpr double kRowArrays = 4 * sizeof(Index);  // lengths of rows, and three for those of the surfaces
@@ -96,6 +98,7 @@ std::size_t device_memory(const Model& model) {
   const bool periodic = n.ghosts > 0;
   const double spare = periodic ? 1.125 : 1;  // arrays that grow when ghosts are found
   double bytes = n.items * kItemFields * spare + n.particles * kOwnedFields;
+  if (model.rotates()) bytes += n.items * kSpinFields * spare + n.particles * kOwnedSpinFields;
   bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays : 0);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
   bytes +=

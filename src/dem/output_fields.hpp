@@ -180,8 +180,8 @@ void with_contact_output(const OutputRequest& r, const Walk& walk, const Run& ru
 }
 
 // The values of one field, one entry per particle.
-using OutputValues = std::variant<std::vector<Real>, std::vector<Vec3>, std::vector<Tensor>, std::vector<int>,
-                                  std::vector<ImageCount>>;
+using OutputValues = std::variant<std::vector<Real>, std::vector<Vec3>, std::vector<Tensor>,
+                                  std::vector<Quaternion>, std::vector<int>, std::vector<ImageCount>>;
 
 // What a value consists of, one number after the other.
 template <class Value>

@@ -13,6 +13,7 @@
 #include "base/vec3.hpp"
 #include "partition/halo.hpp"
 #include "partition/subdomain.hpp"
+#include "physics/orientation.hpp"
 
 // One line per field, with its FieldParts. A checkpoint has all of them; the hash takes those of the state,
 // in this order.
@@ -20,12 +21,15 @@
 // FIELD(name, type, unit, sentence, parts): an array of its own.
 //
 // PACKED(name, unit, sentence, parts, scalar, unit, sentence, parts): a vector and a scalar in one Vec4, so
-// that a neighbour costs two loads. All items have these, and ghosts get them with each update_halo.
+// that a neighbour costs two loads, three where particles rotate. All items have these, and ghosts get them
+// with each update_halo.
 // clang-format off
 #define SCREE_PARTICLE_FIELDS(FIELD, PACKED)                                                                 \
   PACKED(position, "m", "centre, within the periodic sides unless the particle drifts", kState,              \
          radius, "m", "radius", kConstant | kOutput)                                                         \
   PACKED(velocity, "m/s", "velocity", kState | kOutput, mass, "kg", "mass", kConstant | kOutput)             \
+  PACKED(angular_velocity, "rad/s", "angular velocity", kState | kRotation | kOutput, moment_of_inertia,     \
+         "kg m^2", "moment of inertia about the centre", kConstant | kRotation)                    \
   FIELD(material, int, "1", "place of its material among the deck's", kConstant | kGhost | kOutput)          \
   FIELD(acceleration, Vec3, "m/s^2", "acceleration that the next step starts from", kState | kOutput)        \
   FIELD(force, Vec3, "N", "gravity and contacts", kState)                                                    \
@@ -33,16 +37,21 @@
   FIELD(loss_power, Real, "W", "dissipation in its share of its contacts now", kState | kOutput)             \
   FIELD(integrator_loss, Real, "J", "taken out by HHT since t = 0", kState | kOutput)                        \
   FIELD(image, ImageCount, "1", "periods that were taken off the position", kState | kOutput)                \
-  FIELD(drifting, std::uint8_t, "1", "1 if it has left through an open side", kState)
+  FIELD(drifting, std::uint8_t, "1", "1 if it has left through an open side", kState)                        \
+  FIELD(angular_acceleration, Vec3, "rad/s^2", "angular acceleration that the next step starts from",        \
+        kState | kRotation | kOutput)                                                                        \
+  FIELD(orientation, Quaternion, "1", "turn since t = 0, as a unit quaternion w, x, y, z",                   \
+        kState | kRotation | kOutput)
 // clang-format on
 
 namespace scree {
 
 enum FieldParts : unsigned {
-  kState = 1,     // changes in time
-  kConstant = 2,  // given by the deck: take_constants()
-  kGhost = 4,     // a FIELD that ghosts have, too: copied when a list is built
-  kOutput = 8,    // offered to snapshots (output.fields)
+  kState = 1,      // changes in time
+  kConstant = 2,   // given by the deck: take_constants()
+  kGhost = 4,      // a FIELD that ghosts have, too: copied when a list is built
+  kOutput = 8,     // offered to snapshots (output.fields)
+  kRotation = 16,  // there where particles rotate (Model::rotates), else an empty array and no state
 };
 
 // Orders the entries of a neighbour list's row, by global id and then by image, whatever the local indices
@@ -83,21 +92,48 @@ enum FieldArrayKind : unsigned {
   kMotion = 2,                                    // PACKED
   kGhostCopies = 4,                               // FIELD with kGhost
   kOwnedArrays = 8,                               // other FIELD: owned particles alone
+  kSpins = 16,                                    // PACKED with kRotation
+  kOwnedSpins = 32,                               // FIELD with kRotation: owned particles alone
   kItemArrays = kNames | kMotion | kGhostCopies,  // all items
-  kAllArrays = kItemArrays | kOwnedArrays
+  kAllArrays = kItemArrays | kOwnedArrays,
+  kRotationArrays = kSpins | kOwnedSpins
 };
+
+constexpr unsigned kind_of_field(unsigned parts) {
+  return (parts & kRotation) != 0 ? kOwnedSpins : (parts & kGhost) != 0 ? kGhostCopies : kOwnedArrays;
+}
+constexpr unsigned kind_of_packed(unsigned parts) { return (parts & kRotation) != 0 ? kSpins : kMotion; }
 
 // Calls visit(a.name, b.name, ...) with the arrays of these kinds of each of the sets.
 SCREE_HD_CALLER template <unsigned kinds, class Visit, class... Sets>
 constexpr SCREE_HD void for_each_array(const Visit& visit, Sets&... sets) {
-#define SCREE_FIELD(name, type, unit, sentence, parts) \
-  if constexpr ((kinds & ((parts)&kGhost ? kGhostCopies : kOwnedArrays)) != 0) visit(sets.name...);
-#define SCREE_PACKED(name, ...) \
-  if constexpr ((kinds & kMotion) != 0) visit(sets.name...);
+#define SCREE_FIELD(name, type, unit, sentence, parts)                                                   \
+  static_assert(((parts)&kRotation) == 0 || ((parts)&kGhost) == 0, #name ": not copied to ghosts once"); \
+  if constexpr ((kinds & kind_of_field(parts)) != 0) visit(sets.name...);
+#define SCREE_PACKED(name, unit, sentence, parts, ...) \
+  if constexpr ((kinds & kind_of_packed(parts)) != 0) visit(sets.name...);
   SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
 #undef SCREE_FIELD
 #undef SCREE_PACKED
   if constexpr ((kinds & kNames) != 0) visit(sets.row_key...);
+}
+
+// With those of the same items that are there where particles rotate.
+template <unsigned kinds, class Visit, class... Sets>
+void for_each_array(bool rotates, const Visit& visit, Sets&... sets) {
+  constexpr unsigned kSpinsToo =
+      ((kinds & kMotion) != 0 ? kSpins : 0u) | ((kinds & kOwnedArrays) != 0 ? kOwnedSpins : 0u);
+  rotates ? for_each_array<kinds | kSpinsToo>(visit, sets...) : for_each_array<kinds>(visit, sets...);
+}
+
+// Whether an array has any values.
+template <class T>
+SCREE_HD bool is_there(T* const& array) {
+  return array != nullptr;
+}
+template <class Array>
+bool is_there(const Array& array) {
+  return array.size() > 0;
 }
 
 // Bytes that an item takes in the arrays of these kinds, and how many there are.
@@ -116,15 +152,18 @@ constexpr std::size_t count_arrays() {
   return count;
 }
 
-// What the arrays hold of item i, and its place among them; an owned particle has all.
+// What the arrays hold of item i, and its place among them; an owned particle has all that are there.
 template <class Arrays>
 SCREE_HD Particle particle_at(const Arrays& arrays, Index i) {
   Particle p;
   p.global_id = id_of(arrays.row_key[i]);
-#define SCREE_FIELD(name, ...) p.name = arrays.name[i];
+#define SCREE_FIELD(name, type, unit, sentence, parts) \
+  if (((parts)&kRotation) == 0 || is_there(arrays.name)) p.name = arrays.name[i];
 #define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
-  const Vec4 name = arrays.name[i];                            \
-  p.name = xyz(name), p.scalar = name.w;
+  if (((parts)&kRotation) == 0 || is_there(arrays.name)) {     \
+    const Vec4 name = arrays.name[i];                          \
+    p.name = xyz(name), p.scalar = name.w;                     \
+  }
   SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
 #undef SCREE_FIELD
 #undef SCREE_PACKED
@@ -134,8 +173,10 @@ SCREE_HD Particle particle_at(const Arrays& arrays, Index i) {
 template <class Arrays>
 SCREE_HD void put_particle(Arrays& arrays, Index i, const Particle& p) {
   arrays.row_key[i] = row_key(p.global_id);
-#define SCREE_FIELD(name, ...) arrays.name[i] = p.name;
-#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) arrays.name[i] = vec4(p.name, p.scalar);
+#define SCREE_FIELD(name, type, unit, sentence, parts) \
+  if (((parts)&kRotation) == 0 || is_there(arrays.name)) arrays.name[i] = p.name;
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
+  if (((parts)&kRotation) == 0 || is_there(arrays.name)) arrays.name[i] = vec4(p.name, p.scalar);
   SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
 #undef SCREE_FIELD
 #undef SCREE_PACKED
@@ -145,7 +186,8 @@ SCREE_HD void put_particle(Arrays& arrays, Index i, const Particle& p) {
 template <class Arrays>
 ParticleViews views_of(Arrays& arrays) {
   ParticleViews views;
-  for_each_array<kAllArrays>([](auto*& view, auto& array) { view = array.data(); }, views, arrays);
+  for_each_array<kAllArrays | kRotationArrays>([](auto*& view, auto& array) { view = array.data(); }, views,
+                                               arrays);
   return views;
 }
 
@@ -172,12 +214,14 @@ void for_each_field(const Visit& visit) {
 // The numbers that a value is made of: what checkpoints hold and hashes are taken of. Reals, or integers.
 inline std::array<Real, 1> numbers_of(Real value) { return {value}; }
 inline std::array<Real, 3> numbers_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+inline std::array<Real, 4> numbers_of(const Quaternion& q) { return {q.w, q.x, q.y, q.z}; }
 inline std::array<std::int64_t, 1> numbers_of(std::integral auto value) { return {value}; }
 inline std::array<std::int64_t, 3> numbers_of(const ImageCount& n) { return {n.x, n.y, n.z}; }
 
 // The value back; integers that it cannot hold come out as others.
 inline void set_value(Real& value, const Real* from) { value = *from; }
 inline void set_value(Vec3& v, const Real* from) { v = {from[0], from[1], from[2]}; }
+inline void set_value(Quaternion& q, const Real* from) { q = {from[0], from[1], from[2], from[3]}; }
 template <std::integral T>
 void set_value(T& value, const std::int64_t* from) {
   value = static_cast<T>(*from);

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "physics/particle_mass.hpp"
 
 namespace scree {
 
@@ -22,13 +23,15 @@ Index count_on_rank(std::size_t particles, const ParticleTotals& of_all) {
 
 void ParticleStore::load(std::span<const Particle> records) {
   owned = active = static_cast<Index>(records.size());
-  for_each_array<kAllArrays>([&](auto& array) { array.resize(records.size()); }, *this);
+  for_each_array<kAllArrays>(
+      rotates, [&](auto& array) { array.resize(records.size()); }, *this);
   for (Index i = 0; i < owned; ++i) put_particle(*this, i, records[static_cast<std::size_t>(i)]);
 }
 
 void ParticleStore::add(const Particle& particle) {
   const auto n = static_cast<std::size_t>(owned) + 1;
-  for_each_array<kAllArrays>([&](auto& array) { array.resize(n); }, *this);
+  for_each_array<kAllArrays>(
+      rotates, [&](auto& array) { array.resize(n); }, *this);
   put_particle(*this, owned++, particle);
 }
 
@@ -46,13 +49,14 @@ void ParticleStore::reorder(const std::vector<Index>& from) {
     for (std::size_t i = 0; i < from.size(); ++i) sorted[i] = values[static_cast<std::size_t>(from[i])];
     values.swap(sorted);
   };
-  for_each_array<kAllArrays>(permute, *this);
+  for_each_array<kAllArrays>(rotates, permute, *this);
   owned = static_cast<Index>(from.size());
 }
 
 void ParticleStore::resize_items(Index items) {
   const auto n = static_cast<std::size_t>(items);
-  for_each_array<kItemArrays>([&](auto& array) { array.resize(n); }, *this);
+  for_each_array<kItemArrays>(
+      rotates, [&](auto& array) { array.resize(n); }, *this);
 }
 
 std::vector<Particle> initial_records(const ParticleSet& set, const Subdomain& subdomain) {
@@ -63,6 +67,7 @@ std::vector<Particle> initial_records(const ParticleSet& set, const Subdomain& s
     p.position = subdomain.wrap(snap(set.position[i], subdomain.snap_constant()), p.image);
     p.image = {};
     p.velocity = set.velocity[i];
+    if (!set.angular_velocity.empty()) p.angular_velocity = set.angular_velocity[i];
   }
   take_constants(set, records);
   return records;
@@ -72,6 +77,8 @@ void take_constants(const ParticleSet& set, std::span<Particle> records) {
   for (Particle& p : records) {
     const auto at = static_cast<std::size_t>(p.global_id - set.first_id);
     p.radius = set.radius[at], p.mass = set.mass[at], p.material = set.material[at];
+    p.moment_of_inertia =
+        set.dimension == 2 ? disc_inertia(p.mass, p.radius) : sphere_inertia(p.mass, p.radius);
   }
 }
 

@@ -18,6 +18,7 @@ using HostArray = std::vector<T>;
 // particles in the pair search come first; those that drift outside stand at the end of the owned. Which
 // arrays hold all items and which the owned particles, their kinds say.
 struct ParticleStore : FieldArrays<HostArray> {
+  bool rotates = false;  // Model::rotates: whether there are arrays of rotation
   Index owned = 0;
   Index active = 0;  // owned particles in the pair search
 

@@ -50,6 +50,7 @@ class Group {
   std::vector<Real> masses(const std::vector<Real>& radius);
   std::vector<Real> masses_from_density(const std::vector<Real>& radius);
   std::vector<Vec3> velocities();
+  Vec3 angular_velocity() const;
   std::array<std::int64_t, 3> lattice_size() const;
   Vec3 lattice_origin() const;
   std::vector<Vec3> vectors_of(const std::string& prefix) const;
@@ -122,8 +123,13 @@ void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<St
   for (const Real m : mass) check_normal(table_, mass_key(), m);
   if (is_random()) place_random(placed, before_radii);
   const std::vector<Vec3> velocity = velocities();
+  const std::size_t before = particles.position.size();
   particles.position.insert(particles.position.end(), position_.begin(), position_.end());
   particles.velocity.insert(particles.velocity.end(), velocity.begin(), velocity.end());
+  const Vec3 spin = angular_velocity();
+  if (spin != Vec3{}) particles.angular_velocity.resize(before);
+  if (spin != Vec3{} || !particles.angular_velocity.empty())
+    particles.angular_velocity.resize(particles.position.size(), spin);
   particles.radius.insert(particles.radius.end(), radius.begin(), radius.end());
   particles.mass.insert(particles.mass.end(), mass.begin(), mass.end());
   particles.material.insert(particles.material.end(), radius.size(), material_);
@@ -261,6 +267,17 @@ std::vector<Vec3> Group::velocities() {
     if (i >= part_.first && i < part_.last) velocity[static_cast<std::size_t>(i - part_.first)] += v;
   }
   return velocity;
+}
+
+// [rad/s], of all particles of the group.
+Vec3 Group::angular_velocity() const {
+  const std::vector<Real>& given = table_.reals("angular_velocity");
+  if (given.empty()) return {};
+  const std::size_t axes = model_.space.dimension == 2 ? 1 : 3;
+  if (given.size() != axes)
+    table_.fail("angular_velocity",
+                fmt::format("must have {} {}", axes, axes == 1 ? "entry, about z" : "entries"));
+  return axes == 1 ? Vec3{0, 0, given[0]} : Vec3{given[0], given[1], given[2]};
 }
 
 // What stands already where a random group is placed: all ranks' particles and the bodies' shapes.

@@ -12,6 +12,7 @@
 #include "model/bodies.hpp"
 #include "model/particles.hpp"
 #include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 
@@ -36,8 +37,9 @@ struct Wall {
 // One law per unordered pair of materials.
 struct Contact {
   std::vector<std::string> material_names;
-  std::vector<KelvinVoigt> laws;  // [i * materials + j], symmetric
-  Real skin = 0;                  // neighbour list reaches this far past touching [m]
+  std::vector<KelvinVoigt> laws;       // [i * materials + j], symmetric
+  std::vector<LinearSlider> friction;  // likewise; empty: no contact rubs
+  Real skin = 0;                       // neighbour list reaches this far past touching [m]
   bool connected_bodies_touch = false;
 
   int materials() const { return static_cast<int>(material_names.size()); }
@@ -118,6 +120,9 @@ struct Model {
   Output output;
   Parallel parallel;
   bool consistent_velocities = false;  // the bodies' at t = 0 are changed to agree with joints and drivers
+
+  // Whether particles rotate: only contacts that rub turn them.
+  bool rotates() const { return !contact.friction.empty(); }
 };
 
 }  // namespace scree

@@ -26,11 +26,13 @@ struct ParticleTotals {
 // Structure of arrays, one entry per particle of this rank. The global id is the deck's order, counted from
 // 0; these are the particles from first_id on.
 struct ParticleSet {
-  std::vector<Vec3> position;  // [m]
-  std::vector<Vec3> velocity;  // [m/s]
-  std::vector<Real> radius;    // [m]
-  std::vector<Real> mass;      // [kg]
-  std::vector<int> material;   // index into Contact::material_names
+  std::vector<Vec3> position;          // [m]
+  std::vector<Vec3> velocity;          // [m/s]
+  std::vector<Vec3> angular_velocity;  // [rad/s]; empty: zero
+  std::vector<Real> radius;            // [m]
+  std::vector<Real> mass;              // [kg]
+  std::vector<int> material;           // index into Contact::material_names
+  int dimension = 3;                   // 2: discs
   GlobalId first_id = 0;
   ParticleTotals totals;
 

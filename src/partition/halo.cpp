@@ -46,17 +46,21 @@ void Halo::find_ghosts(std::span<const Vec4> position) {
   plan_.set_counts(own_.size(), counts);
 }
 
-void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity, Index first_ghost) const {
+void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity, std::span<Vec4> spin,
+                         Index first_ghost) const {
   const auto n = static_cast<Index>(own_.size());
   for_each(Serial{}, n, HaloPositionItem{own_.data(), position.data(), first_ghost});
   for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), velocity.data(), first_ghost});
+  if (!spin.empty()) for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), spin.data(), first_ghost});
   for (std::size_t k = 0; k < sent_.size(); ++k) {
     const auto source = static_cast<std::size_t>(sent_[k].source);
     buffer_[0][k] = moved(sent_[k], position[source]), buffer_[1][k] = velocity[source];
+    if (!spin.empty()) buffer_[2][k] = spin[source];
   }
-  const HaloMessage messages[2] = {{buffer_[0].data(), position.data() + first_ghost, sizeof(Vec4)},
-                                   {buffer_[1].data(), velocity.data() + first_ghost, sizeof(Vec4)}};
-  plan_.transfer(messages);
+  const HaloMessage messages[3] = {{buffer_[0].data(), position.data() + first_ghost, sizeof(Vec4)},
+                                   {buffer_[1].data(), velocity.data() + first_ghost, sizeof(Vec4)},
+                                   {buffer_[2].data(), spin.data() + first_ghost, sizeof(Vec4)}};
+  plan_.transfer(std::span(messages).first(spin.empty() ? 2 : 3));
 }
 
 }  // namespace scree

@@ -75,8 +75,10 @@ class Halo {
   // ...].
   template <class T>
   void update(std::span<T> field, Index first_ghost) const;
-  // The same for positions, which are moved by the ghosts' shifts, and velocities, in one exchange.
-  void update_motion(std::span<Vec4> position, std::span<Vec4> velocity, Index first_ghost) const;
+  // The same for positions, which are moved by the ghosts' shifts, velocities, and angular velocities where
+  // there are any, in one exchange.
+  void update_motion(std::span<Vec4> position, std::span<Vec4> velocity, std::span<Vec4> spin,
+                     Index first_ghost) const;
 
  private:
   void find_ghosts(std::span<const Vec4> position);
@@ -84,9 +86,9 @@ class Halo {
   HaloPlan plan_;
   std::vector<Ghost> own_, sent_;
   std::vector<std::int8_t> images_;
-  // Packed positions and velocities, or another field, in the order of sent_. As large as they must be from
+  // Packed motion, or another field, in the order of sent_. As large as they must be from
   // exchange() on: an allocation that fails later leaves the other ranks waiting.
-  mutable std::vector<Vec4> buffer_[2];
+  mutable std::vector<Vec4> buffer_[3];
 };
 
 template <class T>

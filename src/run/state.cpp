@@ -167,12 +167,15 @@ void visit_output(Visitor& visit, StateType& state) {
   visit("output/snapshots", state.snapshots);
 }
 
-// What a checkpoint holds of a particle: its identity and its fields. visit: as for_each_field's.
+// What a checkpoint holds of a particle: its identity and its fields, those of rotation where particles
+// rotate. visit: as for_each_field's.
 template <class Visit>
-void for_each_dataset(const Visit& visit) {
+void for_each_dataset(bool rotates, const Visit& visit) {
   visit(ParticleField{"global_id", "1", "identity, which survives sorting and migration", kState},
         &Particle::global_id);
-  for_each_field(visit);
+  for_each_field([&](const ParticleField& field, auto member) {
+    if (rotates || (field.parts & kRotation) == 0) visit(field, member);
+  });
 }
 
 std::string dataset_name(const ParticleField& field) { return std::string("particles/") + field.name; }
@@ -215,10 +218,14 @@ void unpack_field(const Checkpoint& in, const std::string& name, T Particle::*me
   }
 }
 
+bool rotates(const Checkpoint& in) {
+  return in.real_rows.contains(dataset_name({"angular_velocity", "", "", kRotation}));
+}
+
 std::vector<Particle> unpack_particles(const Checkpoint& in) {
   const CheckpointRows<std::int64_t>& ids = in.row_array<std::int64_t>("particles/global_id");
   std::vector<Particle> particles(static_cast<std::size_t>(ids.count));
-  for_each_dataset([&](const ParticleField& field, auto member) {
+  for_each_dataset(rotates(in), [&](const ParticleField& field, auto member) {
     unpack_field(in, dataset_name(field), member, particles);
   });
   return particles;
@@ -230,8 +237,9 @@ Checkpoint pack(const State& state) {
   Checkpoint out;
   Writer writer(out);
   visit_state(writer, state), visit_output(writer, state);
-  for_each_dataset(
-      [&](const ParticleField& field, auto member) { add_rows(state.particles, field, member, out); });
+  for_each_dataset(state.rotates, [&](const ParticleField& field, auto member) {
+    add_rows(state.particles, field, member, out);
+  });
   return out;
 }
 
@@ -239,7 +247,7 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
   std::uint64_t sum = 0;
   for (const Particle& p : state.particles) {
     BitHash one;
-    for_each_dataset([&](const ParticleField& field, auto member) {
+    for_each_dataset(state.rotates, [&](const ParticleField& field, auto member) {
       if ((field.parts & kState) != 0)
         for (const auto number : numbers_of(p.*member)) one.add(number);
     });
@@ -256,6 +264,7 @@ State unpack(const Checkpoint& checkpoint) {
   Reader reader(checkpoint);
   visit_state(reader, state), visit_output(reader, state);
   state.particles = unpack_particles(checkpoint);
+  state.rotates = rotates(checkpoint);
   return state;
 }
 

@@ -27,6 +27,7 @@ struct State {
   MultibodyState bodies;
   // Of one rank, ordered by global id; they live in the backend between checkpoints.
   std::vector<Particle> particles;
+  bool rotates = false;  // whether these have fields of rotation (Model::rotates)
   ShapeLosses shapes;
   CarriedOut carried_out;
   BalanceState balance;

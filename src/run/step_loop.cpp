@@ -156,6 +156,7 @@ State& StepLoop::complete_state() {
   state_.clock = clock_.state();
   state_.counts = parts_.step.counts();
   state_.particles = parts_.backend.particles().records();
+  state_.rotates = parts_.model.rotates();
   state_.shapes = parts_.backend.particles().shape_losses();
   return state_;
 }

@@ -202,7 +202,7 @@ TEST_CASE("ghosts are the particles and images near the box, as brute force find
       const auto items = static_cast<std::size_t>(owned + halo.size());
       position.resize(items), velocity.resize(items), id.resize(items);
       halo.update(std::span<std::int64_t>(id), owned);
-      halo.update_motion(position, velocity, owned);
+      halo.update_motion(position, velocity, {}, owned);
       std::set<Entry> found;
       for (std::size_t g = static_cast<std::size_t>(owned); g < items; ++g) {
         const Vec4 p = position[g];

@@ -32,10 +32,11 @@ inline std::string differing_fields(const std::vector<Particle>& a, const std::v
 inline bool same_bits(const Particle& a, const Particle& b) { return differing_fields(a, b).empty(); }
 
 // Fills every field with numbers that no other field has, nor a particle of another number, as far as its
-// type tells so many apart, and that decimal text or a cast would spoil.
-inline void fill_fields(Particle& particle, std::int64_t number) {
+// type tells so many apart, and that decimal text or a cast would spoil; those of rotation where it rotates.
+inline void fill_fields(Particle& particle, std::int64_t number, bool rotates = true) {
   std::int64_t next = 100 * number;
-  for_each_field([&](const ParticleField&, auto member) {
+  for_each_field([&](const ParticleField& field, auto member) {
+    if (!rotates && (field.parts & kRotation) != 0) return;
     auto& value = particle.*member;
     auto numbers = numbers_of(value);
     for (auto& number : numbers) {
@@ -54,7 +55,8 @@ inline std::vector<Particle> filled_records(const Model& model) {
   std::vector<Particle> records = initial_records(model.particles, Subdomain(model.space));
   for (Particle& p : records) {
     const Particle start = p;
-    fill_fields(p, p.global_id);
+    p = {.global_id = start.global_id};
+    fill_fields(p, p.global_id, model.rotates());
     p.position = start.position, p.radius = start.radius, p.material = start.material;
   }
   return records;

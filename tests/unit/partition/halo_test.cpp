@@ -90,7 +90,7 @@ TEST_CASE("an update copies fields and moves positions by the shift") {
   halo.exchange(Ranks(), {}, Subdomain(s), {position.data(), 2}, kWidth);
   std::vector<Vec4> velocity{{1, 2, 3, 4}, {-5, 6, 7, 8}, {}, {}, {}};
   halo.update(std::span<Vec4>(field), 2);
-  halo.update_motion(position, velocity, 2);
+  halo.update_motion(position, velocity, {}, 2);
   for (std::size_t g = 0; g < 3; ++g) {
     CHECK((field[2 + g].x == 5 && field[2 + g].w == 8));
     CHECK((velocity[2 + g].x == -5 && velocity[2 + g].w == 8));

@@ -49,6 +49,7 @@ State awkward_state() {
     s.particles.emplace_back().global_id = n.integer();
     fill_fields(s.particles.back(), i);
   }
+  s.rotates = true;
   s.shapes = {n.real(), n.real()};
   s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real()};
   s.balance.open = true, s.balance.start = n.real(), s.balance.exchanged = n.real();
@@ -114,6 +115,22 @@ TEST_CASE("the hash is of every field that changes in time, and of no other") {
       CHECK(differs == ((field.parts & kState) != 0));
     }
   });
+}
+
+TEST_CASE("the state of particles that do not rotate has nothing of rotation") {
+  State state = awkward_state();
+  state.rotates = false;
+  const std::uint64_t hash = state_hash(state, true);
+  const Checkpoint checkpoint = pack(state);
+  for_each_field([&](const ParticleField& field, auto member) {
+    if ((field.parts & kRotation) == 0) return;
+    CAPTURE(field.name);
+    CHECK(!checkpoint.real_rows.contains(std::string("particles/") + field.name));
+    for (Particle& p : state.particles) p.*member = {};
+  });
+  CHECK(state_hash(state, true) == hash);
+  CHECK(!unpack(checkpoint).rotates);
+  CHECK(differing_fields(unpack(checkpoint).particles, state.particles) == "");
 }
 
 TEST_CASE("a checkpoint holds a dataset for each field, with its unit and what it means") {
