@@ -28,4 +28,9 @@ auto with_contact_laws(const Contact& contact, const Use& use) {
   return use(laws);
 }
 
+// How many numbers the law remembers of a contact.
+inline int history_of(const Contact& contact) {
+  return with_contact_laws(contact, []<class Law>(const std::vector<Law>&) { return Law::kHistory; });
+}
+
 }  // namespace scree

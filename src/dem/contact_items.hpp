@@ -2,6 +2,8 @@
 // CUDA.
 #pragma once
 
+#include <type_traits>
+
 #include "dem/contact_walk.hpp"
 
 namespace scree {
@@ -9,11 +11,23 @@ namespace scree {
 // A particle's share of a contact's energies with another particle; those with surfaces are all its own.
 inline constexpr Real kPairShare = 0.5;
 
+// With what the contact will remember.
+template <class Load, class History>
+struct LoadWithHistory : Load {
+  History history;
+};
+
 // What a contact does at an instant.
 struct LoadOf {
   template <class Law, class Pair>
   SCREE_HD auto operator()(const Law& law, const Pair& pair) const {
     return law.load(pair);
+  }
+  template <class Law, class Pair, class History>
+  SCREE_HD auto operator()(const Law& law, const Pair& pair, const History& old) const {
+    const auto outcome = law.load(pair, old);
+    return LoadWithHistory<std::remove_cvref_t<decltype(outcome.load)>, History>{outcome.load,
+                                                                                 outcome.history};
   }
   template <class Views>
   SCREE_HD const ContactLoadOf<Real, Vec3>* stored(const Views& in, Index entry) const {
@@ -27,7 +41,8 @@ struct TotalForce {
 };
 
 // Total force on particle i at the current positions and velocities, and its share of the dissipation.
-template <class Laws, class Rows>
+// kAccepts: as in ContactWalk.
+template <class Laws, class Rows, bool kAccepts = false>
 struct ContactForceItem {
   ContactWalk<Laws, Rows> walk;
   Vec3 gravity;
@@ -44,12 +59,12 @@ struct ContactForceItem {
     const auto self = walk.self(i);
     Vec3 f = self.u.w * gravity;
     Real loss = 0;
-    walk.neighbors(self, LoadOf{}, [&](const auto& load, Index) {
+    walk.template neighbors<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) {
       f += load.force;
       loss += load.loss;
     });
     loss *= kPairShare;
-    walk.surfaces(self, LoadOf{}, [&](const auto& load, Index) {
+    walk.template surfaces<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) {
       f += load.force;
       loss += load.loss;
     });

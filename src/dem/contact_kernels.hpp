@@ -26,6 +26,7 @@ struct EnergyOutputs {
 class ContactKernels {
  public:
   virtual ~ContactKernels() = default;
+  virtual int history() const = 0;  // how many numbers the law remembers of a contact
   virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power) const = 0;
   // The square of the largest acceleration; a NaN if one is not finite.

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "dem/history_slots.hpp"
 #include "dem/surface_sums.hpp"
 #include "dem/surfaces.hpp"
 #include "physics/contact_law.hpp"
@@ -28,6 +31,18 @@ struct LawTable {
   SCREE_HD const Law& get(int i, int j) const { return laws[i * materials + j]; }
 };
 
+// evaluate(j) of an entry of a row, or evaluate(j, slot) where that wants to know the list's slot of the
+// entry, too.
+template <class Evaluate>
+inline constexpr bool kAsksForSlot = std::is_invocable_v<const Evaluate&, Index, std::int64_t>;
+template <class Evaluate>
+SCREE_HD auto evaluate_entry(const Evaluate& evaluate, Index j, std::int64_t slot) {
+  if constexpr (kAsksForSlot<Evaluate>)
+    return evaluate(j, slot);
+  else
+    return evaluate(j);
+}
+
 // Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend,
 // another type of the same form on a GPU.
 struct PackedRows {
@@ -38,13 +53,13 @@ struct PackedRows {
   SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
   SCREE_HD static constexpr int stride() { return 1; }
   // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. evaluate has
-  // no side effects: it may be called for others, too.
+  // no side effects: it may be called for others, too. It may ask for the slot (evaluate_entry).
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
                                  const Add& add) const {
     const Index end = offsets[i + 1];
     for (Index k = offsets[i]; k < end; ++k)
-      if (const Index j = neighbors[k]; touches(j)) add(evaluate(j));
+      if (const Index j = neighbors[k]; touches(j)) add(evaluate_entry(evaluate, j, k));
   }
 };
 
@@ -61,6 +76,7 @@ struct ContactViews {
   Index ground;
   const SurfaceLoad* loads;  // per entry of the surfaces: what those on bodies do at this instant,
   const SurfaceStep* steps;  // and over an implicit step
+  HistoryViews history{};
 };
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
@@ -192,6 +208,10 @@ struct OverStep {
 // `of` is pure: it may be called for neighbours that do not touch, and what it returns for them is dropped.
 // Contacts with surfaces on bodies were evaluated before, once for particle and body: of.stored(in, entry)
 // has what `of` would return, null where they do not touch.
+//
+// Where the law remembers something, an `of` that wants to see it is called as of(law, pair, history), and
+// its result has as `history` what the contact will remember. Only the walk of an item that accepts a step,
+// with kAccepts, stores that; all others leave no trace.
 template <class Laws, class Rows, class Look = AtInstant>
 struct ContactWalk {
   ContactViews<Rows> in;
@@ -199,36 +219,66 @@ struct ContactWalk {
   Look look{};
 
   using Self = typename Look::Self;
+  using Law = std::remove_cvref_t<decltype(std::declval<Laws>().get(0, 0))>;
   SCREE_HD Self self(Index i) const { return look.self(in, i); }
 
-  template <class Of, class Visit>
+  template <bool kAccepts = false, class Of, class Visit>
   SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
-    walk(self, look.test(in, self), of, visit);
+    walk<kAccepts>(self, look.test(in, self), of, visit);
   }
   // Of the neighbours those of which only(j) holds.
   template <class Only, class Of, class Visit>
   SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
     const auto test = look.test(in, self);
-    walk(
+    walk<false>(
         self, [&](Index j) { return only(j) && test(j); }, of, visit);
   }
-  template <class Of, class Visit>
+  template <bool kAccepts = false, class Of, class Visit>
   SCREE_HD void surfaces(const Self& self, const Of& of, const Visit& visit) const {
     for (Index entry = in.surface_offsets[self.i]; entry < in.surface_offsets[self.i + 1]; ++entry) {
       const Index surface = in.surfaces[entry];
       if (surface >= in.ground) {
-        if (const auto* stored = of.stored(in, entry)) visit(*stored, surface);
+        if (const auto* stored = of.stored(in, entry)) {
+          if constexpr (kAccepts && Law::kHistory > 0) in.history.template take_ahead<Law>(entry);
+          visit(*stored, surface);
+        }
         continue;
       }
       const WallPlane& plane = in.planes[surface];
       const auto pair = look.wall(in, self, plane);
-      if (Look::closed(pair)) visit(of(laws.get(self.material, plane.material), pair), surface);
+      if (!Look::closed(pair)) continue;
+      const Law& law = laws.get(self.material, plane.material);
+      if constexpr (sees_history<Of, decltype(pair)>()) {
+        const auto contact = of(law, pair, in.history.template read<Law>(in.history.surfaces, entry));
+        if constexpr (kAccepts) in.history.template write<Law>(in.history.surfaces, entry, contact.history);
+        visit(contact, surface);
+      } else {
+        visit(of(law, pair), surface);
+      }
     }
   }
 
  private:
-  template <class Test, class Of, class Visit>
+  template <class Of, class Pair>
+  static constexpr bool sees_history() {
+    if constexpr (Law::kHistory > 0)
+      return std::is_invocable_v<const Of&, const Law&, const Pair&,
+                                 decltype(in.history.template read<Law>(nullptr, 0))>;
+    else
+      return false;
+  }
+
+  template <bool kAccepts, class Test, class Of, class Visit>
   SCREE_HD void walk(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
+    using Pair = decltype(look.pair(in, self, 0));
+    if constexpr (sees_history<Of, Pair>())
+      walk_with_history<kAccepts>(self, test, of, visit);
+    else
+      walk_without(self, test, of, visit);
+  }
+
+  template <class Test, class Of, class Visit>
+  SCREE_HD void walk_without(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     struct Found {
       decltype(of(laws.get(0, 0), look.pair(in, self, 0))) contact;
       Index j;
@@ -239,6 +289,27 @@ struct ContactWalk {
           return Found{of(laws.get(self.material, in.material[j]), look.pair(in, self, j)), j};
         },
         [&](const Found& found) { visit(found.contact, found.j); });
+  }
+
+  template <bool kAccepts, class Test, class Of, class Visit>
+  SCREE_HD void walk_with_history(const Self& self, const Test& test, const Of& of,
+                                  const Visit& visit) const {
+    struct Found {
+      decltype(of(laws.get(0, 0), look.pair(in, self, 0), in.history.template read<Law>(nullptr, 0))) contact;
+      Index j;
+      std::int64_t slot;
+    };
+    in.rows.for_each_contact(
+        self.i, test,
+        [&](Index j, std::int64_t slot) {
+          const auto history = in.history.template read<Law>(in.history.neighbors, slot);
+          return Found{of(laws.get(self.material, in.material[j]), look.pair(in, self, j), history), j, slot};
+        },
+        [&](const Found& found) {
+          if constexpr (kAccepts)
+            in.history.template write<Law>(in.history.neighbors, found.slot, found.contact.history);
+          visit(found.contact, found.j);
+        });
   }
 };
 

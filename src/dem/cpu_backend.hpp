@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "dem/backend.hpp"
 #include "dem/cpu_explicit.hpp"
@@ -15,7 +16,9 @@ namespace scree {
 class CpuBackend : public Backend {
  public:
   explicit CpuBackend(const Model& model, const Ranks& ranks = {})
-      : items_(model, ranks), list_(items_), particles_(items_, list_), reports_(items_) {}
+      : CpuBackend(model, ranks, make_contact_kernels(model.contact)) {}
+  CpuBackend(const Model& model, const Ranks& ranks, std::unique_ptr<ContactKernels> law)
+      : items_(model, ranks, std::move(law)), list_(items_), particles_(items_, list_), reports_(items_) {}
 
   std::string description() const override;
   RankParticles& particles() override { return particles_; }

@@ -56,7 +56,8 @@ StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& t
 // Particles as the last step left them before it opened the next: with the velocities that the law saw.
 void CpuExplicitRun::shape_contacts() {
   items_.surfaces.find_loads(items_.store, items_.list.surfaces,
-                             open_ ? items_.spare_position : items_.store.position, items_.spare_velocity);
+                             open_ ? items_.spare_position : items_.store.position, items_.spare_velocity,
+                             items_.history.views());
 }
 
 void CpuExplicitRun::advance() {
@@ -65,6 +66,7 @@ void CpuExplicitRun::advance() {
   step_bound_ =
       std::sqrt(items_.kernels->verlet_advance(items_.views(), items_.model.gravity, items_.layout.owned,
                                                views_of(items_.spare_position, items_.spare_velocity)));
+  items_.history.accepted();
   std::swap(items_.store.position, items_.spare_position);
   std::swap(items_.store.velocity, items_.spare_velocity);
 }
@@ -76,6 +78,7 @@ void CpuExplicitRun::finish() {
   const Real squared =
       items_.kernels->verlet_finish(items_.views(), items_.model.gravity, items_.layout.owned,
                                     views_of(items_.spare_position, items_.spare_velocity), force.data());
+  items_.history.accepted();
   if (!std::isfinite(items_.ranks.max(squared))) items_.report_not_finite(force);
   std::swap(items_.store.velocity, items_.spare_velocity);
 }

@@ -2,25 +2,29 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/error.hpp"
 
 namespace scree {
 
-CpuItems::CpuItems(const Model& of, const Ranks& on)
+CpuItems::CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKernels> law)
     : model(of),
       ranks(on),
       subdomain(of.space),
       side(of, subdomain, on),
-      kernels(make_contact_kernels(of.contact)),
+      kernels(std::move(law)),
       surfaces(of, subdomain, side, *kernels),
+      history(kernels->history(), {of.space.min, subdomain.period()}),
       hht(hht_coefficients(of.integrator.hht_alpha)) {
   store.rotates = of.rotates();
 }
 
-CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const {
-  return surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()},
-                        list.surfaces);
+CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) {
+  Views views =
+      surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()}, list.surfaces);
+  views.history = history.views();
+  return views;
 }
 
 bool CpuItems::any_outside() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dem/contact_kernels.hpp"
+#include "dem/cpu_history.hpp"
 #include "dem/cpu_surfaces.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/particle_store.hpp"
@@ -22,17 +23,21 @@ struct CpuItems {
   using Views = ContactViews<PackedRows>;
   static constexpr GlobalId kNone = std::numeric_limits<GlobalId>::max();
 
-  CpuItems(const Model& of, const Ranks& on);
+  CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKernels> law);
   CpuItems(const CpuItems&) = delete;  // `side` knows the address of `subdomain`
   CpuItems& operator=(const CpuItems&) = delete;
 
-  Views views() const { return views(store.position, store.velocity); }
-  Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const;
+  Views views() { return views(store.position, store.velocity); }
+  Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity);
   void refresh_ghosts() {
     halo.update_motion(store.position, store.velocity, store.angular_velocity, layout.owned);
   }
   // Contacts with surfaces on bodies, where all are now: what forces and reports read next.
-  void find_loads() { surfaces.find_loads(store, list.surfaces, store.position, store.velocity); }
+  void find_loads() {
+    surfaces.find_loads(store, list.surfaces, store.position, store.velocity, history.views());
+  }
+  // For `history`, while there is a list.
+  CpuHistory::Listed listed() const { return {store, list, side.placed(), side.surfaces().ground()}; }
   void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }
   bool any_outside() const;
   // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.
@@ -46,6 +51,7 @@ struct CpuItems {
   SurfaceSide side;
   std::unique_ptr<ContactKernels> kernels;
   CpuSurfaces surfaces;
+  CpuHistory history;
   HhtCoefficients hht;
 
   ParticleStore store;

@@ -9,6 +9,13 @@
 
 namespace scree {
 
+// With the ghosts where their particles are now: it is the places that name contacts.
+void CpuList::leave_slots() {
+  if (!items_.history.at_slots()) return;
+  items_.refresh_ghosts();
+  items_.history.leave_slots(items_.listed());
+}
+
 void CpuList::wrap_positions() {
   ParticleStore& store = items_.store;
   GlobalId bad = CpuItems::kNone;
@@ -40,17 +47,21 @@ void CpuList::migrate() {
   const Ranks& ranks = items_.ranks;
   if (!decomposition_.exists() || balance_.imbalance > items_.model.parallel.imbalance) decompose();
   std::vector<std::vector<Particle>> leaving(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::vector<Index>> left(leaving.size());  // where they stood
   std::vector<Index> staying;
   for (Index i = 0; i < store.owned; ++i) {
     const int owner = decomposition_.owner(xyz(store.position[i]));
-    if (owner == ranks.rank())
+    if (owner == ranks.rank()) {
       staying.push_back(i);
-    else
-      leaving[static_cast<std::size_t>(owner)].push_back(particle_at(store, i));
+      continue;
+    }
+    leaving[static_cast<std::size_t>(owner)].push_back(particle_at(store, i));
+    left[static_cast<std::size_t>(owner)].push_back(i);
   }
   balance_.migrated += store.owned - static_cast<std::int64_t>(staying.size());
   const std::vector<Particle> arriving = ranks.deal_out(leaving);
   countable(staying.size() + arriving.size(), kTooManyParticles);
+  items_.history.migrate(ranks, left, staying);
   store.reorder(staying);
   for (const Particle& particle : arriving) store.add(particle);
 }
@@ -74,7 +85,7 @@ void CpuList::sort_cells(Real skin) {
   }
   std::partial_sum(start.begin(), start.end(), start.begin());
   for (Index i = 0; i < store.owned; ++i) from[start[cell[i]]++] = i;
-  store.reorder(from);
+  store.reorder(from), items_.history.reorder(from);
 }
 
 void CpuList::lay_out_items(Real skin) {
@@ -104,6 +115,7 @@ void CpuList::place_bodies(std::span<const BodyMotion> motion) {
 void CpuList::build(Real skin, StageTimers& timers) {
   {
     const auto scope = timers.time(Stage::migrate);
+    leave_slots();
     wrap_positions();
     if (!items_.ranks.alone()) migrate();
   }
@@ -122,6 +134,7 @@ void CpuList::build(Real skin, StageTimers& timers) {
   const ParticleStore& store = items_.store;
   builder_.build(store, items_.layout, cells_, items_.side.placed(), skin, items_.list);
   items_.side.build_list(skin);
+  items_.history.take_slots(items_.listed());
   built_at_ = store.position;
   items_.spare_position = store.position, items_.spare_velocity = store.velocity;
   bound_ = surface_bound_ = 0;

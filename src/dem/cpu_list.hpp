@@ -29,6 +29,7 @@ class CpuList : public RankList {
 
  private:
   // Parts of build, in their order.
+  void leave_slots();
   void wrap_positions();
   void migrate();
   void decompose();

@@ -1,6 +1,7 @@
 #include "dem/cpu_particles.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/for_each.hpp"
 #include "dem/explicit_run.hpp"
@@ -12,6 +13,7 @@ void CpuParticles::load(const std::vector<Particle>& records, const ShapeLosses&
   items_.side.losses() = items_.ranks.is_root() ? shapes : ShapeLosses{};
   count_on_rank(records.size(), items_.model.particles.totals);
   items_.store.load(records);
+  items_.history.load({}, items_.store.owned);
   list_.outdate();
 }
 
@@ -20,6 +22,15 @@ std::vector<Particle> CpuParticles::records() {
   for (Particle& r : out)
     if (!r.drifting) r.position = items_.subdomain.wrap(r.position, r.image);
   return out;
+}
+
+KeptContacts CpuParticles::contacts() {
+  if (!items_.history.exists()) return {};
+  std::vector<Index> order(static_cast<std::size_t>(items_.store.owned));
+  std::iota(order.begin(), order.end(), 0);
+  const std::vector<std::int64_t>& key = items_.store.row_key;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] < key[b]; });
+  return items_.history.contacts(items_.listed()).rows(order);
 }
 
 void CpuParticles::initial_forces() {
@@ -76,6 +87,7 @@ void CpuParticles::take_contacts_out() {
 void CpuParticles::take_out(const std::vector<Leaver>& leavers) {
   ParticleStore& store = items_.store;
   take_contacts_out();
+  items_.history.leave_slots(items_.listed());
   for (const Leaver& leaver : leavers) {
     if (leaver.rank != items_.ranks.rank()) continue;
     const auto i = static_cast<std::size_t>(leaver.local_index);
@@ -89,7 +101,7 @@ void CpuParticles::take_out(const std::vector<Leaver>& leavers) {
   for (Index i = 0; i < store.owned; ++i)
     if (!store.drifting[i]) staying.push_back(i);
   list_.keep_rows(staying);
-  store.reorder(staying);
+  store.reorder(staying), items_.history.reorder(staying);
 }
 
 }  // namespace scree

@@ -31,11 +31,13 @@ SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceR
 }
 
 void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows,
-                             const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) {
+                             const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
+                             const HistoryViews& history) {
   if (side_.size() == 0) return;
   loads_.resize(rows.surfaces.size());
-  kernels_.surface_loads(entry_views(store, rows, position, velocity),
-                         static_cast<Index>(rows.by_surface.size()), loads_.data());
+  SurfaceViews views = entry_views(store, rows, position, velocity);
+  views.history = history;
+  kernels_.surface_loads(views, static_cast<Index>(rows.by_surface.size()), loads_.data());
   side_.take_loads(sums_of<InstantSums>(loads_, rows, side_.surfaces().ground()));
 }
 

@@ -18,7 +18,7 @@ class CpuSurfaces {
   // The surfaces as they are placed, with particles at these places, at an instant: for the loads in views(),
   // and for the side's sums.
   void find_loads(const ParticleStore& store, const SurfaceRows& rows, const std::vector<Vec4>& position,
-                  const std::vector<Vec4>& velocity);
+                  const std::vector<Vec4>& velocity, const HistoryViews& history);
   // The same over an implicit step, with the particles of the store.
   void find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start);
 

@@ -236,11 +236,11 @@ struct MixedAdvanceItem {
     const Real mass = self.u.mass;
     Vec3 f = mass * gravity;
     float loss = 0;
-    walk.neighbors(self, LoadOf{}, [&](const auto& load, Index) {
+    walk.template neighbors<true>(self, LoadOf{}, [&](const auto& load, Index) {
       f += in_double(load.force);
       loss += 0.5f * load.loss;
     });
-    walk.surfaces(self, LoadOf{}, [&](const auto& load, Index) {
+    walk.template surfaces<true>(self, LoadOf{}, [&](const auto& load, Index) {
       f += load.force;
       loss += static_cast<float>(load.loss);
     });

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "dem/kept_contacts.hpp"
 #include "dem/leaver_items.hpp"
 #include "dem/particle_fields.hpp"
 #include "dem/surface_side.hpp"
@@ -10,7 +11,7 @@
 
 namespace scree {
 
-// All functions but records() and shape_losses() are collective (see Backend).
+// All functions but load_contacts(), records(), contacts() and shape_losses() are collective (see Backend).
 class RankParticles {
  public:
   virtual ~RankParticles() = default;
@@ -20,6 +21,10 @@ class RankParticles {
   // Shapes' losses are rank 0's.
   virtual void load(const std::vector<Particle>& records, const ShapeLosses& shapes) = 0;
   virtual std::vector<Particle> records() = 0;  // ordered by global id
+  // What their contacts remember, in the same order; nothing where the law remembers nothing. After load(),
+  // before the first list; what another law has remembered counts for nothing.
+  virtual void load_contacts(const KeptContacts& contacts) = 0;
+  virtual KeptContacts contacts() = 0;
   virtual ShapeLosses shape_losses() const = 0;
 
   // Start: forces and accelerations of the loaded positions and velocities, on a list of these.

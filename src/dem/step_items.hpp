@@ -220,7 +220,7 @@ struct VerletStartItem {
 // that the contacts read: other particles need the velocities as they were.
 template <class Laws, class Rows>
 struct VerletFinishItem {
-  ContactForceItem<Laws, Rows> forces;
+  ContactForceItem<Laws, Rows, true> forces;
   VerletViews state;
 
   // Returns |a|^2, so that a force that is not finite does not pass unseen.
@@ -239,7 +239,7 @@ struct VerletFinishItem {
 // bit.
 template <class Laws, class Rows>
 struct VerletAdvanceItem {
-  ContactForceItem<Laws, Rows> forces;
+  ContactForceItem<Laws, Rows, true> forces;
   VerletViews state;
 
   SCREE_HD Real operator()(Index i) const { return advance(i, forces.total(i)); }

@@ -18,6 +18,7 @@ struct SurfaceViews {
   const PlacedSurface* placed;  // counts from the first surface on a body
   Index ground;
   Vec3 period;  // [m]
+  HistoryViews history{};
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], period); }
   SCREE_HD Index surface_of(Index entry) const { return entries.surfaces[entry] - ground; }
@@ -41,9 +42,22 @@ struct SurfaceLoadItem {
     const PairState state{
         pair.geometry, xyz(u) - surface.velocity_at(pair.contact), {p.w, surface.radius, u.w, kInfinity}};
     const auto& law = laws.get(in.material[i], surface.material);
-    out.load = law.load(state);
+    find_load(law, state, entry);
     out.energy = EnergyOf{}(law, state);
     out.arm = surface.arm + pair.contact, out.particle_arm = contact_arm(state);
+  }
+
+ private:
+  template <class Law>
+  SCREE_HD void find_load(const Law& law, const PairState& state, Index entry) const {
+    if constexpr (Law::kHistory == 0) {
+      loads[entry].load = law.load(state);
+    } else {
+      const HistoryViews& at = in.history;
+      const auto load = LoadOf{}(law, state, at.template read<Law>(at.surfaces, entry));
+      loads[entry].load = load;
+      if (at.ahead != nullptr) at.template write<Law>(at.ahead, entry, load.history);
+    }
   }
 };
 

@@ -20,7 +20,8 @@ template <class T>
 struct CheckpointRows {
   int width = 1;           // values per row
   std::int64_t count = 0;  // rows of this rank
-  // Values of rows [first, first + count) of this rank: [count][width].
+  // Values of rows [first, first + count) of this rank: [count][width]. Where it was read from a file, those
+  // of other ranks can be had, too: below 0 and past `count`.
   std::function<void(std::int64_t first, std::int64_t count, T* to)> copy;
   std::string unit = {}, description = {};  // for readers of the file; not read back
 };

@@ -28,6 +28,23 @@ class IdOrder {
     if (!ranks_.alone()) values = ranks_.deal_out(std::span<const T>(values), counts_);
     return permuted(std::move(values), arrived_);
   }
+  // The same for rows of values, one row per particle: the i-th has lengths[i]. Collective.
+  template <class T>
+  std::vector<T> apply(std::vector<T> values, std::vector<std::int64_t> lengths) const {
+    values = permuted_rows(std::move(values), lengths, sent_);
+    if (!ranks_.alone()) {
+      lengths = permuted(std::move(lengths), sent_);
+      std::vector<std::int64_t> sums;  // per rank that gets them
+      auto length = lengths.begin();
+      for (const std::int64_t rows : counts_) {
+        sums.push_back(std::accumulate(length, length + rows, std::int64_t{0}));
+        length += rows;
+      }
+      values = ranks_.deal_out(std::span<const T>(values), sums);
+      lengths = ranks_.deal_out(std::span<const std::int64_t>(lengths), counts_);
+    }
+    return permuted_rows(std::move(values), lengths, arrived_);
+  }
 
  private:
   // values[i] becomes values[order[i]]; an empty order leaves all where it is.
@@ -36,6 +53,18 @@ class IdOrder {
     if (order.empty()) return values;
     std::vector<T> out(values.size());
     for (std::size_t i = 0; i < order.size(); ++i) out[i] = values[order[i]];
+    return out;
+  }
+  template <class T>
+  static std::vector<T> permuted_rows(std::vector<T> values, const std::vector<std::int64_t>& lengths,
+                                      const std::vector<std::size_t>& order) {
+    if (order.empty()) return values;
+    std::vector<std::int64_t> first(lengths.size());
+    std::exclusive_scan(lengths.begin(), lengths.end(), first.begin(), std::int64_t{0});
+    std::vector<T> out;
+    out.reserve(values.size());
+    for (const std::size_t row : order)
+      out.insert(out.end(), values.begin() + first[row], values.begin() + first[row] + lengths[row]);
     return out;
   }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "model/connections.hpp"
+#include "run/contact_rows.hpp"
 #include "run/state.hpp"
 
 namespace scree {
@@ -58,6 +59,8 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
     values->resize(3 * bodies);
   sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
   sizes.bodies.wrench.resize(bodies);
+  // What contacts remember may be there or not: no history is none.
+  sizes.contacts.numbers = numbers_in(checkpoint);
   Checkpoint expected = pack(sizes);
   for (const std::string& name : texts) expected.texts[name] = "";
   check_group(checkpoint.path, "/reals", checkpoint.reals, expected.reals);

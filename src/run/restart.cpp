@@ -177,8 +177,8 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     differences = differences_until(checkpoint, options);
     check_allowed(differences, model, options);
     check_datasets(checkpoint, model, {"changes", "deck", "fingerprint", kHash});
-    restart.state = unpack(checkpoint);  // a file may be unreadable where one rank's rows are
   });
+  restart.state = unpack(checkpoint, ranks);
   check_state(restart.state, options.restart, model.particles.totals.count, ranks);
   ranks.together([&] {
     if (differences.empty()) check_constants(restart.state, options.restart, model.particles.totals);

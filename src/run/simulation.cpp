@@ -75,7 +75,7 @@ class Simulation {
   void load_state();
   std::string start_change() const;
   bool continues_files() const;
-  std::vector<Particle> in_id_order(std::vector<Particle> records) const;
+  void bring_into_id_order(State& state) const;
   // Takes the state's particles away.
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
@@ -133,10 +133,11 @@ void Simulation::start_or_resume() {
 
 // The checkpoint's particles are complete; another deck's constants hold from now on.
 void Simulation::load_state() {
-  std::vector<Particle> records = in_id_order(std::move(state_.particles));
-  state_.particles = {};
-  if (restart_.changed) take_constants(model_.particles, records);
-  backend_->particles().load(records, state_.shapes);
+  bring_into_id_order(state_);
+  if (restart_.changed) take_constants(model_.particles, state_.particles);
+  backend_->particles().load(state_.particles, state_.shapes);
+  backend_->particles().load_contacts(state_.contacts);
+  state_.particles = {}, state_.contacts = {};
 }
 
 // Of the bodies' velocities, on rank 0.
@@ -152,21 +153,23 @@ bool Simulation::continues_files() const {
   return same;
 }
 
-// Each rank gets the records of its share of the ids: what it writes, and what its part of the model has.
-std::vector<Particle> Simulation::in_id_order(std::vector<Particle> records) const {
+// Each rank gets the particles of its share of the ids: what it writes, and what its part of the model has.
+void Simulation::bring_into_id_order(State& state) const {
   std::vector<GlobalId> ids;
-  for (const Particle& p : records) ids.push_back(p.global_id);
-  return IdOrder(ranks_, model_.particles.totals.count, ids).apply(std::move(records));
+  for (const Particle& p : state.particles) ids.push_back(p.global_id);
+  const IdOrder order(ranks_, model_.particles.totals.count, ids);
+  state.particles = order.apply(std::move(state.particles));
+  state.contacts = in_order(order, std::move(state.contacts));
 }
 
 void Simulation::checkpoint(State& state, const std::string& name) {
   recorder_->flush();
   state_hash_ = hash_of_all(state, ranks_);
-  state.particles = in_id_order(std::move(state.particles));
+  bring_into_id_order(state);
   Checkpoint out = pack(state);
   add_restart_texts(out, options_, state_hash_, restart_.changes);
   write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
-  state.particles = {};
+  state.particles = {}, state.contacts = {};
 }
 
 // Warns once.

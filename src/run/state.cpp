@@ -12,6 +12,7 @@
 
 #include "base/bit_hash.hpp"
 #include "base/error.hpp"
+#include "run/contact_rows.hpp"
 
 namespace scree {
 namespace {
@@ -240,17 +241,19 @@ Checkpoint pack(const State& state) {
   for_each_dataset(state.rotates, [&](const ParticleField& field, auto member) {
     add_rows(state.particles, field, member, out);
   });
+  add_contacts(state.contacts, out);
   return out;
 }
 
 std::uint64_t state_hash(const State& state, bool with_rest) {
   std::uint64_t sum = 0;
-  for (const Particle& p : state.particles) {
+  for (std::size_t i = 0; i < state.particles.size(); ++i) {
     BitHash one;
     for_each_dataset(state.rotates, [&](const ParticleField& field, auto member) {
       if ((field.parts & kState) != 0)
-        for (const auto number : numbers_of(p.*member)) one.add(number);
+        for (const auto number : numbers_of(state.particles[i].*member)) one.add(number);
     });
+    if (state.contacts.numbers > 0) add_contacts(state.contacts, i, one);
     sum += one.hash();
   }
   if (!with_rest) return sum;
@@ -259,12 +262,15 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
   return sum + rest.hash();
 }
 
-State unpack(const Checkpoint& checkpoint) {
+State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
-  Reader reader(checkpoint);
-  visit_state(reader, state), visit_output(reader, state);
-  state.particles = unpack_particles(checkpoint);
-  state.rotates = rotates(checkpoint);
+  ranks.together([&] {  // a file may be unreadable where one rank's rows are
+    Reader reader(checkpoint);
+    visit_state(reader, state), visit_output(reader, state);
+    state.particles = unpack_particles(checkpoint);
+    state.rotates = rotates(checkpoint);
+  });
+  state.contacts = unpack_contacts(checkpoint, ranks);
   return state;
 }
 
@@ -311,6 +317,8 @@ void check_state(const State& state, const std::string& path, std::int64_t parti
     visit_state(finite, state);
     if (!finite.name().empty()) refuse(path, "'" + finite.name() + "' is not finite");
     check_particles(state, path, particles);
+    const std::string wrong = contacts_trouble(state.contacts, state.particles, particles);
+    if (!wrong.empty()) refuse(path, wrong);
   });
   std::vector<GlobalId> ends;  // of the ranks' parts: the first id and the last
   if (!state.particles.empty()) ends = {state.particles.front().global_id, state.particles.back().global_id};

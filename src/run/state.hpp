@@ -28,6 +28,7 @@ struct State {
   // Of one rank, ordered by global id; they live in the backend between checkpoints.
   std::vector<Particle> particles;
   bool rotates = false;  // whether these have fields of rotation (Model::rotates)
+  KeptContacts contacts;  // of these, where the law remembers something
   ShapeLosses shapes;
   CarriedOut carried_out;
   BalanceState balance;
@@ -42,8 +43,9 @@ Checkpoint pack(const State&& state) = delete;
 // of its own, add up (modulo 2^64) to that of the whole. with_rest: all but the particles, which one rank
 // counts.
 std::uint64_t state_hash(const State& state, bool with_rest);
-// With the particles of the checkpoint's rows on this rank. Throws IoError naming what is missing.
-State unpack(const Checkpoint& checkpoint);
+// With the particles of the checkpoint's rows on this rank. Throws IoError naming what is missing, on every
+// rank. Collective.
+State unpack(const Checkpoint& checkpoint, const Ranks& ranks = {});
 // Throws IoError naming the file, on every rank, where a read state cannot be one of a model with this number
 // of particles: where ids do not increase from particle to particle and from rank to rank, are outside
 // [0, particles), or are missing without having been removed, and where a value is not finite. Collective.

@@ -145,9 +145,10 @@ void StepLoop::keep_good_state() {
   parts_.records.write_pending();  // the copy counts it, also where the backend fails before it is written
   good_.reset();                   // two copies are not needed
   std::vector<Particle> particles = std::move(complete_state().particles);
-  state_.particles = {};
+  KeptContacts contacts = std::move(state_.contacts);
+  state_.particles = {}, state_.contacts = {};
   good_ = state_;
-  good_->particles = std::move(particles);
+  good_->particles = std::move(particles), good_->contacts = std::move(contacts);
   good_age_ = parts_.seconds();
   good_cost_ = good_age_ - start;
 }
@@ -157,6 +158,7 @@ State& StepLoop::complete_state() {
   state_.counts = parts_.step.counts();
   state_.particles = parts_.backend.particles().records();
   state_.rotates = parts_.model.rotates();
+  state_.contacts = parts_.backend.particles().contacts();
   state_.shapes = parts_.backend.particles().shape_losses();
   return state_;
 }

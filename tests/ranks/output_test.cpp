@@ -20,6 +20,7 @@
 #include "support/checkpoint_arrays.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/petsc_run.hpp"
+#include "support/shared_folder.hpp"
 #include "unit/output/scratch.hpp"
 
 // What the system call that reserves disk space returns; 0: what the system says.
@@ -39,28 +40,6 @@ Ranks world() {
   petsc();
   return Ranks::world();
 }
-
-// One folder of all ranks.
-class SharedFolder {
- public:
-  explicit SharedFolder(const Ranks& ranks) : ranks_(ranks) {
-    char path[256] = {};
-    ranks.on_root([&] {
-      own_.emplace();
-      own_->path().copy(path, sizeof path - 1);
-    });
-    ranks.broadcast(std::span<char>(path));
-    path_ = path;
-  }
-  ~SharedFolder() { ranks_.any(false); }  // nobody reads any longer
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-  const std::string& path() const { return path_; }
-
- private:
-  Ranks ranks_;
-  std::optional<ScratchDirectory> own_;
-  std::string path_;
-};
 
 // What rank `rank` of `size` has of n rows: uneven parts, the second of them empty.
 RowPart uneven_part(std::int64_t n, int rank, int size) {

@@ -1,0 +1,94 @@
+// The contact stages of one law; included where they are compiled.
+#pragma once
+
+#include <utility>
+
+#include "base/for_each.hpp"
+#include "base/reproducible_sum.hpp"
+#include "dem/contact_kernels.hpp"
+
+namespace scree {
+
+template <class Laws>
+class CpuContactKernels : public ContactKernels {
+ public:
+  explicit CpuContactKernels(Laws laws) : laws_(laws) {}
+
+  int history() const override { return ContactWalk<Laws, PackedRows>::Law::kHistory; }
+  void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
+              Real* loss_power) const override {
+    for_each(Serial{}, n, ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power});
+  }
+  Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, const VerletViews& state,
+                     Vec3* force) const override {
+    return max_over(
+        Serial{}, n,
+        VerletFinishItem<Laws, PackedRows>{{{in, laws_}, gravity, force, state.loss_power}, state});
+  }
+  Real verlet_advance(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
+                      const VerletViews& state) const override {
+    return max_over(Serial{}, n,
+                    VerletAdvanceItem<Laws, PackedRows>{{{in, laws_}, gravity, nullptr, nullptr}, state});
+  }
+  void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
+              const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
+    for_each(Serial{}, n,
+             ContactSystemItem<Laws, PackedRows>{{in, laws_, {start}}, gravity, weights, out, matrix});
+  }
+  void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const override {
+    for_each(Serial{}, n, SurfaceLoadItem<Laws>{in, laws_, loads});
+  }
+  void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
+                     const PlacedSurface* start_placed, SurfaceStep* steps) const override {
+    for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_placed, laws_, steps});
+  }
+  void body_loads(const ContactViews<PackedRows>& in, Index n, const Vec3* arm,
+                  BodyLoad* out) const override {
+    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows>{{in, laws_}, arm, out});
+  }
+  void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
+                  BodyStep* out) const override {
+    for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out});
+  }
+  void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
+                 Real (&sums)[kWallTerms]) const override {
+    reproducible_sums(n, WallContactItem<Laws, PackedRows>{{in, laws_}, choice}, sums, ranks);
+  }
+  void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
+    for_each(Serial{}, n,
+             ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});
+  }
+  void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const override {
+    with_contact_output(request, ContactWalk<Laws, PackedRows>{in, laws_},
+                        [&](const auto& item) { for_each(Serial{}, request.n, item); });
+  }
+  void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
+             Real* integrator_loss) const override {
+    for_each(Serial{}, n,
+             ContactBooksItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
+  }
+  void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
+               Leaver* leavers) const override {
+    for_each(Serial{}, n, LeaverEnergyItem<Laws, PackedRows>{{in, laws_}, box, leavers});
+  }
+  void departures(const ContactViews<PackedRows>& in, Vec3 gravity, const OpenBox& box, Index n,
+                  const StartViews& start) const override {
+    for_each(Serial{}, n, DepartureItem<Laws, PackedRows>{{in, laws_}, gravity, box, start});
+  }
+
+ private:
+  Laws laws_;
+};
+
+// With the table that the kernels of several laws refer to.
+template <class Law>
+class CpuTableKernels : public CpuContactKernels<LawTable<Law>> {
+ public:
+  CpuTableKernels(std::vector<Law> table, int materials)
+      : CpuContactKernels<LawTable<Law>>({table.data(), materials}), table_(std::move(table)) {}
+
+ private:
+  std::vector<Law> table_;
+};
+
+}  // namespace scree

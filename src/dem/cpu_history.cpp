@@ -1,0 +1,108 @@
+#include "dem/cpu_history.hpp"
+
+#include <array>
+
+namespace scree {
+
+std::int64_t CpuHistory::neighbor_key(const Listed& at, Vec3 p, Index slot) const {
+  const Index j = at.list.neighbors[slot];
+  return row_key(id_of(at.store.row_key[j]), box_.image_beside(p, xyz(at.store.position[j])));
+}
+
+std::int64_t CpuHistory::surface_key(const Listed& at, Vec3 p, Index entry) const {
+  const SurfaceRows& rows = at.list.surfaces;
+  const Index s = rows.surfaces[entry];
+  if (s < at.ground) return row_key(kFirstSurfaceId + s);
+  return row_key(kFirstSurfaceId + s,
+                 box_.image_beside(p, at.placed[s - at.ground].point, rows.images[entry]));
+}
+
+HistoryViews CpuHistory::views() {
+  if (!exists()) return {};
+  return {neighbors_.data(), surfaces_.data(), ahead_.data(), step_};
+}
+
+KeptContacts CpuHistory::contacts(const Listed& at) const {
+  if (!at_slots_) return kept_;
+  KeptContacts out;
+  out.numbers = numbers_;
+  const auto add_if_closed = [&](const std::vector<Vec4>& records, Index slot, const auto& key) {
+    const Vec4* const record = records.data() + first_record(slot);
+    if (record->w != step_) return;
+    std::array<Real, kMostNumbers> values;
+    for (int k = 0; k < numbers_; ++k) values[static_cast<std::size_t>(k)] = number_of(record, k);
+    out.add(key(), {values.data(), static_cast<std::size_t>(numbers_)});
+  };
+  const SurfaceRows& surfaces = at.list.surfaces;
+  for (Index i = 0; i < at.store.owned; ++i) {
+    const Vec3 p = xyz(at.store.position[i]);
+    for (Index k = at.list.offsets[i]; k < at.list.offsets[i + 1]; ++k)
+      add_if_closed(neighbors_, k, [&] { return neighbor_key(at, p, k); });
+    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
+      add_if_closed(surfaces_, entry, [&] { return surface_key(at, p, entry); });
+    out.end_row();
+  }
+  return out;
+}
+
+void CpuHistory::leave_slots(const Listed& at) {
+  if (!at_slots_) return;
+  kept_ = contacts(at);
+  at_slots_ = false;
+}
+
+void CpuHistory::put(std::vector<Vec4>& records, Index slot, std::int64_t contact) const {
+  Vec4* const to = records.data() + first_record(slot);
+  const std::span<const Real> values = kept_.values_of(contact);
+  for (int k = 0; k < numbers_; ++k) number_of(to, k) = values[static_cast<std::size_t>(k)];
+  to->w = step_;
+}
+
+// Both the row and what was kept are ordered by key: one pass over both.
+void CpuHistory::take_row(const Listed& at, Index i) {
+  std::int64_t k = kept_.offsets[static_cast<std::size_t>(i)];
+  const std::int64_t end = kept_.offsets[static_cast<std::size_t>(i) + 1];
+  const auto take = [&](std::vector<Vec4>& records, Index slot, const auto& key) {
+    if (k == end) return;
+    const std::int64_t wanted = key();
+    while (k < end && kept_.keys[static_cast<std::size_t>(k)] < wanted) ++k;
+    if (k < end && kept_.keys[static_cast<std::size_t>(k)] == wanted) put(records, slot, k);
+  };
+  const SurfaceRows& surfaces = at.list.surfaces;
+  const Vec3 p = xyz(at.store.position[i]);
+  for (Index slot = at.list.offsets[i]; slot < at.list.offsets[i + 1]; ++slot)
+    take(neighbors_, slot, [&] { return neighbor_key(at, p, slot); });
+  for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
+    take(surfaces_, entry, [&] { return surface_key(at, p, entry); });
+}
+
+void CpuHistory::take_slots(const Listed& at) {
+  if (!exists()) return;
+  neighbors_.assign(first_record(std::ssize(at.list.neighbors)), {});
+  surfaces_.assign(first_record(std::ssize(at.list.surfaces.surfaces)), {}), ahead_.resize(surfaces_.size());
+  for (Index i = 0; i < at.store.owned; ++i) take_row(at, i);
+  kept_ = no_contacts(numbers_, 0);
+  at_slots_ = true;
+}
+
+void CpuHistory::load(const KeptContacts& contacts, Index owned) {
+  if (!exists()) return;
+  kept_ = contacts.numbers == numbers_ ? contacts : no_contacts(numbers_, owned);
+  at_slots_ = false;
+}
+
+void CpuHistory::reorder(const std::vector<Index>& from) {
+  if (exists()) kept_ = kept_.rows(from);
+}
+
+void CpuHistory::migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& leaving,
+                         const std::vector<Index>& staying) {
+  if (!exists()) return;
+  std::vector<KeptContacts> to;
+  for (const std::vector<Index>& particles : leaving) to.push_back(kept_.rows(particles));
+  const KeptContacts arriving = deal_out(ranks, to);
+  reorder(staying);
+  for (std::int64_t i = 0; i < arriving.particles(); ++i) kept_.add_row(arriving, i);
+}
+
+}  // namespace scree

@@ -1,0 +1,65 @@
+// What the contacts of the serial backend's particles remember: at the slots of the list while there is one,
+// else kept by name.
+#pragma once
+
+#include <vector>
+
+#include "dem/history_slots.hpp"
+#include "dem/kept_contacts.hpp"
+#include "dem/neighbor_list.hpp"
+#include "dem/particle_store.hpp"
+#include "dem/surfaces.hpp"
+
+namespace scree {
+
+class CpuHistory {
+ public:
+  // numbers: per contact; 0: nothing below does anything.
+  CpuHistory(int numbers, const PeriodicBox& box) : numbers_(numbers), box_(box) {}
+
+  bool exists() const { return numbers_ > 0; }
+  bool at_slots() const { return at_slots_; }
+  // For walks on the list.
+  HistoryViews views();
+  // A walk has accepted a step.
+  void accepted() { step_ += 1; }
+
+  // The list as it is with the items where they are now, ghosts included.
+  struct Listed {
+    const ParticleStore& store;
+    const NeighborList& list;
+    std::span<const PlacedSurface> placed;  // the surfaces on bodies
+    Index ground;
+  };
+  // Of the owned particles, in their order.
+  KeptContacts contacts(const Listed& at) const;
+
+  // Before a list goes, and after another was built.
+  void leave_slots(const Listed& at);
+  void take_slots(const Listed& at);
+  // In between, like the particles: new ones, another order of them, some that go to other ranks.
+  void load(const KeptContacts& contacts, Index owned);
+  void reorder(const std::vector<Index>& from);
+  // leaving[r]: particles for rank r; `staying` keep their order, and what arrives comes behind. Collective.
+  void migrate(const Ranks& ranks, const std::vector<std::vector<Index>>& leaving,
+               const std::vector<Index>& staying);
+
+ private:
+  // Of what stands at a slot, or at an entry of the surfaces, of a particle at p.
+  std::int64_t neighbor_key(const Listed& at, Vec3 p, Index slot) const;
+  std::int64_t surface_key(const Listed& at, Vec3 p, Index entry) const;
+  void take_row(const Listed& at, Index i);
+  std::size_t first_record(std::int64_t slot) const {
+    return static_cast<std::size_t>(slot * records_of(numbers_));
+  }
+  void put(std::vector<Vec4>& records, Index slot, std::int64_t contact) const;
+
+  int numbers_;
+  PeriodicBox box_;
+  bool at_slots_ = false;
+  KeptContacts kept_;                               // of the owned particles, unless at the slots
+  std::vector<Vec4> neighbors_, surfaces_, ahead_;  // HistoryViews
+  Real step_ = 1;
+};
+
+}  // namespace scree

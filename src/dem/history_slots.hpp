@@ -1,0 +1,91 @@
+// Where contacts remember: records at the slots of a list, read by every walk and written by the items that
+// accept a step. One text for the CPU and CUDA.
+#pragma once
+
+#include <cstdint>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "partition/halo_plan.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+
+// What a contact remembers is one or two Vec4s, whole sectors of memory, so that contacts here and there in
+// the rows cost no more than their own. In w of the first: the number of the step that wrote them. What the
+// last step did not write is of a contact that has ended: nothing is ever cleared.
+inline constexpr int kMostNumbers = 7;  // that a law may remember of a contact
+SCREE_HD constexpr int records_of(int numbers) { return numbers == 0 ? 0 : numbers <= 3 ? 1 : 2; }
+
+// The k-th of the numbers.
+template <class Record>
+SCREE_HD auto& number_of(Record* records, int k) {
+  return k == 0   ? records[0].x
+         : k == 1 ? records[0].y
+         : k == 2 ? records[0].z
+         : k == 3 ? records[1].x
+         : k == 4 ? records[1].y
+         : k == 5 ? records[1].z
+                  : records[1].w;
+}
+
+// Pointers are null where nobody remembers.
+struct HistoryViews {
+  Vec4* neighbors = nullptr;  // [slots][records]
+  Vec4* surfaces = nullptr;   // [entries of the surfaces][records]
+  // Likewise: what contacts with surfaces on bodies, which are evaluated before the particles' walk, remember
+  // if the step is accepted. Null where they are only looked at.
+  Vec4* ahead = nullptr;
+  Real step = 0;  // number of the last accepted step, 1 or more
+
+  // What the contact at the slot remembers: what the law's read_history() makes of nothing but zeros where it
+  // was not closed at the last step.
+  template <class Law>
+  SCREE_HD auto read(const Vec4* records, std::int64_t slot) const {
+    constexpr int kRecords = records_of(Law::kHistory);
+    Vec4 at[2];
+    at[0] = records[slot * kRecords];
+    const bool closed = at[0].w == step;
+    if (kRecords > 1 && closed) at[1] = records[slot * kRecords + 1];
+    return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
+  }
+  template <class Law, class History>
+  SCREE_HD void write(Vec4* records, std::int64_t slot, const History& history) const {
+    constexpr int kRecords = records_of(Law::kHistory);
+    Vec4 at[2];
+    Law::write_history(history, [&](int k, Real value) { number_of(at, k) = value; });
+    at[0].w = step + 1;
+    for (int r = 0; r < kRecords; ++r) records[slot * kRecords + r] = at[r];
+  }
+  // The step is accepted: what was evaluated ahead holds.
+  template <class Law>
+  SCREE_HD void take_ahead(std::int64_t entry) const {
+    constexpr int kRecords = records_of(Law::kHistory);
+    for (int r = 0; r < kRecords; ++r) surfaces[entry * kRecords + r] = ahead[entry * kRecords + r];
+  }
+};
+
+// What a contact of a particle is called while there is no list: like a row_key, surfaces counted past all
+// particles. The image is the one that the partner has beside the particle where both are in the periodic
+// box, so that no name depends on when that was last seen to.
+inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48;
+SCREE_HD bool is_surface(std::int64_t contact_key) { return contact_key >= 27 * kFirstSurfaceId; }
+
+// Sides of the periodic box.
+struct PeriodicBox {
+  Vec3 min, period;  // [m]
+
+  SCREE_HD ImageCount periods_at(Vec3 p) const {
+    ImageCount count;
+    wrap(min, period, p, count);
+    return count;
+  }
+  // Number of the image of what lies at q and `image` periods on, beside p.
+  SCREE_HD std::int8_t image_beside(Vec3 p, Vec3 q, std::int8_t image = kNoShift) const {
+    const ImageCount a = periods_at(p), b = periods_at(q);
+    return static_cast<std::int8_t>(image + (b.x - a.x) + 3 * (b.y - a.y) + 9 * (b.z - a.z));
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,65 @@
+#include "dem/kept_contacts.hpp"
+
+#include <utility>
+
+namespace scree {
+
+void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {
+  const auto row = static_cast<std::size_t>(particle);
+  for (std::int64_t k = from.offsets[row]; k < from.offsets[row + 1]; ++k)
+    add(from.keys[static_cast<std::size_t>(k)], from.values_of(k));
+  end_row();
+}
+
+KeptContacts KeptContacts::rows(std::span<const Index> particles) const {
+  KeptContacts out;
+  out.numbers = numbers;
+  out.offsets.reserve(particles.size() + 1);
+  for (const Index particle : particles) out.add_row(*this, particle);
+  return out;
+}
+
+std::vector<std::int64_t> KeptContacts::counts() const {
+  std::vector<std::int64_t> counts;
+  counts.reserve(offsets.size());
+  for (std::int64_t i = 0; i < particles(); ++i) counts.push_back(contacts(i));
+  return counts;
+}
+
+void KeptContacts::set_counts(std::span<const std::int64_t> counts) {
+  offsets.assign(1, 0);
+  for (const std::int64_t count : counts) offsets.push_back(offsets.back() + count);
+}
+
+KeptContacts no_contacts(int numbers, std::int64_t particles) {
+  KeptContacts out;
+  out.numbers = numbers;
+  if (numbers > 0) out.offsets.assign(static_cast<std::size_t>(particles) + 1, 0);
+  return out;
+}
+
+KeptContacts deal_out(const Ranks& ranks, const std::vector<KeptContacts>& to) {
+  std::vector<std::vector<std::int64_t>> counts, keys;
+  std::vector<std::vector<Real>> values;
+  KeptContacts arriving;
+  for (const KeptContacts& part : to) {
+    arriving.numbers = part.numbers;
+    counts.push_back(part.counts()), keys.push_back(part.keys), values.push_back(part.values);
+  }
+  arriving.set_counts(ranks.deal_out(counts));
+  arriving.keys = ranks.deal_out(keys), arriving.values = ranks.deal_out(values);
+  return arriving;
+}
+
+KeptContacts in_order(const IdOrder& order, KeptContacts contacts) {
+  if (contacts.numbers == 0) return contacts;
+  const std::vector<std::int64_t> counts = contacts.counts();
+  std::vector<std::int64_t> of_values = counts;
+  for (std::int64_t& count : of_values) count *= contacts.numbers;
+  contacts.keys = order.apply(std::move(contacts.keys), counts);
+  contacts.values = order.apply(std::move(contacts.values), std::move(of_values));
+  contacts.set_counts(order.apply(counts));
+  return contacts;
+}
+
+}  // namespace scree

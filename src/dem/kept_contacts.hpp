@@ -1,0 +1,55 @@
+// What contacts remember while there is no list: on its way from one list to the next, to another rank, to a
+// file.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "partition/id_order.hpp"
+#include "partition/ranks.hpp"
+
+namespace scree {
+
+// The contacts that were closed at the last step, particle by particle; ghosts have none. The particles
+// themselves stand elsewhere, in the same order.
+struct KeptContacts {
+  int numbers = 0;                       // per contact; 0: nothing is remembered, and no particle has a row
+  std::vector<std::int64_t> offsets{0};  // [particles + 1] into the contacts
+  std::vector<std::int64_t> keys;        // [contacts], increasing in a row: the partner (history_slots.hpp)
+  std::vector<Real> values;              // [contacts][numbers]
+
+  std::int64_t particles() const { return std::ssize(offsets) - 1; }
+  std::int64_t contacts(std::int64_t particle) const {
+    return offsets[static_cast<std::size_t>(particle) + 1] - offsets[static_cast<std::size_t>(particle)];
+  }
+  std::span<const Real> values_of(std::int64_t contact) const {
+    const auto n = static_cast<std::size_t>(numbers);
+    return {values.data() + static_cast<std::size_t>(contact) * n, n};
+  }
+  // Per particle.
+  std::vector<std::int64_t> counts() const;
+  // A contact of the particle whose row is open, and the end of that row.
+  void add(std::int64_t key, std::span<const Real> of_contact) {
+    keys.push_back(key), values.insert(values.end(), of_contact.begin(), of_contact.end());
+  }
+  void end_row() { offsets.push_back(std::ssize(keys)); }
+  // Adds the row of a particle of another set.
+  void add_row(const KeptContacts& from, std::int64_t particle);
+  // The rows of these particles, in this order.
+  KeptContacts rows(std::span<const Index> particles) const;
+  // From counts(): the offsets.
+  void set_counts(std::span<const std::int64_t> counts);
+};
+
+// No particle of so many has a contact.
+KeptContacts no_contacts(int numbers, std::int64_t particles);
+
+// In the order of the ids, like the particles whose rows they are. Collective.
+KeptContacts in_order(const IdOrder& order, KeptContacts contacts);
+
+// Sends to[r] to rank r; the rows of what arrives follow each other in the order of the senders. Collective.
+KeptContacts deal_out(const Ranks& ranks, const std::vector<KeptContacts>& to);
+
+}  // namespace scree

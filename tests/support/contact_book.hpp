@@ -1,0 +1,145 @@
+// What contacts remember, found by brute force: beside a run, from nothing but where its particles and bodies
+// are after each step.
+#pragma once
+
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "dem/history_slots.hpp"
+#include "dem/kept_contacts.hpp"
+#include "dem/particle_store.hpp"
+#include "dem/surfaces.hpp"
+#include "support/bits.hpp"
+#include "support/remembering_law.hpp"
+
+namespace scree {
+
+template <int kNumbers>
+class ContactBook {
+ public:
+  using Law = RememberingLaw<kNumbers>;
+  using History = typename Law::History;
+
+  explicit ContactBook(const Model& model)
+      : model_(model), subdomain_(model.space), planes_(wall_planes(model)) {}
+
+  // A step has led here. records: of all particles, in the order of their ids.
+  void add_step(const std::vector<Particle>& records, const std::vector<BodyMotion>& motion) {
+    now_.clear();
+    for (const Particle& p : records) {
+      if (p.drifting) continue;
+      for (const Particle& q : records)
+        if (!q.drifting) add_particle(p, q);
+      for (std::size_t w = 0; w < planes_.size(); ++w)
+        add(p, kFirstSurfaceId + static_cast<GlobalId>(w), kNoShift, {}, wall_pair(place(p), planes_[w]));
+      add_bodies(p, motion);
+    }
+    for (const auto& [name, history] : before_)
+      if (!now_.count(name)) ++ended_;
+    std::swap(before_, now_);
+  }
+
+  // Of these particles; the contacts of all others are forgotten.
+  KeptContacts contacts(const std::vector<Particle>& records) {
+    KeptContacts out;
+    out.numbers = kNumbers;
+    std::map<Name, Entry> left;
+    std::set<GlobalId> here;
+    for (const Particle& p : records)
+      if (!p.drifting) here.insert(p.global_id);
+    for (const Particle& p : records) {
+      for (auto at = before_.lower_bound({p.global_id, 0, {}}); at != before_.end(); ++at) {
+        const auto& [id, partner, image] = at->first;
+        if (id != p.global_id) break;
+        if (here.count(id) == 0 || (partner < kFirstSurfaceId && here.count(partner) == 0)) continue;
+        std::array<Real, kNumbers> numbers;
+        Law::write_history(at->second.history,
+                           [&](int k, Real value) { numbers[static_cast<std::size_t>(k)] = value; });
+        out.add(at->second.key, numbers);
+        left.insert(*at);
+      }
+      out.end_row();
+    }
+    before_ = left;
+    return out;
+  }
+
+  // Contacts that have ended so far, and those that were seen with another image than when they began.
+  int ended() const { return ended_; }
+  int moved_on() const { return moved_on_; }
+
+ private:
+  // Particle, partner, and how many periods the partner is on, both unwrapped: the same while they touch.
+  using Name = std::tuple<GlobalId, GlobalId, std::array<int, 3>>;
+  struct Entry {
+    std::int64_t key;  // with the image that both have in the periodic box
+    History history;
+  };
+
+  static Vec4 place(const Particle& p) { return vec4(p.position, p.radius); }
+
+  void add_particle(const Particle& p, const Particle& q) {
+    for_each_shift(subdomain_.period(), [&](Vec3 shift, std::int8_t image) {
+      if (p.global_id == q.global_id && image == kNoShift) return;
+      const Vec3 r = p.position - (q.position + shift);
+      add(p, q.global_id, image, q.image, sphere_pair(r, p.radius + q.radius));
+    });
+  }
+
+  void add_bodies(const Particle& p, const std::vector<BodyMotion>& motion) {
+    GlobalId surface = kFirstSurfaceId + static_cast<GlobalId>(planes_.size());
+    for (std::size_t b = 0; b < motion.size(); ++b)
+      for (const Shape& shape : model_.bodies[b].shapes) {
+        ImageCount image;
+        const Vec3 at = subdomain_.wrap(
+            snap(point_motion(motion[b], shape.offset).position, subdomain_.snap_constant()), image);
+        for_each_shift(subdomain_.period(), [&](Vec3 shift, std::int8_t number) {
+          add(p, surface, number, image, sphere_pair(p.position - (at + shift), p.radius + shape.radius));
+        });
+        ++surface;
+      }
+  }
+
+  void add(const Particle& p, GlobalId partner, std::int8_t image, ImageCount q,
+           const ContactGeometry& pair) {
+    if (!(pair.overlap > 0)) return;
+    const bool wall =
+        partner >= kFirstSurfaceId && partner < kFirstSurfaceId + static_cast<GlobalId>(planes_.size());
+    const std::array<int, 3> periods = {image % 3 - 1 + p.image.x - q.x, image / 3 % 3 - 1 + p.image.y - q.y,
+                                        image / 9 - 1 + p.image.z - q.z};
+    const Name name{p.global_id, partner, wall ? std::array<int, 3>{} : periods};
+    Entry entry{row_key(partner, image), {}};
+    if (const auto old = before_.find(name); old != before_.end()) {
+      entry.history = old->second.history;
+      moved_on_ += entry.key != old->second.key;
+    }
+    Law::remember(pair.along(pair.overlap), entry.history);
+    now_[name] = entry;
+  }
+
+  const Model& model_;
+  Subdomain subdomain_;
+  std::vector<WallPlane> planes_;
+  std::map<Name, Entry> before_, now_;
+  int ended_ = 0, moved_on_ = 0;
+};
+
+// Where the two differ in a bit; "" if nowhere.
+inline std::string difference(const KeptContacts& a, const KeptContacts& b) {
+  if (a.numbers != b.numbers || a.offsets != b.offsets)
+    return "numbers of contacts: " + std::to_string(a.keys.size()) + " and " + std::to_string(b.keys.size());
+  for (std::int64_t i = 0; i < a.particles(); ++i)
+    for (std::int64_t k = a.offsets[static_cast<std::size_t>(i)];
+         k < a.offsets[static_cast<std::size_t>(i) + 1]; ++k) {
+      if (a.keys[static_cast<std::size_t>(k)] != b.keys[static_cast<std::size_t>(k)])
+        return "keys of particle " + std::to_string(i);
+      if (!same_bits(a.values_of(k), b.values_of(k))) return "values of particle " + std::to_string(i);
+    }
+  return "";
+}
+
+}  // namespace scree

@@ -1,0 +1,74 @@
+// What contacts remember: the same as a book kept by brute force, over lists, crossings of periodic sides and
+// particles that leave.
+#include "random_box.hpp"
+#include "support/catch.hpp"
+#include "support/contact_book.hpp"
+#include "support/particle_bits.hpp"
+#include "support/remembering_backend.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr int kNumbers = 7, kSteps = 300;
+constexpr Real kStep = 5e-4, kSkin = 0.03;
+
+Model moving_box(const BoxCase& c, int particles = 150) {
+  Model model = random_box(c, particles, 21);
+  model.integrator.particles = ParticleIntegrator::velocity_verlet;
+  model.contact.skin = kSkin;
+  for (KelvinVoigt& law : model.contact.laws) law.exponent = 1;
+  if (c.walls && c.periodic_axes > 0) {  // walls along the periodic axis alone have one place
+    model.walls.resize(1);
+    model.walls[0].normal = {0, 1, 0};
+  }
+  return model;
+}
+
+// The bodies go on at their velocity.
+void move_bodies(LoadedBox& box, Real h) {
+  for (BodyMotion& body : box.motion) body.position += h * body.velocity;
+}
+
+// The particles outside leave; the list is built anew.
+bool leave(LoadedBox& box) {
+  const std::vector<Leaver> leavers = box.backend->particles().outside();
+  if (leavers.empty()) return false;
+  box.backend->particles().take_out(leavers);
+  box.backend->list().build(kSkin, box.timers);
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("contacts remember what a book kept by brute force does") {
+  for (const BoxCase& c : kBoxes)
+    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+      CAPTURE(c.name, static_cast<int>(leaving));
+      Model model = moving_box(c);
+      model.space.leaving = leaving;
+      LoadedBox box(model, kSkin, make_remembering_backend<kNumbers>);
+      ContactBook<kNumbers> book(box.model);
+      RankParticles& particles = box.backend->particles();
+      std::string wrong;
+      std::size_t contacts = 0;
+      for (int step = 0; step < kSteps && wrong.empty(); ++step) {
+        verlet_steps(box, kStep, 1);
+        book.add_step(particles.records(), box.motion);
+        leave(box);
+        const std::vector<Particle> records = particles.records();
+        const KeptContacts expected = book.contacts(records);
+        contacts += expected.keys.size();
+        if (const std::string found = difference(particles.contacts(), expected); !found.empty())
+          wrong = "step " + std::to_string(step) + ": " + found;
+        move_bodies(box, kStep);
+      }
+      CHECK(wrong == "");
+      CHECK(contacts > 20 * kSteps);
+      CHECK(book.ended() > 50);
+      CHECK((book.moved_on() > 0) == (c.periodic_axes > 0));
+      CHECK(box.backend->list().builds() > 5);
+    }
+}
+
+}  // namespace scree
