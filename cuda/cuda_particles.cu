@@ -24,8 +24,8 @@ struct LeaverItem {
     if (in.drifting[i] || box.inside(xyz(x))) return;
     const Index slot = atomicAdd(count, 1);
     if (slot >= room) return;
-    const Real energy = energy_of_motion(x, in.velocity[i], in.image[i], gravity, period);
-    const Real shift = verlet_energy_shift(verlet_step, in.velocity[i].w, in.acceleration[i]);
+    const Real energy = energy_of_motion(in, i, gravity, period);
+    const Real shift = verlet_energy_shift(verlet_step, in, i);
     out[slot] = {id_of(in.row_key[i]),         i, xyz(x), false, energy, in.contact_loss[i],
                  in.integrator_loss[i] - shift};
   }

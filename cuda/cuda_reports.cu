@@ -46,17 +46,8 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   DeviceResults& results = items_.results;
   need_loads();
   queue_energies();
-  const LedgerItem item{now.position.data(),
-                        now.velocity.data(),
-                        now.acceleration.data(),
-                        now.image.data(),
-                        now.contact_loss.data(),
-                        now.integrator_loss.data(),
-                        elastic_.data(),
-                        pairs_.data(),
-                        items_.model.gravity,
-                        items_.subdomain.period(),
-                        verlet_step};
+  const LedgerItem item{views_of(items_.now), elastic_.data(),           pairs_.data(),
+                        items_.model.gravity, items_.subdomain.period(), verlet_step};
   items_.queue_sums(item, &Results::ledger);
   Index* drifting = results.at(&Results::index);
   require_cuda(cudaMemsetAsync(drifting, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");

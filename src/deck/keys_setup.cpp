@@ -150,7 +150,21 @@ const TableKeys& contact_keys() {
                "Of Hertz's law: speed after over speed before a head-on impact, the same at every speed; a "
                "body that particles meet counts as unmovable in it."),
        boolean("tension").otherwise("false").about(
-           "Whether the force may pull just before separation; false cuts it at zero.")},
+           "Whether the force may pull just before separation; false cuts it at zero."),
+       real("friction", "")
+           .at_least(0)
+           .left_out("contacts do not rub")
+           .about("Coulomb's coefficient of friction between particles, and of particles on walls. Where a "
+                  "pair has one particles rotate. So far with velocity-verlet, in double precision and "
+                  "without bodies that have shapes."),
+       real("tangential_stiffness", "N/m")
+           .above(0)
+           .left_out("2/7 of a linear stiffness; for Hertz's law Mindlin's, from the shear moduli")
+           .about("Of the spring that holds a contact until it slides."),
+       real("tangential_damping_ratio", "")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Of the dashpot beside that spring, over the critical damping of a slip.")},
       ""};
   static const TableKeys keys{
       "Contact laws and the pair search.",

@@ -30,7 +30,7 @@ struct BodyLoadOf {
   };
   template <class Law>
   SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
-    auto load = law.load(pair);
+    auto load = law.normal_load(pair);  // bodies slide on each other without friction
     load = {-load.force, load.loss, load.torque_j, load.torque_i};
     return {{true, load, EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
   }

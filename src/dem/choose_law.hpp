@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "model/model.hpp"
@@ -11,21 +12,34 @@
 
 namespace scree {
 
-// Calls use(laws) with the laws of all pairs of materials, Contact::laws as a std::vector<ContactLaw<...>>:
-// of the first of NormalLaws that accepts them all. Returns what use returns, the same type for every law.
+// The friction that goes with a normal law.
+template <class Normal>
+using SliderOf = std::conditional_t<std::is_same_v<Normal, HertzLaw>, MindlinSlider, LinearSlider>;
+
+// Of all pairs of materials, in the order of Contact::laws, which `Law` accepts.
+template <class Law>
+std::vector<Law> laws_of(const Contact& contact) {
+  std::vector<Law> laws;
+  for (std::size_t k = 0; k < contact.laws.size(); ++k) {
+    Law& law = laws.emplace_back();
+    law.normal = typename Law::Normal(contact.laws[k]);
+    if constexpr (Law::Tangential::acts) law.tangential = Law::Tangential::of(contact.friction[k]);
+  }
+  return laws;
+}
+
+// Calls use(laws) with the laws of all pairs of materials as a std::vector<ContactLaw<...>>: of the first of
+// NormalLaws that accepts them all, with friction where contacts rub. Returns what use returns, the same type
+// for every law.
 template <std::size_t kFirst = 0, class Use>
 auto with_contact_laws(const Contact& contact, const Use& use) {
-  using Law = std::tuple_element_t<kFirst, NormalLaws>;
+  using Normal = std::tuple_element_t<kFirst, NormalLaws>;
+  const bool accepts = std::all_of(contact.laws.begin(), contact.laws.end(), Normal::accepts);
   if constexpr (kFirst + 1 < std::tuple_size_v<NormalLaws>)
-    if (!std::all_of(contact.laws.begin(), contact.laws.end(), Law::accepts))
-      return with_contact_laws<kFirst + 1>(contact, use);
-  std::vector<ContactLaw<Law>> laws;
-  for (const KelvinVoigt& pair : contact.laws) {
-    if (!Law::accepts(pair))
-      throw std::logic_error("with_contact_laws: no law accepts all pairs of materials");
-    laws.push_back({Law(pair)});
-  }
-  return use(laws);
+    if (!accepts) return with_contact_laws<kFirst + 1>(contact, use);
+  if (!accepts) throw std::logic_error("with_contact_laws: no law accepts all pairs of materials");
+  if (contact.friction.empty()) return use(laws_of<ContactLaw<Normal>>(contact));
+  return use(laws_of<ContactLaw<Normal, SliderOf<Normal>>>(contact));
 }
 
 // How many numbers the law remembers of a contact.

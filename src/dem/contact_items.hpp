@@ -38,6 +38,7 @@ struct LoadOf {
 struct TotalForce {
   Vec3 force;       // [N], gravity included
   Real loss_power;  // the particle's share of its contacts' dissipation [W]
+  Vec3 torque;      // about its centre, of laws that move [N m]
 };
 
 // Total force on particle i at the current positions and velocities, and its share of the dissipation.
@@ -46,29 +47,32 @@ template <class Laws, class Rows, bool kAccepts = false>
 struct ContactForceItem {
   ContactWalk<Laws, Rows> walk;
   Vec3 gravity;
-  Vec3* force;       // [N]
-  Real* loss_power;  // [W]
+  Vec3* force;                 // [N]
+  Real* loss_power;            // [W]
+  Vec3* angular_acceleration;  // of laws that move [rad/s^2]
+
+  static constexpr bool kMoves = LawOf<Laws>::kMoves;
 
   SCREE_HD void operator()(Index i) const {
     const TotalForce sum = total(i);
     force[i] = sum.force;
     loss_power[i] = sum.loss_power;
+    if constexpr (kMoves) angular_acceleration[i] = reciprocal(walk.in.spin[i].w) * sum.torque;
   }
 
   SCREE_HD TotalForce total(Index i) const {
     const auto self = walk.self(i);
-    Vec3 f = self.u.w * gravity;
+    Vec3 f = self.u.w * gravity, torque;
     Real loss = 0;
-    walk.template neighbors<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) {
+    const auto add = [&](const auto& load, Index) {
       f += load.force;
       loss += load.loss;
-    });
+      if constexpr (kMoves) torque += load.torque_i;
+    };
+    walk.template neighbors<kAccepts>(self, LoadOf{}, add);
     loss *= kPairShare;
-    walk.template surfaces<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) {
-      f += load.force;
-      loss += load.loss;
-    });
-    return {f, loss};
+    walk.template surfaces<kAccepts>(self, LoadOf{}, add);
+    return {f, loss, torque};
   }
 };
 
@@ -84,6 +88,12 @@ struct EnergyOf {
   template <class Law>
   SCREE_HD Real operator()(const Law& law, const PairState& pair) const {
     return law.normal.of_pair(pair.size).energy(pair.geometry.overlap);
+  }
+  // With that of the springs that it remembers.
+  template <class Law, class History>
+  requires Law::kMoves SCREE_HD Real operator()(const Law& law, const PairState& pair,
+                                                const History& history) const {
+    return (*this)(law, pair) + law.spring_energy_of(pair, history);
   }
   template <class Views>
   SCREE_HD const Real* stored(const Views& in, Index entry) const {

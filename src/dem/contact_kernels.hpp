@@ -28,7 +28,7 @@ class ContactKernels {
   virtual ~ContactKernels() = default;
   virtual int history() const = 0;  // how many numbers the law remembers of a contact
   virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
-                      Real* loss_power) const = 0;
+                      Real* loss_power, Vec3* angular_acceleration) const = 0;
   // The square of the largest acceleration; a NaN if one is not finite.
   virtual Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
                              const VerletViews& state, Vec3* force) const = 0;

@@ -15,20 +15,24 @@ class CpuContactKernels : public ContactKernels {
   explicit CpuContactKernels(Laws laws) : laws_(laws) {}
 
   int history() const override { return ContactWalk<Laws, PackedRows>::Law::kHistory; }
-  void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
-              Real* loss_power) const override {
-    for_each(Serial{}, n, ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power});
+  void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
+              Vec3* angular_acceleration) const override {
+    for_each(
+        Serial{}, n,
+        ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
   }
   Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, const VerletViews& state,
                      Vec3* force) const override {
     return max_over(
         Serial{}, n,
-        VerletFinishItem<Laws, PackedRows>{{{in, laws_}, gravity, force, state.loss_power}, state});
+        VerletFinishItem<Laws, PackedRows>{
+            {step_walk(in, state.h), gravity, force, state.loss_power, state.angular_acceleration}, state});
   }
   Real verlet_advance(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
                       const VerletViews& state) const override {
     return max_over(Serial{}, n,
-                    VerletAdvanceItem<Laws, PackedRows>{{{in, laws_}, gravity, nullptr, nullptr}, state});
+                    VerletAdvanceItem<Laws, PackedRows>{
+                        {step_walk(in, state.h), gravity, nullptr, nullptr, nullptr}, state});
   }
   void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
               const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
@@ -77,6 +81,14 @@ class CpuContactKernels : public ContactKernels {
   }
 
  private:
+  // Over the step of h [s] that ends now.
+  ContactWalk<Laws, PackedRows> step_walk(const ContactViews<PackedRows>& in, Real h) const {
+    if constexpr (LawOf<Laws>::kMoves)
+      return {in, laws_, {h}};
+    else
+      return {in, laws_};
+  }
+
   Laws laws_;
 };
 

@@ -77,6 +77,7 @@ struct ContactViews {
   const SurfaceLoad* loads;  // per entry of the surfaces: what those on bodies do at this instant,
   const SurfaceStep* steps;  // and over an implicit step
   HistoryViews history{};
+  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
 };
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
@@ -138,6 +139,54 @@ struct AtInstant {
     return pair.geometry.overlap > 0;
   }
 };
+
+// The look of laws that move (ContactLaw::kMoves): over the step that ends at this instant. The velocities
+// and angular velocities are those of the middle of the step; the pair is a MovingPair.
+struct OverMotion {
+  Real h = 0;  // [s]; 0: at the instant alone, at which nothing has moved
+
+  struct Self {
+    Index i;
+    int material;
+    Vec4 p, u, spin;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {i, in.material[i], in.position[i], in.velocity[i], in.spin[i]};
+  }
+  template <class Rows>
+  SCREE_HD TouchTest test(const ContactViews<Rows>& in, const Self& self) const {
+    return {self.p, in.position};
+  }
+  template <class Rows>
+  SCREE_HD MovingPair pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    const Vec4 q = in.position[j], w = in.velocity[j];
+    const PairState state = AtInstant::pair({self.i, self.material, self.p, self.u}, q, w);
+    return moving(state, sphere_motion(state.geometry, h * state.velocity, partner(self.p, self.spin),
+                                       partner(q, in.spin[j]), h));
+  }
+  template <class Rows>
+  SCREE_HD MovingPair wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    const PairState state = AtInstant{}.wall(in, {self.i, self.material, self.p, self.u}, plane);
+    return moving(state, face_motion(state.geometry, plane.normal, h * state.velocity,
+                                     partner(self.p, self.spin), {}, h));
+  }
+  SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
+
+ private:
+  SCREE_HD static TurningPartner partner(Vec4 p, Vec4 spin) { return {xyz(spin), p.w, spin.w}; }
+  SCREE_HD MovingPair moving(const PairState& state, const ContactMotion& motion) const {
+    MovingPair pair{state, motion};
+    if (h == 0) pair.motion.h = kInfinity;  // no rate of what has not moved
+    return pair;
+  }
+};
+
+// The law that a choice of laws is about, and what it sees at an instant.
+template <class Laws>
+using LawOf = std::remove_cvref_t<decltype(std::declval<Laws>().get(0, 0))>;
+template <class Laws>
+using InstantLook = std::conditional_t<LawOf<Laws>::kMoves, OverMotion, AtInstant>;
 
 // Where a step started, all items, and whether contacts that open or close within it are resolved; else the
 // force at its end counts for the whole step, as in the paper.
@@ -212,14 +261,14 @@ struct OverStep {
 // Where the law remembers something, an `of` that wants to see it is called as of(law, pair, history), and
 // its result has as `history` what the contact will remember. Only the walk of an item that accepts a step,
 // with kAccepts, stores that; all others leave no trace.
-template <class Laws, class Rows, class Look = AtInstant>
+template <class Laws, class Rows, class Look = InstantLook<Laws>>
 struct ContactWalk {
   ContactViews<Rows> in;
   Laws laws;
   Look look{};
 
   using Self = typename Look::Self;
-  using Law = std::remove_cvref_t<decltype(std::declval<Laws>().get(0, 0))>;
+  using Law = LawOf<Laws>;
   SCREE_HD Self self(Index i) const { return look.self(in, i); }
 
   template <bool kAccepts = false, class Of, class Visit>

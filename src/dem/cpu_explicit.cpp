@@ -8,12 +8,14 @@
 namespace scree {
 
 CpuExplicitRun::CpuExplicitRun(CpuItems& items, CpuList& list, Real h) : items_(items), list_(list), h_(h) {
-  const VerletStartItem item{views_of(items.store.position, items.store.velocity)};
+  const VerletStartItem item{
+      views_of(items.store.position, items.store.velocity, items.store.angular_velocity)};
   step_bound_ = std::sqrt(max_over(Serial{}, items.layout.owned, item));
   share_step();
 }
 
-VerletViews CpuExplicitRun::views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity) {
+VerletViews CpuExplicitRun::views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity,
+                                     std::vector<Vec4>& spin) {
   ParticleStore& store = items_.store;
   return {position.data(),
           velocity.data(),
@@ -21,7 +23,10 @@ VerletViews CpuExplicitRun::views_of(std::vector<Vec4>& position, std::vector<Ve
           store.contact_loss.data(),
           store.loss_power.data(),
           h_,
-          items_.subdomain.snap_constant()};
+          items_.subdomain.snap_constant(),
+          store.rotates ? spin.data() : nullptr,
+          store.angular_acceleration.data(),
+          store.orientation.data()};
 }
 
 // What all ranks must know of the open step.
@@ -63,24 +68,26 @@ void CpuExplicitRun::shape_contacts() {
 void CpuExplicitRun::advance() {
   items_.find_loads();
   items_.side.book_losses(h_);
-  step_bound_ =
-      std::sqrt(items_.kernels->verlet_advance(items_.views(), items_.model.gravity, items_.layout.owned,
-                                               views_of(items_.spare_position, items_.spare_velocity)));
+  step_bound_ = std::sqrt(items_.kernels->verlet_advance(
+      items_.views(), items_.model.gravity, items_.layout.owned,
+      views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin)));
   items_.history.accepted();
   std::swap(items_.store.position, items_.spare_position);
   std::swap(items_.store.velocity, items_.spare_velocity);
+  std::swap(items_.store.angular_velocity, items_.spare_spin);
 }
 
 void CpuExplicitRun::finish() {
   items_.find_loads();
   items_.side.book_losses(h_);
   std::vector<Vec3>& force = items_.store.force;
-  const Real squared =
-      items_.kernels->verlet_finish(items_.views(), items_.model.gravity, items_.layout.owned,
-                                    views_of(items_.spare_position, items_.spare_velocity), force.data());
+  const Real squared = items_.kernels->verlet_finish(
+      items_.views(), items_.model.gravity, items_.layout.owned,
+      views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin), force.data());
   items_.history.accepted();
   if (!std::isfinite(items_.ranks.max(squared))) items_.report_not_finite(force);
   std::swap(items_.store.velocity, items_.spare_velocity);
+  std::swap(items_.store.angular_velocity, items_.spare_spin);
 }
 
 }  // namespace scree

@@ -15,7 +15,7 @@ class CpuExplicitRun : public ExplicitRun {
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
 
  private:
-  VerletViews views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity);
+  VerletViews views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity, std::vector<Vec4>& spin);
   void share_step();
   void advance();
   void finish();

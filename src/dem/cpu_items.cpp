@@ -20,10 +20,11 @@ CpuItems::CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKern
   store.rotates = of.rotates();
 }
 
-CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) {
+CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
+                                const std::vector<Vec4>& spin) {
   Views views =
       surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()}, list.surfaces);
-  views.history = history.views();
+  views.history = history.views(), views.spin = spin.data();
   return views;
 }
 

@@ -27,8 +27,9 @@ struct CpuItems {
   CpuItems(const CpuItems&) = delete;  // `side` knows the address of `subdomain`
   CpuItems& operator=(const CpuItems&) = delete;
 
-  Views views() { return views(store.position, store.velocity); }
-  Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity);
+  Views views() { return views(store.position, store.velocity, store.angular_velocity); }
+  Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
+              const std::vector<Vec4>& spin);
   void refresh_ghosts() {
     halo.update_motion(store.position, store.velocity, store.angular_velocity, layout.owned);
   }
@@ -59,7 +60,7 @@ struct CpuItems {
   NeighborList list;
   ItemLayout layout;
   // Explicit steps write here while neighbours are read. After a run: the velocities that the law saw last.
-  std::vector<Vec4> spare_position, spare_velocity;
+  std::vector<Vec4> spare_position, spare_velocity, spare_spin;
 };
 
 }  // namespace scree

@@ -137,6 +137,7 @@ void CpuList::build(Real skin, StageTimers& timers) {
   items_.history.take_slots(items_.listed());
   built_at_ = store.position;
   items_.spare_position = store.position, items_.spare_velocity = store.velocity;
+  items_.spare_spin = store.angular_velocity;
   bound_ = surface_bound_ = 0;
   current_ = true;
   ++builds_;

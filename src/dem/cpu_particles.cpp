@@ -38,7 +38,7 @@ void CpuParticles::initial_forces() {
   items_.refresh_ghosts();
   items_.find_loads();
   items_.kernels->forces(items_.views(), items_.model.gravity, items_.layout.owned, store.force.data(),
-                         store.loss_power.data());
+                         store.loss_power.data(), store.angular_acceleration.data());
   for_each(Serial{}, items_.layout.owned,
            StartAccelerationItem{store.force.data(), store.velocity.data(), store.acceleration.data()});
   if (is_verlet(items_.model))
@@ -48,17 +48,17 @@ void CpuParticles::initial_forces() {
 }
 
 std::vector<Leaver> CpuParticles::outside() {
-  const ParticleStore& store = items_.store;
+  ParticleStore& store = items_.store;
   const Model& model = items_.model;
   const Ranks& ranks = items_.ranks;
+  const ParticleViews views = views_of(store);
   std::vector<Leaver> leavers;
   if (!ranks.any(items_.any_outside())) return leavers;
   for (Index i = 0; i < store.owned; ++i) {
     const Vec3 p = xyz(store.position[i]);
     if (store.drifting[i] || items_.subdomain.inside(p)) continue;
-    const Real energy = energy_of_motion(store.position[i], store.velocity[i], store.image[i], model.gravity,
-                                         items_.subdomain.period());
-    const Real shift = verlet_energy_shift(verlet_step(model), store.velocity[i].w, store.acceleration[i]);
+    const Real energy = energy_of_motion(views, i, model.gravity, items_.subdomain.period());
+    const Real shift = verlet_energy_shift(verlet_step(model), views, i);
     leavers.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.beyond_wall(p), energy,
                        store.contact_loss[i], store.integrator_loss[i] - shift, 0, ranks.rank()});
   }
@@ -77,11 +77,12 @@ void CpuParticles::take_contacts_out() {
   const Model& model = items_.model;
   const bool verlet = is_verlet(model);
   items_.kernels->departures(
-      items_.views(store.position, verlet ? items_.spare_velocity : store.velocity), model.gravity,
-      items_.subdomain.box(), items_.layout.owned,
+      items_.views(store.position, verlet ? items_.spare_velocity : store.velocity,
+                   verlet ? items_.spare_spin : store.angular_velocity),
+      model.gravity, items_.subdomain.box(), items_.layout.owned,
       {store.force.data(), store.acceleration.data(), verlet ? store.loss_power.data() : nullptr,
        store.integrator_loss.data(), store.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
-       verlet_step(model)});
+       verlet_step(model), store.angular_acceleration.data()});
 }
 
 void CpuParticles::take_out(const std::vector<Leaver>& leavers) {

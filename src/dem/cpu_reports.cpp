@@ -9,24 +9,15 @@
 namespace scree {
 
 ParticleLedger CpuReports::ledger(Real verlet_step) {
-  const ParticleStore& store = items_.store;
+  ParticleStore& store = items_.store;
   const Index n = store.owned;
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
   need_loads();
   items_.kernels->energies(items_.views(), n, {elastic.data(), touching.data(), pairs.data()});
 
-  const LedgerItem item{store.position.data(),
-                        store.velocity.data(),
-                        store.acceleration.data(),
-                        store.image.data(),
-                        store.contact_loss.data(),
-                        store.integrator_loss.data(),
-                        elastic.data(),
-                        pairs.data(),
-                        items_.model.gravity,
-                        items_.subdomain.period(),
-                        verlet_step};
+  const LedgerItem item{views_of(store),           elastic.data(), pairs.data(), items_.model.gravity,
+                        items_.subdomain.period(), verlet_step};
   Real sums[kLedgerTerms];
   reproducible_sums(n, item, sums, items_.ranks);
   ParticleLedger out = make_particle_ledger(sums, items_.side);

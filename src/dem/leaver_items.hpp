@@ -53,8 +53,9 @@ struct StartViews {
   Real* loss_power;            // [W]; null for HHT
   Real* integrator_loss;       // [J]
   const std::uint8_t* drifting;
-  HhtCoefficients hht;  // hht_alpha = 0 for velocity-Verlet
-  Real verlet_step;     // of velocity-Verlet [s]
+  HhtCoefficients hht;                   // hht_alpha = 0 for velocity-Verlet
+  Real verlet_step;                      // of velocity-Verlet [s]
+  Vec3* angular_acceleration = nullptr;  // null where particles do not rotate [rad/s^2]
 };
 
 // Takes the contacts that end out of what the next step starts from: out of the start of a particle that
@@ -75,18 +76,28 @@ struct DepartureItem {
     const Real mass = self.u.w;
     if (leaves(i)) {
       begin_from(i, mass, mass * gravity);
+      if constexpr (LawOf<Laws>::kMoves) turn_from(i, self.spin.w, {});
       if (start.loss_power != nullptr) start.loss_power[i] = 0;
       return;
     }
-    Vec3 ended_force;
+    Vec3 ended_force, ended_torque;
     Real ended_loss = 0;
     Index ended = 0;
     walk.neighbors_if(self, leaves, LoadOf{}, [&](const auto& load, Index) {
-      ended_force += load.force, ended_loss += load.loss, ++ended;
+      ended_force += load.force, ended_torque += load.torque_i, ended_loss += load.loss, ++ended;
     });
     if (ended == 0) return;
     begin_from(i, mass, start.force[i] - ended_force);
+    if constexpr (LawOf<Laws>::kMoves)
+      turn_from(i, self.spin.w, start.angular_acceleration[i] - (1 / self.spin.w) * ended_torque);
     if (start.loss_power != nullptr) start.loss_power[i] -= kPairShare * ended_loss;
+  }
+
+  SCREE_HD void turn_from(Index i, Real inertia, Vec3 after) const {
+    const Vec3 before = start.angular_acceleration[i];
+    start.angular_acceleration[i] = after;
+    start.integrator_loss[i] += verlet_energy_shift(start.verlet_step, inertia, after) -
+                                verlet_energy_shift(start.verlet_step, inertia, before);
   }
 
   SCREE_HD void begin_from(Index i, Real mass, Vec3 force) const {

@@ -4,6 +4,7 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "dem/particle_fields.hpp"
 #include "partition/subdomain.hpp"
 #include "physics/energy.hpp"
 #include "physics/time_stepping.hpp"
@@ -15,15 +16,30 @@ SCREE_HD Vec3 unwrapped(Vec4 position, const ImageCount& image, Vec3 period) {
   return moved_by_periods(xyz(position), image, period);
 }
 
-// Kinetic and gravitational energy of a particle [J]; velocity: mass in w.
-SCREE_HD Real energy_of_motion(Vec4 position, Vec4 velocity, const ImageCount& image, Vec3 gravity,
-                               Vec3 period) {
-  return kinetic_energy(velocity.w, xyz(velocity)) +
-         gravitational_energy(velocity.w, gravity, unwrapped(position, image, period));
+// Of a particle's motion, its rotation included [J].
+SCREE_HD Real kinetic_energy(const ParticleViews& in, Index i) {
+  const Vec4 v = in.velocity[i];
+  const Real energy = kinetic_energy(v.w, xyz(v));
+  if (in.angular_velocity == nullptr) return energy;
+  const Vec4 w = in.angular_velocity[i];
+  return energy + rotational_energy(w.w, xyz(w));
+}
+
+// Kinetic and gravitational energy of a particle [J].
+SCREE_HD Real energy_of_motion(const ParticleViews& in, Index i, Vec3 gravity, Vec3 period) {
+  return kinetic_energy(in, i) +
+         gravitational_energy(in.velocity[i].w, gravity, unwrapped(in.position[i], in.image[i], period));
+}
+
+// Of a particle's motion, its rotation included [J].
+SCREE_HD Real verlet_energy_shift(Real h, const ParticleViews& in, Index i) {
+  const Real shift = verlet_energy_shift(h, in.velocity[i].w, in.acceleration[i]);
+  if (in.angular_velocity == nullptr) return shift;
+  return shift + verlet_energy_shift(h, in.angular_velocity[i].w, in.angular_acceleration[i]);
 }
 
 enum LedgerTerm {
-  kKinetic,                          // [J]
+  kKinetic,                          // of motion and rotation [J]
   kGravitational,                    // [J]
   kContactElastic,                   // [J]
   kContactLoss,                      // [J]
@@ -39,21 +55,20 @@ struct LedgerTerms {
 };
 
 struct LedgerItem {
-  const Vec4 *position, *velocity;
-  const Vec3* acceleration;
-  const ImageCount* image;
-  const Real *contact_loss, *integrator_loss;  // [J]
-  const Real *elastic, *pairs;                 // of ContactEnergyItem
+  ParticleViews in;
+  const Real *elastic, *pairs;  // of ContactEnergyItem
   Vec3 gravity, period;
   Real verlet_step;  // 0 for HHT, else the substep [s]
 
   SCREE_HD LedgerTerms operator()(Index i) const {
-    const Real mass = velocity[i].w;
-    const Vec3 v = xyz(velocity[i]), x = unwrapped(position[i], image[i], period);
-    const Vec3 p = mass * v, l = mass * cross(x, v);
-    return {{kinetic_energy(mass, v), gravitational_energy(mass, gravity, x), elastic[i], contact_loss[i],
-             integrator_loss[i] - verlet_energy_shift(verlet_step, mass, acceleration[i]), pairs[i], p.x, p.y,
-             p.z, l.x, l.y, l.z}};
+    const Real mass = in.velocity[i].w;
+    const Vec3 v = xyz(in.velocity[i]), x = unwrapped(in.position[i], in.image[i], period);
+    const Vec3 p = mass * v;
+    Vec3 l = mass * cross(x, v);
+    if (in.angular_velocity != nullptr) l += in.angular_velocity[i].w * xyz(in.angular_velocity[i]);
+    return {{kinetic_energy(in, i), gravitational_energy(mass, gravity, x), elastic[i], in.contact_loss[i],
+             in.integrator_loss[i] - verlet_energy_shift(verlet_step, in, i), pairs[i], p.x, p.y, p.z, l.x,
+             l.y, l.z}};
   }
 };
 

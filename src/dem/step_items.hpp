@@ -7,6 +7,7 @@
 #include "dem/contact_items.hpp"
 #include "dem/system_items.hpp"
 #include "partition/subdomain.hpp"
+#include "physics/orientation.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {
@@ -189,13 +190,37 @@ struct AcceptItem {
 
 // Particle state of a velocity-Verlet step as the items below read and write it.
 struct VerletViews {
-  Vec4 *position, *velocity;  // velocity within a step: what the contact law sees, v + h a_n
+  Vec4 *position, *velocity;  // velocity within a step: what the contact law sees, v + h a_n; or see `spin`
   Vec3* acceleration;
   Real* contact_loss;  // [J]
   Real* loss_power;    // at the last time level [W]
   Real h;              // [s]
   Vec3 snap;           // Subdomain::snap_constant
+  // Null unless particles rotate. Then what the law sees within a step, angular velocities and velocities, is
+  // of the middle of the step, and loss_power is that of a whole step, booked when it is closed.
+  Vec4* spin = nullptr;  // angular velocity, moment of inertia
+  Vec3* angular_acceleration = nullptr;
+  Quaternion* orientation = nullptr;
 };
+
+// The motion of a particle at an instant, as the next step starts from it.
+struct TurningState {
+  Vec4 position, velocity;
+  Vec3 acceleration;
+  Vec4 spin;
+  Vec3 angular_acceleration;
+};
+
+// verlet_open() of a particle that rotates.
+SCREE_HD Real verlet_open(const VerletViews& out, Index i, const TurningState& s) {
+  const Vec3 velocity = verlet_half_kick(out.h, xyz(s.velocity), s.acceleration);
+  const Vec3 spin = verlet_half_kick(out.h, xyz(s.spin), s.angular_acceleration);
+  const Vec3 dx = snap(out.h * velocity, out.snap);
+  out.position[i] = vec4(xyz(s.position) + dx, s.position.w);
+  out.velocity[i] = vec4(velocity, s.velocity.w), out.spin[i] = vec4(spin, s.spin.w);
+  out.orientation[i] = turned_by(out.orientation[i], spin, out.h);
+  return dot(dx, dx);
+}
 
 // Position at the end of a step and the velocity that the contact law sees there, to second order. Returns
 // the square of the displacement.
@@ -211,6 +236,10 @@ struct VerletStartItem {
   VerletViews state;
 
   SCREE_HD Real operator()(Index i) const {
+    if (state.spin != nullptr)
+      return verlet_open(state, i,
+                         {state.position[i], state.velocity[i], state.acceleration[i], state.spin[i],
+                          state.angular_acceleration[i]});
     if (state.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * state.loss_power[i];
     return verlet_open(state, i, state.position[i], state.velocity[i], state.acceleration[i]);
   }
@@ -228,9 +257,17 @@ struct VerletFinishItem {
     forces(i);
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * forces.force[i];
-    state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
+    if constexpr (LawOf<Laws>::kMoves) {
+      const Vec4 w = forces.walk.in.spin[i];
+      const Vec3 turning = forces.angular_acceleration[i];
+      state.velocity[i] = vec4(verlet_half_kick(state.h, xyz(v), a), v.w);
+      state.spin[i] = vec4(verlet_half_kick(state.h, xyz(w), turning), w.w);
+      state.contact_loss[i] += state.h * forces.loss_power[i];
+    } else {
+      state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
+      if (forces.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * forces.loss_power[i];
+    }
     state.acceleration[i] = a;
-    if (forces.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * forces.loss_power[i];
     return dot(a, a);
   }
 };
@@ -248,6 +285,7 @@ struct VerletAdvanceItem {
   SCREE_HD Real advance(Index i, const TotalForce& total) const {
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * total.force;
+    if constexpr (LawOf<Laws>::kMoves) return advance_turning(i, total, a);
     const Vec3 v1 = verlet_velocity(state.h, xyz(v), state.acceleration[i], a);
     state.acceleration[i] = a;
     if (total.loss_power != 0) {
@@ -255,6 +293,18 @@ struct VerletAdvanceItem {
       state.contact_loss[i] += state.h / 2 * total.loss_power;
     }
     return verlet_open(state, i, forces.walk.in.position[i], vec4(v1, v.w), a);
+  }
+
+ private:
+  SCREE_HD Real advance_turning(Index i, const TotalForce& total, Vec3 a) const {
+    const auto& in = forces.walk.in;
+    const Vec4 v = in.velocity[i], w = in.spin[i];
+    const Vec3 turning = reciprocal(w.w) * total.torque;
+    state.acceleration[i] = a, state.angular_acceleration[i] = turning;
+    if (total.loss_power != 0) state.contact_loss[i] += state.h * total.loss_power;
+    return verlet_open(state, i,
+                       {in.position[i], vec4(verlet_half_kick(state.h, xyz(v), a), v.w), a,
+                        vec4(verlet_half_kick(state.h, xyz(w), turning), w.w), turning});
   }
 };
 

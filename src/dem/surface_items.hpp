@@ -50,8 +50,8 @@ struct SurfaceLoadItem {
  private:
   template <class Law>
   SCREE_HD void find_load(const Law& law, const PairState& state, Index entry) const {
-    if constexpr (Law::kHistory == 0) {
-      loads[entry].load = law.load(state);
+    if constexpr (Law::kHistory == 0 || Law::kMoves) {
+      loads[entry].load = law.normal_load(state);
     } else {
       const HistoryViews& at = in.history;
       const auto load = LoadOf{}(law, state, at.template read<Law>(at.surfaces, entry));

@@ -36,6 +36,10 @@ struct WallLoadOf {
   SCREE_HD WallLoad operator()(const Law& law, const PairState& pair) const {
     return {law.load(pair).force, -pair.geometry.distance * pair.geometry.direction};
   }
+  template <class Law, class Pair, class History>
+  SCREE_HD WallLoad operator()(const Law& law, const Pair& pair, const History& old) const {
+    return {law.load(pair, old).load.force, -pair.geometry.distance * pair.geometry.direction};
+  }
   // Bodies book what they do to walls themselves.
   template <class Views>
   SCREE_HD const WallLoad* stored(const Views&, Index) const {

@@ -74,6 +74,62 @@ KelvinVoigt build_law(const DeckTable& deck, const DeckTable& table, const Model
   return hertz_law(table, model, moduli, material);
 }
 
+// G* of two materials with a Young's modulus [Pa].
+Real shear_modulus(const DeckTable& a, const DeckTable& b) {
+  return effective_shear_modulus(a.real("young_modulus"), a.real("poisson_ratio"), b.real("young_modulus"),
+                                 b.real("poisson_ratio"));
+}
+
+Friction build_friction(const DeckTable& deck, const DeckTable& table, const KelvinVoigt& law,
+                        const int (&material)[2]) {
+  if (!table.has("friction")) {
+    if (table.has("tangential_stiffness"))
+      table.fail("tangential_stiffness", "needs friction beside it: without, contacts do not rub");
+    if (table.real("tangential_damping_ratio") > 0)
+      table.fail("tangential_damping_ratio", "needs friction beside it: without, contacts do not rub");
+    return {};
+  }
+  Friction friction{.friction = table.real("friction"),
+                    .damping_ratio = table.real("tangential_damping_ratio")};
+  if (law.effective_modulus > 0) {
+    if (table.has("tangential_stiffness"))
+      table.fail("tangential_stiffness",
+                 "must be left out for Hertz's law: Mindlin's follows from the moduli");
+    const std::vector<DeckTable>& materials = deck.tables("materials");
+    friction.shear_modulus = shear_modulus(materials[static_cast<std::size_t>(material[0])],
+                                           materials[static_cast<std::size_t>(material[1])]);
+  } else if (table.has("tangential_stiffness")) {
+    friction.stiffness = table.real("tangential_stiffness");
+  } else if (law.exponent == 1) {
+    friction.stiffness = Real(2) / 7 * law.normal_stiffness;
+  } else {
+    table.fail("tangential_stiffness", "missing; it follows from the stiffness only where exponent = 1");
+  }
+  return friction;
+}
+
+// Where contacts rub; what that does not go with yet.
+void check_friction(const DeckTable& deck, const Model& model) {
+  const DeckTable& integrator = deck.table("integrator");
+  for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
+    if (!pair.has("friction")) continue;
+    if (model.integrator.particles != ParticleIntegrator::velocity_verlet)
+      pair.fail("friction",
+                "needs integrator.particles = \"velocity-verlet\": implicit steps have no friction yet");
+    if (model.integrator.precision == Precision::mixed)
+      integrator.fail("precision", "must be \"double\" where a pair has friction");
+    for (const Body& body : model.bodies)
+      if (!body.shapes.empty())
+        pair.fail(
+            "friction",
+            fmt::format("particles do not rub against bodies yet, and body \"{}\" has shapes", body.name));
+  }
+  if (model.rotates()) return;
+  for (const DeckTable& group : deck.tables("particles"))
+    if (!group.reals("angular_velocity").empty())
+      group.fail("angular_velocity", "no particle rotates: no pair in contact.pairs has friction");
+}
+
 // A run has one form of law.
 void check_mixing(const DeckTable& table, const Contact& contact, const KelvinVoigt& law) {
   for (const KelvinVoigt& other : contact.laws)
@@ -98,12 +154,15 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   }
   const KelvinVoigt law = build_law(deck, table, model, material);
   check_mixing(table, contact, law);
+  const Friction friction = build_friction(deck, table, law, material);
+  if (table.has("friction")) contact.friction.resize(contact.laws.size());
   for (int side = 0; side < 2; ++side) {
     const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
     if (given[slot] && (side == 0 || material[0] != material[1])) {
       table.fail("materials", "repeated; every pair of materials must be given once");
     }
     contact.laws[slot] = law;
+    if (table.has("friction")) contact.friction[slot] = friction;
     given[slot] = true;
   }
 }
@@ -170,6 +229,7 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
   contact.skin = table.has("skin") ? table.real("skin") : standard;
   check_periods(deck, model, largest);
+  check_friction(deck, model);
 }
 
 }  // namespace scree

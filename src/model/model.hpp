@@ -37,9 +37,9 @@ struct Wall {
 // One law per unordered pair of materials.
 struct Contact {
   std::vector<std::string> material_names;
-  std::vector<KelvinVoigt> laws;       // [i * materials + j], symmetric
-  std::vector<LinearSlider> friction;  // likewise; empty: no contact rubs
-  Real skin = 0;                       // neighbour list reaches this far past touching [m]
+  std::vector<KelvinVoigt> laws;   // [i * materials + j], symmetric
+  std::vector<Friction> friction;  // likewise; empty: no contact rubs
+  Real skin = 0;                   // neighbour list reaches this far past touching [m]
   bool connected_bodies_touch = false;
 
   int materials() const { return static_cast<int>(material_names.size()); }

@@ -59,6 +59,7 @@ struct ContactOutcome {
 template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw = FreeRolling>
 struct ContactLaw {
   using Normal = NormalLaw;
+  using Tangential = TangentialLaw;
   NormalLaw normal;
   TangentialLaw tangential{};
   RollingLaw rolling{};
@@ -72,6 +73,11 @@ struct ContactLaw {
   template <class T, class Vector>
   SCREE_HD ContactLoadOf<T, Vector> load(const PairStateOf<T, Vector>& pair) const {
     static_assert(!kMoves);
+    return normal_load(pair);
+  }
+  // Of its normal law alone.
+  template <class T, class Vector>
+  SCREE_HD ContactLoadOf<T, Vector> normal_load(const PairStateOf<T, Vector>& pair) const {
     const auto law = normal.template as<T>().of_pair(pair.size);
     const ContactForceOf<T> f = contact_force(law, pair.geometry.overlap, pair.geometry.rate(pair.velocity));
     return {pair.geometry.along(f.force), f.loss, {}, {}};

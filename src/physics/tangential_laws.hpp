@@ -11,6 +11,14 @@
 
 namespace scree {
 
+// What a deck says of how the contacts of a pair of materials rub.
+struct Friction {
+  Real friction = 0;       // mu [-]
+  Real stiffness = 0;      // k_t of LinearSlider [N/m]
+  Real shear_modulus = 0;  // G* of MindlinSlider [Pa]
+  Real damping_ratio = 0;  // zeta of the slip's dashpot [-]
+};
+
 // Every law below has
 //   acts, kHistory                 whether there is anything to evaluate; how many numbers it remembers
 //   stiffness_at(radius)           of the spring, from the radius of the circle of contact [N/m]
@@ -52,6 +60,7 @@ struct LinearSlider {
   Real friction = 0;       // mu [-]
   Real damping_ratio = 0;  // zeta [-]
 
+  static LinearSlider of(const Friction& p) { return {p.stiffness, p.friction, p.damping_ratio}; }
   SCREE_HD Real stiffness_at(Real) const { return stiffness; }
   SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
                                const NormalContact& normal) const {
@@ -76,6 +85,7 @@ struct MindlinSlider {
   Real friction = 0;       // mu [-]
   Real damping_ratio = 0;  // zeta [-]
 
+  static MindlinSlider of(const Friction& p) { return {p.shear_modulus, p.friction, p.damping_ratio}; }
   SCREE_HD Real stiffness_at(Real radius) const { return 8 * shear_modulus * radius; }
   SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
                                const NormalContact& normal) const {

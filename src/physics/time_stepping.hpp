@@ -88,6 +88,10 @@ SCREE_HD Vec3 verlet_acceleration(Real h, Vec3 predicted, Vec3 middle) {
   return (2 / h) * (predicted - middle);
 }
 
+// Half a step's change of the velocity, or of the angular velocity: to the middle of the step from its start,
+// and to its end from the middle.
+SCREE_HD Vec3 verlet_half_kick(Real h, Vec3 v, Vec3 a) { return v + (h / 2) * a; }
+
 // So many of these steps under a constant acceleration: the middle velocity after them, and the displacement.
 SCREE_HD Vec3 verlet_middle_after(Real steps, Real h, Vec3 middle, Vec3 a) {
   return middle + (steps * h) * a;

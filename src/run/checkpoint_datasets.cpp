@@ -59,8 +59,8 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
     values->resize(3 * bodies);
   sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
   sizes.bodies.wrench.resize(bodies);
-  // What contacts remember may be there or not: no history is none.
-  sizes.contacts.numbers = numbers_in(checkpoint);
+  // What contacts remember may be there or not, and so may rotation: no history is none.
+  sizes.contacts.numbers = numbers_in(checkpoint), sizes.rotates = rotates(checkpoint);
   Checkpoint expected = pack(sizes);
   for (const std::string& name : texts) expected.texts[name] = "";
   check_group(checkpoint.path, "/reals", checkpoint.reals, expected.reals);

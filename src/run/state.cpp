@@ -219,10 +219,6 @@ void unpack_field(const Checkpoint& in, const std::string& name, T Particle::*me
   }
 }
 
-bool rotates(const Checkpoint& in) {
-  return in.real_rows.contains(dataset_name({"angular_velocity", "", "", kRotation}));
-}
-
 std::vector<Particle> unpack_particles(const Checkpoint& in) {
   const CheckpointRows<std::int64_t>& ids = in.row_array<std::int64_t>("particles/global_id");
   std::vector<Particle> particles(static_cast<std::size_t>(ids.count));
@@ -233,6 +229,10 @@ std::vector<Particle> unpack_particles(const Checkpoint& in) {
 }
 
 }  // namespace
+
+bool rotates(const Checkpoint& in) {
+  return in.real_rows.contains(dataset_name({"angular_velocity", "", "", kRotation}));
+}
 
 Checkpoint pack(const State& state) {
   Checkpoint out;
