@@ -28,9 +28,10 @@ using PrunedViews = ContactViews<PrunedRows<0>>;
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
   const PrunedRows<0>& r = in.rows;
-  return {in.position,        in.velocity, in.material, {r.rows, r.counts, r.neighbors, use, margin},
-          in.surface_offsets, in.surfaces, in.planes,   in.ground,
-          in.loads,           in.steps};
+  return {
+      in.position,        in.velocity, in.material, {r.rows, r.counts, r.neighbors, use, margin, r.places},
+      in.surface_offsets, in.surfaces, in.planes,   in.ground,
+      in.loads,           in.steps,    in.history};
 }
 
 // Force, Newton matrix and residual of the particles [first, end).
@@ -139,6 +140,7 @@ struct VerletRequest {
   OpenBox box;
   const std::uint8_t* drifting;
   VerletControl* control;
+  const Real* first_step;  // HistoryViews::step when the run began; null where nothing is remembered
 };
 
 // The same in mixed precision. in.position: the double state, as it was converted.
@@ -153,6 +155,7 @@ struct MixedRequest {
   OpenBox box;
   const std::uint8_t* drifting;
   VerletControl* control;
+  const Real* first_step;
 };
 
 // Entries of one surface on a body, by_surface[first ... end - 1]: what a thread block evaluates and sums up.
@@ -174,6 +177,7 @@ struct SurfaceStart {
 class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
+  virtual int history() const = 0;  // how many numbers the law remembers of a contact
   virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power) const = 0;
   virtual void system(Device device, const SystemRequest& request) const = 0;

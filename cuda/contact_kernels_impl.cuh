@@ -55,6 +55,14 @@ __global__ void __launch_bounds__(kSystemThreads)
   block_max(norms.stiffening, &r.largest->stiffening);
 }
 
+// With the number of the step before the open one, for what contacts remember.
+template <class Laws, class Views, class Request>
+__device__ Views at_open_step(Views views, const Request& r) {
+  if constexpr (ContactWalk<Laws, decltype(views.rows)>::Law::kHistory > 0)
+    views.history.step = *r.first_step + r.control->closed;
+  return views;
+}
+
 // Called by the last block of a step.
 __device__ inline void close_step(VerletControl& c) {
   const Real largest = __uint_as_float(c.largest);
@@ -131,7 +139,10 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   Vec3* const acceleration = stage.load(r.state.acceleration);
   VerletAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
-      {{views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), laws}, r.gravity, nullptr, nullptr},
+      {{at_open_step<Laws>(views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), r), laws},
+       r.gravity,
+       nullptr,
+       nullptr},
       r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
   item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
@@ -165,7 +176,7 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
   Real d_squared = 0;
   if (i < r.rows.end) {
     const MixedAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
-        views_for<kAtOnce>(r.in, r.control->rows, r.control->margin),
+        at_open_step<Laws>(views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), r),
         laws,
         r.gravity,
         r.state,
@@ -191,7 +202,11 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
   Real a_squared = 0;
   if (i < r.rows.end) {
     VerletFinishItem<Laws, PrunedRows<0>> item{
-        {{views_for<0>(r.in, RowUse::all, 0), laws}, r.gravity, r.force, r.state.loss_power}, r.state};
+        {{at_open_step<Laws>(views_for<0>(r.in, RowUse::all, 0), r), laws},
+         r.gravity,
+         r.force,
+         r.state.loss_power},
+        r.state};
     item.forces.walk.in.position = r.position[p], item.forces.walk.in.velocity = r.velocity[v];
     item.state.position = r.position[p], item.state.velocity = r.velocity[1 - v];
     a_squared = item(i);
@@ -241,6 +256,7 @@ class ContactKernelsOf : public DeviceContactKernels {
     prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
   }
 
+  int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
   void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
               Real* loss_power) const override {
     for_each(device, n, ContactForceItem<Laws, SlicedRows>{{in, laws_}, gravity, force, loss_power});

@@ -3,8 +3,8 @@
 
 namespace scree {
 
-CudaBackend::CudaBackend(const Model& model, const Ranks& ranks)
-    : items_(model, ranks, idle_work_),
+CudaBackend::CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr<DeviceContactKernels> law)
+    : items_(model, ranks, idle_work_, std::move(law)),
       bodies_(items_),
       list_(items_, bodies_, implicit_arrays_),
       particles_(items_, bodies_, list_),

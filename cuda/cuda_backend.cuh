@@ -15,7 +15,9 @@ namespace scree {
 
 class CudaBackend : public Backend {
  public:
-  CudaBackend(const Model& model, const Ranks& ranks);
+  CudaBackend(const Model& model, const Ranks& ranks)
+      : CudaBackend(model, ranks, make_device_contact_kernels(model.contact)) {}
+  CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr<DeviceContactKernels> law);
 
   std::string description() const override;
   RankParticles& particles() override { return particles_; }

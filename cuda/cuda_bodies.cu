@@ -15,7 +15,7 @@ void CudaBodies::find_loads() {
   if (!have_surfaces()) return;
   const Device on = items_.device();
   items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, items_.now.position.data(),
-                             items_.now.velocity.data());
+                             items_.now.velocity.data(), items_.history.views());
   wait_for(items_.stream);
   side_.take_loads(items_.surfaces.load_sums());
 }
@@ -36,7 +36,8 @@ void CudaBodies::queue_loads(const Vec4* position, const Vec4* velocity, const E
   const Device beside{stream_};
   items_.surfaces.place(beside, side_.placed());
   ready.hold(stream_);
-  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_step, position, velocity);
+  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_step, position, velocity,
+                             items_.history.views());
   loads_found_.record(stream_);
 }
 
@@ -49,7 +50,8 @@ void CudaBodies::find_loads_beside(const Vec4* position, const Vec4* velocity) {
   if (!have_surfaces()) return;
   const Device beside{stream_};
   items_.surfaces.place(beside, side_.placed());
-  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, position, velocity);
+  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, position, velocity,
+                             items_.history.views());
   take_loads();
 }
 

@@ -57,6 +57,7 @@ void RunControl::start(const VerletRequest& step) {
   c.last = kEndless, c.substeps = items_.model.integrator.substeps, c.alone = items_.ranks.alone();
   copy_async(on_device(), &c, 1, items_.stream);
   known_list_ = list_.builds();
+  items_.history.begin_run();
   VerletViews state = step.state;
   state.position = items_.now.position.data(), state.velocity = items_.now.velocity.data();
   Real* largest = items_.results.at(&Results::largest);
@@ -73,6 +74,7 @@ const VerletControl& RunControl::wait() {
   const VerletControl& c = items_.results.fetch(&Results::control);
   items_.lane.clock.read(items_.balance.halo);
   parity_[0] = c.parity[0], parity_[1] = c.parity[1];
+  items_.history.closed(c.closed);
   list_.set_bound(c.bound);
   return c;
 }

@@ -37,6 +37,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     closed_step_ = {control_.open_position(), control_.open_velocity()};
     control_.turn();
     ++closed_;
+    items_.history.closed(closed_);
     return true;
   }
 }

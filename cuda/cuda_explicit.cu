@@ -89,6 +89,7 @@ void CudaExplicitRun::finish() {
   items_.lane.halo.update_motion(items_.device(), control_.open_position(), control_.open_velocity(),
                                  items_.owned);
   items_.kernels->verlet_finish(items_.device(), r, items_.results.at(&Results::largest));
+  items_.history.accepted();
   if (!std::isfinite(items_.ranks.max(items_.results.fetch(&Results::largest))))
     items_.report_not_finite(now.force.data());
   if (control_.position_parity() == 1) std::swap(now.position, other.position);

@@ -10,25 +10,31 @@ struct IsNotFinite {
 
 }  // namespace
 
-CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void()>& work)
+CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void()>& work,
+                     std::unique_ptr<DeviceContactKernels> law)
     : model(of),
       ranks(on),
       subdomain(of.space),
       hht(hht_coefficients(of.integrator.hht_alpha)),
       idle_work(work),
-      kernels(make_device_contact_kernels(of.contact)),
+      kernels(std::move(law)),
       surfaces(wall_planes(of), SurfaceSet(of).on_bodies(), subdomain.period(), stream),
       lane(on, of.parallel.transport),
+      list(kernels->history() > 0),
+      history(kernels->history(), {of.space.min, subdomain.period()}, stream),
       results(on, stream) {}
 
-DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity) const {
-  return surfaces.views(position, velocity, now.material.data(), list.rows());
+DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity) {
+  DeviceViews views = surfaces.views(position, velocity, now.material.data(), list.rows());
+  views.history = history.views();
+  return views;
 }
 
 void CudaItems::reorder(const Index* order, Index n) {
   const auto size = static_cast<std::size_t>(n);
   other.grow(std::max(size, now.position.size()), size, 0, stream);
   for_each(device(), n, ReorderItem{views_of(now), views_of(other), order});
+  history.reorder(order, n);
   std::swap(now, other);
   owned = n;
 }

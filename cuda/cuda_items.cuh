@@ -7,6 +7,7 @@
 #include "contact_kernels.cuh"
 #include "cuda_results.cuh"
 #include "device_halo.cuh"
+#include "device_history.cuh"
 #include "device_list.cuh"
 #include "device_surfaces.cuh"
 #include "for_each.cuh"
@@ -31,13 +32,18 @@ struct HaloLane {
 
 struct CudaItems {
   // idle_work: Backend's.
-  CudaItems(const Model& of, const Ranks& on, const std::function<void()>& idle_work);
+  CudaItems(const Model& of, const Ranks& on, const std::function<void()>& idle_work,
+            std::unique_ptr<DeviceContactKernels> law);
   CudaItems(const CudaItems&) = delete;
   CudaItems& operator=(const CudaItems&) = delete;
 
   Device device() const { return {stream}; }
-  DeviceViews views() const { return views(now.position.data(), now.velocity.data()); }
-  DeviceViews views(const Vec4* position, const Vec4* velocity) const;
+  DeviceViews views() { return views(now.position.data(), now.velocity.data()); }
+  DeviceViews views(const Vec4* position, const Vec4* velocity);
+  // For `history`, while there is a list.
+  DeviceHistory::Listed listed() const {
+    return {now.position.data(), now.row_key.data(), owned, list, surfaces};
+  }
   void idle() const {
     if (idle_work) idle_work();
   }
@@ -81,6 +87,7 @@ struct CudaItems {
   Index interior = 0;  // the first so many particles, whole blocks of them, meet no ghosts and are none
   HaloLane lane;
   DeviceList list;
+  DeviceHistory history;
   LoadBalance balance;
   DeviceResults results;
   DeviceArray<unsigned char> space;  // of library calls

@@ -76,6 +76,14 @@ void CudaList::settle() {
   if (items_.open_run != nullptr) items_.open_run->settle();
 }
 
+// With ghosts and surfaces where they are now: it is the places that name contacts.
+void CudaList::leave_slots() {
+  if (!items_.history.at_slots()) return;
+  items_.refresh_ghosts();
+  bodies_.put();
+  items_.ranks.together([&] { items_.history.leave_slots(items_.listed()); });
+}
+
 void CudaList::place_bodies(std::span<const BodyMotion> motion) {
   bodies_.side().set_motion(motion);
   if (!current_) return;
@@ -195,6 +203,7 @@ void CudaList::find_rows(Real skin) {
   built_at_.resize(items);
   copy_async(built_at_.data(), items_.now.position.data(), items, items_.stream);
   owners_.note_rows();
+  items_.history.take_slots(items_.listed());
   if (items_.model.integrator.particles == ParticleIntegrator::hht)
     step_arrays_.resize(items_);
   else
@@ -205,6 +214,7 @@ void CudaList::find_rows(Real skin) {
 // all ranks then fail, and can write their last good state.
 void CudaList::build(Real skin, StageTimers& timers) {
   settle();
+  leave_slots();
   current_ = false;
   std::int64_t particles = 0;
   {

@@ -40,6 +40,7 @@ class CudaList : public RankList {
  private:
   // Parts of build, in their order.
   void settle();
+  void leave_slots();
   void wrap_positions();
   void sort_cells(Real skin, std::int64_t particles);
   void lay_out_items(Real skin);

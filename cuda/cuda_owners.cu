@@ -71,9 +71,17 @@ void CudaOwners::migrate() {
   for (Index part = 0; part < parts; ++part) {
     const Index first = std::min(part * kAtOnce, count), n = std::min(kAtOnce, count - first);
     std::vector<std::vector<Particle>> to(static_cast<std::size_t>(items_.ranks.size()));
-    for (const Particle& p : pack_migrants(leaving + first, n))
-      to[static_cast<std::size_t>(decomposition_.owner(p.position))].push_back(p);
+    const KeptContacts contacts = items_.history.rows(leaving + first, n);
+    std::vector<KeptContacts> contacts_to(to.size(), no_contacts(contacts.numbers, 0));
+    std::int64_t k = 0;
+    for (const Particle& p : pack_migrants(leaving + first, n)) {
+      const auto owner = static_cast<std::size_t>(decomposition_.owner(p.position));
+      to[owner].push_back(p);
+      if (items_.history.exists()) contacts_to[owner].add_row(contacts, k++);
+    }
+    const Index before = items_.owned;
     add_migrants(items_.ranks.deal_out(to));
+    if (items_.history.exists()) items_.history.append(deal_out(items_.ranks, contacts_to), before);
   }
 }
 

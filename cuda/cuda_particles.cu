@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cub/device/device_select.cuh>
+#include <numeric>
 
 #include "cuda_particles.cuh"
 #include "dem/device.hpp"
@@ -76,6 +77,7 @@ void CudaParticles::load(const std::vector<Particle>& records, const ShapeLosses
     for_each(items_.device(), n, ArrivalItem{records_.data(), views_of(items_.now), first});
   }
   wait_for(stream);
+  items_.history.load({}, items_.owned);
   list_.outdate();
   // records() must work where no memory is left, and a kernel takes some when it is launched first.
   for_each(items_.device(), std::min<Index>(items_.owned, 1), record_item(0));
@@ -97,6 +99,17 @@ std::vector<Particle> CudaParticles::records() {
   wait_for(items_.stream);
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.global_id < b.global_id; });
   return out;
+}
+
+KeptContacts CudaParticles::contacts() {
+  if (!items_.history.exists()) return {};
+  std::vector<std::int64_t> key(static_cast<std::size_t>(items_.owned));
+  copy_async(key.data(), items_.now.row_key.data(), key.size(), items_.stream);
+  wait_for(items_.stream);
+  std::vector<Index> order(key.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] < key[b]; });
+  return items_.history.contacts(items_.listed()).rows(order);
 }
 
 void CudaParticles::initial_forces() {
@@ -158,6 +171,7 @@ void CudaParticles::take_out(const std::vector<Leaver>& leavers) {
   DeviceArray<std::uint8_t> stays(n);
   d_particles.upload(particles, items_.stream);
   take_contacts_out();
+  items_.history.leave_slots(items_.listed());
   for_each(
       items_.device(), static_cast<Index>(particles.size()),
       MarkItem{d_particles.data(), views_of(items_.now), items_.model.space.min, items_.subdomain.period()});

@@ -14,6 +14,8 @@ class CudaParticles : public RankParticles {
 
   void load(const std::vector<Particle>& records, const ShapeLosses& shapes) override;
   std::vector<Particle> records() override;
+  void load_contacts(const KeptContacts& contacts) override { items_.history.load(contacts, items_.owned); }
+  KeptContacts contacts() override;
   ShapeLosses shape_losses() const override { return bodies_.side().losses(); }
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }

@@ -53,7 +53,10 @@ MixedViews MixedArrays::views() {
 }
 
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
-  return items_.surfaces.views(position, nullptr, items_.now.material.data(), items_.list.pruned_rows());
+  PrunedViews views =
+      items_.surfaces.views(position, nullptr, items_.now.material.data(), items_.list.pruned_rows());
+  views.history = items_.history.views_in_run();
+  return views;
 }
 
 // The launch of a step on the particles [first, end): all of them, or one of the step's two parts.
@@ -84,6 +87,7 @@ VerletRequest StepQueue::request() {
   r.box = items_.subdomain.box();
   r.drifting = now.drifting.data();
   r.control = control_.on_device();
+  r.first_step = items_.history.first_step();
   return r;
 }
 
@@ -178,6 +182,7 @@ void StepQueue::queue_mixed(Index steps) {
   r.gravity = items_.model.gravity;
   r.state = workspace_.arrays.views(), r.grid = mixed_->quanta, r.h = h_;
   r.box = items_.subdomain.box(), r.drifting = items_.now.drifting.data(), r.control = control_.on_device();
+  r.first_step = items_.history.first_step();
   const auto field = [&](int buffer, auto* of) { return halo.field(buffer, of, items_.owned); };
   const MixedGhostItem ghosts{halo.ghosts(),
                               {field(0, r.state.place[0]), field(0, r.state.place[1])},

@@ -1,3 +1,6 @@
+#include <limits>
+#include <string>
+
 #include "dem/device.hpp"
 #include "device_list.cuh"
 #include "for_each.cuh"
@@ -140,11 +143,14 @@ constexpr int kShortRow = 16, kLongRow = 48;
 
 }  // namespace
 
-DeviceList::DeviceList() : totals_(1), h_totals_(1) { h_totals_[0] = {}; }
+DeviceList::DeviceList(bool remembers) : remembers_(remembers), totals_(1), h_totals_(1) {
+  h_totals_[0] = {};
+}
 
 PrunedRows<0> DeviceList::pruned_rows() {
   pruned_counts_.resize(counts_.size()), pruned_.resize(neighbors_.size());
-  return {rows(), pruned_counts_.data(), pruned_.data(), RowUse::all, 0};
+  if (remembers_) places_.resize(neighbors_.size());
+  return {rows(), pruned_counts_.data(), pruned_.data(), RowUse::all, 0, places_.data()};
 }
 
 void DeviceList::search(Device device, const ListInput& in) {
@@ -164,14 +170,19 @@ void DeviceList::build(Device device, const ListInput& in) {
   const auto owned = static_cast<std::size_t>(in.owned);
   slice_start_.resize(owned / kSlice + 1), counts_.resize(owned);
   if (neighbors_.size() == 0) neighbors_.resize(kSlotsPerItem * owned + kSlice);
-  h_totals_[0].entries = 0;
+  h_totals_[0].entries = h_totals_[0].used = 0;
   if (in.owned == 0) return;
   search(device, in);
   wait_for(device.stream);
-  if (h_totals_[0].used <= neighbors_.size()) return;
-  neighbors_.resize(static_cast<std::size_t>(kListSlack * static_cast<double>(h_totals_[0].used)));
-  search(device, in);
-  wait_for(device.stream);
+  if (h_totals_[0].used > neighbors_.size()) {
+    neighbors_.resize(static_cast<std::size_t>(kListSlack * static_cast<double>(h_totals_[0].used)));
+    search(device, in);
+    wait_for(device.stream);
+  }
+  if (remembers_ && h_totals_[0].longest > std::numeric_limits<RowPlace>::max())
+    throw SimulationError("stage neighbors: a particle with " + std::to_string(h_totals_[0].longest) +
+                          " neighbours; contacts that remember can be at most " +
+                          std::to_string(std::numeric_limits<RowPlace>::max()) + " of one particle");
 }
 
 }  // namespace scree

@@ -32,8 +32,8 @@ struct SlicedRows {
     while (left > 0) {
       const Index next[2] = {entry(2), entry(3)};
       const bool first_touches = touches(j[0]), second_touches = touches(j[1]) & (left > 1);
-      if (first_touches) add(evaluate(j[0]));
-      if (second_touches) add(evaluate(j[1]));
+      if (first_touches) add(evaluate_entry(evaluate, j[0], row - neighbors));
+      if (second_touches) add(evaluate_entry(evaluate, j[1], row - neighbors + kSlice));
       j[0] = next[0], j[1] = next[1];
       left -= 2, row += 2 * kSlice;
     }
@@ -53,9 +53,10 @@ struct SlicedRows {
     fetch();
     while (left > 0) {
       bool touching[kAtOnce];
-      decltype(evaluate(i)) contact[kAtOnce];
+      decltype(evaluate_entry(evaluate, i, 0)) contact[kAtOnce];
       for (int k = 0; k < kAtOnce; ++k) touching[k] = touches(j[k]) & (k < left);
-      for (int k = 0; k < kAtOnce; ++k) contact[k] = evaluate(j[k]);
+      for (int k = 0; k < kAtOnce; ++k)
+        contact[k] = evaluate_entry(evaluate, j[k], row - neighbors + (k < left ? k * kSlice : 0));
       left -= kAtOnce, row += kAtOnce * kSlice;
       fetch();
       for (int k = 0; k < kAtOnce; ++k)
@@ -71,6 +72,9 @@ enum class RowUse : int {
   all      // all entries: particles so fast that pruned rows would not last
 };
 
+// Where an entry stands in its row.
+using RowPlace = std::uint16_t;
+
 // Rows of an explicit step. Most entries of a list with a skin do not touch; a step that has looked at all of
 // them keeps those within a small margin of touching, and the next steps walk these alone until a particle
 // has moved by half the margin: dynamic pruning, of Pall and Hess, Comput. Phys. Commun. 184 (2013) and J.
@@ -83,25 +87,46 @@ struct PrunedRows {
   Index *counts, *neighbors;  // the pruned rows: [items], [slots]
   RowUse use;
   Real margin;  // [m]
+  RowPlace*
+      places{};  // of the entries of the pruned rows in the whole ones, where contacts remember: [slots]
 
-  // test: as touches in PackedRows, with near(j, margin).
+  // test: as touches in PackedRows, with near(j, margin). Slots are those of the whole rows.
   template <class Test, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
-    if (use != RowUse::prune) {
-      const bool all = use == RowUse::all;
-      const SlicedRows walked{rows.slice_start, all ? rows.counts : counts, all ? rows.neighbors : neighbors};
-      if constexpr (kAtOnce > 0)
-        walked.for_each_contact_eagerly<kAtOnce>(i, test, evaluate, add);
-      else
-        walked.for_each_contact(i, test, evaluate, add);
-      return;
+    if (use == RowUse::prune) return prune(i, test, evaluate, add);
+    const bool all = use == RowUse::all;
+    const SlicedRows walked{rows.slice_start, all ? rows.counts : counts, all ? rows.neighbors : neighbors};
+    if constexpr (kAsksForSlot<Evaluate>) {
+      const auto at_slot = [&](Index j, std::int64_t slot) {
+        return evaluate(j, all ? slot : rows.first(i) + kSlice * static_cast<std::int64_t>(places[slot]));
+      };
+      walk(walked, i, test, at_slot, add);
+    } else {
+      walk(walked, i, test, evaluate, add);
     }
+  }
+
+ private:
+  template <class Test, class Evaluate, class Add>
+  SCREE_HD static void walk(const SlicedRows& walked, Index i, const Test& test, const Evaluate& evaluate,
+                            const Add& add) {
+    if constexpr (kAtOnce > 0)
+      walked.for_each_contact_eagerly<kAtOnce>(i, test, evaluate, add);
+    else
+      walked.for_each_contact(i, test, evaluate, add);
+  }
+  template <class Test, class Evaluate, class Add>
+  SCREE_HD void prune(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
     const Index* row = rows.neighbors + rows.first(i);
     Index *const first_kept = neighbors + rows.first(i), *kept = first_kept;
     for (Index left = rows.counts[i]; left > 0; --left, row += kSlice) {
       const Index j = *row;
-      if (test.near(j, margin)) *kept = j, kept += kSlice;
-      if (test(j)) add(evaluate(j));
+      if (test.near(j, margin)) {
+        if constexpr (kAsksForSlot<Evaluate>)
+          places[kept - neighbors] = static_cast<RowPlace>(rows.counts[i] - left);
+        *kept = j, kept += kSlice;
+      }
+      if (test(j)) add(evaluate_entry(evaluate, j, row - rows.neighbors));
     }
     counts[i] = static_cast<Index>((kept - first_kept) / kSlice);
   }
@@ -122,10 +147,11 @@ struct ListInput {
 
 class DeviceList {
  public:
-  DeviceList();
+  // remembers: whether contacts do.
+  explicit DeviceList(bool remembers);
 
   // Fills the list. Waits for the device once, to know whether the memory sufficed, and repeats with more if
-  // not. Throws DeviceError where there is none.
+  // not. Throws DeviceError where there is none, and SimulationError where a row is too long for RowPlace.
   void build(Device device, const ListInput& in);
 
   SlicedRows rows() const { return {slice_start_.data(), counts_.data(), neighbors_.data()}; }
@@ -134,6 +160,8 @@ class DeviceList {
   PrunedRows<0> pruned_rows();
   std::int64_t slots() const { return static_cast<std::int64_t>(neighbors_.size()); }
   std::int64_t entries() const { return h_totals_[0].entries; }
+  // Slots from the first to the last that is filled.
+  std::int64_t used() const { return static_cast<std::int64_t>(h_totals_[0].used); }
 
  private:
   struct Totals {
@@ -145,6 +173,8 @@ class DeviceList {
 
   DeviceArray<std::int64_t> slice_start_;
   DeviceArray<Index> counts_, neighbors_, pruned_counts_, pruned_;
+  const bool remembers_;
+  DeviceArray<RowPlace> places_;
   DeviceArray<Totals> totals_;
   PinnedArray<Totals> h_totals_;
   friend struct RowOutputs;

@@ -222,10 +222,13 @@ SurfaceViews DeviceSurfaces::entry_views(const Vec4* position, const Vec4* veloc
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
-                                const Vec4* position, const Vec4* velocity) {
+                                const Vec4* position, const Vec4* velocity, HistoryViews history) {
   h_load_sums_.resize(h_chunks_.size());
-  kernels.surface_loads(device, entry_views(position, velocity), chunk_list(),
-                        loads_[which == Loads::of_step ? 0 : 1].data(), h_load_sums_.data());
+  if (which == Loads::of_look) history.ahead = nullptr;
+  SurfaceViews views = entry_views(position, velocity);
+  views.history = history;
+  kernels.surface_loads(device, views, chunk_list(), loads_[which == Loads::of_step ? 0 : 1].data(),
+                        h_load_sums_.data());
 }
 
 void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,

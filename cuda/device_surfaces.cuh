@@ -14,6 +14,14 @@
 
 namespace scree {
 
+// Which surfaces are in the particles' rows.
+struct SurfaceList {
+  const Index *offsets, *surfaces;  // [particles + 1], [entries]
+  const std::int8_t* images;        // [entries]
+  const PlacedSurface* placed;      // those on bodies, where they are now
+  Index ground;
+};
+
 class DeviceSurfaces {
  public:
   // Where the search finds the particles, in the order of their cells.
@@ -32,6 +40,10 @@ class DeviceSurfaces {
   // Fills the rows. placed: the surfaces on bodies, where they are now. Waits for the device.
   void build(Device device, const Particles& particles, std::span<const PlacedSurface> placed, Real skin);
   bool on_bodies() const { return on_bodies_ > 0; }
+  Index entries() const { return entries_; }
+  SurfaceList list() const {
+    return {offsets_.data(), surfaces_.data(), images_.data(), places_.data(), ground_};
+  }
 
   // Which of the two sets of loads: those of the step, which the particles read, or of another look at the
   // bodies.
@@ -40,9 +52,10 @@ class DeviceSurfaces {
   void place(Device device, std::span<const PlacedSurface> placed);
   void keep_start(Device device);  // of an implicit step
   // Queues the contacts with the surfaces on bodies, placed as they are, of particles at these places; their
-  // sums are on the way to the host, too.
+  // sums are on the way to the host, too. What they remember if the step is accepted goes ahead into the
+  // history, but for another look.
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const Vec4* position,
-                  const Vec4* velocity);
+                  const Vec4* velocity, HistoryViews history);
   void find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
                   const Vec4* velocity, const StepStart& start);
   // The sums of the last contacts found, once the stream is done: a surface may come in several parts.

@@ -284,11 +284,12 @@ struct ContactWalk {
   }
   template <bool kAccepts = false, class Of, class Visit>
   SCREE_HD void surfaces(const Self& self, const Of& of, const Visit& visit) const {
+    constexpr bool kSeesHistory = sees_history<Of, decltype(look.wall(in, self, in.planes[0]))>();
     for (Index entry = in.surface_offsets[self.i]; entry < in.surface_offsets[self.i + 1]; ++entry) {
       const Index surface = in.surfaces[entry];
       if (surface >= in.ground) {
         if (const auto* stored = of.stored(in, entry)) {
-          if constexpr (kAccepts && Law::kHistory > 0) in.history.template take_ahead<Law>(entry);
+          if constexpr (kAccepts && kSeesHistory) in.history.template take_ahead<Law>(entry);
           visit(*stored, surface);
         }
         continue;
@@ -297,7 +298,7 @@ struct ContactWalk {
       const auto pair = look.wall(in, self, plane);
       if (!Look::closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
-      if constexpr (sees_history<Of, decltype(pair)>()) {
+      if constexpr (kSeesHistory) {
         const auto contact = of(law, pair, in.history.template read<Law>(in.history.surfaces, entry));
         if constexpr (kAccepts) in.history.template write<Law>(in.history.surfaces, entry, contact.history);
         visit(contact, surface);
@@ -309,7 +310,7 @@ struct ContactWalk {
 
  private:
   template <class Of, class Pair>
-  static constexpr bool sees_history() {
+  SCREE_HD static constexpr bool sees_history() {
     if constexpr (Law::kHistory > 0)
       return std::is_invocable_v<const Of&, const Law&, const Pair&,
                                  decltype(in.history.template read<Law>(nullptr, 0))>;

@@ -201,6 +201,7 @@ void CpuImplicitStep::accept() {
   find_steps();
   items_.kernels->books(items_.views(), items_.layout.owned, step_start(), store.contact_loss.data(),
                         store.integrator_loss.data());
+  items_.history.accepted();
   items_.side.book_step();
   for_each(Serial{}, items_.layout.owned,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "dem/backend.hpp"
+#include "dem/choose_law.hpp"
 #include "dem/device.hpp"
+#include "dem/history_slots.hpp"
 #include "dem/mixed_items.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/output_fields.hpp"
@@ -31,6 +33,7 @@ constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kCellBytes = 2 * sizeof(Index);
+constexpr double kKeptContacts = 6;  // of a particle that touch, in a dense packing
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
 // Of a snapshot.
@@ -91,6 +94,14 @@ Sizes sizes_of(const Model& model) {
   return sizes;
 }
 
+// What contacts remember: at the slots, and by name while there is no list.
+double history_bytes(int numbers, const Sizes& n) {
+  if (numbers == 0) return 0;
+  const double kept = kKeptContacts * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
+  return n.slots * (records_of(numbers) * sizeof(Vec4) + sizeof(std::uint16_t)) +
+         n.particles * (kept + 4 * sizeof(Index));
+}
+
 }  // namespace
 
 std::size_t device_memory(const Model& model) {
@@ -104,6 +115,7 @@ std::size_t device_memory(const Model& model) {
   bytes +=
       n.particles * kRowArrays + n.items * sizeof(Vec4) + n.slots * sizeof(Index);  // places at the build
   if (explicit_steps) bytes += (n.particles + n.slots) * sizeof(Index);             // pruned rows
+  bytes += history_bytes(history_of(model.contact), n);
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.on_bodies)

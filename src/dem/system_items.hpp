@@ -127,13 +127,14 @@ struct ContactSystemItem {
 };
 
 // What the contacts of item i over a step add to the energy ledger; share: that of those with neighbours.
-template <class Laws, class Rows>
+// kAccepts: as in ContactWalk.
+template <bool kAccepts = false, class Laws, class Rows>
 SCREE_HD ContactBooks books_of(const StepWalk<Laws, Rows>& walk, Index i, Real share) {
   ContactBooks sum;
   const auto self = walk.self(i);
   const StepBooksOf of{{walk.look.start.resolve_events}};
-  walk.neighbors(self, of, [&](const ContactBooks& one, Index) { sum.add(one, share); });
-  walk.surfaces(self, of, [&](const ContactBooks& one, Index) { sum.add(one, 1); });
+  walk.template neighbors<kAccepts>(self, of, [&](const ContactBooks& one, Index) { sum.add(one, share); });
+  walk.template surfaces<kAccepts>(self, of, [&](const ContactBooks& one, Index) { sum.add(one, 1); });
   return sum;
 }
 
@@ -144,7 +145,7 @@ struct ContactBooksItem {
   Real *contact_loss, *integrator_loss;  // [J]
 
   SCREE_HD void operator()(Index i) const {
-    const ContactBooks sum = books_of(walk, i, kPairShare);
+    const ContactBooks sum = books_of<true>(walk, i, kPairShare);
     contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
   }
 };

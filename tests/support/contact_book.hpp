@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "dem/contact_walk.hpp"
 #include "dem/history_slots.hpp"
 #include "dem/kept_contacts.hpp"
 #include "dem/particle_store.hpp"
@@ -140,6 +141,30 @@ inline std::string difference(const KeptContacts& a, const KeptContacts& b) {
       if (!same_bits(a.values_of(k), b.values_of(k))) return "values of particle " + std::to_string(i);
     }
   return "";
+}
+
+// Contacts between particles whose two sides do not mirror each other bit for bit; ids: of all particles, in
+// the order of the rows.
+template <int kNumbers>
+int unmirrored(const std::vector<Particle>& particles, const KeptContacts& contacts) {
+  std::map<std::tuple<GlobalId, GlobalId, std::int64_t>, std::span<const Real>> sides;
+  for (std::int64_t i = 0; i < contacts.particles(); ++i)
+    for (std::int64_t k = contacts.offsets[static_cast<std::size_t>(i)];
+         k < contacts.offsets[static_cast<std::size_t>(i) + 1]; ++k) {
+      const std::int64_t key = contacts.keys[static_cast<std::size_t>(k)];
+      sides[{particles[static_cast<std::size_t>(i)].global_id, id_of(key), key % 27}] = contacts.values_of(k);
+    }
+  int count = 0;
+  for (const auto& [name, own] : sides) {
+    const auto& [id, partner, image] = name;
+    if (partner >= kFirstSurfaceId) continue;
+    const auto other = sides.find({partner, id, 26 - image});
+    bool mirrored = other != sides.end();
+    for (std::size_t k = 0; mirrored && k < kNumbers; ++k)
+      mirrored = own[k] == (k == 3 ? other->second[k] : -other->second[k]);
+    count += !mirrored;
+  }
+  return count;
 }
 
 }  // namespace scree

@@ -12,17 +12,25 @@
 namespace scree {
 
 template <int kNumbers>
-std::unique_ptr<Backend> make_remembering_cpu_backend(const Model& model, const Ranks& ranks) {
-  std::vector<RememberingLaw<kNumbers>> laws;
-  for (const KelvinVoigt& pair : model.contact.laws) laws.emplace_back(pair);
-  return std::make_unique<CpuBackend>(
-      model, ranks,
-      std::make_unique<CpuTableKernels<RememberingLaw<kNumbers>>>(laws, model.contact.materials()));
+std::vector<RememberingLaw<kNumbers>> remembering_laws(const Model& model) {
+  return {model.contact.laws.begin(), model.contact.laws.end()};
 }
 
 template <int kNumbers>
+std::unique_ptr<Backend> make_remembering_cpu_backend(const Model& model, const Ranks& ranks) {
+  return std::make_unique<CpuBackend>(model, ranks,
+                                      std::make_unique<CpuTableKernels<RememberingLaw<kNumbers>>>(
+                                          remembering_laws<kNumbers>(model), model.contact.materials()));
+}
+
+// In remembering_backend.cu, for 3 numbers and for 7; without CUDA in no_remembering_backend.cpp.
+template <int kNumbers>
+std::unique_ptr<Backend> make_remembering_cuda_backend(const Model& model, const Ranks& ranks);
+
+template <int kNumbers>
 std::unique_ptr<Backend> make_remembering_backend(const Model& model, const Ranks& ranks) {
-  return make_remembering_cpu_backend<kNumbers>(model, ranks);
+  return tests_on_gpu() ? make_remembering_cuda_backend<kNumbers>(model, ranks)
+                        : make_remembering_cpu_backend<kNumbers>(model, ranks);
 }
 
 }  // namespace scree

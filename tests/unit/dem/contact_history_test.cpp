@@ -61,6 +61,7 @@ TEST_CASE("contacts remember what a book kept by brute force does") {
         contacts += expected.keys.size();
         if (const std::string found = difference(particles.contacts(), expected); !found.empty())
           wrong = "step " + std::to_string(step) + ": " + found;
+        CHECK(unmirrored<kNumbers>(records, expected) == 0);
         move_bodies(box, kStep);
       }
       CHECK(wrong == "");
@@ -69,6 +70,50 @@ TEST_CASE("contacts remember what a book kept by brute force does") {
       CHECK((book.moved_on() > 0) == (c.periodic_axes > 0));
       CHECK(box.backend->list().builds() > 5);
     }
+}
+
+TEST_CASE(
+    "what looks at contacts between steps, and steps taken together, leave what they remember as it was") {
+  for (const BoxCase& c : kBoxes) {
+    CAPTURE(c.name);
+    LoadedBox one(moving_box(c), kSkin, make_remembering_backend<3>),
+        looked_at(moving_box(c), kSkin, make_remembering_backend<3>);
+    RankParticles &a = one.backend->particles(), &b = looked_at.backend->particles();
+    for (int part = 0; part < 6; ++part) {
+      const Index steps = one.motion.empty() ? 15 : 1;  // together, where no body wants to be placed between
+      for (Index left = steps; left > 0;) left -= verlet_steps(one, kStep, left);  // it stops for leavers
+      for (Index k = 0; k < steps; ++k) {
+        verlet_steps(looked_at, kStep, 1);
+        looked_at.backend->reports().ledger(kStep);
+        looked_at.backend->reports().body_contacts();
+        looked_at.backend->list().build(0.01 * (k % 5 + 1), looked_at.timers);
+      }
+      CHECK(differing_fields(a.records(), b.records()) == "");
+      CHECK(difference(a.contacts(), b.contacts()) == "");
+      CHECK(a.contacts().numbers == 3);
+    }
+    // Back into a backend that has none yet.
+    LoadedBox onward(moving_box(c), kSkin, make_remembering_backend<3>);
+    onward.motion = one.motion;
+    onward.backend->particles().load(a.records(), {});
+    onward.backend->particles().load_contacts(a.contacts());
+    CHECK(difference(onward.backend->particles().contacts(), a.contacts()) == "");
+    onward.backend->list().place_bodies(onward.motion);
+    onward.backend->list().build(kSkin, onward.timers);
+    CHECK(difference(onward.backend->particles().contacts(), a.contacts()) == "");
+    for (LoadedBox* box : {&one, &onward}) verlet_steps(*box, kStep, 10);
+    CHECK(differing_fields(a.records(), onward.backend->particles().records()) == "");
+    CHECK(difference(a.contacts(), onward.backend->particles().contacts()) == "");
+  }
+}
+
+TEST_CASE("where the law remembers nothing, nothing is kept") {
+  LoadedBox box(moving_box(kBoxes[4]), kSkin);
+  box.backend->particles().load_contacts(no_contacts(3, 150));
+  verlet_steps(box, kStep, 3);
+  const KeptContacts contacts = box.backend->particles().contacts();
+  CHECK(contacts.numbers == 0);
+  CHECK(contacts.particles() == 0);
 }
 
 }  // namespace scree

@@ -1,0 +1,291 @@
+#include <cub/device/device_scan.cuh>
+
+#include "base/countable.hpp"
+#include "dem/particle_fields.hpp"
+#include "device_history.cuh"
+#include "for_each.cuh"
+
+namespace scree {
+namespace {
+
+// The list as it names contacts.
+struct NamedRows {
+  const Vec4* position;
+  const std::int64_t* row_key;
+  SlicedRows rows;
+  SurfaceList surfaces;
+  PeriodicBox box;
+
+  // Calls visit(slot, key) for what stands in row i, key() being its name: neighbours, then surfaces.
+  template <class AtNeighbor, class AtSurface>
+  __device__ void visit(Index i, const AtNeighbor& at_neighbor, const AtSurface& at_surface) const {
+    const Vec3 p = xyz(position[i]);
+    std::int64_t slot = rows.first(i);
+    for (Index left = rows.counts[i]; left > 0; --left, slot += kSlice)
+      at_neighbor(slot, [&] {
+        const Index j = rows.neighbors[slot];
+        return row_key_of(id_of(row_key[j]), box.image_beside(p, xyz(position[j])));
+      });
+    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
+      at_surface(entry, [&] {
+        const Index s = surfaces.surfaces[entry];
+        if (s < surfaces.ground) return row_key_of(kFirstSurfaceId + s, kNoShift);
+        return row_key_of(kFirstSurfaceId + s, box.image_beside(p, surfaces.placed[s - surfaces.ground].point,
+                                                                surfaces.images[entry]));
+      });
+  }
+
+ private:
+  __device__ static std::int64_t row_key_of(GlobalId id, std::int8_t image) {
+    return ::scree::row_key(id, image);
+  }
+};
+
+struct CountClosedItem {
+  NamedRows names;
+  HistoryViews history;
+  int records;
+  Index* counts;
+  __device__ void operator()(Index i) const {
+    Index count = 0;
+    const auto add = [&](const Vec4* of) {
+      return [this, of, &count](std::int64_t slot, const auto&) {
+        count += of[slot * records].w == history.step;
+      };
+    };
+    names.visit(i, add(history.neighbors), add(history.surfaces));
+    counts[i] = count;
+  }
+};
+
+struct KeptViews {
+  const Index* offsets;
+  std::int64_t* keys;
+  Real* values;
+};
+
+struct KeepItem {
+  NamedRows names;
+  HistoryViews history;
+  int records, numbers;
+  KeptViews kept;
+  Index* row_of;
+  __device__ void operator()(Index i) const {
+    Index at = kept.offsets[i];
+    const auto keep = [&](const Vec4* of) {
+      return [this, of, &at](std::int64_t slot, const auto& key) {
+        const Vec4* const record = of + slot * records;
+        if (record->w != history.step) return;
+        kept.keys[at] = key();
+        for (int k = 0; k < numbers; ++k)
+          kept.values[static_cast<std::int64_t>(at) * numbers + k] = number_of(record, k);
+        ++at;
+      };
+    };
+    names.visit(i, keep(history.neighbors), keep(history.surfaces));
+    row_of[i] = i;
+  }
+};
+
+// Both the row and what was kept are ordered by key: one pass over both.
+struct TakeItem {
+  NamedRows names;
+  HistoryViews history;
+  int records, numbers;
+  KeptViews kept;
+  const Index* row_of;
+  __device__ void operator()(Index i) const {
+    Index at = kept.offsets[row_of[i]];
+    const Index end = kept.offsets[row_of[i] + 1];
+    const auto take = [&](Vec4* to) {
+      return [this, to, end, &at](std::int64_t slot, const auto& key) {
+        Vec4* const record = to + slot * records;
+        record->w = 0;
+        if (at == end) return;
+        const std::int64_t wanted = key();
+        while (at < end && kept.keys[at] < wanted) ++at;
+        if (at == end || kept.keys[at] != wanted) return;
+        for (int k = 0; k < numbers; ++k)
+          number_of(record, k) = kept.values[static_cast<std::int64_t>(at) * numbers + k];
+        record->w = history.step;
+      };
+    };
+    names.visit(i, take(history.neighbors), take(history.surfaces));
+  }
+};
+
+struct RowLengthItem {
+  const Index *offsets, *row_of, *particles;
+  Index* counts;
+  SCREE_HD void operator()(Index k) const {
+    const Index row = row_of[particles[k]];
+    counts[k] = offsets[row + 1] - offsets[row];
+  }
+};
+
+struct CopyRowItem {
+  KeptViews from;
+  const Index *row_of, *particles;
+  int numbers;
+  KeptViews to;
+  SCREE_HD void operator()(Index k) const {
+    const Index row = row_of[particles[k]], count = from.offsets[row + 1] - from.offsets[row];
+    const std::int64_t old = from.offsets[row], at = to.offsets[k];
+    for (Index c = 0; c < count; ++c) to.keys[at + c] = from.keys[old + c];
+    for (std::int64_t v = 0; v < std::int64_t{count} * numbers; ++v)
+      to.values[at * numbers + v] = from.values[old * numbers + v];
+  }
+};
+
+struct RowOfItem {
+  const Index *row_of, *order;
+  Index* out;
+  SCREE_HD void operator()(Index i) const { out[i] = row_of[order[i]]; }
+};
+
+struct CountUpItem {
+  Index* out;
+  Index first;
+  SCREE_HD void operator()(Index i) const { out[i] = first + i; }
+};
+
+template <class Rows>
+KeptViews views_of(Rows& rows) {
+  return {rows.offsets.data(), rows.keys.data(), rows.values.data()};
+}
+
+NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box) {
+  return {at.position, at.row_key, at.list.rows(), at.surfaces.list(), box};
+}
+
+}  // namespace
+
+DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream)
+    : numbers_(numbers), box_(box), stream_(stream) {
+  if (exists()) first_step_.resize(1), h_first_step_.resize(1);
+}
+
+HistoryViews DeviceHistory::views() {
+  if (!exists()) return {};
+  return {neighbors_.data(), surfaces_.data(), ahead_.data(), step_};
+}
+
+// The number itself is the device's, so that the launches of one run are those of the next.
+HistoryViews DeviceHistory::views_in_run() {
+  HistoryViews views = this->views();
+  views.step = 0;
+  return views;
+}
+
+void DeviceHistory::begin_run() {
+  if (!exists()) return;
+  run_start_ = h_first_step_[0] = step_;
+  copy_async(first_step_.data(), h_first_step_.data(), 1, stream_);
+}
+
+void DeviceHistory::lay_out(Rows& rows, Index count) {
+  // The count past the end is read, though no sum depends on it.
+  require_cuda(cudaMemsetAsync(counts_.data() + count, 0, sizeof(Index), stream_), "cudaMemsetAsync");
+  rows.offsets.resize(static_cast<std::size_t>(count) + 1);
+  with_space(space_, [&](void* at, std::size_t& bytes) {
+    require_cuda(
+        cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), rows.offsets.data(), count + 1, stream_),
+        "scan");
+  });
+  copy_async(h_count_.data(), rows.offsets.data() + count, 1, stream_);
+  wait_for(stream_);
+  const auto contacts = static_cast<std::size_t>(h_count_[0]);
+  rows.keys.resize(contacts), rows.values.resize(contacts * static_cast<std::size_t>(numbers_));
+}
+
+void DeviceHistory::keep(const Listed& at) {
+  const auto owned = static_cast<std::size_t>(at.owned);
+  countable(static_cast<std::size_t>(at.list.entries()), "stage migrate: more contacts");
+  counts_.resize(owned + 1), row_of_.resize(owned);
+  const NamedRows names = names_of(at, box_);
+  const int records = records_of(numbers_);
+  for_each({stream_}, at.owned, CountClosedItem{names, views(), records, counts_.data()});
+  lay_out(kept_, at.owned);
+  for_each({stream_}, at.owned, KeepItem{names, views(), records, numbers_, views_of(kept_), row_of_.data()});
+}
+
+void DeviceHistory::leave_slots(const Listed& at) {
+  if (!at_slots_) return;
+  keep(at);
+  at_slots_ = false;
+}
+
+void DeviceHistory::take_slots(const Listed& at) {
+  if (!exists()) return;
+  const auto records = static_cast<std::size_t>(records_of(numbers_));
+  neighbors_.resize(static_cast<std::size_t>(at.list.used()) * records);
+  surfaces_.resize(static_cast<std::size_t>(at.surfaces.entries()) * records);
+  ahead_.resize(surfaces_.size());
+  for_each({stream_}, at.owned,
+           TakeItem{names_of(at, box_), views(), static_cast<int>(records), numbers_, views_of(kept_),
+                    row_of_.data()});
+  at_slots_ = true;
+}
+
+void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
+  if (!exists()) return;
+  at_slots_ = false;
+  kept_.offsets.resize(1), kept_.offsets.zero(stream_), kept_.keys.resize(0), kept_.values.resize(0);
+  row_of_.resize(0);
+  append(contacts.numbers == numbers_ ? contacts : no_contacts(numbers_, owned), 0);
+}
+
+void DeviceHistory::reorder(const Index* order, Index n) {
+  if (!exists()) return;
+  spare_row_of_.resize(static_cast<std::size_t>(n));
+  for_each({stream_}, n, RowOfItem{row_of_.data(), order, spare_row_of_.data()});
+  row_of_.swap(spare_row_of_);
+}
+
+void DeviceHistory::append(const KeptContacts& arriving, Index owned) {
+  const std::size_t rows = kept_.offsets.size() - 1, contacts = kept_.keys.size(),
+                    values = kept_.values.size(), more = static_cast<std::size_t>(arriving.particles());
+  const Index last = countable(contacts + arriving.keys.size(), "stage migrate: more contacts");
+  std::vector<Index> offsets;
+  for (const std::int64_t offset : arriving.offsets)
+    offsets.push_back(static_cast<Index>(static_cast<std::int64_t>(contacts) + offset));
+  offsets.back() = last;
+  kept_.offsets.grow(rows + 1 + more, rows, stream_);
+  kept_.keys.grow(static_cast<std::size_t>(last), contacts, stream_);
+  kept_.values.grow(values + arriving.values.size(), values, stream_);
+  row_of_.grow(static_cast<std::size_t>(owned) + more, static_cast<std::size_t>(owned), stream_);
+  copy_async(kept_.offsets.data() + rows, offsets.data(), offsets.size(), stream_);
+  copy_async(kept_.keys.data() + contacts, arriving.keys.data(), arriving.keys.size(), stream_);
+  copy_async(kept_.values.data() + values, arriving.values.data(), arriving.values.size(), stream_);
+  for_each({stream_}, static_cast<Index>(more),
+           CountUpItem{row_of_.data() + owned, static_cast<Index>(rows)});
+  wait_for(stream_);  // before the vectors above go
+}
+
+KeptContacts DeviceHistory::download(const Rows& rows) const {
+  KeptContacts out;
+  out.numbers = numbers_;
+  const std::vector<Index> offsets = rows.offsets.download(stream_);
+  out.offsets.assign(offsets.begin(), offsets.end());
+  out.keys = rows.keys.download(stream_), out.values = rows.values.download(stream_);
+  return out;
+}
+
+KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
+  if (!exists()) return {};
+  if (n == 0) return no_contacts(numbers_, 0);
+  counts_.resize(static_cast<std::size_t>(n) + 1);
+  for_each({stream_}, n, RowLengthItem{kept_.offsets.data(), row_of_.data(), particles, counts_.data()});
+  lay_out(packed_, n);
+  for_each({stream_}, n,
+           CopyRowItem{views_of(kept_), row_of_.data(), particles, numbers_, views_of(packed_)});
+  return download(packed_);
+}
+
+KeptContacts DeviceHistory::contacts(const Listed& at) {
+  if (!exists()) return {};
+  if (at_slots_) keep(at);
+  return download(kept_).rows(row_of_.download(stream_));
+}
+
+}  // namespace scree

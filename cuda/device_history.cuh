@@ -1,0 +1,81 @@
+// What the contacts of a rank's particles remember, on its GPU: src/dem/cpu_history.hpp for device memory.
+#pragma once
+
+#include <vector>
+
+#include "dem/history_slots.hpp"
+#include "dem/kept_contacts.hpp"
+#include "device.cuh"
+#include "device_list.cuh"
+#include "device_surfaces.cuh"
+
+namespace scree {
+
+class DeviceHistory {
+ public:
+  // numbers: per contact; 0: nothing below does anything. What is queued without a device goes to the stream.
+  DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream);
+
+  bool exists() const { return numbers_ > 0; }
+  bool at_slots() const { return at_slots_; }
+  // For walks on the list, outside a run of explicit steps.
+  HistoryViews views();
+
+  // In such a run steps are numbered on the device from where it began.
+  void begin_run();
+  const Real* first_step() const { return first_step_.data(); }
+  HistoryViews views_in_run();
+  void closed(Index steps) { step_ = run_start_ + steps; }  // since the run began
+  void accepted() { step_ += 1; }
+
+  // The list as it is with the items where they are now, ghosts and surfaces on bodies included.
+  struct Listed {
+    const Vec4* position;
+    const std::int64_t* row_key;
+    Index owned;
+    const DeviceList& list;
+    const DeviceSurfaces& surfaces;
+  };
+  // Before a list goes, and after another was built. Both wait.
+  void leave_slots(const Listed& at);
+  void take_slots(const Listed& at);
+  // In between, like the particles: new ones, another order of them, some more behind.
+  void load(const KeptContacts& contacts, Index owned);
+  void reorder(const Index* order, Index n);
+  void append(const KeptContacts& arriving, Index owned);
+
+  // Of these particles, in this order, on the host; not at the slots. Waits.
+  KeptContacts rows(const Index* particles, Index n);
+  // Of all, in the order of the particles.
+  KeptContacts contacts(const Listed& at);
+
+ private:
+  // Rows of contacts on the device, as KeptContacts has them.
+  struct Rows {
+    DeviceArray<Index> offsets;  // [rows + 1]
+    DeviceArray<std::int64_t> keys;
+    DeviceArray<Real> values;
+  };
+  void keep(const Listed& at);
+  // From counts_ [rows]: offsets, and room for the contacts.
+  void lay_out(Rows& rows, Index count);
+  KeptContacts download(const Rows& rows) const;
+
+  const int numbers_;
+  const PeriodicBox box_;
+  const cudaStream_t stream_;
+  bool at_slots_ = false;
+  DeviceArray<Vec4> neighbors_, surfaces_, ahead_;  // HistoryViews
+  Real step_ = 1, run_start_ = 1;
+  DeviceArray<Real> first_step_;
+  PinnedArray<Real> h_first_step_;
+  // Unless at the slots: what is kept, and which row of it is that of each particle.
+  Rows kept_;
+  DeviceArray<Index> row_of_, spare_row_of_;
+  Rows packed_;
+  DeviceArray<Index> counts_;
+  DeviceArray<unsigned char> space_;  // of library calls
+  PinnedArray<Index> h_count_{1};
+};
+
+}  // namespace scree

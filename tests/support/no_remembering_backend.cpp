@@ -1,0 +1,14 @@
+#include "dem/device.hpp"
+#include "support/remembering_backend.hpp"
+
+namespace scree {
+
+template <int kNumbers>
+std::unique_ptr<Backend> make_remembering_cuda_backend(const Model&, const Ranks&) {
+  throw InputError(device_trouble());
+}
+
+template std::unique_ptr<Backend> make_remembering_cuda_backend<3>(const Model&, const Ranks&);
+template std::unique_ptr<Backend> make_remembering_cuda_backend<7>(const Model&, const Ranks&);
+
+}  // namespace scree

@@ -1,0 +1,21 @@
+#include "contact_kernels_impl.cuh"
+#include "cuda_backend.cuh"
+#include "dem/device.hpp"
+#include "support/remembering_backend.hpp"
+
+namespace scree {
+
+template <int kNumbers>
+std::unique_ptr<Backend> make_remembering_cuda_backend(const Model& model, const Ranks& ranks) {
+  choose_device(ranks);
+  DeviceArray<RememberingLaw<kNumbers>> laws;
+  laws.upload(remembering_laws<kNumbers>(model), nullptr);
+  return std::make_unique<CudaBackend>(
+      model, ranks,
+      std::make_unique<TableKernels<RememberingLaw<kNumbers>>>(std::move(laws), model.contact.materials()));
+}
+
+template std::unique_ptr<Backend> make_remembering_cuda_backend<3>(const Model&, const Ranks&);
+template std::unique_ptr<Backend> make_remembering_cuda_backend<7>(const Model&, const Ranks&);
+
+}  // namespace scree

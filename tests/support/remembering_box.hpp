@@ -1,0 +1,93 @@
+// A box of particles whose contacts remember, and bodies that go on at their velocity: what is lost shows.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "run/restart.hpp"
+#include "run/state.hpp"
+#include "support/remembering_backend.hpp"
+#include "unit/dem/random_box.hpp"
+
+namespace scree {
+
+inline constexpr int kRemembered = 7;  // numbers
+inline constexpr Real kMovingStep = 5e-4, kMovingSkin = 0.05;
+
+inline Model moving_box(const BoxCase& c, Leaving leaving) {
+  Model model = random_box(c, 150, 21);
+  model.integrator.particles = ParticleIntegrator::velocity_verlet;
+  model.contact.skin = kMovingSkin;
+  model.parallel.imbalance = 0;  // boxes are cut anew with every list
+  model.space.leaving = leaving;
+  for (KelvinVoigt& law : model.contact.laws) law.exponent = 1;
+  if (c.walls && c.periodic_axes > 0) {  // walls along the periodic axis alone have one place
+    model.walls.resize(1);
+    model.walls[0].normal = {0, 1, 0};
+  }
+  return model;
+}
+
+struct RememberingBox {
+  using Make = std::unique_ptr<Backend> (*)(const Model&, const Ranks&);
+
+  RememberingBox(const Model& of, const Ranks& on, Make make = make_remembering_backend<kRemembered>)
+      : ranks(on), model(of), motion(motion_of(of.bodies)), backend(make(model, on)) {}
+
+  // state: of this rank's share of the ids.
+  void start(const State& state) {
+    backend->particles().load(state.particles, {});
+    backend->particles().load_contacts(state.contacts);
+    backend->list().place_bodies(motion);
+    backend->list().build(model.contact.skin, timers);
+  }
+  void start() {
+    const std::vector<Particle> all = initial_records(model.particles, Subdomain(model.space));
+    const IdRange own = id_range(std::ssize(all), ranks.rank(), ranks.size());
+    State state;
+    state.particles = {all.begin() + own.first, all.begin() + own.last};
+    start(state);
+    backend->particles().initial_forces();
+  }
+  // A run of so many steps; then the particles outside leave.
+  void take_steps(Index steps, Real h = kMovingStep) {
+    const std::unique_ptr<ExplicitRun> run = backend->start_run(h);
+    while (steps > 0) {
+      backend->list().place_bodies(motion);
+      const Index most = motion.empty() ? steps : 1;
+      const StepsTaken taken = run->take_steps(most, most < steps, timers);
+      steps -= taken.closed;
+      for (BodyMotion& body : motion) body.position += h * body.velocity;
+      if (!taken.open) break;
+    }
+    const std::vector<Leaver> leavers = backend->particles().outside();
+    if (!leavers.empty())
+      backend->particles().take_out(leavers), backend->list().build(model.contact.skin, timers);
+  }
+  // Of this rank, and in the order of the ids.
+  State state() const {
+    State state;
+    state.particles = backend->particles().records();
+    state.contacts = backend->particles().contacts();
+    return state;
+  }
+  State in_id_order() const {
+    State out = state();
+    std::vector<GlobalId> ids;
+    for (const Particle& p : out.particles) ids.push_back(p.global_id);
+    const IdOrder order(ranks, model.particles.totals.count, ids);
+    out.particles = order.apply(std::move(out.particles));
+    out.contacts = in_order(order, std::move(out.contacts));
+    return out;
+  }
+  std::string hash() const { return hash_of_all(state(), ranks); }
+
+  Ranks ranks;
+  Model model;
+  std::vector<BodyMotion> motion;
+  std::unique_ptr<Backend> backend;
+  StageTimers timers;
+};
+
+}  // namespace scree
