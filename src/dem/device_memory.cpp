@@ -7,7 +7,7 @@
 #include "dem/backend.hpp"
 #include "dem/choose_law.hpp"
 #include "dem/device.hpp"
-#include "dem/history_slots.hpp"
+#include "dem/kept_contacts.hpp"
 #include "dem/mixed_items.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/output_fields.hpp"
@@ -33,7 +33,6 @@ constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kCellBytes = 2 * sizeof(Index);
-constexpr double kKeptContacts = 6;  // of a particle that touch, in a dense packing
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
 // Of a snapshot.
@@ -94,12 +93,11 @@ Sizes sizes_of(const Model& model) {
   return sizes;
 }
 
-// What contacts remember: at the slots, and by name while there is no list.
+// What contacts remember, with the places of pruned rows and the order of the particles.
 double history_bytes(int numbers, const Sizes& n) {
-  if (numbers == 0) return 0;
-  const double kept = kKeptContacts * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
-  return n.slots * (records_of(numbers) * sizeof(Vec4) + sizeof(std::uint16_t)) +
-         n.particles * (kept + 4 * sizeof(Index));
+  if (numbers == 0 || n.particles == 0) return 0;
+  return n.particles * (bytes_remembered(numbers, n.slots / n.particles) + 4 * sizeof(Index)) +
+         n.slots * sizeof(std::uint16_t);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "dem/history_slots.hpp"
+
 namespace scree {
 
 void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {
@@ -29,6 +31,13 @@ std::vector<std::int64_t> KeptContacts::counts() const {
 void KeptContacts::set_counts(std::span<const std::int64_t> counts) {
   offsets.assign(1, 0);
   for (const std::int64_t count : counts) offsets.push_back(offsets.back() + count);
+}
+
+double bytes_remembered(int numbers, double slots) {
+  constexpr double kTouching = 6;
+  if (numbers == 0) return 0;
+  return slots * records_of(numbers) * static_cast<double>(sizeof(Vec4)) +
+         kTouching * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
 }
 
 KeptContacts no_contacts(int numbers, std::int64_t particles) {

@@ -43,6 +43,10 @@ struct KeptContacts {
   void set_counts(std::span<const std::int64_t> counts);
 };
 
+// What the contacts of a particle remember takes in memory [B], estimated: at the slots of its row, of so
+// many neighbours, and by name of those that touch in a dense packing.
+double bytes_remembered(int numbers, double slots = 10);
+
 // No particle of so many has a contact.
 KeptContacts no_contacts(int numbers, std::int64_t particles);
 

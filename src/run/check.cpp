@@ -9,8 +9,10 @@
 
 #include "base/host_memory.hpp"
 #include "base/printable.hpp"
+#include "dem/choose_law.hpp"
 #include "dem/device.hpp"
 #include "dem/output_fields.hpp"
+#include "dem/kept_contacts.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
@@ -179,7 +181,8 @@ std::string output_lines(const Model& model) {
 
 // Rank 0 has all unknowns, and its share of the particles.
 std::string memory_line(const Model& model, int ranks) {
-  const Real particles = bytes_per_particle(model) * static_cast<Real>(model.particles.totals.count);
+  const Real per_particle = bytes_per_particle(model) + bytes_remembered(history_of(model.contact));
+  const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
       kBytesPerUnknown * (3 * static_cast<Real>(model.bodies.size()) + constraint_count(model));
   const std::string most = ranks == 1 ? ""
@@ -191,8 +194,8 @@ std::string memory_line(const Model& model, int ranks) {
       "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown); {} "
       "are free here "
       "({})\n",
-      megabytes(particles + unknowns), most, bytes_per_particle(model), kBytesPerUnknown,
-      megabytes(bound.bytes), bound.set_by);
+      megabytes(particles + unknowns), most, per_particle, kBytesPerUnknown, megabytes(bound.bytes),
+      bound.set_by);
 }
 
 // The estimate counts neighbours and images where radii differ or sides are periodic: whether there is room

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "dem/choose_law.hpp"
 #include "dem/device.hpp"
+#include "dem/kept_contacts.hpp"
 #include "model/memory.hpp"
 #include "partition/shared_model.hpp"
 
@@ -21,10 +23,10 @@ std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const 
 std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   log.info("backend cpu: " + why);
   const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
-  check_memory(
-      size_of(model),
-      bytes_per_particle(model) * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns,
-      "running it on the CPU", RanksShare(ranks));
+  const Real per_particle = bytes_per_particle(model) + bytes_remembered(history_of(model.contact));
+  check_memory(size_of(model),
+               per_particle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns,
+               "running it on the CPU", RanksShare(ranks));
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   if (model.parallel.transport != Transport::automatic)

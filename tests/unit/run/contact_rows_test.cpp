@@ -1,0 +1,166 @@
+// What contacts remember returns from a checkpoint bit for bit, enters the hash, and is refused where it
+// cannot be; where nothing is remembered a checkpoint has nothing of it.
+#include "run/contact_rows.hpp"
+
+#include "base/error.hpp"
+#include "dem/history_slots.hpp"
+#include "output/hdf5_file.hpp"
+#include "run/checkpoint_datasets.hpp"
+#include "run/state.hpp"
+#include "support/catch.hpp"
+#include "support/decks.hpp"
+#include "support/state_bits.hpp"
+#include "unit/output/scratch.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr std::int64_t kParticles = 4;
+
+// Four particles with 2, 0, 3 and 1 contacts.
+State remembering_state(int numbers) {
+  State state;
+  for (GlobalId id = 0; id < kParticles; ++id) {
+    fill_fields(state.particles.emplace_back(), id);
+    state.particles.back().global_id = id;
+  }
+  KeptContacts& contacts = state.contacts;
+  contacts.numbers = numbers;
+  Real next = 0.1;
+  const auto add = [&](GlobalId partner, std::int8_t image) {
+    std::vector<Real> values;
+    for (int k = 0; k < numbers; ++k) values.push_back(k == 1 ? -0.0 : next /= 3);
+    contacts.add(row_key(partner, image), values);
+  };
+  add(2, kNoShift), add(kFirstSurfaceId + 5, 12), contacts.end_row();
+  contacts.end_row();
+  add(0, kNoShift), add(3, 0), add(3, 26), contacts.end_row();
+  add(2, 26), contacts.end_row();
+  return state;
+}
+
+std::string difference(const KeptContacts& a, const KeptContacts& b) {
+  if (a.numbers != b.numbers) return "numbers";
+  if (a.offsets != b.offsets || a.keys != b.keys) return "contacts";
+  return same_bits(a.values, b.values) ? "" : "values";
+}
+
+std::string refusal(const State& state) {
+  try {
+    check_state(state, "some.h5", kParticles, {});
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("what contacts remember goes through a file bit for bit") {
+  for (const int numbers : {1, 3, 4, 7}) {
+    CAPTURE(numbers);
+    const State state = remembering_state(numbers);
+    CHECK(difference(unpack(pack(state)).contacts, state.contacts) == "");
+    const ScratchDirectory folder;
+    write_checkpoint(folder / "c.h5", pack(state));
+    CHECK(difference(unpack(read_checkpoint(folder / "c.h5")).contacts, state.contacts) == "");
+    const Hdf5File file(folder / "c.h5", Hdf5Access::read);
+    for (const auto& [name, rows, width] : {std::tuple("/integer_rows/contacts/count", 4, 1),
+                                            {"/integer_rows/contacts/partner", 6, 1},
+                                            {"/integer_rows/contacts/image", 6, 1},
+                                            {"/real_rows/contacts/history", 6, numbers}}) {
+      CAPTURE(name);
+      CHECK(file.rows(name) == rows);
+      CHECK(file.width(name) == width);
+      CHECK(file.read_text_attribute(name, "unit") != "");
+      CHECK(file.read_text_attribute(name, "description") != "");
+    }
+  }
+}
+
+TEST_CASE("a checkpoint has rows of contacts only where these remember") {
+  const State state = remembering_state(0);
+  for (const auto& [name, rows] : pack(state).real_rows) CHECK_FALSE(contains(name, "contacts"));
+  for (const auto& [name, rows] : pack(state).integer_rows) CHECK_FALSE(contains(name, "contacts"));
+  CHECK(unpack(pack(state)).contacts.numbers == 0);
+  // Both are checkpoints of the same model; one with a part of the rows is none.
+  const Model model;
+  const auto trouble = [&](const Checkpoint& checkpoint) -> std::string {
+    try {
+      check_datasets(checkpoint, model, {});
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(trouble(pack(state)) == "");
+  const State remembering = remembering_state(3);
+  CHECK(trouble(pack(remembering)) == "");
+  for (const char* name : {"contacts/count", "contacts/partner", "contacts/image"}) {
+    Checkpoint partial = pack(remembering);
+    partial.integer_rows.erase(name);
+    CHECK(contains(trouble(partial), std::string(name) + " is missing"));
+  }
+  Checkpoint partial = pack(remembering);
+  partial.real_rows.erase("contacts/history");
+  CHECK(contains(trouble(partial), "is not known"));
+}
+
+TEST_CASE("the hash is of everything that contacts remember, and of nothing where they do not") {
+  const State state = remembering_state(7);
+  const std::uint64_t hash = state_hash(state, true);
+  for (std::size_t k = 0; k < state.contacts.keys.size(); ++k) {
+    State other = state;
+    ++other.contacts.keys[k];
+    CHECK(state_hash(other, true) != hash);
+  }
+  for (std::size_t k = 0; k < state.contacts.values.size(); ++k) {
+    State other = state;
+    other.contacts.values[k] = -other.contacts.values[k];
+    CHECK(state_hash(other, true) != hash);
+  }
+  State moved = state;  // a contact goes to the next particle
+  ++moved.contacts.offsets[1];
+  CHECK(state_hash(moved, true) != hash);
+  State none = state;
+  none.contacts = no_contacts(7, kParticles);
+  CHECK(state_hash(none, true) != hash);
+  CHECK(state_hash(none, true) == state_hash(remembering_state(0), true));
+}
+
+TEST_CASE("contacts that no state of the deck can have are refused") {
+  const State state = remembering_state(3);
+  CHECK(refusal(state) == "");
+  const auto with = [&](const auto& change) {
+    State other = state;
+    change(other.contacts);
+    return refusal(other);
+  };
+  CHECK(contains(with([](KeptContacts& c) { c.values[4] = std::nan(""); }), "is not finite"));
+  CHECK(contains(with([](KeptContacts& c) { std::swap(c.keys[2], c.keys[3]); }),
+                 "particle 2 are out of order"));
+  CHECK(contains(with([](KeptContacts& c) { c.keys[5] = row_key(kParticles); }), "with particle 4"));
+  CHECK(contains(with([](KeptContacts& c) { c.offsets.pop_back(); }), "another number of particles"));
+  const auto unpacked = [&](const char* name, std::int64_t value) -> std::string {
+    Checkpoint changed = pack(state);
+    auto& rows = changed.integer_rows.at(name);
+    rows.copy = [copy = rows.copy, value](std::int64_t first, std::int64_t count, std::int64_t* to) {
+      copy(first, count, to);
+      to[2] = value;
+    };
+    try {
+      unpack(changed);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(contains(unpacked("contacts/count", -1), "no such number of contacts"));
+  CHECK(contains(unpacked("contacts/count", 1000), "no such number of contacts"));
+  CHECK(contains(unpacked("contacts/count", 2), "do not fit together"));
+  CHECK(contains(unpacked("contacts/image", 27), "its image is none"));
+  CHECK(contains(unpacked("contacts/partner", -1), "its image is none"));
+}
+
+}  // namespace scree
