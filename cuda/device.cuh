@@ -150,6 +150,11 @@ class DeviceArray {
     }
     size_ = size;
   }
+  // The same, with room for more where the array has to grow: for sizes that change a little each time.
+  void resize_with_spare(std::size_t size) {
+    if (size > capacity_) resize(size + size / kSpare);
+    size_ = size;
+  }
   // The same for records that travel to the host whole: bytes between their members, which nobody writes, are
   // zero.
   void resize_clean(std::size_t size, cudaStream_t stream) {

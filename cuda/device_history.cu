@@ -195,7 +195,8 @@ void DeviceHistory::lay_out(Rows& rows, Index count) {
   copy_async(h_count_.data(), rows.offsets.data() + count, 1, stream_);
   wait_for(stream_);
   const auto contacts = static_cast<std::size_t>(h_count_[0]);
-  rows.keys.resize(contacts), rows.values.resize(contacts * static_cast<std::size_t>(numbers_));
+  rows.keys.resize_with_spare(contacts);
+  rows.values.resize_with_spare(contacts * static_cast<std::size_t>(numbers_));
 }
 
 void DeviceHistory::keep(const Listed& at) {
@@ -218,9 +219,9 @@ void DeviceHistory::leave_slots(const Listed& at) {
 void DeviceHistory::take_slots(const Listed& at) {
   if (!exists()) return;
   const auto records = static_cast<std::size_t>(records_of(numbers_));
-  neighbors_.resize(static_cast<std::size_t>(at.list.used()) * records);
-  surfaces_.resize(static_cast<std::size_t>(at.surfaces.entries()) * records);
-  ahead_.resize(surfaces_.size());
+  neighbors_.resize_with_spare(static_cast<std::size_t>(at.list.used()) * records);
+  surfaces_.resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
+  ahead_.resize_with_spare(surfaces_.size());
   for_each({stream_}, at.owned,
            TakeItem{names_of(at, box_), views(), static_cast<int>(records), numbers_, views_of(kept_),
                     row_of_.data()});

@@ -36,7 +36,7 @@ class DeviceHistory {
     const DeviceList& list;
     const DeviceSurfaces& surfaces;
   };
-  // Before a list goes, and after another was built. Both wait.
+  // Before a list goes, for which it waits, and after another was built.
   void leave_slots(const Listed& at);
   void take_slots(const Listed& at);
   // In between, like the particles: new ones, another order of them, some more behind.
