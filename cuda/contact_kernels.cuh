@@ -31,7 +31,7 @@ __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, Ro
   return {
       in.position,        in.velocity, in.material, {r.rows, r.counts, r.neighbors, use, margin, r.places},
       in.surface_offsets, in.surfaces, in.planes,   in.ground,
-      in.loads,           in.steps,    in.history};
+      in.loads,           in.steps,    in.history,  in.spin};
 }
 
 // Force, Newton matrix and residual of the particles [first, end).
@@ -128,14 +128,14 @@ struct StepRows {
   unsigned step_blocks;  // of all launches of the step; the last one to end closes it
 };
 
-// Two arrays each for position and velocity: a step reads one and writes the other.
+// Two arrays each for position, velocity and angular velocity: a step reads one and writes the other.
 struct VerletRequest {
   PrunedViews in;  // but for position and velocity
   StepRows rows;
   Index active;  // the others drift outside: the list need not cover their motion
   Vec3 gravity;
-  Vec4 *position[2], *velocity[2];
-  VerletViews state;  // likewise
+  Vec4 *position[2], *velocity[2], *spin[2];  // spin: null where particles do not rotate
+  VerletViews state;                          // likewise
   Vec3* force;
   OpenBox box;
   const std::uint8_t* drifting;
@@ -179,7 +179,7 @@ class DeviceContactKernels {
   virtual ~DeviceContactKernels() = default;
   virtual int history() const = 0;  // how many numbers the law remembers of a contact
   virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
-                      Real* loss_power) const = 0;
+                      Real* loss_power, Vec3* angular_acceleration) const = 0;
   virtual void system(Device device, const SystemRequest& request) const = 0;
   // Contacts of particles with surfaces on bodies, at an instant and over an implicit step, and what they sum
   // to in each chunk.

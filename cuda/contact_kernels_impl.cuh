@@ -2,6 +2,8 @@
 // law.
 #pragma once
 
+#include <stdexcept>
+
 #include "contact_kernels.cuh"
 #include "for_each.cuh"
 #include "staging.cuh"
@@ -61,6 +63,15 @@ __device__ Views at_open_step(Views views, const Request& r) {
   if constexpr (ContactWalk<Laws, decltype(views.rows)>::Law::kHistory > 0)
     views.history.step = *r.first_step + r.control->closed;
   return views;
+}
+
+// Over the step of h [s] that ends now.
+template <class Laws, class Rows>
+SCREE_HD ContactWalk<Laws, Rows> step_walk(const ContactViews<Rows>& in, const Laws& laws, Real h) {
+  if constexpr (LawOf<Laws>::kMoves)
+    return {in, laws, {h}};
+  else
+    return {in, laws};
 }
 
 // Called by the last block of a step.
@@ -139,13 +150,16 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   Vec3* const acceleration = stage.load(r.state.acceleration);
   VerletAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
-      {{at_open_step<Laws>(views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), r), laws},
-       r.gravity,
-       nullptr,
-       nullptr},
+      {step_walk(at_open_step<Laws>(views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), r), laws,
+                 r.state.h),
+       r.gravity, nullptr, nullptr, nullptr},
       r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
   item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
+  if constexpr (LawOf<Laws>::kMoves) {
+    item.forces.walk.in.spin = v == 0 ? r.spin[0] : r.spin[1];
+    item.state.spin = v == 0 ? r.spin[1] : r.spin[0];
+  }
   Vec4 position, velocity;
   item.state.position = only(position, i), item.state.velocity = only(velocity, i);
   item.state.acceleration = acceleration;
@@ -202,11 +216,10 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
   Real a_squared = 0;
   if (i < r.rows.end) {
     VerletFinishItem<Laws, PrunedRows<0>> item{
-        {{at_open_step<Laws>(views_for<0>(r.in, RowUse::all, 0), r), laws},
-         r.gravity,
-         r.force,
-         r.state.loss_power},
+        {step_walk(at_open_step<Laws>(views_for<0>(r.in, RowUse::all, 0), r), laws, r.state.h), r.gravity,
+         r.force, r.state.loss_power, r.state.angular_acceleration},
         r.state};
+    item.forces.walk.in.spin = r.spin[v], item.state.spin = r.spin[1 - v];
     item.forces.walk.in.position = r.position[p], item.forces.walk.in.velocity = r.velocity[v];
     item.state.position = r.position[p], item.state.velocity = r.velocity[1 - v];
     a_squared = item(i);
@@ -257,9 +270,11 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
 
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
-  void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
-              Real* loss_power) const override {
-    for_each(device, n, ContactForceItem<Laws, SlicedRows>{{in, laws_}, gravity, force, loss_power});
+  void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
+              Vec3* angular_acceleration) const override {
+    for_each(
+        device, n,
+        ContactForceItem<Laws, SlicedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
   }
   void system(Device device, const SystemRequest& r) const override {
     if (r.end == r.first) return;
@@ -307,9 +322,10 @@ class ContactKernelsOf : public DeviceContactKernels {
            eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Laws> : verlet_advance_kernel<0, Laws>);
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    const bool eagerly = several_at_once(r.rows, mixed_blocks(kFewThreadsAtOnce));
-    launch(device, r,
-           eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Laws> : mixed_advance_kernel<0, Laws>);
+    if constexpr (LawOf<Laws>::kMoves)
+      throw std::logic_error("mixed_advance: laws that move are computed in double precision");
+    else
+      advance_in_mixed(device, r);
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");
@@ -324,6 +340,11 @@ class ContactKernelsOf : public DeviceContactKernels {
   bool several_at_once(const StepRows& rows, int blocks) const {
     const bool fits = step_blocks(rows.first, rows.end) <= multiprocessors_ * static_cast<unsigned>(blocks);
     return launches().several_at_once.value_or(fits);
+  }
+  void advance_in_mixed(Device device, const MixedRequest& r) const {
+    const bool eagerly = several_at_once(r.rows, mixed_blocks(kFewThreadsAtOnce));
+    launch(device, r,
+           eagerly ? mixed_advance_kernel<kFewThreadsAtOnce, Laws> : mixed_advance_kernel<0, Laws>);
   }
   template <class Request>
   void launch(Device device, const Request& r, void (*kernel)(Request, Laws)) const {

@@ -87,16 +87,19 @@ void CudaExplicitRun::finish() {
   ParticleArrays &now = items_.now, &other = items_.other;
   const VerletRequest r = queue_.request();
   items_.lane.halo.update_motion(items_.device(), control_.open_position(), control_.open_velocity(),
-                                 items_.owned);
+                                 r.spin[control_.velocity_parity()], items_.owned);
   items_.kernels->verlet_finish(items_.device(), r, items_.results.at(&Results::largest));
   items_.history.accepted();
   if (!std::isfinite(items_.ranks.max(items_.results.fetch(&Results::largest))))
     items_.report_not_finite(now.force.data());
   if (control_.position_parity() == 1) std::swap(now.position, other.position);
-  if (control_.velocity_parity() == 0) std::swap(now.velocity, other.velocity);  // velocities changed arrays
+  if (control_.velocity_parity() == 0) {  // velocities changed arrays
+    std::swap(now.velocity, other.velocity);
+    std::swap(now.angular_velocity, other.angular_velocity);
+  }
   control_.at_home();
   items_.open_run = nullptr;
-  items_.seen_velocity = other.velocity.data();
+  items_.seen_velocity = other.velocity.data(), items_.seen_spin = other.angular_velocity.data();
   closed_step_ = {now.position.data(), other.velocity.data()};
   bodies_.put();
   items_.refresh_ghosts();

@@ -22,11 +22,13 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       lane(on, of.parallel.transport),
       list(kernels->history() > 0),
       history(kernels->history(), {of.space.min, subdomain.period()}, stream),
-      results(on, stream) {}
+      results(on, stream) {
+  now.rotates = other.rotates = of.rotates();
+}
 
-DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity) {
+DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity, const Vec4* spin) {
   DeviceViews views = surfaces.views(position, velocity, now.material.data(), list.rows());
-  views.history = history.views();
+  views.history = history.views(), views.spin = spin;
   return views;
 }
 

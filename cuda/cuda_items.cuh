@@ -38,8 +38,8 @@ struct CudaItems {
   CudaItems& operator=(const CudaItems&) = delete;
 
   Device device() const { return {stream}; }
-  DeviceViews views() { return views(now.position.data(), now.velocity.data()); }
-  DeviceViews views(const Vec4* position, const Vec4* velocity);
+  DeviceViews views() { return views(now.position.data(), now.velocity.data(), now.angular_velocity.data()); }
+  DeviceViews views(const Vec4* position, const Vec4* velocity, const Vec4* spin);
   // For `history`, while there is a list.
   DeviceHistory::Listed listed() const {
     return {now.position.data(), now.row_key.data(), owned, list, surfaces};
@@ -96,7 +96,7 @@ struct CudaItems {
   CudaExplicitRun* open_run = nullptr;
   // Where the velocities are that the law saw in the last explicit step, until a list is built; null where
   // the state's are those.
-  const Vec4* seen_velocity = nullptr;
+  const Vec4 *seen_velocity = nullptr, *seen_spin = nullptr;
 };
 
 template <class Is>

@@ -234,7 +234,7 @@ void CudaList::build(Real skin, StageTimers& timers) {
   const auto scope = timers.time(Stage::neighbors);
   items_.ranks.together([&] { find_rows(skin); });
   bodies_.side().build_list(skin);
-  items_.seen_velocity = nullptr;
+  items_.seen_velocity = items_.seen_spin = nullptr;
   skin_ = skin, bound_ = 0;
   current_ = true;
   ++builds_;

@@ -117,7 +117,7 @@ void CudaParticles::initial_forces() {
   items_.refresh_ghosts();
   bodies_.find_loads();
   items_.kernels->forces(items_.device(), items_.views(), items_.model.gravity, items_.owned,
-                         now.force.data(), now.loss_power.data());
+                         now.force.data(), now.loss_power.data(), now.angular_acceleration.data());
   for_each(items_.device(), items_.owned,
            StartAccelerationItem{now.force.data(), now.velocity.data(), now.acceleration.data()});
   if (is_verlet(items_.model))
@@ -199,12 +199,13 @@ void CudaParticles::take_contacts_out() {
   ParticleArrays& now = items_.now;
   const bool verlet = is_verlet(items_.model);
   const Vec4* seen = items_.seen_velocity != nullptr ? items_.seen_velocity : now.velocity.data();
+  const Vec4* spin = items_.seen_spin != nullptr ? items_.seen_spin : now.angular_velocity.data();
   items_.kernels->departures(
-      items_.device(), items_.views(now.position.data(), seen), items_.model.gravity, items_.subdomain.box(),
-      items_.owned,
+      items_.device(), items_.views(now.position.data(), seen, spin), items_.model.gravity,
+      items_.subdomain.box(), items_.owned,
       {now.force.data(), now.acceleration.data(), verlet ? now.loss_power.data() : nullptr,
        now.integrator_loss.data(), now.drifting.data(), verlet ? hht_coefficients(0) : items_.hht,
-       verlet_step(items_.model)});
+       verlet_step(items_.model), now.angular_acceleration.data()});
 }
 
 }  // namespace scree

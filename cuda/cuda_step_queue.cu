@@ -18,6 +18,16 @@ struct RunGhostItem {
   }
 };
 
+struct RunSpinGhostItem {
+  const Ghost* ghosts;
+  GhostField<Vec4> spin[2];
+  const VerletControl* control;
+
+  __device__ void operator()(Index entry) const {
+    SpinGhostItem{ghosts, control->parity[1] == 0 ? spin[0] : spin[1]}(entry);
+  }
+};
+
 struct MixedGhostItem {
   const Ghost* ghosts;
   GhostField<MixedPlace> place[2];
@@ -76,13 +86,17 @@ VerletRequest StepQueue::request() {
   r.rows = step_rows(0, items_.owned), r.active = items_.layout.active, r.gravity = items_.model.gravity;
   r.position[0] = now.position.data(), r.position[1] = other.position.data();
   r.velocity[0] = now.velocity.data(), r.velocity[1] = other.velocity.data();
+  r.spin[0] = now.angular_velocity.data(), r.spin[1] = other.angular_velocity.data();
   r.state = {nullptr,
              nullptr,
              now.acceleration.data(),
              now.contact_loss.data(),
              now.loss_power.data(),
              h_,
-             items_.subdomain.snap_constant()};
+             items_.subdomain.snap_constant(),
+             now.angular_velocity.data(),
+             now.angular_acceleration.data(),
+             now.orientation.data()};
   r.force = now.force.data();
   r.box = items_.subdomain.box();
   r.drifting = now.drifting.data();
@@ -118,7 +132,10 @@ void StepQueue::bring_home() {
     convert_from_mixed();
   } else {
     if (control_.position_parity() == 1) std::swap(items_.now.position, items_.other.position);
-    if (control_.velocity_parity() == 1) std::swap(items_.now.velocity, items_.other.velocity);
+    if (control_.velocity_parity() == 1) {
+      std::swap(items_.now.velocity, items_.other.velocity);
+      std::swap(items_.now.angular_velocity, items_.other.angular_velocity);
+    }
   }
   control_.at_home();
 }
@@ -160,10 +177,16 @@ void StepQueue::queue_double(Index steps) {
                             {field(0, r.position, 0), field(0, r.position, 1)},
                             {field(1, r.velocity, 0), field(1, r.velocity, 1)},
                             r.control};
+  const bool rotates = r.spin[0] != nullptr;
+  RunSpinGhostItem spins{halo.ghosts(), {}, r.control};
+  if (rotates) spins.spin[0] = field(2, r.spin, 0), spins.spin[1] = field(2, r.spin, 1);
   const auto queue_ghosts = [&](Device on, Index k) {
     for_each(on, halo.entries(), ghosts);
-    halo.exchange(on, ghosts.position[(control_.position_parity() + k) % 2],
-                  ghosts.velocity[(control_.velocity_parity() + k) % 2]);
+    const auto& position = ghosts.position[(control_.position_parity() + k) % 2];
+    const Index parity = (control_.velocity_parity() + k) % 2;
+    if (!rotates) return halo.exchange(on, position, ghosts.velocity[parity]);
+    for_each(on, halo.entries(), spins);
+    halo.exchange(on, position, ghosts.velocity[parity], spins.spin[parity]);
   };
   const auto queue_rows = [&](Device on, Index first, Index end) {
     VerletRequest of_rows = r;
