@@ -150,7 +150,7 @@ struct CountUpItem {
 };
 
 template <class Rows>
-KeptViews views_of(Rows& rows) {
+KeptViews kept_views(Rows& rows) {
   return {rows.offsets.data(), rows.keys.data(), rows.values.data()};
 }
 
@@ -207,7 +207,7 @@ void DeviceHistory::keep(const Listed& at) {
   const int records = records_of(numbers_);
   for_each({stream_}, at.owned, CountClosedItem{names, views(), records, counts_.data()});
   lay_out(kept_, at.owned);
-  for_each({stream_}, at.owned, KeepItem{names, views(), records, numbers_, views_of(kept_), row_of_.data()});
+  for_each({stream_}, at.owned, KeepItem{names, views(), records, numbers_, kept_views(kept_), row_of_.data()});
 }
 
 void DeviceHistory::leave_slots(const Listed& at) {
@@ -223,7 +223,7 @@ void DeviceHistory::take_slots(const Listed& at) {
   surfaces_.resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
   ahead_.resize_with_spare(surfaces_.size());
   for_each({stream_}, at.owned,
-           TakeItem{names_of(at, box_), views(), static_cast<int>(records), numbers_, views_of(kept_),
+           TakeItem{names_of(at, box_), views(), static_cast<int>(records), numbers_, kept_views(kept_),
                     row_of_.data()});
   at_slots_ = true;
 }
@@ -279,7 +279,7 @@ KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
   for_each({stream_}, n, RowLengthItem{kept_.offsets.data(), row_of_.data(), particles, counts_.data()});
   lay_out(packed_, n);
   for_each({stream_}, n,
-           CopyRowItem{views_of(kept_), row_of_.data(), particles, numbers_, views_of(packed_)});
+           CopyRowItem{kept_views(kept_), row_of_.data(), particles, numbers_, kept_views(packed_)});
   return download(packed_);
 }
 
