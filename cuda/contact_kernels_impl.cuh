@@ -65,15 +65,6 @@ __device__ Views at_open_step(Views views, const Request& r) {
   return views;
 }
 
-// Over the step of h [s] that ends now.
-template <class Laws, class Rows>
-SCREE_HD ContactWalk<Laws, Rows> step_walk(const ContactViews<Rows>& in, const Laws& laws, Real h) {
-  if constexpr (LawOf<Laws>::kMoves)
-    return {in, laws, {h}};
-  else
-    return {in, laws};
-}
-
 // Called by the last block of a step.
 __device__ inline void close_step(VerletControl& c) {
   const Real largest = __uint_as_float(c.largest);
@@ -150,8 +141,8 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   Vec3* const acceleration = stage.load(r.state.acceleration);
   VerletAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
-      {step_walk(at_open_step<Laws>(views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), r), laws,
-                 r.state.h),
+      {explicit_walk(at_open_step<Laws>(views_for<kAtOnce>(r.in, r.control->rows, r.control->margin), r),
+                     laws, r.state.h),
        r.gravity, nullptr, nullptr, nullptr},
       r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
@@ -216,7 +207,7 @@ __global__ void verlet_finish_kernel(const __grid_constant__ VerletRequest r, co
   Real a_squared = 0;
   if (i < r.rows.end) {
     VerletFinishItem<Laws, PrunedRows<0>> item{
-        {step_walk(at_open_step<Laws>(views_for<0>(r.in, RowUse::all, 0), r), laws, r.state.h), r.gravity,
+        {explicit_walk(at_open_step<Laws>(views_for<0>(r.in, RowUse::all, 0), r), laws, r.state.h), r.gravity,
          r.force, r.state.loss_power, r.state.angular_acceleration},
         r.state};
     item.forces.walk.in.spin = r.spin[v], item.state.spin = r.spin[1 - v];

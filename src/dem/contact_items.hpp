@@ -42,10 +42,10 @@ struct TotalForce {
 };
 
 // Total force on particle i at the current positions and velocities, and its share of the dissipation.
-// kAccepts: as in ContactWalk.
+// kAccepts: as in ContactWalk, at the end of an explicit step.
 template <class Laws, class Rows, bool kAccepts = false>
 struct ContactForceItem {
-  ContactWalk<Laws, Rows> walk;
+  std::conditional_t<kAccepts, ExplicitWalk<Laws, Rows>, ContactWalk<Laws, Rows>> walk;
   Vec3 gravity;
   Vec3* force;                 // [N]
   Real* loss_power;            // [W]

@@ -23,16 +23,16 @@ class CpuContactKernels : public ContactKernels {
   }
   Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, const VerletViews& state,
                      Vec3* force) const override {
-    return max_over(
-        Serial{}, n,
-        VerletFinishItem<Laws, PackedRows>{
-            {step_walk(in, state.h), gravity, force, state.loss_power, state.angular_acceleration}, state});
+    return max_over(Serial{}, n,
+                    VerletFinishItem<Laws, PackedRows>{{explicit_walk(in, laws_, state.h), gravity, force,
+                                                        state.loss_power, state.angular_acceleration},
+                                                       state});
   }
   Real verlet_advance(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
                       const VerletViews& state) const override {
     return max_over(Serial{}, n,
                     VerletAdvanceItem<Laws, PackedRows>{
-                        {step_walk(in, state.h), gravity, nullptr, nullptr, nullptr}, state});
+                        {explicit_walk(in, laws_, state.h), gravity, nullptr, nullptr, nullptr}, state});
   }
   void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
               const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
@@ -81,14 +81,6 @@ class CpuContactKernels : public ContactKernels {
   }
 
  private:
-  // Over the step of h [s] that ends now.
-  ContactWalk<Laws, PackedRows> step_walk(const ContactViews<PackedRows>& in, Real h) const {
-    if constexpr (LawOf<Laws>::kMoves)
-      return {in, laws_, {h}};
-    else
-      return {in, laws_};
-  }
-
   Laws laws_;
 };
 

@@ -143,7 +143,7 @@ struct AtInstant {
 // The look of laws that move (ContactLaw::kMoves): over the step that ends at this instant. The velocities
 // and angular velocities are those of the middle of the step; the pair is a MovingPair.
 struct OverMotion {
-  Real h = 0;  // [s]; 0: at the instant alone, at which nothing has moved
+  Real h;  // [s]
 
   struct Self {
     Index i;
@@ -162,31 +162,53 @@ struct OverMotion {
   SCREE_HD MovingPair pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
     const Vec4 q = in.position[j], w = in.velocity[j];
     const PairState state = AtInstant::pair({self.i, self.material, self.p, self.u}, q, w);
-    return moving(state, sphere_motion(state.geometry, h * state.velocity, partner(self.p, self.spin),
-                                       partner(q, in.spin[j]), h));
+    return {state, sphere_motion(state.geometry, h * state.velocity, partner(self.p, self.spin),
+                                 partner(q, in.spin[j]), h)};
   }
   template <class Rows>
   SCREE_HD MovingPair wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
     const PairState state = AtInstant{}.wall(in, {self.i, self.material, self.p, self.u}, plane);
-    return moving(state, face_motion(state.geometry, plane.normal, h * state.velocity,
-                                     partner(self.p, self.spin), {}, h));
+    return {state,
+            face_motion(state.geometry, plane.normal, h * state.velocity, partner(self.p, self.spin), {}, h)};
   }
   SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
 
  private:
   SCREE_HD static TurningPartner partner(Vec4 p, Vec4 spin) { return {xyz(spin), p.w, spin.w}; }
-  SCREE_HD MovingPair moving(const PairState& state, const ContactMotion& motion) const {
-    MovingPair pair{state, motion};
-    if (h == 0) pair.motion.h = kInfinity;  // no rate of what has not moved
-    return pair;
-  }
 };
 
-// The law that a choice of laws is about, and what it sees at an instant.
+// The same at an instant alone; the pair is an InstantPair.
+struct AtMovingInstant {
+  using Self = OverMotion::Self;
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return kNoStep.self(in, i);
+  }
+  template <class Rows>
+  SCREE_HD TouchTest test(const ContactViews<Rows>& in, const Self& self) const {
+    return kNoStep.test(in, self);
+  }
+  template <class Rows>
+  SCREE_HD InstantPair pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    return at_instant(kNoStep.pair(in, self, j), xyz(self.spin), xyz(in.spin[j]));
+  }
+  template <class Rows>
+  SCREE_HD InstantPair wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    return at_instant(kNoStep.wall(in, self, plane), xyz(self.spin), {});
+  }
+  SCREE_HD static bool closed(const PairState& pair) { return OverMotion::closed(pair); }
+
+ private:
+  static constexpr OverMotion kNoStep{0};
+};
+
+// The law that a choice of laws is about; what it sees at an instant, and over an explicit step.
 template <class Laws>
 using LawOf = std::remove_cvref_t<decltype(std::declval<Laws>().get(0, 0))>;
 template <class Laws>
-using InstantLook = std::conditional_t<LawOf<Laws>::kMoves, OverMotion, AtInstant>;
+using InstantLook = std::conditional_t<LawOf<Laws>::kMoves, AtMovingInstant, AtInstant>;
+template <class Laws>
+using StepLook = std::conditional_t<LawOf<Laws>::kMoves, OverMotion, AtInstant>;
 
 // Where a step started, all items, and whether contacts that open or close within it are resolved; else the
 // force at its end counts for the whole step, as in the paper.
@@ -362,5 +384,16 @@ struct ContactWalk {
         });
   }
 };
+
+// Over an explicit step of h [s] that ends now; laws that do not move see its end.
+template <class Laws, class Rows>
+using ExplicitWalk = ContactWalk<Laws, Rows, StepLook<Laws>>;
+template <class Laws, class Rows>
+SCREE_HD ExplicitWalk<Laws, Rows> explicit_walk(const ContactViews<Rows>& in, const Laws& laws, Real h) {
+  if constexpr (LawOf<Laws>::kMoves)
+    return {in, laws, {h}};
+  else
+    return {in, laws};
+}
 
 }  // namespace scree

@@ -49,8 +49,7 @@ void check_output_fields(const Deck& deck) {
   for (const OutputField& field : output_fields()) known.emplace_back(field.head.name);
   for (auto name = names.begin(); name != names.end(); ++name) {
     if (find_field(*name) == nullptr)
-      table.fail("fields", fmt::format("there is no output field \"{}\"{}; they are {}", *name,
-                                       suggestion(*name, known), fmt::join(known, ", ")));
+      table.fail("fields", fmt::format("there is no output field \"{}\"{}", *name, suggestion(*name, known)));
     if (std::find(names.begin(), name, *name) != name)
       table.fail("fields", fmt::format("\"{}\" is repeated; every entry must be another one", *name));
   }

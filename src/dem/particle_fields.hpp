@@ -34,7 +34,7 @@
   FIELD(acceleration, Vec3, "m/s^2", "acceleration that the next step starts from", kState | kOutput)        \
   FIELD(force, Vec3, "N", "gravity and contacts", kState)                                                    \
   FIELD(contact_loss, Real, "J", "dissipated in its share of its contacts since t = 0", kState | kOutput)    \
-  FIELD(loss_power, Real, "W", "dissipation in its share of its contacts now", kState | kOutput)             \
+  FIELD(loss_power, Real, "W", "dissipation in its share of its contacts", kState | kOutput)             \
   FIELD(integrator_loss, Real, "J", "taken out by HHT since t = 0", kState | kOutput)                        \
   FIELD(image, ImageCount, "1", "periods that were taken off the position", kState | kOutput)                \
   FIELD(drifting, std::uint8_t, "1", "1 if it has left through an open side", kState)                        \

@@ -62,7 +62,9 @@ XdmfArray field_array(const PointField& field) {
   return array;
 }
 
-const char* attribute_type(int width) { return width == 9 ? "Tensor" : width == 3 ? "Vector" : "Scalar"; }
+const char* attribute_type(int width) {
+  return width == 9 ? "Tensor" : width == 3 ? "Vector" : width == 1 ? "Scalar" : "Matrix";
+}
 
 }  // namespace
 

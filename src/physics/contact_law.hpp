@@ -1,6 +1,8 @@
 // The law of a contact at one instant, composed of a normal, a tangential and a rolling law.
 #pragma once
 
+#include <type_traits>
+
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
 #include "physics/contact_motion.hpp"
@@ -89,8 +91,9 @@ struct ContactLaw {
     return d > 0 || ((!kNeck || old.touched) && d > -reach_beyond_touch(normal, pair.size));
   }
 
-  // All zero where there is no contact.
-  SCREE_HD ContactOutcome load(const MovingPair& pair, const ContactHistory& old) const {
+  // All zero where there is no contact. Pair: a MovingPair, or an InstantPair.
+  template <class Pair>
+  SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old) const {
     ContactOutcome out{};
     if (!closed(pair, old)) return out;
     const auto law = normal.of_pair(pair.size);
@@ -107,7 +110,10 @@ struct ContactLaw {
     SpringSlider slider{};
     if constexpr (TangentialLaw::acts) {
       slider = tangential.slider(pair.size, motion, contact);
-      rub(spring_step(slider, turned_across(motion, old.spring), motion.slip, motion.h), motion, out);
+      SpringStep step = spring_step(slider, turned_across(motion, old.spring), motion.slip, motion.h);
+      if constexpr (std::is_same_v<Pair, InstantPair>)
+        step.acting = shortened(step.spring + slider.dashpot * pair.slip_rate, slider.limit);
+      rub(step, motion, out);
     }
     if constexpr (RollingLaw::acts)
       roll(rolling.step({pair.size, motion, contact, slider}, turned_with(motion, old.moment)), motion.h,

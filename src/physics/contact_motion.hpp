@@ -97,6 +97,23 @@ SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0
   return out;
 }
 
+// What such a law sees at an instant alone: nothing has moved, and what it remembers acts as it is, with a
+// dashpot that sees the rate of the slip.
+struct InstantPair : MovingPair {
+  Vec3 slip_rate;  // of i over j, across the normal [m/s]; odd
+};
+
+// pair: of a step of no length.
+SCREE_HD InstantPair at_instant(const MovingPair& pair, Vec3 spin_i, Vec3 spin_j) {
+  constexpr Real kAges = 1e30;  // what has not moved has no rate [s]
+  InstantPair out{pair, {}};
+  ContactMotion& c = out.motion;
+  const Vec3 turning = cross(c.arm_i * spin_i + c.arm_j * spin_j, c.normal1);
+  out.slip_rate = across(c.leverage * pair.velocity - turning, c.normal1);
+  c.h = kAges;
+  return out;
+}
+
 // What a contact remembers turns with it over a step: about normal0 by the turn of the pair (Cayley's form of
 // a rotation, by 2 atan(turn / 2)), then by the smallest rotation that takes normal0 to normal1. Both keep
 // lengths to round-off and need no root; together they follow a pair that turns as one body to second order

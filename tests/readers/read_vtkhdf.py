@@ -17,7 +17,8 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-WIDTHS = {"velocity": 3, "force": 3, "acceleration": 3, "image": 3, "stress": 9}  # of particles' fields; else 1
+WIDTHS = {"velocity": 3, "force": 3, "acceleration": 3, "image": 3, "stress": 9,
+          "angular_velocity": 3, "angular_acceleration": 3, "orientation": 4}  # of particles' fields; else 1
 BODY_FIELDS = {
     "body": 1,
     "radius": 1,
