@@ -40,6 +40,19 @@ double bytes_remembered(int numbers, double slots) {
          kTouching * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
 }
 
+KeptContacts KeptContacts::without_surfaces() const {
+  KeptContacts out;
+  out.numbers = numbers;
+  for (std::int64_t i = 0; i < particles(); ++i) {
+    for (std::int64_t c = offsets[static_cast<std::size_t>(i)]; c < offsets[static_cast<std::size_t>(i) + 1];
+         ++c)
+      if (const std::int64_t key = keys[static_cast<std::size_t>(c)]; !is_surface(key))
+        out.add(key, values_of(c));
+    out.end_row();
+  }
+  return out;
+}
+
 KeptContacts no_contacts(int numbers, std::int64_t particles) {
   KeptContacts out;
   out.numbers = numbers;

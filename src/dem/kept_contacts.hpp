@@ -39,6 +39,8 @@ struct KeptContacts {
   void add_row(const KeptContacts& from, std::int64_t particle);
   // The rows of these particles, in this order.
   KeptContacts rows(std::span<const Index> particles) const;
+  // Of contacts between particles alone.
+  KeptContacts without_surfaces() const;
   // From counts(): the offsets.
   void set_counts(std::span<const std::int64_t> counts);
 };

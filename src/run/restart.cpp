@@ -134,13 +134,16 @@ void check_allowed(const Differences& differences, const Model& model, const Run
 void apply(const Differences& differences, const Model& model, Restart& restart) {
   if (differences.empty()) return;
   restart.changed = true;
-  bool new_steps = false;
+  bool new_steps = false, other_walls = false;
   for (const DeckDifference& difference : differences) {
     new_steps |= starts_with_any(difference.pattern, {"time."});
+    other_walls |= starts_with_any(difference.pattern, {"walls", "space."});
     restart.forces_changed |= !starts_with_any(difference.pattern, {"time.", "integrator."}) ||
                               difference.pattern == "integrator.particles";
     restart.changes += fmt::format("t = {:.9g} s: {}\n", restart.state.clock.time, to_text(difference));
   }
+  // Walls are numbered: what contacts with them remember may belong to others now.
+  if (other_walls) restart.state.contacts = restart.state.contacts.without_surfaces();
   if (new_steps) restart.state.clock = with_new_steps(restart.state.clock, model.time);
 }
 

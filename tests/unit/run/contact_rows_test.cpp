@@ -163,4 +163,17 @@ TEST_CASE("contacts that no state of the deck can have are refused") {
   CHECK(contains(unpacked("contacts/partner", -1), "its image is none"));
 }
 
+TEST_CASE("what contacts with walls remember can be left out") {
+  KeptContacts all;
+  all.numbers = 1;
+  const Real values[] = {1, 2, 3};
+  all.add(row_key(5), {values, 1}), all.add(row_key(kFirstSurfaceId), {values + 1, 1}), all.end_row();
+  all.add(row_key(kFirstSurfaceId + 3), {values + 2, 1}), all.end_row();
+  const KeptContacts left = all.without_surfaces();
+  CHECK(left.numbers == 1);
+  CHECK(left.offsets == std::vector<std::int64_t>{0, 1, 1});
+  CHECK(left.keys == std::vector<std::int64_t>{row_key(5)});
+  CHECK(left.values == std::vector<Real>{1});
+}
+
 }  // namespace scree
