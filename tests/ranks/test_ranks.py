@@ -3,14 +3,17 @@ Usage: SCREE=path/to/scree MPIEXEC=path/to/mpirun [SCREE_TEST_BACKEND=cuda] pyth
 
 import unittest
 
-from mpi_case import DAM, DONE, EXPLICIT, FAILED, IMPLICIT, INPUT, RanksTest, h5py
+from mpi_case import DAM, DONE, EXPLICIT, FAILED, HERE, IMPLICIT, INPUT, RanksTest, h5py
 
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
 NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
        'output.history_contacts=["net", "net.9"]']
 FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_loss", "loss_power", "integrator_loss", '
           '"image", "force", "contacts", "stress"]')
-# The three cases that a restart continues, too.
+# Spheres that fall, slide, stick, roll, part and leave; some of them do not rub on each other.
+RUBBING = [HERE / "rubbing.toml", "parallel.imbalance=0.05"]
+RUBBING_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
+# The cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
     "the same, explicit": ([*NET, *EXPLICIT, "integrator.substeps=10", "time.end=0.85", "space.leaving=remove"],
@@ -19,6 +22,9 @@ MAIN_CASES = {
     "dam break, explicit": ([*DAM, *EXPLICIT, "time.end=0.24", "integrator.substeps=3"], (1, 2, 3, 4, 8)),
     "periodic gas, implicit": ([*GAS, *IMPLICIT], (1, 2, 3, 4, 8)),
     "periodic gas, explicit": ([*GAS, *EXPLICIT], (1, 2, 3, 4, 8)),
+    "rubbing": ([*RUBBING, "time.end=0.08"], (1, 2, 3, 4, 8)),
+    "rubbing after Hertz and Mindlin": ([HERE / "rubbing_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
+                                        (1, 2, 3, 4)),
 }
 CASES = {
     **MAIN_CASES,
@@ -99,6 +105,28 @@ class SameBitsTest(RanksTest):
                     self.assertEqual(position[3], "gzip" if compression else None)
         sizes = [(self.folder / f"{c} 4" / "checkpoint_end.h5").stat().st_size for c in (0, 3)]
         self.assertLess(sizes[1], sizes[0])
+
+    def test_lists_built_often_and_seldom_give_the_bits_of_rubbing_particles(self):
+        for deck in ("rubbing.toml", "rubbing_hertz.toml"):
+            builds = []
+            for skin in (1e-5, 1e-3, 8e-3):
+                output = f"{deck} {skin}"
+                self.run_deck(DONE, 2, HERE / deck, output, [f"contact.skin={skin}", "output.history_csv=true"])
+                first = f"{deck} 1e-05"
+                self.assertEqual(self.hash(output), self.hash(first))
+                self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))
+                builds.append(self.record(output)["counts"]["list_builds"])
+            self.assertGreater(builds[0], 1500)  # of 2000 steps
+            self.assertLess(builds[2], 100)
+
+    @unittest.skipIf(h5py is None, "needs h5py")
+    def test_every_number_of_ranks_writes_the_same_spins(self):
+        deck, *settings = [*RUBBING, "time.end=0.04", "output.snapshot_interval=0.01",
+                           f"output.fields={RUBBING_FIELDS}"]
+        for ranks in (1, 2, 3):
+            self.run_deck(DONE, ranks, deck, f"spins {ranks}", settings)
+            for name in ("particles.vtkhdf", "history.h5", "checkpoint_end.h5"):
+                self.assertEqual(self.datasets(f"spins {ranks}", name), self.datasets("spins 1", name), name)
 
 
 if __name__ == "__main__":
