@@ -1,0 +1,75 @@
+// Particles that rub on the GPU against the CPU: bit for bit, with rows pruned or not and either form of the
+// step's kernel, and from one backend to the other.
+#include "launches.hpp"
+#include "support/catch.hpp"
+#include "support/contact_book.hpp"
+#include "support/particle_bits.hpp"
+#include "support/rubbing_box.hpp"
+
+namespace scree {
+namespace {
+
+std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks) {
+  return make_cpu_backend(model, ranks);
+}
+std::unique_ptr<Backend> make_cuda(const Model& model, const Ranks& ranks) {
+  return make_cuda_backend(model, ranks);
+}
+
+void check_equal(const RememberingBox& cpu, const RememberingBox& cuda) {
+  const State a = cpu.state(), b = cuda.state();
+  CHECK(differing_fields(a.particles, b.particles) == "");
+  CHECK(difference(a.contacts, b.contacts) == "");
+  CHECK(!a.contacts.keys.empty());
+  CHECK(unmirrored<3>(b.particles, b.contacts) == 0);
+}
+
+// What the ledger says of both.
+void check_ledgers(const RememberingBox& cpu, const RememberingBox& cuda) {
+  const ParticleLedger a = cpu.backend->reports().ledger(kMovingStep),
+                       b = cuda.backend->reports().ledger(kMovingStep);
+  CHECK(a.contacts == b.contacts);
+  CHECK(a.kinetic == b.kinetic);
+  CHECK(a.contact_elastic == b.contact_elastic);
+  CHECK(a.contact_loss == b.contact_loss);
+  CHECK(a.angular_momentum == b.angular_momentum);
+}
+
+}  // namespace
+
+TEST_CASE("particles rub the same on both backends, and each goes on from what the other has") {
+  for (const BoxCase& c : kRubbingBoxes)
+    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
+      CAPTURE(c.name, static_cast<int>(leaving));
+      const Model model = moving_rubbing_box(c, leaving);
+      RememberingBox cpu(model, {}, make_cpu), cuda(model, {}, make_cuda);
+      for (RememberingBox* box : {&cpu, &cuda}) box->start();
+      for (int part = 0; part < 20; ++part) {
+        for (RememberingBox* box : {&cpu, &cuda}) box->take_steps(50);
+        check_equal(cpu, cuda), check_ledgers(cpu, cuda);
+      }
+      RememberingBox on_cpu(model, {}, make_cpu), on_cuda(model, {}, make_cuda);
+      on_cpu.start(cuda.state()), on_cuda.start(cpu.state());
+      for (RememberingBox* box : {&on_cpu, &on_cuda, &cpu}) box->take_steps(100);
+      check_equal(on_cpu, on_cuda), check_equal(cpu, on_cuda);
+    }
+}
+
+// Steps so short that rows are pruned several times between two lists.
+TEST_CASE("many particles rub the same on both backends") {
+  const Launches before = launches();
+  for (const BoxCase& c : {kRubbingBoxes[0], kRubbingBoxes[2]})
+    for (const bool several_at_once : {false, true}) {
+      CAPTURE(c.name, several_at_once);
+      launches().several_at_once = several_at_once;
+      Model model = rubbing(dense_box(c, ParticleIntegrator::velocity_verlet, 20000));
+      model.contact.skin = 0.02;
+      RememberingBox cpu(model, {}, make_cpu), cuda(model, {}, make_cuda);
+      for (RememberingBox* box : {&cpu, &cuda}) box->start(), box->take_steps(300, 1e-5);
+      CHECK(cuda.backend->list().builds() > 1);
+      check_equal(cpu, cuda), check_ledgers(cpu, cuda);
+    }
+  launches() = before;
+}
+
+}  // namespace scree
