@@ -324,7 +324,7 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
   const IdRange own = share.part(count);
   check_memory(size, bytes_to_build_particles(own.size(), places_found(groups)), "building the particles",
                share);
-  model.particles.first_id = own.first;
+  model.particles.first_id = own.first, model.particles.dimension = model.space.dimension;
   GlobalId first = 0;
   for (Group& group : groups) {
     const std::vector<StartItem> placed =
