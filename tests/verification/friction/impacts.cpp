@@ -1,0 +1,142 @@
+// Oblique impacts on a plane, through decks, against event-located solutions of each law.
+#include <map>
+
+#include "support/bars.hpp"
+#include "support/catch.hpp"
+#include "verification/contact/errors.hpp"
+#include "verification/contact/hertz_impacts.hpp"
+#include "verification/friction/grain_decks.hpp"
+
+namespace scree {
+
+namespace {
+
+// All phases of a step in which a contact can begin are equally likely.
+constexpr Real kPhases[] = {0, 0.4, 0.8};
+// Least order where the dashpot, which sees the velocity of the middle of the step, matters most.
+constexpr Real kLaggingDashpot = 0.9;
+using Row = ReferenceTable::Row;
+
+// What the rows of a deck share: its law and materials.
+struct Setting {
+  std::string law, materials;
+  bool operator<(const Setting& o) const { return law + materials < o.law + o.materials; }
+};
+
+Setting setting_of(const LinearImpact& impact, const Row&) {
+  const Real damping = contact_damping(impact.damping_ratio, impact.grain.mass, impact.stiffness, 1);
+  return {fmt::format("stiffness = {}\ndamping = {}\nfriction = {}\ntangential_stiffness = {}\n",
+                      impact.stiffness, damping, impact.friction, impact.slip_stiffness),
+          ""};
+}
+
+Setting setting_of(const HertzImpact& impact, const Row& row) {
+  const Real restitution = restitution_of(impact.normal.damping_factor / std::sqrt(Real(5)), false);
+  return {fmt::format("restitution = {}\nfriction = {}\n", restitution, impact.tangential.friction),
+          hertz_materials(row["E"], row["nu"])};
+}
+
+// A deck of all the impacts of a setting, side by side, and the errors of its rebounds as rebound_error() has
+// them. Steps are counted in the shortest contact.
+template <class Impact>
+void add_rebounds(const Setting& setting, const std::vector<Impact>& impacts, Real parts, Errors& errors) {
+  Real contact_time = kInfinity;
+  for (const Impact& impact : impacts) contact_time = std::min(contact_time, impact.contact_time);
+  const Real h = contact_time / parts;
+  GrainDeck deck{.law = setting.law, .grains = {}, .step = h, .end = 8 * contact_time};
+  deck.materials = setting.materials;
+  for (const Impact& impact : impacts)
+    for (const Real phase : kPhases) {
+      Grain grain = impact.grain;
+      grain.position = {0, 3 * grain.radius * static_cast<Real>(deck.grains.size()),
+                        grain.radius - phase * h * grain.velocity.z};
+      deck.grains.push_back(grain);
+    }
+  SimulationRun run(deck.model());
+  run.run();
+  REQUIRE(run.particle_ledger().contacts == 0);
+  const std::vector<Particle> after = run.particles();
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const Impact& impact = impacts[k / std::size(kPhases)];
+    const Vec3 v = after[k].velocity - impact.velocity_after;
+    const Vec3 w = impact.grain.radius * (after[k].angular_velocity - impact.spin_after);
+    const Real speed =
+        norm(impact.grain.velocity - impact.grain.radius * cross(impact.grain.spin, {0, 0, 1}));
+    for (const Real error : {v.x, v.y, v.z, w.x, w.y, w.z}) errors.add(error / speed);
+  }
+}
+
+template <class Impact, class Which>
+Errors rebound_errors(const std::string& table, Real parts, const Which& which) {
+  const ReferenceTable rows(table);
+  std::map<Setting, std::vector<Impact>> decks;
+  for (const Row& row : rows.rows())
+    if (which(row)) decks[setting_of(Impact(row), row)].push_back(Impact(row));
+  Errors errors;
+  for (const auto& [setting, impacts] : decks) add_rebounds(setting, impacts, parts, errors);
+  return errors;
+}
+
+bool rescales(const Row& row) { return row.word("unload") == "rescale"; }
+
+}  // namespace
+
+TEST_CASE("oblique impacts on a wall with a linear spring and slider") {
+  const auto at = [&](Real parts, bool damped) {
+    return rebound_errors<LinearImpact>("contact/oblique_linear.csv", parts,
+                                        [&](const Row& row) { return (row["e"] < 1) == damped; });
+  };
+  SECTION("without damping: of second order") {
+    const Errors coarse = at(100, false), fine = at(200, false);
+    CHECK(keeps(coarse.worst(), {.promise = 1e-3, .measured = 1.7e-4}));
+    CHECK(keeps(fine.worst(), {.promise = 3e-4, .measured = 2.8e-5}));
+    CHECK(order_between(coarse, fine) > 1.8);
+  }
+  SECTION("with a normal dashpot, whose force jumps at touch and lags half a step: of first order") {
+    const Errors coarse = at(100, true), fine = at(200, true);
+    CHECK(keeps(coarse.worst(), {.promise = 1e-2, .measured = 4.6e-3}));
+    CHECK(keeps(fine.worst(), {.promise = 5e-3, .measured = 2.3e-3}));
+    CHECK(order_between(coarse, fine) > kLaggingDashpot);
+  }
+}
+
+TEST_CASE("oblique impacts on a wall after Hertz and Mindlin") {
+  SECTION("at all angles, three materials") {
+    const auto at = [](Real parts) {
+      return rebound_errors<MindlinImpact>("contact/oblique_mindlin.csv", parts, rescales);
+    };
+    const Errors coarse = at(100), fine = at(200);
+    CHECK(keeps(coarse.worst(), {.promise = 2e-3, .measured = 1.2e-3}));
+    CHECK(keeps(fine.worst(), {.promise = 1e-3, .measured = 6.1e-4}));
+    CHECK(order_between(coarse, fine) > kLaggingDashpot);
+  }
+  SECTION("Chung and Ooi, test 4: at all angles") {
+    const auto at = [](Real parts) {
+      return rebound_errors<AngleImpact>("contact/chung_ooi_4.csv", parts, rescales);
+    };
+    const Errors coarse = at(100), fine = at(200);
+    CHECK(keeps(coarse.worst(), {.promise = 1e-3, .measured = 7.3e-5}));
+    CHECK(keeps(fine.worst(), {.promise = 5e-4, .measured = 2.9e-5}));
+    CHECK(order_between(coarse, fine) > 1.1);
+  }
+  SECTION("Chung and Ooi, test 5: at all tangential velocities, undamped") {
+    const auto at = [](Real parts) {
+      return rebound_errors<RecoilImpact>("contact/chung_ooi_5.csv", parts, rescales);
+    };
+    const Errors coarse = at(100), fine = at(200);
+    CHECK(keeps(coarse.worst(), {.promise = 1e-3, .measured = 1.8e-4}));
+    CHECK(keeps(fine.worst(), {.promise = 5e-4, .measured = 4.3e-5}));
+    CHECK(order_between(coarse, fine) > 1.8);
+  }
+  SECTION("Chung and Ooi, test 6: with spin alone") {
+    const auto at = [](Real parts) {
+      return rebound_errors<SpinImpact>("contact/chung_ooi_6.csv", parts, rescales);
+    };
+    const Errors coarse = at(100), fine = at(200);
+    CHECK(keeps(coarse.worst(), {.promise = 1e-2, .measured = 4.8e-3}));
+    CHECK(keeps(fine.worst(), {.promise = 5e-3, .measured = 2.4e-3}));
+    CHECK(order_between(coarse, fine) > kLaggingDashpot);
+  }
+}
+
+}  // namespace scree
