@@ -1,0 +1,147 @@
+"""Friction between particles: what decks with it are refused for, what check says, what snapshots and restarts hold.
+Usage: SCREE=path/to/scree python3 test_friction.py"""
+
+import re
+import unittest
+
+from test_cli import BAD_INPUT, DECK, DONE, EXPLICIT, CommandLineTest
+
+# Spheres that fall onto a rough floor and onto each other.
+RUBBING = """gravity = [2.0, 0.0, -9.8]
+[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [1.0, 1.0, 1.0]
+z_min = "wall"
+leaving = "drift"
+[time]
+end = 0.2
+step = 1e-4
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e5
+damping = 10.0
+friction = 0.5
+[[particles]]
+name = "grains"
+kind = "lattice"
+origin = [0.2, 0.2, 0.12]
+spacing = [0.21, 0.21, 0.21]
+size = [2, 2, 2]
+radius = 0.1
+mass = 1.0
+angular_velocity = [0.0, 5.0, 1.0]
+[output]
+history_csv = true
+"""
+HERTZ = """stiffness = 1e5
+damping = 10.0
+""", """restitution = 0.8
+"""
+GLASS = """[[materials]]
+name = "glass"
+young_modulus = 1e7
+poisson_ratio = 0.2
+"""
+BALL = """[[bodies]]
+name = "ball"
+position = [0.5, 0.5, 0.8]
+mass = 1.0
+inertia = 0.005
+shapes = [{ radius = 0.05 }]
+"""
+
+
+class FrictionTest(CommandLineTest):
+    def setUp(self):
+        super().setUp()
+        self.deck = self.write("deck.toml", RUBBING)
+
+    def refused(self, text):
+        """The message, which names the file, and the line of the deck that it names."""
+        message = self.expect(BAD_INPUT, "check", self.write("bad.toml", text)).stderr
+        self.assertRegex(message, r"^error: \S*bad\.toml:\d+:\d+: .*\n$")
+        return message, text.splitlines()[int(re.search(r"bad\.toml:(\d+)", message).group(1)) - 1]
+
+    def test_refusals_name_file_key_and_remedy(self):
+        friction = "friction = 0.5\n"
+        hertz = RUBBING.replace(*HERTZ) + GLASS
+        pairs = "[[contact.pairs]]"
+        # The deck; the line that is named; what the message says.
+        cases = (
+            (RUBBING.replace(friction, "friction = -0.5\n"), friction, "contact.pairs.0.friction = -0.5", "at least 0"),
+            (RUBBING.replace(friction, "tangential_stiffness = 2e4\n"), "tangential_stiffness",
+             "contact.pairs.0.tangential_stiffness", "needs friction beside it"),
+            (RUBBING.replace(friction, "tangential_damping_ratio = 0.1\n"), "tangential_damping_ratio",
+             "contact.pairs.0.tangential_damping_ratio", "needs friction beside it"),
+            (RUBBING.replace(friction, friction + "tangential_stiffness = 0.0\n"), "tangential_stiffness",
+             "contact.pairs.0.tangential_stiffness = 0", "above 0"),
+            (RUBBING.replace(friction, friction + "tangential_damping_ratio = -0.1\n"), "tangential_damping_ratio",
+             "contact.pairs.0.tangential_damping_ratio", "at least 0"),
+            (RUBBING.replace(friction, friction + "exponent = 1.5\n"), pairs,
+             "contact.pairs.0.tangential_stiffness: missing", "only where exponent = 1"),
+            (hertz.replace(friction, friction + "tangential_stiffness = 2e4\n"), "tangential_stiffness",
+             "contact.pairs.0.tangential_stiffness", "left out for Hertz's law: Mindlin's follows from the moduli"),
+            (RUBBING.replace('"velocity-verlet"', '"hht"'), friction, "contact.pairs.0.friction",
+             'needs integrator.particles = "velocity-verlet"'),
+            (RUBBING.replace('"velocity-verlet"\n', '"velocity-verlet"\nprecision = "mixed"\n'), "precision",
+             "integrator.precision", 'must be "double" where a pair has friction'),
+            (RUBBING + BALL, friction, "contact.pairs.0.friction",
+             'particles do not rub against bodies yet, and body "ball" has shapes'),
+            (RUBBING.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",
+             "no particle rotates: no pair in contact.pairs has friction"),
+            (RUBBING.replace("[0.0, 5.0, 1.0]", "[5.0]"), "angular_velocity", "particles.grains.angular_velocity",
+             "must have 3 entries"))
+        for text, line, *parts in cases:
+            with self.subTest(parts=parts):
+                self.assertNotEqual(text, RUBBING)
+                message, named = self.refused(text)
+                self.assertIn(line.split("=")[0].strip(), named)
+                for part in parts:
+                    self.assertIn(part, message)
+
+    def test_discs_turn_about_z_alone(self):
+        flat = re.sub(r"\[\[bodies\]\].*(?=\[\[particles\]\])", "", DECK, flags=re.DOTALL)
+        flat = flat.replace('history_bodies = ["pad"]\n', "").replace("damping = 3.0", "damping = 3.0\nfriction = 0.5")
+        for spin, code in (("[2.0]", DONE), ("[]", DONE), ("[0.0, 0.0, 2.0]", BAD_INPUT)):
+            text = flat.replace("velocity = [0.5, -1.0]", f"velocity = [0.5, -1.0]\nangular_velocity = {spin}")
+            message = self.expect(code, "check", self.write("flat.toml", text), *EXPLICIT[:2]).stderr
+            self.assertEqual("must have 1 entry, about z" in message, code == BAD_INPUT)
+
+    def test_decks_with_friction_run_with_hertz_and_bodies_without_shapes(self):
+        self.expect(DONE, "check", self.write("hertz.toml", RUBBING.replace(*HERTZ) + GLASS))
+        self.expect(DONE, "check", self.write("body.toml", RUBBING + BALL.replace("shapes", "# shapes")))
+        self.expect(DONE, "check", self.deck, "--set", "contact.pairs.0.friction=0.0")
+
+    def test_snapshots_hold_spins_and_orientations(self):
+        fields = ("--set", 'output.fields=["angular_velocity", "orientation"]')
+        self.run_deck(DONE, "out", *fields)
+        text = (self.folder / "out/particles.xdmf").read_text()
+        for name in ("angular_velocity", "orientation"):
+            self.assertIn(f'Attribute Name="{name}"', text)
+
+    def test_a_restart_keeps_what_contacts_remember(self):
+        self.run_deck(DONE, "whole", "--set", "output.checkpoint_interval=0.1")
+        self.run_deck(DONE, "parts", "--set", "output.checkpoint_interval=0.1", "--set", "time.end=0.1")
+        self.run_deck(DONE, "parts", "--set", "output.checkpoint_interval=0.1", "--restart",
+                      self.folder / "parts/checkpoint.h5")
+        self.assert_same_results("parts", "whole")
+
+    def test_friction_may_come_and_go_at_a_restart_that_allows_changes(self):
+        smooth = re.sub(r"(?m)^(friction|angular_velocity) = .*\n", "", RUBBING)
+        half = ("--set", "time.end=0.1")
+        for first, second in ((RUBBING, smooth), (smooth, RUBBING), (RUBBING, RUBBING.replace("0.5", "0.1"))):
+            with self.subTest(second=second):
+                self.deck = self.write("deck.toml", first)
+                self.run_deck(DONE, "first", *half)
+                self.deck = self.write("deck.toml", second)
+                restart = ("--restart", self.folder / "first/checkpoint_end.h5")
+                self.assertIn("contact.pairs.0.friction", self.run_deck(BAD_INPUT, "second", *restart).stderr)
+                text = self.run_deck(DONE, "second", *restart, "--allow-changes").stdout
+                error, exchanged = map(float, re.search(r"error (\S+) J of (\S+) J", text).groups())
+                self.assertLess(abs(error), 0.05 * exchanged)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
