@@ -1,0 +1,109 @@
+// Heaps: one left alone does not creep, and both sides of every contact of one that is shaken stay mirrored.
+#include <fmt/format.h>
+
+#include "support/bars.hpp"
+#include "support/catch.hpp"
+#include "support/contact_book.hpp"
+#include "support/models.hpp"
+#include "support/particle_bits.hpp"
+#include "support/simulation_run.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kRadius = 0.02, kStep = 1e-4;  // [m], [s]
+
+// Discs or spheres that fall into a heap on a floor between walls.
+std::string heap_deck(int dimension, int count, Real end, const std::string& keys) {
+  const std::string zero = dimension == 2 ? "" : ", 0.0";
+  return fmt::format(R"(
+gravity = [0.0, -9.81{zero}]
+[space]
+dimension = {dimension}
+min = [0.0, 0.0{zero}]
+max = [0.3, 1.0{depth}]
+x_min = "wall"
+x_max = "wall"
+y_min = "wall"
+{sides}
+[time]
+end = {end}
+step = {step}
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 2e4
+friction = 0.5
+{keys}
+[[particles]]
+name = "heap"
+kind = "random"
+count = {count}
+min = [0.0, 0.0{zero}]
+max = [0.3, 0.4{depth}]
+radius = {{ kind = "uniform", min = 0.014, max = {radius} }}
+density = 2500.0
+{thickness}
+random_velocity = 0.3
+angular_velocity = [{spin}]
+seed = 7
+)",
+                     fmt::arg("zero", zero), fmt::arg("dimension", dimension),
+                     fmt::arg("depth", dimension == 2 ? "" : ", 0.15"), fmt::arg("end", end),
+                     fmt::arg("sides", dimension == 2 ? "" : "z_min = \"wall\"\nz_max = \"wall\""),
+                     fmt::arg("step", kStep), fmt::arg("keys", keys), fmt::arg("count", count),
+                     fmt::arg("radius", kRadius), fmt::arg("spin", dimension == 2 ? "5.0" : "5.0, 1.0, 2.0"),
+                     fmt::arg("thickness", dimension == 2 ? "thickness = 0.05" : ""));
+}
+
+Real largest_move(const std::vector<Particle>& a, const std::vector<Particle>& b) {
+  Real largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, norm(a[i].position - b[i].position));
+  return largest;
+}
+
+}  // namespace
+
+// Discs: spheres, without resistance to rolling and twisting, go on to roll on the floor and to spin on top.
+TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1e5 steps") {
+  constexpr Real kSettled = 6, kAlone = 1e5 * kStep;
+  SimulationRun run(
+      model_of(heap_deck(2, 60, kSettled + kAlone, "damping = 20.0\ntangential_damping_ratio = 0.5")));
+  run.run_until(kSettled);
+  const std::vector<Particle> before = run.particles();
+  const ParticleLedger settled = run.particle_ledger();
+  REQUIRE(settled.contacts > 90);
+  run.run();
+  const ParticleLedger now = run.particle_ledger();
+  CHECK(now.contacts == settled.contacts);
+  CHECK(keeps(largest_move(run.particles(), before) / (2 * kRadius), {.promise = 1e-9, .measured = 5e-12}));
+  CHECK(now.kinetic < 1e-22);  // [J]; a weight times its radius is 1e-2 J
+  CHECK(now.contact_loss - settled.contact_loss < 1e-15);
+}
+
+TEST_CASE("both sides of every contact mirror each other after 1e5 steps of a shaken heap") {
+  for (const int dimension : {2, 3}) {
+    CAPTURE(dimension);
+    constexpr int kParts = 50;
+    constexpr Real kPart = 2000 * kStep;
+    Model model = model_of(heap_deck(dimension, 40, kParts * kPart, "damping = 1.0"));
+    auto run = std::make_unique<SimulationRun>(model);
+    std::int64_t contacts = 0;
+    Real loss = 0;
+    for (int part = 1; part <= kParts; ++part) {
+      run->run_until(part * kPart);
+      State state = run->complete_state();
+      CHECK(unmirrored<3>(state.particles, state.contacts) == 0);
+      contacts += std::ssize(state.contacts.keys);
+      CHECK(run->particle_ledger().contact_loss > loss);
+      loss = run->particle_ledger().contact_loss;
+      // Gravity swings to and fro: the heap slides, rolls and falls from wall to wall.
+      model.gravity = {part % 2 == 0 ? 15.0 : -15.0, -9.81, dimension == 3 ? 3.0 : 0.0};
+      run = std::make_unique<SimulationRun>(model, state);
+    }
+    CHECK(contacts > 20 * kParts);
+  }
+}
+
+}  // namespace scree
