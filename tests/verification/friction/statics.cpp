@@ -193,6 +193,8 @@ kind = "list"
 positions = {}]
 radius = {}
 mass = {}
+[output]
+history_contacts = ["x_min", "x_max", "z_min"]
 )",
                                          positions, R, m)));
   run.run();
@@ -209,6 +211,18 @@ mass = {}
   CHECK(keeps(places.worst(), {.promise = 1e-3, .measured = 1e-8}));
   CHECK(keeps(turns.worst(), {.promise = 1e-3, .measured = 2.6e-7}));
   CHECK(run.particle_ledger().kinetic < 1e-24);  // of some 1e-6 J
+  // On the walls, the opposite of what is on the spheres; both in the sums over a wall's contacts.
+  const ReferenceTable contacts("contact/zigzag_contacts.csv");
+  Vec3 expected[3] = {};
+  for (const auto& row : contacts.rows()) {
+    const bool right = std::fmod(row["i"], 2) == 1;
+    if (row.word("contact") == "wall")
+      expected[right ? 1 : 0] += Vec3{right ? row["N"] : -row["N"], 0, -row["Tz"]};
+    if (row.word("contact") == "floor") expected[2] += Vec3{-row["Tx"], 0, -row["N"]};
+  }
+  const std::vector<Real> values = run.contact_values();
+  for (std::size_t w = 0; w < 3; ++w)
+    CHECK(near(Vec3{values[7 * w], values[7 * w + 1], values[7 * w + 2]}, expected[w], {.relative = 1e-6}));
 }
 
 }  // namespace scree
