@@ -92,7 +92,7 @@ struct ContactLaw {
   }
 
   // All zero where there is no contact. Pair: a MovingPair, or an InstantPair.
-  template <class Pair>
+  template <class Pair = MovingPair>
   SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old) const {
     ContactOutcome out{};
     if (!closed(pair, old)) return out;
