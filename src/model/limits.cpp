@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/touching.hpp"
+#include "physics/particle_mass.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -19,15 +20,35 @@ Real smallest_reduced_mass(const PairSize& size) {
   return reduced_mass(size.mass_i, size.mass_j);
 }
 
+// What a pair of materials does to particles; stiffnesses as in PairLimit.
+struct PairSprings {
+  const KelvinVoigt& law;
+  Friction friction;
+  Real stiffness, slip_stiffness;  // [N/m]
+};
+
+// Springs and dashpots alike have their fastest modes; that both are of one mode is the worst.
+Real rubbing_step(const PairSprings& pair, Real mass, int dimension, bool dense) {
+  const Real inertia_share = dimension == 2 ? disc_inertia(1, 1) : sphere_inertia(1, 1);
+  const Real slip_mass = mass / ((dense ? 2 : 1) * (1 + 1 / inertia_share));
+  const Real slip_damping = dashpot_of(pair.friction.damping_ratio, slip_mass, pair.slip_stiffness);
+  const auto highest = [&](Real along, Real across) {
+    return dense ? dense_rubbing_frequency(along, across, mass, inertia_share, dimension)
+                 : wall_rubbing_frequency(along, across, mass, inertia_share);
+  };
+  const Real root_of_decay = highest(pair.law.normal_damping, slip_damping);
+  return leapfrog_step_limit(highest(pair.stiffness, pair.slip_stiffness), root_of_decay * root_of_decay);
+}
+
 // Of the lightest particle of use `use`: in a dense packing of such particles, or, where the other material
 // has none, at a wall or body.
-Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const KelvinVoigt& law,
-                   Real stiffness) {
+Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const PairSprings& pair) {
   if (use.particles == 0) return 0;
   const Real mass = use.smallest_particle_mass;
-  const Real frequency =
-      dense ? dense_frequency(stiffness, mass, model.space.dimension) : contact_frequency(stiffness, mass);
-  return verlet_step_limit(frequency, stiffness, law.normal_damping);
+  if (model.rotates()) return rubbing_step(pair, mass, model.space.dimension, dense);
+  const Real frequency = dense ? dense_frequency(pair.stiffness, mass, model.space.dimension)
+                               : contact_frequency(pair.stiffness, mass);
+  return verlet_step_limit(frequency, pair.stiffness, pair.law.normal_damping);
 }
 
 }  // namespace
@@ -85,11 +106,14 @@ std::vector<PairLimit> pair_limits(const Model& model) {
       const KelvinVoigt sized = law.of_size(size);
       const Real stiffness = typical_stiffness(law, size);
       const bool dense = first.particles > 0 && second.particles > 0;
-      const Real step_a = explicit_step(model, first, dense, sized, stiffness);
-      const Real step_b = explicit_step(model, second, dense, sized, stiffness);
+      const Friction friction = model.rotates() ? model.contact.friction_of(a, b) : Friction{};
+      const PairSprings springs{sized, friction, stiffness, typical_slip_stiffness(friction, size)};
+      const Real step_a = explicit_step(model, first, dense, springs);
+      const Real step_b = explicit_step(model, second, dense, springs);
       limits.push_back({{a, b},
                         sized,
                         stiffness,
+                        springs.slip_stiffness,
                         contact_time(stiffness, smallest_reduced_mass(size)),
                         step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b)});
     }

@@ -44,6 +44,10 @@ struct Contact {
 
   int materials() const { return static_cast<int>(material_names.size()); }
   const KelvinVoigt& law(int i, int j) const { return laws[static_cast<std::size_t>(i * materials() + j)]; }
+  // Of materials where some rub.
+  const Friction& friction_of(int i, int j) const {
+    return friction[static_cast<std::size_t>(i * materials() + j)];
+  }
 };
 
 struct TimeControl {

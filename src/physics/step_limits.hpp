@@ -8,6 +8,7 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "physics/normal_laws.hpp"
+#include "physics/tangential_laws.hpp"
 
 namespace scree {
 
@@ -56,6 +57,28 @@ SCREE_HD Real dense_rubbing_frequency(Real stiffness, Real slip_stiffness, Real 
 SCREE_HD Real verlet_step_limit(Real frequency, Real stiffness, Real damping) {
   const Real ratio = damping * frequency / (2 * stiffness);
   return 2 / frequency * (std::sqrt(1 + 4 * ratio * ratio) - 2 * ratio);
+}
+
+// Stiffness of the tangential spring [N/m] for estimates: where it depends on the overlap, at 1 % of the
+// smaller radius.
+inline Real typical_slip_stiffness(const Friction& of, const PairSize& size) {
+  if (of.friction == 0) return 0;
+  if (of.shear_modulus == 0) return LinearSlider::of(of).stiffness_at(0);
+  const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
+  return MindlinSlider::of(of).stiffness_at(std::sqrt(size.effective_radius() * overlap));
+}
+
+// Likewise of one particle on what does not give way: it moves along the normal, or across it and turns.
+inline Real wall_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share) {
+  return std::sqrt(std::max(stiffness, (1 + 1 / inertia_share) * slip_stiffness) / mass);
+}
+
+// Stability limit [s] of the steps of particles that rotate, whose damping acts on the velocities of the
+// middle of the step, for modes of at most this circular frequency w [1/s] and decay 2 z w [1/s]:
+// h^2 w^2 / 4 + z h w = 1.
+inline Real leapfrog_step_limit(Real frequency, Real decay) {
+  const Real ratio = decay / (2 * frequency);
+  return 2 / frequency * (std::sqrt(1 + ratio * ratio) - ratio);
 }
 
 }  // namespace scree

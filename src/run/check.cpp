@@ -115,6 +115,10 @@ std::string limit_lines(const Model& model) {
                          law.exponent == 1 ? "" : fmt::format("^{}", law.exponent), law.normal_damping,
                          sized ? " (smallest partners, at 1 % overlap)" : "",
                          law.tension ? "may pull" : "cut at zero");
+    if (limit.slip_stiffness > 0)
+      lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
+                           model.contact.friction_of(limit.material[0], limit.material[1]).friction,
+                           limit.slip_stiffness, sized ? " (the same)" : "");
     lines += fmt::format(
         "               shortest contact {:.4g} s{}, rebounds within {:.0f} % at steps up to {:.2g} s\n",
         limit.contact_time, law.exponent == 1 ? "" : " (at 1 % overlap)",

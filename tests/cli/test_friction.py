@@ -114,6 +114,20 @@ class FrictionTest(CommandLineTest):
         self.expect(DONE, "check", self.write("body.toml", RUBBING + BALL.replace("shapes", "# shapes")))
         self.expect(DONE, "check", self.deck, "--set", "contact.pairs.0.friction=0.0")
 
+    def test_check_says_how_contacts_rub_and_what_that_does_to_the_step(self):
+        def limit(*words):
+            text = self.expect(DONE, "check", self.deck, *words).stdout
+            self.assertIn("friction 0.5, k_t = ", text)
+            return float(re.search(r"in dense contact: steps up to (\S+) s", text).group(1))
+
+        # 2/7 of the stiffness across the normal: spheres that all spin alike are the fastest.
+        damping = ("--set", "contact.pairs.0.damping=0.0")
+        self.assertAlmostEqual(limit(*damping), 2 / (40 * 2 / 7 * 1e5) ** 0.5, delta=1e-7)
+        stiff = (*damping, "--set", "contact.pairs.0.tangential_stiffness=1e5")
+        self.assertAlmostEqual(limit(*stiff), 2 / (40 * 1e5) ** 0.5, delta=1e-7)
+        message = self.expect(BAD_INPUT, "check", self.deck, *stiff, "--set", "time.step=1.1e-3").stderr
+        self.assertIn("it must be at most 0.001 s", message)
+
     def test_snapshots_hold_spins_and_orientations(self):
         fields = ("--set", 'output.fields=["angular_velocity", "orientation"]')
         self.run_deck(DONE, "out", *fields)
