@@ -118,7 +118,7 @@ std::string limit_lines(const Model& model) {
     if (limit.slip_stiffness > 0)
       lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
                            model.contact.friction_of(limit.material[0], limit.material[1]).friction,
-                           limit.slip_stiffness, sized ? " (the same)" : "");
+                           limit.slip_stiffness, sized ? " (likewise)" : "");
     lines += fmt::format(
         "               shortest contact {:.4g} s{}, rebounds within {:.0f} % at steps up to {:.2g} s\n",
         limit.contact_time, law.exponent == 1 ? "" : " (at 1 % overlap)",
