@@ -109,6 +109,57 @@ TEST_CASE("the energies of a rubbing gas balance") {
   }
 }
 
+// They take along what the springs of their contacts hold, and nothing goes on to push or turn what stays.
+TEST_CASE("particles that leave while they rub take their energy along: the balance stays of second order") {
+  const std::string deck = R"(
+gravity = [0.0, 0.0, -9.81]
+[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [0.4, 0.3, 0.6]
+z_min = "wall"
+y_min = "wall"
+y_max = "wall"
+leaving = "remove"
+[time]
+end = 0.2
+step = 4e-5
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 5e3
+friction = 0.5
+[[particles]]
+name = "block"
+kind = "lattice"
+origin = [0.021, 0.022, 0.0199]
+spacing = [0.0395, 0.0396, 0.0395]
+size = [10, 7, 3]
+radius = 0.02
+density = 2500.0
+velocity = [1.5, 0.0, 0.0]
+random_velocity = 0.1
+angular_velocity = [10.0, 3.0, 5.0]
+[output]
+history_interval = 1e-2
+)";
+  for (const std::string leaving : {"remove", "drift"}) {
+    CAPTURE(leaving);
+    const auto error_at = [&](const std::string& step) {
+      SimulationRun run(model_of(deck, {"space.leaving=" + leaving, "time.step=" + step}));
+      run.run();
+      const std::int64_t stayed = std::ssize(run.particles()) - run.particle_ledger().drifting;
+      CHECK(stayed < 180);
+      CHECK(stayed > 30);
+      return std::abs(run.balance_error()) / run.exchanged();
+    };
+    const Real coarse = error_at("4e-5"), fine = error_at("1e-5");
+    CHECK(keeps(coarse, {.promise = 1e-3, .measured = 1.1e-5}));
+    CHECK(keeps(fine, {.promise = 1e-4, .measured = 7e-7}));
+    CHECK(coarse / fine > 8);
+  }
+}
+
 // Where within one step the limit falls below the old force and the way turns back by more than both, a
 // slider gives a little back (physics/spring_slider.hpp): next to no contact does.
 TEST_CASE("contacts give nothing back: losses never fall") {
