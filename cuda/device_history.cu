@@ -207,7 +207,8 @@ void DeviceHistory::keep(const Listed& at) {
   const int records = records_of(numbers_);
   for_each({stream_}, at.owned, CountClosedItem{names, views(), records, counts_.data()});
   lay_out(kept_, at.owned);
-  for_each({stream_}, at.owned, KeepItem{names, views(), records, numbers_, kept_views(kept_), row_of_.data()});
+  for_each({stream_}, at.owned,
+           KeepItem{names, views(), records, numbers_, kept_views(kept_), row_of_.data()});
 }
 
 void DeviceHistory::leave_slots(const Listed& at) {

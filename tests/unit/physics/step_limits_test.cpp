@@ -108,36 +108,37 @@ TEST_CASE("the highest modes of the densest lattices of particles that rub") {
     }
   CHECK(dense_rubbing_frequency(2, 0, 1, 0.4, 3) == dense_frequency(2, 1, 3));
   CHECK(dense_rubbing_frequency(6, 0, 1, 0.5, 2) == dense_frequency(6, 1, 2));
-  TEST_CASE("steps of particles that rotate are stable below their limit and not above") {
-    const Real stiffness = 1e4, mass = 0.5;
-    for (const Real damping : {0.0, 5.0, 40.0, 200.0}) {
-      CAPTURE(damping);
-      const auto largest = [&](Real h) {
-        Real x = 0, v = 1e-3 / h, most = 0;  // of the half step
-        for (int step = 0; step < 2000; ++step) {
-          x += h * v;
-          v -= h * (stiffness * x + damping * v) / mass;
-          most = std::max(most, std::abs(x));
-        }
-        return most;
-      };
-      const Real limit = leapfrog_step_limit(contact_frequency(stiffness, mass), damping / mass);
-      CHECK(largest(0.99 * limit) < 1);
-      CHECK(largest(1.01 * limit) > 1e6);
-    }
-  }
+}
 
-  TEST_CASE("what friction adds to the stiffness of contacts") {
-    constexpr Real kSphere = 0.4, kDisc = 0.5;  // I / (m R^2)
-    CHECK(near(wall_rubbing_frequency(7, 2, 1, kSphere), std::sqrt(7), {.relative = kRoundOff}));
-    CHECK(near(wall_rubbing_frequency(1, 1, 1, kSphere), std::sqrt(3.5), {.relative = kRoundOff}));
-    CHECK(near(wall_rubbing_frequency(1, 1, 1, kDisc), std::sqrt(3), {.relative = kRoundOff}));
-    constexpr PairSize kSize{0.02, 0.02, 1, 1};
-    CHECK(typical_slip_stiffness({.friction = 0.3, .stiffness = 5e3}, kSize) == 5e3);
-    CHECK(typical_slip_stiffness({.friction = 0, .stiffness = 5e3}, kSize) == 0);
-    CHECK(near(typical_slip_stiffness({.friction = 0.3, .shear_modulus = 1e6}, kSize),
-               8e6 * std::sqrt(0.01 * 0.01 * 0.02), {.relative = kRoundOff}));
+TEST_CASE("steps of particles that rotate are stable below their limit and not above") {
+  const Real stiffness = 1e4, mass = 0.5;
+  for (const Real damping : {0.0, 5.0, 40.0, 200.0}) {
+    CAPTURE(damping);
+    const auto largest = [&](Real h) {
+      Real x = 0, v = 1e-3 / h, most = 0;  // of the half step
+      for (int step = 0; step < 2000; ++step) {
+        x += h * v;
+        v -= h * (stiffness * x + damping * v) / mass;
+        most = std::max(most, std::abs(x));
+      }
+      return most;
+    };
+    const Real limit = leapfrog_step_limit(contact_frequency(stiffness, mass), damping / mass);
+    CHECK(largest(0.99 * limit) < 1);
+    CHECK(largest(1.01 * limit) > 1e6);
   }
+}
+
+TEST_CASE("what friction adds to the stiffness of contacts") {
+  constexpr Real kSphere = 0.4, kDisc = 0.5;  // I / (m R^2)
+  CHECK(near(wall_rubbing_frequency(7, 2, 1, kSphere), std::sqrt(7), {.relative = kRoundOff}));
+  CHECK(near(wall_rubbing_frequency(1, 1, 1, kSphere), std::sqrt(3.5), {.relative = kRoundOff}));
+  CHECK(near(wall_rubbing_frequency(1, 1, 1, kDisc), std::sqrt(3), {.relative = kRoundOff}));
+  constexpr PairSize kSize{0.02, 0.02, 1, 1};
+  CHECK(typical_slip_stiffness({.friction = 0.3, .stiffness = 5e3}, kSize) == 5e3);
+  CHECK(typical_slip_stiffness({.friction = 0, .stiffness = 5e3}, kSize) == 0);
+  CHECK(near(typical_slip_stiffness({.friction = 0.3, .shear_modulus = 1e6}, kSize),
+             8e6 * std::sqrt(0.01 * 0.01 * 0.02), {.relative = kRoundOff}));
 }
 
 TEST_CASE("contact time and typical stiffness") {
