@@ -182,24 +182,21 @@ struct AtMovingInstant {
   using Self = OverMotion::Self;
   template <class Rows>
   SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
-    return kNoStep.self(in, i);
+    return OverMotion{0}.self(in, i);
   }
   template <class Rows>
   SCREE_HD TouchTest test(const ContactViews<Rows>& in, const Self& self) const {
-    return kNoStep.test(in, self);
+    return OverMotion{0}.test(in, self);
   }
   template <class Rows>
   SCREE_HD InstantPair pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
-    return at_instant(kNoStep.pair(in, self, j), xyz(self.spin), xyz(in.spin[j]));
+    return at_instant(OverMotion{0}.pair(in, self, j), xyz(self.spin), xyz(in.spin[j]));
   }
   template <class Rows>
   SCREE_HD InstantPair wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
-    return at_instant(kNoStep.wall(in, self, plane), xyz(self.spin), {});
+    return at_instant(OverMotion{0}.wall(in, self, plane), xyz(self.spin), {});
   }
   SCREE_HD static bool closed(const PairState& pair) { return OverMotion::closed(pair); }
-
- private:
-  static constexpr OverMotion kNoStep{0};
 };
 
 // The law that a choice of laws is about; what it sees at an instant, and over an explicit step.
