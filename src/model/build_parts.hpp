@@ -35,7 +35,8 @@ void check_bodies_inside(const DeckTable& deck, const Space& space);
 // Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
 // for smaller overlaps.
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);
-// Warns of steps far above the contact time; refuses explicit steps past the stability limit.
+// Warns of steps in which particles go farther than their radius; refuses explicit steps past the stability
+// limit.
 void check_steps(const DeckTable& deck, const Model& model, Log& log);
 
 }  // namespace scree

@@ -24,13 +24,6 @@ bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, i
 // The smallest and the lightest of each material; infinite where it has walls alone.
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 
-// Fixed steps up to this share of the contact time keep rebounds within this share of their speed, up to
-// damping ratios of 0.2 (README, "Impacts at any step").
-inline constexpr Real kResolvedShare = 0.1;
-inline Real resolved_error(ParticleIntegrator integrator) {
-  return integrator == ParticleIntegrator::hht ? 0.02 : 0.06;
-}
-
 struct PairLimit {
   int material[2] = {0, 0};
   KelvinVoigt law;          // of its smallest partners

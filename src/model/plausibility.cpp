@@ -175,21 +175,14 @@ std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
       pair_name(model, limit), stack, weight, overlap, totals.smallest_radius);
 }
 
-// With the speeds at t = 0, and a fall through the space where there is something to fall on.
 std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
   const std::vector<MaterialUse> uses = material_uses(model);
-  const MaterialUse &a = uses[static_cast<std::size_t>(limit.material[0])],
-                    &b = uses[static_cast<std::size_t>(limit.material[1])];
-  Real radius = kInfinity, speed = 0;
-  for (const MaterialUse& use : {a, b})
+  Real radius = kInfinity;
+  for (const int material : limit.material) {
+    const MaterialUse& use = uses[static_cast<std::size_t>(material)];
     if (use.smallest_radius > 0) radius = std::min(radius, use.smallest_radius);
-  if (a.particles + b.particles > 0)
-    speed = model.particles.totals.most_radii_per_second * model.particles.totals.smallest_radius;
-  if (a.shapes + b.shapes > 0)
-    for (const Body& body : model.bodies) speed = std::max(speed, norm(body.velocity));
-  const bool floor = a.walls + b.walls + a.shapes + b.shapes > 0;
-  if (floor && a.particles + b.particles > 0)
-    speed = std::hypot(speed, fall_speed(norm(model.gravity), height(model)));
+  }
+  const Real speed = impact_speed(model, limit);
   const Real overlap = impact_overlap(limit.law, lightest_mass(limit), speed);
   if (overlap <= radius) return "";
   return fmt::format(
@@ -263,6 +256,21 @@ std::string many_steps(const Model& model) {
 }
 
 }  // namespace
+
+Real impact_speed(const Model& model, const PairLimit& limit) {
+  const std::vector<MaterialUse> uses = material_uses(model);
+  const MaterialUse &a = uses[static_cast<std::size_t>(limit.material[0])],
+                    &b = uses[static_cast<std::size_t>(limit.material[1])];
+  Real speed = 0;
+  if (a.particles + b.particles > 0)
+    speed = model.particles.totals.most_radii_per_second * model.particles.totals.smallest_radius;
+  if (a.shapes + b.shapes > 0)
+    for (const Body& body : model.bodies) speed = std::max(speed, norm(body.velocity));
+  const bool floor = a.walls + b.walls + a.shapes + b.shapes > 0;
+  if (floor && a.particles + b.particles > 0)
+    speed = std::hypot(speed, fall_speed(norm(model.gravity), height(model)));
+  return speed;
+}
 
 void check_normal(const DeckTable& table, const std::string& key, Real value) {
   constexpr Real kSmallest = std::numeric_limits<Real>::min();

@@ -5,12 +5,17 @@
 #include <vector>
 
 #include "deck/deck.hpp"
+#include "model/limits.hpp"
 #include "model/model.hpp"
 
 namespace scree {
 
 // What seems wrong with the whole model, one text for each finding. Costs no pass over the particles.
 std::vector<std::string> implausible(const DeckTable& deck, const Model& model);
+
+// At which the two of a pair may meet [m/s]: with the speeds at t = 0, and after a fall through the space
+// where there is something to fall on.
+Real impact_speed(const Model& model, const PairLimit& limit);
 
 // Refuses contacts whose duration or step limit is 0 or infinite. Throws InputError.
 void check_step_limits(const DeckTable& deck, const Model& model);

@@ -295,19 +295,7 @@ void check_steps(const DeckTable& deck, const Model& model, Log& log) {
   const Real step =
       is_fixed ? model.time.step / (is_explicit ? model.integrator.substeps : 1) : model.time.max_step;
   check_speeds(model, step, log);
-  const std::optional<PairLimit> shortest = shortest_contact(limits);
-  if (!shortest || !is_fixed) return;
-  if (is_explicit) check_explicit_step(deck, model, limits, log);
-  const Real resolved = kResolvedShare * shortest->contact_time;
-  if (step <= resolved) return;
-  const std::vector<std::string>& names = model.contact.material_names;
-  log.warning(fmt::format(
-      "time.step: steps of {:.4g} s are large for contacts of \"{}\" and \"{}\" that last {:.4g} s; up to "
-      "{:.2g} s they keep rebounds within {:.0f} %{}",
-      step, names[static_cast<std::size_t>(shortest->material[0])],
-      names[static_cast<std::size_t>(shortest->material[1])], shortest->contact_time, resolved,
-      100 * resolved_error(model.integrator.particles),
-      is_explicit ? "" : ", time.control = \"adaptive\" within 0.02 %"));
+  if (is_fixed && is_explicit) check_explicit_step(deck, model, limits, log);
 }
 
 }  // namespace scree

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "base/types.hpp"
 #include "physics/normal_laws.hpp"
@@ -18,6 +19,19 @@ inline Real resting_overlap(const KelvinVoigt& law, Real weight) {
 inline Real impact_overlap(const KelvinVoigt& law, Real mass, Real speed) {
   const Real n = law.exponent;
   return std::pow((n + 1) * mass * speed * speed / (2 * law.normal_stiffness), 1 / (n + 1));
+}
+
+// Duration of that impact [s].
+inline Real impact_time(const KelvinVoigt& law, Real mass, Real speed) {
+  const Real power = law.exponent + 1;
+  return 2 * impact_overlap(law, mass, speed) / speed * std::sqrt(std::numbers::pi_v<Real>) *
+         std::tgamma(1 + 1 / power) / std::tgamma(Real(0.5) + 1 / power);
+}
+
+// Speed of an undamped head-on impact that ends in this overlap [m/s].
+inline Real overlapping_speed(const KelvinVoigt& law, Real mass, Real overlap) {
+  const Real n = law.exponent;
+  return std::sqrt(2 * law.normal_stiffness * std::pow(overlap, n + 1) / ((n + 1) * mass));
 }
 
 // Damping of a contact over the critical one, at which nothing rebounds [-]. stiffness [N/m], mass of the

@@ -16,6 +16,7 @@
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
+#include "run/step_trials.hpp"
 
 namespace scree {
 
@@ -106,6 +107,7 @@ std::string multibody_lines(const Model& model) {
 std::string limit_lines(const Model& model) {
   std::string lines;
   const std::vector<std::string>& names = model.contact.material_names;
+  const std::vector<StepTrial> trials = try_steps(model);
   for (const PairLimit& limit : pair_limits(model)) {
     const KelvinVoigt& law = limit.law;
     const bool sized = model.contact.law(limit.material[0], limit.material[1]).depends_on_size();
@@ -119,10 +121,11 @@ std::string limit_lines(const Model& model) {
       lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
                            model.contact.friction_of(limit.material[0], limit.material[1]).friction,
                            limit.slip_stiffness, sized ? " (likewise)" : "");
-    lines += fmt::format(
-        "               shortest contact {:.4g} s{}, rebounds within {:.0f} % at steps up to {:.2g} s\n",
-        limit.contact_time, law.exponent == 1 ? "" : " (at 1 % overlap)",
-        100 * resolved_error(model.integrator.particles), kResolvedShare * limit.contact_time);
+    lines += fmt::format("               shortest contact {:.4g} s{}\n", limit.contact_time,
+                         law.exponent == 1 ? "" : " (at 1 % overlap)");
+    for (const StepTrial& trial : trials)
+      if (trial.limit.material[0] == limit.material[0] && trial.limit.material[1] == limit.material[1])
+        lines += trial_lines(trial);
     if (limit.explicit_step > 0) {
       lines += fmt::format("               velocity-verlet in dense contact: steps up to {:.4g} s\n",
                            limit.explicit_step);

@@ -194,7 +194,7 @@ class UsageTest(CommandLineTest):
                      'a particle that leaves: "drift"', "snapshots      2 of about 0.7 kB", "particles      6",
                      "checkpoints    one at the end, about 1.3 kB", "degrees of freedom", "contact", "memory", "petsc",
                      "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
-                     "rebounds within 2 % at steps", "fixed step 0.0001 s (4000 steps)"):
+                     "in steps of 0.0001 s with 0.9792", "fixed step 0.0001 s (4000 steps)"):
             self.assertIn(word, text)
         self.assertRegex(text, r"device memory  about [0-9.]+ MB on the GPU \(estimate\); .+")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["deck.toml"])

@@ -1,0 +1,181 @@
+// Two partners that meet, in the steps that a run takes: their relative motion alone, by the functions of
+// law and integrator that the run calls.
+#pragma once
+
+#include <cmath>
+
+#include "physics/contact_law.hpp"
+#include "physics/step_contact.hpp"
+#include "physics/time_stepping.hpp"
+
+namespace scree {
+
+// Two spheres, or a sphere i on a plane (radius_j infinite), that meet without spin.
+struct TrialImpact {
+  PairSize size;              // as the law sees it
+  Real mass;                  // of the relative motion [kg]
+  Real inertia_i, inertia_j;  // [kg m^2]; infinite for what does not turn
+  Real approach, sliding;     // relative speeds along the normal and across it [m/s]
+};
+
+// In velocity Verlet, or where the law moves in its form by half steps (dem/step_items.hpp). Every trial has
+// step(h), which says whether the contact was closed at the end of the step, and parting() and across(): the
+// relative velocity along the normal and across it.
+template <class Law>
+class ExplicitTrial {
+ public:
+  // The surfaces meet after `gap` [s].
+  ExplicitTrial(const Law& law, const TrialImpact& impact, Real gap)
+      : law_(law), impact_(impact), velocity_{impact.sliding, 0, -impact.approach} {
+    const Real radius = on_plane() ? impact.size.radius_i : impact.size.radius_i + impact.size.radius_j;
+    r_ = Vec3{0, 0, radius} - gap * velocity_;
+  }
+
+  bool step(Real h) {
+    if constexpr (Law::kMoves)
+      return step_by_halves(h);
+    else
+      return step_whole(h);
+  }
+  Real parting() const { return dot(velocity_, normal()); }
+  Real across() const { return scree::across(velocity_, normal()).x; }
+
+ private:
+  bool on_plane() const { return impact_.size.radius_j == kInfinity; }
+  Vec3 normal() const { return on_plane() ? Vec3{0, 0, 1} : (1 / norm(r_)) * r_; }
+  PairState pair(Vec3 velocity) const {
+    const PairSize& size = impact_.size;
+    return {on_plane() ? plane_pair(r_, size.radius_i, {0, 0, 0}, {0, 0, 1})
+                       : sphere_pair(r_, size.radius_i + size.radius_j),
+            velocity, size};
+  }
+
+  bool step_whole(Real h) {
+    r_ += verlet_displacement(h, velocity_, acceleration_);
+    const Vec3 predicted = verlet_predicted_velocity(h, velocity_, acceleration_);
+    const PairState state = pair(predicted);
+    const bool closed = state.geometry.overlap > 0;
+    const Vec3 a = closed ? (1 / impact_.mass) * law_.load(state).force : Vec3{};
+    velocity_ = verlet_velocity(h, predicted, acceleration_, a), acceleration_ = a;
+    return closed;
+  }
+  bool step_by_halves(Real h) {
+    velocity_ = verlet_half_kick(h, velocity_, acceleration_);
+    spin_i_ = verlet_half_kick(h, spin_i_, turning_i_), spin_j_ = verlet_half_kick(h, spin_j_, turning_j_);
+    const Vec3 travel = h * velocity_;
+    r_ += travel;
+    const TurningPartner i{spin_i_, impact_.size.radius_i, impact_.inertia_i},
+        j{spin_j_, on_plane() ? 0 : impact_.size.radius_j, impact_.inertia_j};
+    const PairState state = pair(velocity_);
+    const MovingPair moving{state, on_plane() ? face_motion(state.geometry, {0, 0, 1}, travel, i, j, h)
+                                              : sphere_motion(state.geometry, travel, i, j, h)};
+    const bool closed = law_.closed(moving, history_);
+    const ContactOutcome out = law_.load(moving, history_);
+    history_ = out.history;
+    acceleration_ = (1 / impact_.mass) * out.load.force;
+    turning_i_ = (1 / impact_.inertia_i) * out.load.torque_i;
+    turning_j_ = (1 / impact_.inertia_j) * out.load.torque_j;
+    velocity_ = verlet_half_kick(h, velocity_, acceleration_);
+    spin_i_ = verlet_half_kick(h, spin_i_, turning_i_), spin_j_ = verlet_half_kick(h, spin_j_, turning_j_);
+    return closed;
+  }
+
+  const Law& law_;
+  TrialImpact impact_;
+  Vec3 r_, velocity_, acceleration_{};  // of i relative to j
+  Vec3 spin_i_{}, spin_j_{}, turning_i_{}, turning_j_{};
+  ContactHistory history_{};
+};
+
+// How implicit steps are taken.
+struct TrialMethod {
+  HhtCoefficients hht;
+  bool resolve_events;
+};
+
+// In HHT steps along the normal, each solved to round-off. A step without a solution, where the damping of a
+// contact jumps at touch, is taken in halves, as a run does.
+template <class Pair>
+class ImplicitTrial {
+ public:
+  ImplicitTrial(const Pair& pair, const TrialMethod& method, const TrialImpact& impact, Real gap)
+      : pair_(pair),
+        method_(method),
+        mass_(impact.mass),
+        overlap_(-gap * impact.approach),
+        rate_(impact.approach) {}
+
+  bool step(Real h) {
+    constexpr int kMostHalvings = 10;
+    take(h, kMostHalvings);
+    return overlap_ > 0;
+  }
+  Real parting() const { return -rate_; }
+  Real across() const { return 0; }
+
+ private:
+  // The end of a step of an acceleration there.
+  struct End {
+    ContactStep step;
+    StepContactForce force;  // for the step
+    Real end_force;          // that acts at its end [N]
+    Real residual;           // [N]
+  };
+
+  End end_of(Real h, Real a) const {
+    const HhtCoefficients& c = method_.hht;
+    End end{{overlap_, rate_, overlap_ + newmark_displacement(c, h, rate_, acceleration_, a),
+             newmark_velocity(c, h, rate_, acceleration_, a), h},
+            {0, 0, 0},
+            0,
+            0};
+    if (end.step.overlap1 > 0) {
+      const ContactForce at_end = contact_force(pair_, end.step.overlap1, end.step.rate1);
+      end.end_force = at_end.force, end.force = {at_end.force, at_end.stiffness, at_end.damping};
+    }
+    if (method_.resolve_events) end.force = step_contact_force(pair_, end.step);
+    end.residual = hht_residual(c, mass_, {a, 0, 0}, {-end.force.force, 0, 0}, {-force_, 0, 0}).x;
+    return end;
+  }
+
+  void take(Real h, int halvings) {
+    Real a = acceleration_;
+    if (!solve(h, a) && halvings > 0) {
+      take(h / 2, halvings - 1), take(h / 2, halvings - 1);
+      return;
+    }
+    const End end = end_of(h, a);
+    overlap_ = end.step.overlap1, rate_ = end.step.rate1, force_ = end.end_force;
+    acceleration_ =
+        a + hht_event_acceleration(method_.hht, mass_, {-end.force.force, 0, 0}, {-end.end_force, 0, 0}).x;
+  }
+
+  // Newton's method for the acceleration at the end, within bounds that it has found: the residual grows with
+  // it. Whether it got there.
+  bool solve(Real h, Real& a) const {
+    constexpr int kMostIterations = 60;
+    constexpr Real kTolerance = 1e-12;
+    const HhtCoefficients& c = method_.hht;
+    const Real inertia = mass_ * hht_inertia_weight(c);
+    Real low = -kInfinity, high = kInfinity;
+    for (int k = 0; k < kMostIterations; ++k) {
+      const End end = end_of(h, a);
+      const Real scale = std::abs(end.force.force) + std::abs(force_) + inertia * std::abs(a);
+      if (std::abs(end.residual) <= kTolerance * scale) return true;
+      (end.residual > 0 ? high : low) = a;
+      const Real slope = inertia + newmark_position_gain(c, h) * end.force.stiffness +
+                         newmark_velocity_gain(c, h) * end.force.damping;
+      const Real next = a - end.residual / slope;
+      a = low < next && next < high ? next : low + (high - low) / 2;
+    }
+    return false;
+  }
+
+  const Pair& pair_;
+  TrialMethod method_;
+  Real mass_;
+  Real overlap_, rate_, acceleration_ = 0;  // [m], and its rates
+  Real force_ = 0;                          // at the start of the next step [N]
+};
+
+}  // namespace scree

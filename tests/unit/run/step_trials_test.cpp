@@ -1,0 +1,209 @@
+// What the report and the warning of a deck say of its steps.
+#include "run/step_trials.hpp"
+
+#include <chrono>
+#include <numbers>
+
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/near.hpp"
+#include "support/simulation_run.hpp"
+
+namespace scree {
+
+namespace {
+
+// Spheres of two materials between a floor of a third one.
+const std::string kDeck = R"(
+gravity = [0.0, 0.0, -10.0]
+[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [1.0, 1.0, 2.0]
+z_min = "wall"
+wall_material = "floor"
+[time]
+end = 1.0
+step = 1e-4
+control = "fixed"
+[integrator]
+hht_alpha = 0.0
+[[materials]]
+name = "light"
+[[materials]]
+name = "heavy"
+[[materials]]
+name = "floor"
+[[contact.pairs]]
+materials = ["light", "light"]
+stiffness = 1e5
+[[contact.pairs]]
+materials = ["light", "heavy"]
+stiffness = 1e5
+[[contact.pairs]]
+materials = ["light", "floor"]
+stiffness = 1e5
+damping = 20.0
+[[contact.pairs]]
+materials = ["heavy", "floor"]
+stiffness = 1e5
+[[particles]]
+name = "light"
+kind = "list"
+material = "light"
+positions = [[0.2, 0.2, 0.5], [0.5, 0.2, 0.5]]
+radius = 0.05
+mass = 0.1
+[[particles]]
+name = "heavy"
+kind = "list"
+material = "heavy"
+positions = [[0.2, 0.5, 0.5]]
+radius = 0.1
+mass = 1.0
+)";
+
+std::vector<StepTrial> trials_of(const std::vector<std::string>& overrides = {}) {
+  return try_steps(model_of(kDeck, overrides));
+}
+
+}  // namespace
+
+TEST_CASE("every pair of materials that can meet is tried, of its lightest partners") {
+  const std::vector<StepTrial> trials = trials_of();
+  REQUIRE(trials.size() == 4);  // the one heavy particle does not meet another
+  const Real step = 0.5 * std::numbers::pi * std::sqrt(0.1 / 1e5);  // half of light's contact with the floor
+  const std::vector<StepTrial> coarse = trials_of({"time.step=" + std::to_string(step)});
+  const Real damping_ratio = 20 / (2 * std::sqrt(0.1 * 1e5));
+  for (const StepTrial& trial : coarse) {
+    const bool damped = trial.limit.law.normal_damping > 0;
+    CAPTURE(trial.limit.material[0], trial.limit.material[1]);
+    CHECK(near(trial.step, step, {.relative = 1e-2}));
+    CHECK(trial.any_step_good == !damped);  // alpha = 0, events resolved
+    CHECK((trial.result.error() > kBadRebound) == damped);
+    if (damped)
+      CHECK(near(trial.result.exact.restitution,
+                 std::exp(-2 * damping_ratio / std::sqrt(1 - damping_ratio * damping_ratio) *
+                          std::acos(damping_ratio)),
+                 {.absolute = 2e-4}));
+  }
+}
+
+TEST_CASE("one warning for steps that misjudge rebounds by more than 5 %, with the step that would do") {
+  CHECK(step_warning(model_of(kDeck)).empty());
+  const std::string warning = step_warning(model_of(kDeck, {"time.step=3e-3"}));
+  CAPTURE(warning);
+  CHECK(contains(warning, "time.step: steps of 0.003 s misjudge rebounds of \"light\" on \"floor\" by "));
+  CHECK(contains(warning, "instead of 0.7441 of the speed; steps up to "));
+  CHECK(contains(warning, " keep within 1 %, time.control = \"adaptive\" within 0.02 %"));
+  const std::string two = step_warning(model_of(kDeck, {"time.step=3e-3", "contact.pairs.0.damping=30.0"}));
+  CHECK(contains(two, "\"light\" on \"light\", and of 1 other pair by "));
+  CHECK(step_warning(model_of(kDeck, {"time.step=3e-3", "time.control=adaptive", "time.max_step=3e-3"}))
+            .empty());
+}
+
+TEST_CASE("explicit steps are tried with their substeps, and with friction") {
+  const std::vector<std::string> friction = {
+      "integrator.particles=velocity-verlet", "integrator.substeps=4",        "time.step=4e-4",
+      "contact.pairs.0.friction=0.3",         "contact.pairs.1.friction=0.3", "contact.pairs.2.friction=0.3",
+      "contact.pairs.3.friction=0.3"};
+  for (const StepTrial& trial : trials_of(friction)) {
+    CHECK(trial.rubs);
+    CHECK(near(trial.step, 1e-4, {.relative = 1e-12}));
+    const Real tangent = std::tan(trial.result.exact.angle());
+    CHECK(tangent > 0.3);  // of what slides all the time: (1 - (1 + e) mu) / e
+    CHECK(tangent < 1);
+    CHECK(contains(trial_lines(trial), "at 45 degrees it leaves at "));
+  }
+  CHECK(!trials_of()[0].rubs);
+}
+
+TEST_CASE("steps that adapt are tried at the length that they come to") {
+  for (const StepTrial& trial : trials_of({"time.control=adaptive", "time.step=1e-6"})) {
+    CHECK(trial.is_adaptive);
+    CHECK(trial.step < trial.limit.contact_time / 30);
+    CHECK(trial.result.error() < 2e-4);  // README: within 0.02 %
+    CHECK(contains(trial_lines(trial), "in steps that adapt, to about "));
+  }
+}
+
+// Whole runs of one sphere and a floor.
+TEST_CASE("a trial impact is what a run makes of it") {
+  const std::string deck = R"(
+[space]
+dimension = 3
+min = [-1.0, -1.0, 0.0]
+max = [1.0, 1.0, 1.0]
+z_min = "wall"
+[time]
+end = 0.1
+step = 2e-3
+control = "fixed"
+[[contact.pairs]]
+stiffness = 1e4
+damping = 10.0
+[[particles]]
+name = "ball"
+kind = "list"
+positions = [[0.0, 0.0, 0.0533]]
+velocity = [1.0, 0.0, -1.0]
+radius = 0.05
+mass = 1.0
+)";
+  const LinearLaw normal{1e4, 10, false};
+  const TrialImpact impact{{0.05, kInfinity, 1, kInfinity}, 1, 0.4 * 0.05 * 0.05, kInfinity, 1, 1};
+  const Real h = 2e-3, gap = 3.3e-3;
+  const auto rebound = [&](const std::vector<std::string>& overrides) {
+    SimulationRun run(model_of(deck, overrides));
+    run.run();
+    const Vec3 v = run.particles()[0].velocity;
+    return TrialRebound{v.z, v.x};
+  };
+  const auto same = [](TrialRebound a, TrialRebound b, Real tolerance) {
+    CHECK(near(a.restitution, b.restitution, {.absolute = tolerance}));
+    CHECK(near(a.across, b.across, {.absolute = tolerance}));
+  };
+  const auto check_explicit = [&](const auto& law, TrialRebound whole) {
+    same(rebound_of(ExplicitTrial(law, impact, gap), 1, h, 50), whole, 1e-9);
+  };
+  const std::string verlet = "integrator.particles=velocity-verlet",
+                    friction = "contact.pairs.0.friction=0.3";
+  check_explicit(ContactLaw<LinearLaw>{normal}, rebound({verlet}));
+  check_explicit(ContactLaw<LinearLaw, LinearSlider>{normal, {2e4 / 7, 0.3, 0}}, rebound({verlet, friction}));
+  for (const bool resolved : {true, false}) {
+    const TrialRebound whole =
+        rebound({"integrator.hht_alpha=-0.2",
+                 resolved ? "integrator.contact_events=resolved" : "integrator.contact_events=end-of-step"});
+    const ImplicitTrial trial(normal, {hht_coefficients(-0.2), resolved}, impact, gap);
+    same(rebound_of(trial, 1, h, 50), {whole.restitution, 0}, 1e-6);  // the iteration's tolerance
+  }
+}
+
+// A power law's rebound depends on the speed, and so does the contact's time in all but linear laws.
+TEST_CASE("impacts are tried at the speed of a fall where the law is not linear") {
+  const std::vector<StepTrial> trials =
+      trials_of({"contact.pairs.2.exponent=1.5", "contact.pairs.2.stiffness=1e8"});
+  CHECK(near(trials[2].speed, std::sqrt(2 * 10 * 2.0), {.relative = 1e-12}));
+  CHECK(contains(trial_lines(trials[2]), "rebounds at 6.32 m/s with "));
+}
+
+TEST_CASE("bodies are tried in implicit steps, and beside explicit particles with these alone") {
+  const std::string body = kDeck +
+                           "[[bodies]]\nname = \"ram\"\nposition = [0.7, 0.7, 0.7]\nmass = 0.01\n"
+                           "inertia = 1e-5\nshapes = [{ radius = 0.05, material = \"floor\" }]\n"
+                           "[[contact.pairs]]\nmaterials = [\"floor\", \"floor\"]\nstiffness = 1e5\n";
+  const auto pairs = [&](const char* integrator) {
+    return try_steps(model_of(body, {std::string("integrator.particles=") + integrator})).size();
+  };
+  CHECK(pairs("hht") == 5);
+  CHECK(pairs("velocity-verlet") == 4);
+}
+
+TEST_CASE("trials of many pairs take no time to speak of") {
+  const auto start = std::chrono::steady_clock::now();
+  for (int k = 0; k < 5; ++k) trials_of({"time.step=1e-3", "contact.pairs.1.damping=60.0"});
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  CHECK(taken.count() < 1.0);  // 20 pairs and five decks; measured: see README
+}
+
+}  // namespace scree
