@@ -132,14 +132,23 @@ const TableKeys& integrator_keys() {
 
 const TableKeys& contact_keys() {
   static const TableKeys pairs{
-      "The contact law of a pair of materials: F = K d^n + C d', d: overlap; or Hertz's law of spheres, "
-      "where "
-      "there is no stiffness and both materials have a Young's modulus.",
+      "The contact law of a pair of materials: F = K d^n + C d', d: overlap; or, where there is no stiffness "
+      "and both materials have a Young's modulus, Hertz's law of spheres, in 2D K = pi/4 E* L of discs of "
+      "thickness L.",
       {texts("materials").entries(2).left_out("the only material").about("The two materials, in any order."),
        real("stiffness", "N/m^n")
            .at_least(0)
-           .left_out("Hertz's law from the materials")
+           .left_out("from the materials' moduli, or from largest_overlap")
            .about("K; 0 with damping 0: the two do not interact."),
+       real("largest_overlap", "")
+           .above(0)
+           .within(0, 1)
+           .left_out("the stiffness is given")
+           .about(
+               "In place of stiffness: overlap over the radius that an undamped impact at impact_speed may "
+               "reach, of the deck's heaviest particle and the pair's smallest radius d: K = (n+1)/2 m* "
+               "v^2 / d^(n+1), m* half that mass where particles meet particles alone."),
+       real("impact_speed", "m/s").above(0).left_out("none").about("With largest_overlap."),
        real("damping", "N s/m").at_least(0).otherwise("0.0").about("C."),
        real("exponent", "").within(0.5, 4).otherwise("1.0").about("n."),
        real("restitution", "")
@@ -147,8 +156,9 @@ const TableKeys& contact_keys() {
            .above(0)
            .left_out("no damping, as with 1")
            .about(
-               "Of Hertz's law: speed after over speed before a head-on impact, the same at every speed; a "
-               "body that particles meet counts as unmovable in it."),
+               "In place of damping: speed after over speed before a head-on impact, the same at every speed "
+               "and mass, by C = 2 zeta sqrt(m* K (n+1)/2) d^((n-1)/2), exact for either `tension`; needs n "
+               "of at least 1. A body that particles meet counts as unmovable in it."),
        boolean("tension").otherwise("false").about(
            "Whether the force may pull just before separation; false cuts it at zero."),
        real("friction", "")
@@ -164,7 +174,32 @@ const TableKeys& contact_keys() {
        real("tangential_damping_ratio", "")
            .at_least(0)
            .otherwise("0.0")
-           .about("Of the dashpot beside that spring, over the critical damping of a slip.")},
+           .about("Of the dashpot beside that spring, over the critical damping of a slip."),
+       real("rolling_friction", "")
+           .at_least(0)
+           .left_out("nothing resists rolling")
+           .about(
+               "mu_r: a spring resists rolling until its moment is mu_r R* F (Ai, Chen, Rotter, Ooi, 2011, "
+               "model C), R* the reduced radius: tan of the slope on which a sphere begins to roll. Needs "
+               "friction beside it."),
+       real("rolling_stiffness", "N m")
+           .above(0)
+           .left_out("2.25 K mu_r^2 R*^2, in 2D 3 K mu_r^2 R*^2, K: dF/dd")
+           .about("Of that spring, per radian."),
+       real("rolling_damping_ratio", "")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Of the dashpot beside that spring, within its limit, over critical damping."),
+       real("rolling_damping", "N m s")
+           .at_least(0)
+           .left_out("none")
+           .about("A moment against the rate of rolling, C w, beside that spring or alone; nothing holds at "
+                  "rest by it. Needs friction beside it."),
+       real("twisting_friction", "")
+           .at_least(0)
+           .left_out("friction, where something resists rolling in 3D; else nothing resists twisting")
+           .about("mu of the spring against spinning about the normal, which slides at 2/3 a mu F, a: radius "
+                  "of contact, sqrt(R* d) (Marshall, 2009).")},
       ""};
   static const TableKeys keys{
       "Contact laws and the pair search.",

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
@@ -12,18 +14,51 @@ namespace scree {
 
 namespace {
 
-// F = K d^n + C d_dot, K given.
-KelvinVoigt stiffness_law(const DeckTable& table, bool has_moduli) {
-  const KelvinVoigt law{table.real("stiffness"), table.real("damping"), table.real("exponent"),
-                        table.boolean("tension")};
+// The damping ratio of a restitution, beside a law's K, n and tension.
+void take_restitution(const DeckTable& table, KelvinVoigt& law) {
+  if (!table.has("restitution")) return;
+  if (table.real("damping") > 0) table.fail("restitution", "stands beside a damping; give one of the two");
+  if (!law.acts()) table.fail("restitution", "must be left out where the stiffness is 0");
+  if (law.exponent < 1)
+    table.fail("restitution", "needs an exponent of at least 1: below, its damper would have no bound");
+  law.damping_ratio = damping_ratio_of(table.real("restitution"), law.tension);
+}
+
+// K at which an undamped head-on impact at the speed reaches the overlap: K d^(n+1) / (n+1) = m* v^2 / 2,
+// of the pair's partners with the heaviest reduced mass and the smallest radius [N/m^n].
+Real stiffness_of_overlap(const DeckTable& table, const Model& model, const int (&material)[2]) {
+  if (table.has("stiffness")) table.fail("largest_overlap", "stands beside a stiffness; give one of the two");
+  if (table.real("damping") > 0)
+    table.fail("damping", "must be left out beside largest_overlap; give a restitution instead");
+  if (!table.has("impact_speed"))
+    table.fail("impact_speed", "missing; largest_overlap is that of an impact at this speed");
+  const std::vector<MaterialUse> uses = material_uses(model);
+  const MaterialUse &a = uses[static_cast<std::size_t>(material[0])],
+                    &b = uses[static_cast<std::size_t>(material[1])];
+  if (a.particles + b.particles == 0)
+    table.fail("largest_overlap", "needs particles of one of the two materials; give a stiffness");
+  const bool alike = a.particles > 0 && b.particles > 0 && a.walls + b.walls + a.shapes + b.shapes == 0;
+  const Real mass = model.particles.totals.largest_mass / (alike ? 2 : 1);
+  const PairSize smallest = smallest_partners(a, b);
+  const Real overlap = table.real("largest_overlap") * std::min(smallest.radius_i, smallest.radius_j);
+  const Real speed = table.real("impact_speed"), n = table.real("exponent");
+  return (n + 1) / 2 * mass * speed * speed / std::pow(overlap, n + 1);
+}
+
+// F = K d^n + C d_dot, K given, or following from a largest overlap.
+KelvinVoigt stiffness_law(const DeckTable& table, const Model& model, const int (&material)[2],
+                          bool has_moduli) {
+  const bool from_overlap = table.has("largest_overlap");
+  KelvinVoigt law{from_overlap ? stiffness_of_overlap(table, model, material) : table.real("stiffness"),
+                  table.real("damping"), table.real("exponent"), table.boolean("tension")};
+  const char* key = from_overlap ? "largest_overlap" : "stiffness";
   if (law.normal_stiffness == 0 && law.normal_damping > 0)
     table.fail("damping", "must be 0 where the stiffness is 0");
-  if (table.has("restitution"))
-    table.fail("restitution", "belongs to Hertz's law; a pair with a stiffness has damping instead");
+  take_restitution(table, law);
   if (law.acts() && has_moduli)
-    table.fail("stiffness",
-               "both materials have a young_modulus, too; leave out the stiffness for Hertz's law, or the "
-               "moduli for this one");
+    table.fail(key, fmt::format("both materials have a young_modulus, too; leave out the {} for Hertz's law, "
+                                "or the moduli for this one",
+                                key));
   return law;
 }
 
@@ -41,7 +76,7 @@ Real plane_strain_modulus(const DeckTable& material) {
   return material.real("young_modulus") / (1 - ratio * ratio);
 }
 
-// Hertz's law of spheres; moduli: of the two materials.
+// Hertz's law; moduli: of the two materials.
 KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&moduli)[2],
                       const int (&material)[2]) {
   for (int side = 0; side < 2; ++side)
@@ -50,9 +85,6 @@ KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&m
                  fmt::format("missing; give it or, for Hertz's law, young_modulus and poisson_ratio of both "
                              "materials: \"{}\" has none",
                              model.contact.material_names[static_cast<std::size_t>(material[side])]));
-  if (model.space.dimension == 2)
-    table.fail("stiffness",
-               "missing; Hertz's law is one of spheres, and in 2D there are discs: give a stiffness");
   if (table.real("damping") > 0)
     table.fail("damping", "must be left out for Hertz's law, whose damping follows from restitution");
   if (table.real("exponent") != 1)
@@ -60,7 +92,20 @@ KelvinVoigt hertz_law(const DeckTable& table, const Model& model, const Real (&m
   KelvinVoigt law;
   law.tension = table.boolean("tension");
   law.effective_modulus = 1 / (1 / moduli[0] + 1 / moduli[1]);
-  if (table.has("restitution")) law.damping_ratio = damping_ratio_of(table.real("restitution"), law.tension);
+  take_restitution(table, law);
+  return law;
+}
+
+// Discs along a line: F = pi/4 E* L d, L their thickness (V. L. Popov, Contact Mechanics and Friction, 2010,
+// section 5.2, without the logarithm of the exact law), in place of Hertz's law of spheres.
+KelvinVoigt line_contact(const DeckTable& table, const Model& model, KelvinVoigt law) {
+  const DiscThickness& discs = model.disc_thickness;
+  if (discs.smallest != discs.largest || discs.largest == 0)
+    table.fail("stiffness",
+               fmt::format("missing; from moduli it follows for discs of one thickness, and {}",
+                           discs.largest == 0 ? "here all masses are given" : "here there are several"));
+  law.normal_stiffness = std::numbers::pi_v<Real> / 4 * law.effective_modulus * discs.largest;
+  law.effective_modulus = 0;
   return law;
 }
 
@@ -70,8 +115,12 @@ KelvinVoigt build_law(const DeckTable& deck, const DeckTable& table, const Model
   Real moduli[2] = {0, 0};
   for (std::size_t side = 0; side < 2 && !materials.empty(); ++side)
     moduli[side] = plane_strain_modulus(materials[static_cast<std::size_t>(material[side])]);
-  if (table.has("stiffness")) return stiffness_law(table, moduli[0] > 0 && moduli[1] > 0);
-  return hertz_law(table, model, moduli, material);
+  if (!table.has("largest_overlap") && table.has("impact_speed"))
+    table.fail("impact_speed", "needs largest_overlap beside it");
+  if (table.has("stiffness") || table.has("largest_overlap"))
+    return stiffness_law(table, model, material, moduli[0] > 0 && moduli[1] > 0);
+  const KelvinVoigt hertz = hertz_law(table, model, moduli, material);
+  return model.space.dimension == 2 ? line_contact(table, model, hertz) : hertz;
 }
 
 // G* of two materials with a Young's modulus [Pa].
@@ -106,6 +155,41 @@ Friction build_friction(const DeckTable& deck, const DeckTable& table, const Kel
     table.fail("tangential_stiffness", "missing; it follows from the stiffness only where exponent = 1");
   }
   return friction;
+}
+
+// Spring: 2.25 K mu_r^2 R*^2 in space and 3 K mu_r^2 R*^2 in the plane, where none is given
+// (ElasticPlasticRolling).
+RollingResistance build_rolling(const DeckTable& table, const Friction& friction, int dimension) {
+  const bool springs = table.has("rolling_friction"), acts = springs || table.has("rolling_damping");
+  for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
+    if (table.has(key) && !table.has("friction"))
+      table.fail(key, "needs friction beside it, 0 where contacts do not rub");
+  if (table.has("rolling_stiffness") && !springs)
+    table.fail("rolling_stiffness", "needs rolling_friction beside it");
+  if (table.real("rolling_damping_ratio") > 0 && !springs)
+    table.fail("rolling_damping_ratio", "needs rolling_friction beside it");
+  if (dimension == 2 && table.has("twisting_friction"))
+    table.fail("twisting_friction", "must be left out in 2D: discs do not twist");
+  RollingResistance rolling;
+  if (springs) {
+    rolling.friction = table.real("rolling_friction");
+    if (table.has("rolling_stiffness"))
+      rolling.stiffness = table.real("rolling_stiffness");
+    else
+      rolling.stiffness_factor = dimension == 2 ? 3 : Real(2.25);
+    rolling.damping_ratio = table.real("rolling_damping_ratio");
+  }
+  if (table.has("rolling_damping")) rolling.damping = table.real("rolling_damping");
+  if (table.has("twisting_friction"))
+    rolling.twisting_friction = table.real("twisting_friction");
+  else if (acts && dimension == 3)
+    rolling.twisting_friction = friction.friction;
+  return rolling;
+}
+
+// Whether the pair asks for moments against rolling or twisting.
+bool resists_rolling(const DeckTable& table) {
+  return table.has("rolling_friction") || table.has("rolling_damping") || table.has("twisting_friction");
 }
 
 // Where contacts rub; what that does not go with yet.
@@ -155,7 +239,9 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   const KelvinVoigt law = build_law(deck, table, model, material);
   check_mixing(table, contact, law);
   const Friction friction = build_friction(deck, table, law, material);
+  const RollingResistance rolling = build_rolling(table, friction, model.space.dimension);
   if (table.has("friction")) contact.friction.resize(contact.laws.size());
+  if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
   for (int side = 0; side < 2; ++side) {
     const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
     if (given[slot] && (side == 0 || material[0] != material[1])) {
@@ -163,6 +249,7 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
     }
     contact.laws[slot] = law;
     if (table.has("friction")) contact.friction[slot] = friction;
+    if (resists_rolling(table)) contact.rolling[slot] = rolling;
     given[slot] = true;
   }
 }

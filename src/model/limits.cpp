@@ -24,7 +24,9 @@ Real smallest_reduced_mass(const PairSize& size) {
 struct PairSprings {
   const KelvinVoigt& law;
   Friction friction;
-  Real stiffness, slip_stiffness;  // [N/m]
+  RollingResistance rolling;
+  Real stiffness, slip_stiffness, rolling_stiffness;  // [N/m]
+  Real smallest_radius;                               // [m]
 };
 
 // Springs and dashpots alike have their fastest modes; that both are of one mode is the worst.
@@ -32,12 +34,18 @@ Real rubbing_step(const PairSprings& pair, Real mass, int dimension, bool dense)
   const Real inertia_share = dimension == 2 ? disc_inertia(1, 1) : sphere_inertia(1, 1);
   const Real slip_mass = mass / ((dense ? 2 : 1) * (1 + 1 / inertia_share));
   const Real slip_damping = dashpot_of(pair.friction.damping_ratio, slip_mass, pair.slip_stiffness);
-  const auto highest = [&](Real along, Real across) {
-    return dense ? dense_rubbing_frequency(along, across, mass, inertia_share, dimension)
-                 : wall_rubbing_frequency(along, across, mass, inertia_share);
+  const Real square = pair.smallest_radius * pair.smallest_radius;
+  const Real rolling_inertia = (1 + inertia_share) * mass / (dense ? 2 : 1);  // over R^2 [kg]
+  const Real rolling_damping =
+      dashpot_of(pair.rolling.damping_ratio, rolling_inertia, pair.rolling_stiffness) +
+      pair.rolling.damping / square;
+  const auto highest = [&](Real along, Real across, Real rolling) {
+    return dense ? dense_rubbing_frequency(along, across, mass, inertia_share, dimension, rolling)
+                 : wall_rubbing_frequency(along, across, mass, inertia_share, rolling);
   };
-  const Real root_of_decay = highest(pair.law.normal_damping, slip_damping);
-  return leapfrog_step_limit(highest(pair.stiffness, pair.slip_stiffness), root_of_decay * root_of_decay);
+  const Real root_of_decay = highest(pair.law.normal_damping, slip_damping, rolling_damping);
+  return leapfrog_step_limit(highest(pair.stiffness, pair.slip_stiffness, pair.rolling_stiffness),
+                             root_of_decay * root_of_decay);
 }
 
 // Of the lightest particle of use `use`: in a dense packing of such particles, or, where the other material
@@ -107,13 +115,21 @@ std::vector<PairLimit> pair_limits(const Model& model) {
       const Real stiffness = typical_stiffness(law, size);
       const bool dense = first.particles > 0 && second.particles > 0;
       const Friction friction = model.rotates() ? model.contact.friction_of(a, b) : Friction{};
-      const PairSprings springs{sized, friction, stiffness, typical_slip_stiffness(friction, size)};
+      const RollingResistance rolling = model.contact.rolling_of(a, b);
+      const PairSprings springs{sized,
+                                friction,
+                                rolling,
+                                stiffness,
+                                typical_slip_stiffness(friction, size),
+                                typical_rolling_stiffness(rolling, size, stiffness),
+                                std::min(size.radius_i, size.radius_j)};
       const Real step_a = explicit_step(model, first, dense, springs);
       const Real step_b = explicit_step(model, second, dense, springs);
       limits.push_back({{a, b},
                         sized,
                         stiffness,
                         springs.slip_stiffness,
+                        springs.rolling_stiffness,
                         contact_time(stiffness, smallest_reduced_mass(size)),
                         step_a > 0 && step_b > 0 ? std::min(step_a, step_b) : std::max(step_a, step_b)});
     }

@@ -26,11 +26,12 @@ PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 
 struct PairLimit {
   int material[2] = {0, 0};
-  KelvinVoigt law;          // of its smallest partners
-  Real stiffness = 0;       // of these [N/m], typical_stiffness()
-  Real slip_stiffness = 0;  // of the tangential spring [N/m], typical_slip_stiffness()
-  Real contact_time = 0;    // shortest, undamped and head-on [s]
-  Real explicit_step = 0;   // stability limit of velocity-verlet in dense contact [s]; 0: no particles
+  KelvinVoigt law;             // of its smallest partners
+  Real stiffness = 0;          // of these [N/m], typical_stiffness()
+  Real slip_stiffness = 0;     // of the tangential spring [N/m], typical_slip_stiffness()
+  Real rolling_stiffness = 0;  // against rolling, over the radius squared [N/m], typical_rolling_stiffness()
+  Real contact_time = 0;       // shortest, undamped and head-on [s]
+  Real explicit_step = 0;      // stability limit of velocity-verlet in dense contact [s]; 0: no particles
 };
 
 // One entry per pair of materials that can meet and interact.

@@ -12,6 +12,7 @@
 #include "model/bodies.hpp"
 #include "model/particles.hpp"
 #include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
 #include "physics/tangential_laws.hpp"
 
 namespace scree {
@@ -37,9 +38,10 @@ struct Wall {
 // One law per unordered pair of materials.
 struct Contact {
   std::vector<std::string> material_names;
-  std::vector<KelvinVoigt> laws;   // [i * materials + j], symmetric
-  std::vector<Friction> friction;  // likewise; empty: no contact rubs
-  Real skin = 0;                   // neighbour list reaches this far past touching [m]
+  std::vector<KelvinVoigt> laws;           // [i * materials + j], symmetric
+  std::vector<Friction> friction;          // likewise; empty: no contact rubs
+  std::vector<RollingResistance> rolling;  // likewise; empty: none resists rolling
+  Real skin = 0;                           // neighbour list reaches this far past touching [m]
   bool connected_bodies_touch = false;
 
   int materials() const { return static_cast<int>(material_names.size()); }
@@ -47,6 +49,9 @@ struct Contact {
   // Of materials where some rub.
   const Friction& friction_of(int i, int j) const {
     return friction[static_cast<std::size_t>(i * materials() + j)];
+  }
+  RollingResistance rolling_of(int i, int j) const {
+    return rolling.empty() ? RollingResistance{} : rolling[static_cast<std::size_t>(i * materials() + j)];
   }
 };
 

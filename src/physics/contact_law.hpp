@@ -62,6 +62,7 @@ template <class NormalLaw, class TangentialLaw = Frictionless, class RollingLaw 
 struct ContactLaw {
   using Normal = NormalLaw;
   using Tangential = TangentialLaw;
+  using Rolling = RollingLaw;
   NormalLaw normal;
   TangentialLaw tangential{};
   RollingLaw rolling{};
@@ -115,9 +116,13 @@ struct ContactLaw {
         step.acting = shortened(step.spring + slider.dashpot * pair.slip_rate, slider.limit);
       rub(step, motion, out);
     }
-    if constexpr (RollingLaw::acts)
-      roll(rolling.step({pair.size, motion, contact, slider}, turned_with(motion, old.moment)), motion.h,
-           out);
+    if constexpr (RollingLaw::acts) {
+      const RollingContact rolls{pair.size, motion, contact, slider};
+      SpringStep step = rolling.step(rolls, turned_with(motion, old.moment));
+      if constexpr (std::is_same_v<Pair, InstantPair>)
+        step.acting = rolling.at(rolls, step.spring, pair.turning);
+      roll(step, motion.h, out);
+    }
     return out;
   }
 

@@ -97,16 +97,17 @@ SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0
   return out;
 }
 
-// What such a law sees at an instant alone: nothing has moved, and what it remembers acts as it is, with a
-// dashpot that sees the rate of the slip.
+// What such a law sees at an instant alone: nothing has moved, and what it remembers acts as it is, with
+// dashpots that see the rates of slip and turning.
 struct InstantPair : MovingPair {
   Vec3 slip_rate;  // of i over j, across the normal [m/s]; odd
+  Vec3 turning;    // of i against j [rad/s]; odd
 };
 
 // pair: of a step of no length.
 SCREE_HD InstantPair at_instant(const MovingPair& pair, Vec3 spin_i, Vec3 spin_j) {
   constexpr Real kAges = 1e30;  // what has not moved has no rate [s]
-  InstantPair out{pair, {}};
+  InstantPair out{pair, {}, spin_i - spin_j};
   ContactMotion& c = out.motion;
   const Vec3 turning = cross(c.arm_i * spin_i + c.arm_j * spin_j, c.normal1);
   out.slip_rate = across(c.leverage * pair.velocity - turning, c.normal1);

@@ -11,19 +11,20 @@
 namespace scree {
 
 // What a deck says of a pair of materials, a spring beside a damper: F = K d^n + C d_dot (Jung, Jun, Sohn,
-// 2013, Eqs. 18-24), or with a modulus E* Hertz's law in place of K, C and n.
+// 2013, Eqs. 18-24), or with a modulus E* Hertz's law in place of K and n. A damping ratio stands in place of
+// C: the damper of physics/restitution.hpp, whose rebounds depend on no speed and no mass.
 struct KelvinVoigt {
   Real normal_stiffness = 0;  // K [N/m^n]
   Real normal_damping = 0;    // C [N s/m]
   Real exponent = 1;          // n [-]
   bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
   Real effective_modulus = 0;  // E* [Pa]
-  Real damping_ratio = 0;      // zeta of Hertz's law [-]
+  Real damping_ratio = 0;      // zeta [-]
 
   // Whether the two feel each other.
   bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
   // For estimates: K, C and n of partners of these sizes that overlap by some 1 % of a radius.
-  bool depends_on_size() const { return effective_modulus > 0; }
+  bool depends_on_size() const { return effective_modulus > 0 || damping_ratio > 0; }
   KelvinVoigt of_size(const PairSize& size) const;
 };
 
@@ -52,7 +53,9 @@ struct LinearLawOf {
       : normal_stiffness(stiffness), normal_damping(damping), tension(pulls) {}
   explicit LinearLawOf(const KelvinVoigt& p)
       : LinearLawOf(T(p.normal_stiffness), T(p.normal_damping), p.tension) {}
-  static bool accepts(const KelvinVoigt& p) { return p.exponent == 1 && p.effective_modulus == 0; }
+  static bool accepts(const KelvinVoigt& p) {
+    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0;
+  }
 
   SCREE_HD LinearLawOf of_pair(const PairSizeOf<T>&) const { return *this; }
   template <class S>
@@ -68,34 +71,84 @@ struct LinearLawOf {
 };
 using LinearLaw = LinearLawOf<Real>;
 
-// F = K d^n + C d_dot. A type of its own keeps pow() out of the linear law's kernels.
+// The linear law with a damper that goes with the partners' masses: F = K d + (C + 2 zeta sqrt(m* K)) d_dot.
+template <class T>
+struct RatedLinearLawOf {
+  using Scalar = T;
+  T normal_stiffness = 0;  // K [N/m]
+  T normal_damping = 0;    // C [N s/m]
+  T damping_factor = 0;    // 2 zeta sqrt(K) [(N/m)^(1/2)]
+  bool tension = false;
+
+  RatedLinearLawOf() = default;
+  SCREE_HD RatedLinearLawOf(T stiffness, T damping, T factor, bool pulls)
+      : normal_stiffness(stiffness), normal_damping(damping), damping_factor(factor), tension(pulls) {}
+  explicit RatedLinearLawOf(const KelvinVoigt& p)
+      : RatedLinearLawOf(T(p.normal_stiffness), T(p.normal_damping),
+                         T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness)), p.tension) {}
+  static bool accepts(const KelvinVoigt& p) { return p.exponent == 1 && p.effective_modulus == 0; }
+
+  SCREE_HD LinearLawOf<T> of_pair(const PairSizeOf<T>& size) const {
+    return {normal_stiffness, normal_damping + damping_factor * std::sqrt(size.effective_mass()), tension};
+  }
+  template <class S>
+  SCREE_HD RatedLinearLawOf<S> as() const {
+    return {static_cast<S>(normal_stiffness), static_cast<S>(normal_damping), static_cast<S>(damping_factor),
+            tension};
+  }
+};
+using RatedLinearLaw = RatedLinearLawOf<Real>;
+
+// F = K d^n + C d_dot, or with c d^((n-1)/2) in place of C, c = 2 zeta sqrt(m* K (n+1)/2). A type of its own
+// keeps pow() out of the linear law's kernels.
 template <class T>
 struct PowerLawOf {
   using Scalar = T;
   T normal_stiffness = 0;  // K [N/m^n]
-  T normal_damping = 0;    // C [N s/m]
+  T normal_damping = 0;    // C [N s/m]; 0 where c is not
   T exponent = 1;          // n [-]
   bool tension = false;
+  T damping_factor = 0;  // c [N s/m^((n+1)/2)] of a pair, else c / sqrt(m*)
 
   PowerLawOf() = default;
-  SCREE_HD PowerLawOf(T stiffness, T damping, T n, bool pulls)
-      : normal_stiffness(stiffness), normal_damping(damping), exponent(n), tension(pulls) {}
+  SCREE_HD PowerLawOf(T stiffness, T damping, T n, bool pulls, T factor = 0)
+      : normal_stiffness(stiffness),
+        normal_damping(damping),
+        exponent(n),
+        tension(pulls),
+        damping_factor(factor) {}
   explicit PowerLawOf(const KelvinVoigt& p)
-      : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension) {}
+      : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension,
+                   T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness * (p.exponent + 1) / 2))) {}
   static bool accepts(const KelvinVoigt& p) { return p.effective_modulus == 0; }
 
-  SCREE_HD PowerLawOf of_pair(const PairSizeOf<T>&) const { return *this; }
+  SCREE_HD PowerLawOf of_pair(const PairSizeOf<T>& size) const {
+    PowerLawOf pair = *this;
+    if (damping_factor > 0) pair.damping_factor *= std::sqrt(size.effective_mass());
+    return pair;
+  }
   template <class S>
   SCREE_HD PowerLawOf<S> as() const {
     return {static_cast<S>(normal_stiffness), static_cast<S>(normal_damping), static_cast<S>(exponent),
-            tension};
+            tension, static_cast<S>(damping_factor)};
   }
   SCREE_HD T elastic(T d) const { return normal_stiffness * std::pow(d, exponent); }
   SCREE_HD T slope(T d) const { return normal_stiffness * exponent * std::pow(d, exponent - 1); }
   SCREE_HD T energy(T d) const { return normal_stiffness / (exponent + 1) * std::pow(d, exponent + 1); }
-  SCREE_HD T damping(T) const { return normal_damping; }
-  SCREE_HD T mean_damping(T, T) const { return normal_damping; }
-  SCREE_HD T cut(T, T pull) const { return std::pow(pull / normal_stiffness, 1 / exponent); }
+  SCREE_HD T damping(T d) const {
+    return damping_factor > 0 ? damping_factor * std::pow(d, (exponent - 1) / 2) : normal_damping;
+  }
+  SCREE_HD T mean_damping(T d0, T d1) const {
+    if (!(damping_factor > 0)) return normal_damping;
+    const T n = (exponent + 1) / 2, span = d1 - d0;
+    // Across a span that round-off would spoil, the middle.
+    if (!(std::abs(span) > T(1e-4) * (d0 + d1))) return damping((d0 + d1) / 2);
+    return damping_factor / n * (std::pow(d1, n) - std::pow(d0, n)) / span;
+  }
+  SCREE_HD T cut(T d0, T pull) const {
+    if (!(damping_factor > 0)) return std::pow(pull / normal_stiffness, 1 / exponent);
+    return d0 * std::pow(pull / elastic(d0), 2 / (exponent + 1));
+  }
 };
 using PowerLaw = PowerLawOf<Real>;
 
@@ -159,14 +212,16 @@ struct HertzLawOf {
 using HertzLaw = HertzLawOf<Real>;
 
 inline KelvinVoigt KelvinVoigt::of_size(const PairSize& size) const {
-  if (effective_modulus == 0) return *this;
-  const auto pair = HertzLaw(*this).of_pair(size);
+  if (!depends_on_size()) return *this;
   const Real overlap = Real(0.01) * (size.radius_i < size.radius_j ? size.radius_i : size.radius_j);
+  if (effective_modulus == 0)
+    return {normal_stiffness, PowerLaw(*this).of_pair(size).damping(overlap), exponent, tension};
+  const auto pair = HertzLaw(*this).of_pair(size);
   return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), tension};
 }
 
 // A run takes the first that accepts the parameters of all its pairs; each has its own kernels
 // (cuda/contact_kernels_*.cu).
-using NormalLaws = std::tuple<LinearLaw, PowerLaw, HertzLaw>;
+using NormalLaws = std::tuple<LinearLaw, RatedLinearLaw, PowerLaw, HertzLaw>;
 
 }  // namespace scree

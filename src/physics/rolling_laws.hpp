@@ -9,6 +9,16 @@
 
 namespace scree {
 
+// What a deck says of how the contacts of a pair of materials resist rolling and twisting.
+struct RollingResistance {
+  Real friction = 0;           // mu_r of ElasticPlasticRolling [-]
+  Real stiffness_factor = 0;   // of its spring [-]; 0: the stiffness is given
+  Real stiffness = 0;          // k_r [N m]
+  Real damping_ratio = 0;      // zeta of its dashpot [-]
+  Real damping = 0;            // C of ViscousRolling [N m s]
+  Real twisting_friction = 0;  // mu of MarshallTwisting [-]
+};
+
 // What a rolling law sees of a contact over a step.
 struct RollingContact {
   const PairSize& size;
@@ -18,8 +28,14 @@ struct RollingContact {
 };
 
 // Every rolling law has acts, kHistory, the stiffness of its spring, and rolling(contact, old): the step of
-// the moment across the normal, from the one of before, turned with the contact. Every twisting law has the
-// same with twisting(contact, old), of the moment along the normal.
+// the moment across the normal, from the one of before, turned with the contact; and rolling_at(contact,
+// spring, rate), the moment at an instant. Every twisting law has the same with twisting(contact, old) and
+// twisting_at(), of the moment along the normal.
+
+// Of a spring and its dashpot at an instant; rate: of what the spring resists.
+SCREE_HD Vec3 acting_at(const SpringSlider& p, Vec3 spring, Vec3 rate) {
+  return shortened(spring + p.dashpot * rate, p.limit);
+}
 
 // No moment.
 struct FreeRolling {
@@ -52,12 +68,17 @@ struct ElasticPlasticRolling {
     const Real arm = friction * size.effective_radius();
     return stiffness + stiffness_factor * arm * arm * of_contact;
   }
-  SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
+  SCREE_HD SpringSlider slider(const RollingContact& c) const {
     const Real k = stiffness_at(c.size, c.normal.stiffness), k0 = stiffness_at(c.size, c.normal.stiffness0);
     const Real dashpot =
         damping_ratio > 0 ? dashpot_of(damping_ratio, rolling_inertia(c.size, c.motion), k) : 0;
-    const Real limit = friction * c.size.effective_radius() * c.normal.grip;
-    return spring_step({k, k0, dashpot, limit}, old, c.motion.rolling, c.motion.h);
+    return {k, k0, dashpot, friction * c.size.effective_radius() * c.normal.grip};
+  }
+  SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
+    return spring_step(slider(c), old, c.motion.rolling, c.motion.h);
+  }
+  SCREE_HD Vec3 rolling_at(const RollingContact& c, Vec3 spring, Vec3 rate) const {
+    return acting_at(slider(c), spring, rate);
   }
 };
 
@@ -74,6 +95,7 @@ struct ViscousRolling {
     out.losses.dashpot = dot(out.acting, c.motion.rolling);
     return out;
   }
+  SCREE_HD Vec3 rolling_at(const RollingContact&, Vec3, Vec3 rate) const { return damping * rate; }
 };
 
 // M' = (k_t a^2 / 2) w while |M| < 2/3 a mu F_n, w the twisting rate, with the tangential law's stiffness and
@@ -86,12 +108,40 @@ struct MarshallTwisting {
 
   // [N m]; a: radius of the circle of contact [m], of_slip: k_t [N/m].
   SCREE_HD Real stiffness_at(Real a, Real of_slip) const { return a * a / 2 * of_slip; }
-  SCREE_HD SpringStep twisting(const RollingContact& c, Vec3 old) const {
+  SCREE_HD SpringSlider slider(const RollingContact& c) const {
     const Real a = c.normal.radius;
-    return spring_step(
-        {stiffness_at(a, c.friction.stiffness), stiffness_at(c.normal.radius0, c.friction.stiffness0),
-         a * a / 2 * c.friction.dashpot, Real(2) / 3 * a * friction * c.normal.grip},
-        old, c.motion.twisting * c.motion.normal1, c.motion.h);
+    return {stiffness_at(a, c.friction.stiffness), stiffness_at(c.normal.radius0, c.friction.stiffness0),
+            a * a / 2 * c.friction.dashpot, Real(2) / 3 * a * friction * c.normal.grip};
+  }
+  SCREE_HD SpringStep twisting(const RollingContact& c, Vec3 old) const {
+    return spring_step(slider(c), old, c.motion.twisting * c.motion.normal1, c.motion.h);
+  }
+  SCREE_HD Vec3 twisting_at(const RollingContact& c, Vec3 spring, Vec3 rate) const {
+    return acting_at(slider(c), spring, rate);
+  }
+};
+
+// Either of the two against rolling, or both, whose moments add.
+struct EitherRolling {
+  static constexpr bool acts = true;
+  static constexpr int kHistory = 3;
+  ElasticPlasticRolling spring{};
+  ViscousRolling viscous{};
+
+  SCREE_HD Real stiffness_at(const PairSize& size, Real of_contact) const {
+    return spring.stiffness_at(size, of_contact);
+  }
+  SCREE_HD SpringStep rolling(const RollingContact& c, Vec3 old) const {
+    SpringStep out{};
+    if (spring.friction > 0) out = spring.rolling(c, old);
+    if (viscous.damping > 0) {
+      const SpringStep part = viscous.rolling(c, old);
+      out.acting += part.acting, out.losses += part.losses;
+    }
+    return out;
+  }
+  SCREE_HD Vec3 rolling_at(const RollingContact& c, Vec3 held, Vec3 rate) const {
+    return spring.rolling_at(c, held, rate) + viscous.rolling_at(c, held, rate);
   }
 };
 
@@ -114,6 +164,14 @@ struct RollingAndTwisting {
     }
     return out;
   }
+  // The moment at an instant. spring: remembered; turning: of i against j [rad/s].
+  SCREE_HD Vec3 at(const RollingContact& c, Vec3 spring, Vec3 turning) const {
+    const Vec3 n = c.motion.normal1, along = dot(spring, n) * n, twist = dot(turning, n) * n;
+    Vec3 out;
+    if constexpr (Rolling::acts) out = rolling.rolling_at(c, spring - along, turning - twist);
+    if constexpr (Twisting::acts) out += twisting.twisting_at(c, along, twist);
+    return out;
+  }
   // Elastic energy of the moment [J].
   SCREE_HD Real energy(const PairSize& size, const NormalContact& normal, Real of_slip, Vec3 normal1,
                        Vec3 moment) const {
@@ -123,6 +181,15 @@ struct RollingAndTwisting {
       out += spring_energy(moment - along, rolling.stiffness_at(size, normal.stiffness));
     if constexpr (Twisting::acts) out += spring_energy(along, twisting.stiffness_at(normal.radius, of_slip));
     return out;
+  }
+};
+
+// All that a deck may ask for as one type, so that pairs of materials may differ and kernels are compiled
+// once.
+struct AnyRolling : RollingAndTwisting<EitherRolling, MarshallTwisting> {
+  static AnyRolling of(const RollingResistance& p) {
+    return {{{{p.friction, p.damping_ratio, p.stiffness_factor, p.stiffness}, {p.damping}},
+             {p.twisting_friction}}};
   }
 };
 

@@ -8,6 +8,7 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "physics/normal_laws.hpp"
+#include "physics/rolling_laws.hpp"
 #include "physics/tangential_laws.hpp"
 
 namespace scree {
@@ -43,11 +44,15 @@ SCREE_HD Real dense_frequency(Real stiffness, Real mass, int dimension) {
 // which do not mix. In one every second layer moves across itself against its neighbours, to which two of
 // three contacts lead; in the other all spin alike, so that every contact slips by both spins. Their squares
 // are 8 (K + k_t)/m and 16 k_t/(m share) for spheres, (6 K + 2 k_t)/m and 12 k_t/(m share) for discs.
+// rolling_stiffness: k_r / R^2 [N/m], of springs against rolling. A contact's k_t R^2 |a + b|^2 + k_r |a -
+// b|^2 of two spins is at most twice the larger stiffness times |a|^2 + |b|^2: it stands for k_t where it is
+// larger.
 SCREE_HD Real dense_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share,
-                                      int dimension) {
+                                      int dimension, Real rolling_stiffness = 0) {
   const bool discs = dimension == 2;
   const Real moving = discs ? 6 * stiffness + 2 * slip_stiffness : 8 * (stiffness + slip_stiffness);
-  const Real spinning = (discs ? 12 : 16) * slip_stiffness / inertia_share;
+  const Real turned = slip_stiffness > rolling_stiffness ? slip_stiffness : rolling_stiffness;
+  const Real spinning = (discs ? 12 : 16) * turned / inertia_share;
   return std::sqrt((moving > spinning ? moving : spinning) / mass);
 }
 
@@ -68,9 +73,21 @@ inline Real typical_slip_stiffness(const Friction& of, const PairSize& size) {
   return MindlinSlider::of(of).stiffness_at(std::sqrt(size.effective_radius() * overlap));
 }
 
-// Likewise of one particle on what does not give way: it moves along the normal, or across it and turns.
-inline Real wall_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share) {
-  return std::sqrt(std::max(stiffness, (1 + 1 / inertia_share) * slip_stiffness) / mass);
+// Stiffness against rolling and twisting for estimates, k_r / R^2 [N/m], R the smaller radius; stiffness: of
+// the normal spring [N/m]. Twisting's, R* d k_t / 2 at d = 1 % of the radius, is below 1 % of k_t R^2 and
+// left out.
+inline Real typical_rolling_stiffness(const RollingResistance& of, const PairSize& size, Real stiffness) {
+  if (of.friction == 0) return 0;
+  const Real radius = std::min(size.radius_i, size.radius_j);
+  return AnyRolling::of(of).rolling.stiffness_at(size, stiffness) / (radius * radius);
+}
+
+// Likewise of one particle on what does not give way: it moves along the normal, or across it and turns, or
+// rolls.
+inline Real wall_rubbing_frequency(Real stiffness, Real slip_stiffness, Real mass, Real inertia_share,
+                                   Real rolling_stiffness = 0) {
+  const Real turning = (1 + 1 / inertia_share) * slip_stiffness + rolling_stiffness / inertia_share;
+  return std::sqrt(std::max(stiffness, turning) / mass);
 }
 
 // Stability limit [s] of the steps of particles that rotate, whose damping acts on the velocities of the

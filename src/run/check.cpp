@@ -104,6 +104,19 @@ std::string multibody_lines(const Model& model) {
                              counted(coordinates - constraints, "degree of freedom", "degrees of freedom"));
 }
 
+// What resists rolling and twisting; "" where nothing does.
+std::string rolling_line(const Model& model, const PairLimit& limit) {
+  const RollingResistance rolling = model.contact.rolling_of(limit.material[0], limit.material[1]);
+  std::string parts;
+  const auto add = [&](const std::string& part) { parts += (parts.empty() ? "" : ", ") + part; };
+  if (rolling.friction > 0)
+    add(fmt::format("rolling friction {}, k_r / R^2 = {:.6g} N/m (smallest partners{})", rolling.friction,
+                    limit.rolling_stiffness, limit.law.exponent == 1 ? "" : ", at 1 % overlap"));
+  if (rolling.damping > 0) add(fmt::format("C_r = {:.6g} N m s", rolling.damping));
+  if (rolling.twisting_friction > 0) add(fmt::format("twisting friction {}", rolling.twisting_friction));
+  return parts.empty() ? "" : fmt::format("               {}\n", parts);
+}
+
 std::string limit_lines(const Model& model) {
   std::string lines;
   const std::vector<std::string>& names = model.contact.material_names;
@@ -115,12 +128,15 @@ std::string limit_lines(const Model& model) {
                          names[static_cast<std::size_t>(limit.material[0])],
                          names[static_cast<std::size_t>(limit.material[1])], law.normal_stiffness,
                          law.exponent == 1 ? "" : fmt::format("^{}", law.exponent), law.normal_damping,
-                         sized ? " (smallest partners, at 1 % overlap)" : "",
+                         !sized              ? ""
+                         : law.exponent == 1 ? " (smallest partners)"
+                                             : " (smallest partners, at 1 % overlap)",
                          law.tension ? "may pull" : "cut at zero");
     if (limit.slip_stiffness > 0)
       lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
                            model.contact.friction_of(limit.material[0], limit.material[1]).friction,
                            limit.slip_stiffness, sized ? " (likewise)" : "");
+    lines += rolling_line(model, limit);
     lines += fmt::format("               shortest contact {:.4g} s{}\n", limit.contact_time,
                          law.exponent == 1 ? "" : " (at 1 % overlap)");
     for (const StepTrial& trial : trials)

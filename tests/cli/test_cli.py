@@ -221,7 +221,8 @@ class DeckErrorTest(CommandLineTest):
                  ("dimension = 2", "dimension = 5", "space.dimension = 5", "from 2 to 3"),
                  ('leaving = "drift"', 'leaving = "fly"', 'space.leaving = "fly"', "remove"),
                  ("damping = 3.0", "damping = [3.0]", "contact.pairs.0.damping", "number"),
-                 ("damping = 3.0", "restitution = 0.5", "contact.pairs.0.restitution = 0.5", "damping instead"),
+                 ("damping = 3.0", "restitution = 0.5\ndamping = 3.0", "contact.pairs.0.restitution = 0.5",
+                  "stands beside a damping"),
                  ('bodies = ["ground", "pad"]', 'bodies = ["ground", "pod"]', "pod", "pad"),
                  ("mass = 1.0\ninertia", "mass = 0.0\ninertia", "mass = 0", "above 0"),
                  ("[[particles]]", "[[particles]", "not TOML", ""))

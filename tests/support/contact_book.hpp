@@ -144,8 +144,8 @@ inline std::string difference(const KeptContacts& a, const KeptContacts& b) {
 }
 
 // Contacts between particles whose two sides do not mirror each other bit for bit; ids: of all particles, in
-// the order of the rows.
-template <int kNumbers>
+// the order of the rows. kEven: the one of the numbers that does not change its sign.
+template <int kNumbers, int kEven = 3>
 int unmirrored(const std::vector<Particle>& particles, const KeptContacts& contacts) {
   std::map<std::tuple<GlobalId, GlobalId, std::int64_t>, std::span<const Real>> sides;
   for (std::int64_t i = 0; i < contacts.particles(); ++i)
@@ -161,7 +161,7 @@ int unmirrored(const std::vector<Particle>& particles, const KeptContacts& conta
     const auto other = sides.find({partner, id, 26 - image});
     bool mirrored = other != sides.end();
     for (std::size_t k = 0; mirrored && k < kNumbers; ++k)
-      mirrored = own[k] == (k == 3 ? other->second[k] : -other->second[k]);
+      mirrored = own[k] == (k == kEven ? other->second[k] : -other->second[k]);
     count += !mirrored;
   }
   return count;

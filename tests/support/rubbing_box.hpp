@@ -1,7 +1,8 @@
-// Boxes of particles that rub on each other and on walls, dense enough for contacts that slide, that stick,
-// that turn and that part.
+// Boxes of particles that rub and roll on each other and on walls, dense enough for contacts that slide, that
+// stick, that turn and that part.
 #pragma once
 
+#include "support/contact_book.hpp"
 #include "support/remembering_box.hpp"
 
 namespace scree {
@@ -38,5 +39,40 @@ inline Model rubbing(Model model) {
 }
 
 inline Model moving_rubbing_box(const BoxCase& c, Leaving leaving) { return rubbing(moving_box(c, leaving)); }
+
+// The model with all that resists rolling and twisting, of which pairs of materials have different parts, and
+// without a damping but with a ratio.
+inline Model rolling(Model model) {
+  const int count = model.contact.materials();
+  for (int k = 0; k < count * count; ++k) {
+    const int kind = k / count + k % count;
+    model.contact.rolling.push_back({.friction = kind == 1 ? 0 : 0.2,
+                                     .stiffness_factor = kind == 0 ? 2.25 : 0,
+                                     .stiffness = kind == 2 ? 0.5 : 0,
+                                     .damping_ratio = kind == 2 ? 0.3 : 0,
+                                     .damping = kind > 0 ? 1e-3 : 0,
+                                     .twisting_friction = kind == 1 ? 0.6 : 0.3});
+    KelvinVoigt& law = model.contact.laws[static_cast<std::size_t>(k)];
+    if (law.effective_modulus == 0) law.normal_damping = 0, law.damping_ratio = 0.1 + 0.1 * kind;
+  }
+  return model;
+}
+
+// All boxes, with either way of leaving.
+inline std::vector<std::pair<BoxCase, Leaving>> moving_cases() {
+  std::vector<std::pair<BoxCase, Leaving>> cases;
+  for (const BoxCase& c : kRubbingBoxes)
+    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) cases.emplace_back(c, leaving);
+  return cases;
+}
+
+// What is put on a box of particles that rub, and what of a contact's numbers is even under exchange.
+struct RubbingKind {
+  const char* name;
+  Model (*of)(Model);
+  int (*unmirrored)(const std::vector<Particle>&, const KeptContacts&);
+};
+inline const RubbingKind kRubbingKinds[] = {{"rubbing", [](Model model) { return model; }, unmirrored<3>},
+                                            {"rolling", rolling, unmirrored<6, 6>}};
 
 }  // namespace scree

@@ -16,12 +16,12 @@ std::unique_ptr<Backend> make_cuda(const Model& model, const Ranks& ranks) {
   return make_cuda_backend(model, ranks);
 }
 
-void check_equal(const RememberingBox& cpu, const RememberingBox& cuda) {
+void check_equal(const RubbingKind& kind, const RememberingBox& cpu, const RememberingBox& cuda) {
   const State a = cpu.state(), b = cuda.state();
   CHECK(differing_fields(a.particles, b.particles) == "");
   CHECK(difference(a.contacts, b.contacts) == "");
   CHECK(!a.contacts.keys.empty());
-  CHECK(unmirrored<3>(b.particles, b.contacts) == 0);
+  CHECK(kind.unmirrored(b.particles, b.contacts) == 0);
 }
 
 // What the ledger says of both.
@@ -38,36 +38,37 @@ void check_ledgers(const RememberingBox& cpu, const RememberingBox& cuda) {
 }  // namespace
 
 TEST_CASE("particles rub the same on both backends, and each goes on from what the other has") {
-  for (const BoxCase& c : kRubbingBoxes)
-    for (const Leaving leaving : {Leaving::drift, Leaving::remove}) {
-      CAPTURE(c.name, static_cast<int>(leaving));
-      const Model model = moving_rubbing_box(c, leaving);
+  for (const RubbingKind& kind : kRubbingKinds)
+    for (const auto& [c, leaving] : moving_cases()) {
+      CAPTURE(kind.name, c.name, static_cast<int>(leaving));
+      const Model model = kind.of(moving_rubbing_box(c, leaving));
       RememberingBox cpu(model, {}, make_cpu), cuda(model, {}, make_cuda);
       for (RememberingBox* box : {&cpu, &cuda}) box->start();
       for (int part = 0; part < 20; ++part) {
         for (RememberingBox* box : {&cpu, &cuda}) box->take_steps(50);
-        check_equal(cpu, cuda), check_ledgers(cpu, cuda);
+        check_equal(kind, cpu, cuda), check_ledgers(cpu, cuda);
       }
       RememberingBox on_cpu(model, {}, make_cpu), on_cuda(model, {}, make_cuda);
       on_cpu.start(cuda.state()), on_cuda.start(cpu.state());
       for (RememberingBox* box : {&on_cpu, &on_cuda, &cpu}) box->take_steps(100);
-      check_equal(on_cpu, on_cuda), check_equal(cpu, on_cuda);
+      check_equal(kind, on_cpu, on_cuda), check_equal(kind, cpu, on_cuda);
     }
 }
 
 // Steps so short that rows are pruned several times between two lists.
 TEST_CASE("many particles rub the same on both backends") {
   const Launches before = launches();
-  for (const BoxCase& c : {kRubbingBoxes[0], kRubbingBoxes[2]})
+  for (const RubbingKind& kind : kRubbingKinds)
     for (const bool several_at_once : {false, true}) {
-      CAPTURE(c.name, several_at_once);
+      const BoxCase& c = kRubbingBoxes[several_at_once ? 0 : 2];
+      CAPTURE(kind.name, c.name, several_at_once);
       launches().several_at_once = several_at_once;
-      Model model = rubbing(dense_box(c, ParticleIntegrator::velocity_verlet, 20000));
+      Model model = kind.of(rubbing(dense_box(c, ParticleIntegrator::velocity_verlet, 20000)));
       model.contact.skin = 0.02;
       RememberingBox cpu(model, {}, make_cpu), cuda(model, {}, make_cuda);
       for (RememberingBox* box : {&cpu, &cuda}) box->start(), box->take_steps(300, 1e-5);
       CHECK(cuda.backend->list().builds() > 1);
-      check_equal(cpu, cuda), check_ledgers(cpu, cuda);
+      check_equal(kind, cpu, cuda), check_ledgers(cpu, cuda);
     }
   launches() = before;
 }

@@ -130,10 +130,6 @@ TEST_CASE("what is wrong with Hertz's law in a deck is told with its remedy") {
                  "restitution"));
   CHECK(contains(error_of(deck + steel_pair("exponent = 1.5\n")),
                  "contact.pairs.0.exponent = 1.5: must be left out for Hertz's law"));
-  CHECK(contains(
-      error_of("[[materials]]\nname = \"steel\"\n" + kGrains +
-               steel_pair("stiffness = 1e6\nrestitution = 0.5\n")),
-      "contact.pairs.0.restitution = 0.5: belongs to Hertz's law; a pair with a stiffness has damping"));
   for (const std::string value : {"0.0", "1.01", "-0.5"})
     CHECK(contains(error_of(deck + steel_pair("restitution = " + value + "\n")),
                    "must be a number above 0 and at most 1"));
@@ -152,11 +148,7 @@ TEST_CASE("moduli and Poisson's ratios out of their range are refused") {
     CHECK(contains(error(young, "0.3"), "must be a number above 0 [Pa]"));
 }
 
-TEST_CASE("Hertz's law is refused for discs, and beside pairs with a stiffness") {
-  std::string flat = kSmallDeck + kSteel + kGrains + steel_pair("");
-  CHECK(contains(
-      model_error(flat, {"particles.small.positions=[[0.0, 0.0]]"}),
-      "contact.pairs.0.stiffness: missing; Hertz's law is one of spheres, and in 2D there are discs"));
+TEST_CASE("Hertz's law is refused beside pairs with a stiffness") {
   const std::string clay = "[[materials]]\nname = \"clay\"\n";
   CHECK(contains(
       error_of(kSteel + clay + kGrains + steel_pair("") + pair_of("steel", "clay", "stiffness = 1e5\n")),
