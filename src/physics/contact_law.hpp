@@ -88,17 +88,16 @@ struct ContactLaw {
 
   // Whether there is a contact, of partners that may be apart.
   SCREE_HD bool closed(const PairState& pair, const ContactHistory& old) const {
-    const Real d = pair.geometry.overlap;
-    return d > 0 || ((!kNeck || old.touched) && d > -reach_beyond_touch(normal, pair.size));
+    return closed(normal.of_pair(pair.size), pair.geometry.overlap, old);
   }
 
   // All zero where there is no contact. Pair: a MovingPair, or an InstantPair.
   template <class Pair = MovingPair>
   SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old) const {
     ContactOutcome out{};
-    if (!closed(pair, old)) return out;
     const auto law = normal.of_pair(pair.size);
     const ContactGeometry& g = pair.geometry;
+    if (!closed(law, g.overlap, old)) return out;
     const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
     const ContactMotion& step = pair.motion;
     const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
@@ -162,6 +161,11 @@ struct ContactLaw {
   }
 
  private:
+  // of: the normal law's, for these partners.
+  template <class Pair>
+  SCREE_HD static bool closed(const Pair& of, Real overlap, const ContactHistory& old) {
+    return overlap > 0 || ((!kNeck || old.touched) && overlap > -reach_of(of));
+  }
   SCREE_HD static void rub(const SpringStep& step, const ContactMotion& motion, ContactOutcome& out) {
     out.load.force -= motion.leverage * step.acting;
     const Vec3 moment = cross(motion.normal1, step.acting);

@@ -29,15 +29,18 @@ template <class NormalLaw>
 requires requires { NormalLaw::kNeck; }
 inline constexpr bool kHasNeck<NormalLaw> = NormalLaw::kNeck;
 
-// How far beyond touch partners of these sizes can have a contact [m]: what a search for contacts adds to the
-// sum of their radii.
-template <class NormalLaw>
-SCREE_HD Real reach_beyond_touch(const NormalLaw& law, const PairSize& size) {
-  const auto pair = law.of_pair(size);
+// How far beyond touch partners can have a contact [m]: what a search for contacts adds to the sum of their
+// radii.
+template <class Pair>
+SCREE_HD Real reach_of(const Pair& pair) {
   if constexpr (requires { pair.reach(); })
     return pair.reach();
   else
     return 0;
+}
+template <class NormalLaw>
+SCREE_HD Real reach_beyond_touch(const NormalLaw& law, const PairSize& size) {
+  return reach_of(law.of_pair(size));
 }
 
 template <class NormalLaw>

@@ -1,5 +1,6 @@
 // Rolling and twisting laws: moments against rolling and against twisting. Both springs are parts of one
-// remembered vector M [N m], on i against its rotation: across the normal and along it.
+// remembered vector M [N m], along the rotation of i against j (on i acts -M): across the normal and along
+// it.
 #pragma once
 
 #include "base/hd.hpp"

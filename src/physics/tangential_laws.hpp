@@ -1,5 +1,6 @@
 // Tangential laws: the force across the normal from the slip. Each remembers the force of its spring, T [N],
-// on i against the slip: a force rather than a way, because it is what stays where a stiffness changes.
+// along the slip of i over j (on i acts -T): a force rather than a way, because it is what stays where a
+// stiffness changes.
 #pragma once
 
 #include <cmath>
