@@ -189,12 +189,13 @@ void measure_all(const Options& options) {
     throw InputError("--precision mixed: allowed for --backend cuda with --integrator verlet");
   if (options.on_gpu()) choose_device(options.ranks);
   if (options.on_gpu() && !device_trouble().empty()) throw InputError("--backend cuda: " + device_trouble());
-  fmt::print("commit {}, {}, {}, {}{}{}\n", commit(),
+  fmt::print("commit {}, {}, {}, {}{}{}{}\n", commit(),
              options.on_gpu()        ? device_name() + ", wall seconds around synchronised batches"
              : options.ranks.alone() ? options.wall ? "one core, wall seconds" : "one core, CPU seconds"
                                      : fmt::format("{} ranks, wall seconds", options.ranks.size()),
              options.precision, options.dimension == 3 ? "spheres" : "discs",
              options.integrator == "hht" ? ", implicit" : ", explicit",
+             options.friction > 0 ? fmt::format(", friction {}", options.friction) : "",
              options.integrator == "hht" || options.with_bodies() ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
                                    : ", list rebuilds where needed");
@@ -203,8 +204,9 @@ void measure_all(const Options& options) {
                                                             : fmt::format("{}", options.rebuild);
   BedReport report(
       options.csv,
-      fmt::format("{},\"{}\",{},{},{},{},{}", commit(), options.on_gpu() ? device_name() : processor_name(),
-                  options.backend, options.precision, options.dimension, options.integrator, rebuild),
+      fmt::format("{},\"{}\",{},{},{},{},{},{}", commit(),
+                  options.on_gpu() ? device_name() : processor_name(), options.backend, options.precision,
+                  options.dimension, options.integrator, rebuild, options.friction),
       options.ranks);
   // Bodies find their place on all of the bed.
   const RanksShare share(options.with_bodies() ? Ranks() : options.ranks);
@@ -214,6 +216,7 @@ void measure_all(const Options& options) {
     const std::int64_t particles = options.per_rank ? size * options.ranks.size() : size;
     Model bed =
         options.dimension == 3 ? sphere_bed(options.tile, particles, share) : disc_bed(discs, particles);
+    if (options.friction > 0) add_friction(bed, options.friction);
     if (options.precision == "mixed") bed.integrator.precision = Precision::mixed;
     if (options.with_bodies())
       measure_bodies(std::move(bed), options, report);
@@ -237,6 +240,8 @@ ExitCode run(int count, char** values) {
       ->check(CLI::IsMember({"verlet", "hht"}));
   app.add_option("--particles", options.particles,
                  "sizes, multiples of 10000 (default: 10000 100000 1000000)");
+  app.add_option("--friction", options.friction, "coefficient of friction; 0: nothing rubs or rotates")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--rebuild", options.rebuild, "explicit steps per list rebuild; 0: the backend decides")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--repeats", options.repeats, "samples per size")->check(CLI::PositiveNumber);

@@ -187,6 +187,11 @@ void add_plough(Model& bed) {
   bed.time.end = (bed.space.max.y - bed.space.min.y - 2 * kPloughMargin) / kPloughSpeed;
 }
 
+void add_friction(Model& bed, Real friction) {
+  bed.contact.friction = {{friction, Real(2) / 7 * bed.contact.laws[0].normal_stiffness, 0, 0}};
+  bed.particles.dimension = bed.space.dimension;
+}
+
 Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles) {
   const std::int64_t tiles = tiles_of(particles);
   Model model = disc_model(tiles, kDiscStep, 100);

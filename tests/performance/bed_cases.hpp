@@ -27,7 +27,10 @@ void add_net(Model& bed);
 // diameter in a thousand steps. The bed's time ends where the plough comes near the wall.
 void add_plough(Model& bed);
 
-// Frictionless discs, periodic in x, tiles in a row. tile: of settled_discs.
+// All contacts rub, with a tangential stiffness of 2/7 of the normal one, and the particles rotate.
+void add_friction(Model& bed, Real friction);
+
+// Discs, periodic in x, tiles in a row. tile: of settled_discs.
 Model disc_bed(const std::vector<Vec3>& tile, std::int64_t particles);
 inline constexpr Real kDiscStep = 1e-5;  // of velocity-Verlet [s]
 // 100 x 100 discs that the CPU lets settle; takes some ten seconds.

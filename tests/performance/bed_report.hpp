@@ -31,7 +31,8 @@ class BedReport {
   void add(const Measured& measured, const StageTimers& before, const StageTimers& after, Backend& backend);
 
   // Columns of `kind`; rebuild: option of bed, or "coupled" where bodies and particles exchange in batches.
-  static constexpr const char* kKindColumns = "commit,device,backend,precision,dimension,integrator,rebuild";
+  static constexpr const char* kKindColumns =
+      "commit,device,backend,precision,dimension,integrator,rebuild,friction";
 
  private:
   std::string path_, kind_;

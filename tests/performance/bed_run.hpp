@@ -21,6 +21,7 @@ struct Options {
   int repeats = 5;
   Index steps = 0;
   double seconds = 0.5;
+  Real friction = 0;
   bool net = false, plough = false, wall = false, per_rank = false;
   std::string tile = SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", csv;
   Ranks ranks = Ranks::world();

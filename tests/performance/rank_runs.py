@@ -4,7 +4,7 @@ import dataclasses
 
 STAGES = ["predict", "migrate", "sort_cells", "exchange_halo", "neighbors", "update_halo", "broadcast_motion",
           "contact_force", "reduce_wrench", "mbs_correct", "particle_correct", "accept", "output"]
-KIND = ["commit", "device", "backend", "precision", "dimension", "integrator", "rebuild"]
+KIND = ["commit", "device", "backend", "precision", "dimension", "integrator", "rebuild", "friction"]
 # Of a run as a whole; the other columns are those of a rank.
 WHOLE = {"bodies": int, "contacts": float, "ranks": int, "particles": int, "list_builds": int, "steps": float,
          "seconds_per_step": float, "fastest": float, "slowest": float, "mean": float}
