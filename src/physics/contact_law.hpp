@@ -167,10 +167,10 @@ struct ContactLaw {
     return overlap > 0 || ((!kNeck || old.touched) && overlap > -reach_of(of));
   }
   SCREE_HD static void rub(const SpringStep& step, const ContactMotion& motion, ContactOutcome& out) {
-    out.load.force -= motion.leverage * step.acting;
-    const Vec3 moment = cross(motion.normal1, step.acting);
+    out.load.force = fused(-motion.leverage, step.acting, out.load.force);
+    const Vec3 moment = fused_cross(motion.normal1, step.acting);
     out.load.torque_i = motion.arm_i * moment, out.load.torque_j = motion.arm_j * moment;
-    out.load.loss += step.losses.sum() * reciprocal(motion.h);
+    if (const Real loss = step.losses.sum(); loss != 0) out.load.loss += loss * reciprocal(motion.h);
     out.history.spring = step.spring, out.friction = step.losses;
   }
   SCREE_HD static void roll(const SpringStep& step, Real h, ContactOutcome& out) {

@@ -3,9 +3,10 @@
 //
 // Everything here is exactly odd or even under the exchange of the partners, bit for bit: sums over the two
 // are of two terms, and products have one odd factor or two. Both sides of a pair thus keep mirrored springs
-// for ever. That holds as long as no compiler contracts R_i w_i + R_j w_j into a fused multiply-add.
+// for ever. That holds as long as R_i w_i + R_j w_j is no fused multiply-add; all others may be.
 #pragma once
 
+#include "base/fused.hpp"
 #include "base/hd.hpp"
 #include "base/root.hpp"
 #include "base/vec3.hpp"
@@ -48,7 +49,7 @@ struct MovingPair : PairState {
 };
 
 // The part of a across the unit vector n.
-SCREE_HD Vec3 across(Vec3 a, Vec3 n) { return a - dot(a, n) * n; }
+SCREE_HD Vec3 across(Vec3 a, Vec3 n) { return fused(-fused_dot(a, n), n, a); }
 
 // What the motions of spheres and of faces have in common. slide: of the centre of i over that of j, or over
 // the face's point, in the step [m], without its part along the normal or with it.
@@ -58,13 +59,15 @@ SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 slide, co
   out.normal0 = normal0, out.normal1 = normal1, out.h = h, out.leverage = 1;
   out.arm_i = i.arm, out.arm_j = j.arm, out.inertia_i = i.inertia, out.inertia_j = j.inertia;
   const Vec3 twice_middle = normal0 + normal1, relative = h * (i.spin - j.spin);
-  out.turn = h / 4 * dot(i.spin + j.spin, twice_middle);
-  const auto to_end = [&](Vec3 a) { return across(a + (out.turn / 4) * cross(twice_middle, a), normal1); };
-  out.slip = to_end(slide - (h / 2) * cross(i.arm * i.spin + j.arm * j.spin, twice_middle));
-  const Real twice_twisting = dot(relative, twice_middle);
+  out.turn = h / 4 * fused_dot(i.spin + j.spin, twice_middle);
+  const auto to_end = [&](Vec3 a) {
+    return across(fused(out.turn / 4, fused_cross(twice_middle, a), a), normal1);
+  };
+  out.slip = to_end(fused(-h / 2, fused_cross(i.arm * i.spin + j.arm * j.spin, twice_middle), slide));
+  const Real twice_twisting = fused_dot(relative, twice_middle);
   out.twisting = twice_twisting / 2;
-  out.rolling =
-      to_end(relative - (twice_twisting * reciprocal(dot(twice_middle, twice_middle))) * twice_middle);
+  out.rolling = to_end(
+      fused(-twice_twisting * reciprocal(fused_dot(twice_middle, twice_middle)), twice_middle, relative));
   return out;
 }
 
@@ -76,7 +79,7 @@ SCREE_HD ContactMotion contact_motion(Vec3 normal0, Vec3 normal1, Vec3 slide, co
 SCREE_HD ContactMotion sphere_motion(const ContactGeometry& geometry, Vec3 travel, const TurningPartner& i,
                                      const TurningPartner& j, Real h) {
   const Vec3 r = geometry.direction, r0 = r - travel;
-  const RootAndInverse<Real> distance0 = root_and_inverse(dot(r0, r0));
+  const RootAndInverse<Real> distance0 = root_and_inverse(fused_dot(r0, r0));
   const Vec3 normal0 = distance0.inverse * r0, normal1 = geometry.normal();
   const Real reach = i.arm + j.arm;
   // The round-off of the difference of normals, some 1e-16 of the reach, does not add up: the next step's
@@ -120,22 +123,24 @@ SCREE_HD InstantPair at_instant(const MovingPair& pair, Vec3 spin_i, Vec3 spin_j
 // lengths to round-off and need no root; together they follow a pair that turns as one body to second order
 // in the step.
 SCREE_HD Vec3 turned_about(Vec3 a, Vec3 normal, Real turn) {
-  const Vec3 b = cross(normal, a);
-  return a + reciprocal(1 + turn * turn / 4) * (turn * b + (turn * turn / 2) * cross(normal, b));
+  const Vec3 b = fused_cross(normal, a);
+  return fused(reciprocal(fused(turn, turn / 4, 1)),
+               fused(turn, b, (turn * turn / 2) * fused_cross(normal, b)), a);
 }
 
 // A vector across the normal, for which normal x (normal x a) = -a; what round-off has left along it goes.
 SCREE_HD Vec3 turned_across(const ContactMotion& c, Vec3 a) {
-  const Real share = reciprocal(1 + c.turn * c.turn / 4);
-  const Vec3 u = (1 - c.turn * c.turn / 2 * share) * a + (c.turn * share) * cross(c.normal0, a);
-  return u - (dot(u, c.normal1) * reciprocal(1 + dot(c.normal0, c.normal1))) * (c.normal0 + c.normal1);
+  const Real part = c.turn * reciprocal(fused(c.turn, c.turn / 4, 1));
+  const Vec3 u = fused(part, fused_cross(c.normal0, a), fused(-c.turn / 2, part, 1) * a);
+  return fused(-fused_dot(u, c.normal1) * reciprocal(1 + fused_dot(c.normal0, c.normal1)),
+               c.normal0 + c.normal1, u);
 }
 
 // Any vector.
 SCREE_HD Vec3 turned_with(const ContactMotion& c, Vec3 a) {
   const Vec3 u = turned_about(a, c.normal0, c.turn), sum = c.normal0 + c.normal1;
-  return u - (dot(u, sum) * reciprocal(1 + dot(c.normal0, c.normal1))) * sum +
-         (2 * dot(u, c.normal0)) * c.normal1;
+  return fused(2 * fused_dot(u, c.normal0), c.normal1,
+               fused(-fused_dot(u, sum) * reciprocal(1 + fused_dot(c.normal0, c.normal1)), sum, u));
 }
 
 }  // namespace scree

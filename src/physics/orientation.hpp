@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/hd.hpp"
+#include "base/root.hpp"
 #include "base/vec3.hpp"
 
 namespace scree {
@@ -35,7 +36,7 @@ SCREE_HD Quaternion renormalised(const Quaternion& q) { return ((3 - dot(q, q)) 
 // angle, 4 atan(|u|), is short of h |w| by (h |w|)^3 / 48: of second order, as the step is.
 SCREE_HD Quaternion turned_by(const Quaternion& q, Vec3 middle_spin, Real h) {
   const Vec3 u = (h / 4) * middle_spin;
-  const Real square = dot(u, u), scale = 1 / (1 + square), twice = 2 * scale;
+  const Real square = dot(u, u), scale = reciprocal(1 + square), twice = 2 * scale;
   const Quaternion turn{(1 - square) * scale, twice * u.x, twice * u.y, twice * u.z};
   return renormalised(turn * q);
 }

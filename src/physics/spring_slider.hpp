@@ -12,7 +12,7 @@ inline constexpr Real kNoSquare = 1e-290;  // squares below it have no exact roo
 
 // a, no longer than limit.
 SCREE_HD Vec3 shortened(Vec3 a, Real limit) {
-  const Real square = dot(a, a);
+  const Real square = fused_dot(a, a);
   if (square <= limit * limit) return a;
   if (square < kNoSquare) return {};
   return (limit * root_and_inverse(square).inverse) * a;
@@ -89,14 +89,15 @@ SCREE_HD Real unloading_loss(const SpringSlider& p, const StiffnessStep& k, Vec3
 SCREE_HD SpringStep spring_step(const SpringSlider& p, Vec3 old, Vec3 way, Real h) {
   SpringStep out;
   const StiffnessStep k = stiffness_step(p);
-  const Vec3 start = k.kept * old, trial = start + k.of_way * way;
+  const Vec3 start = k.kept * old, trial = fused(k.of_way, way, start);
   out.spring = shortened(trial, p.limit);
   out.acting = out.spring;
-  if (dot(trial, trial) > p.limit * p.limit)
+  if (fused_dot(trial, trial) > p.limit * p.limit)
     out.losses.sliding = dot(start + out.spring, trial - out.spring) * reciprocal(2 * k.of_way);
-  else if (p.dashpot > 0)
-    out.acting = shortened(trial + (p.dashpot * reciprocal(h)) * way, p.limit);
-  out.losses.dashpot = dot(out.acting - out.spring, way);
+  else if (p.dashpot > 0) {
+    out.acting = shortened(fused(p.dashpot * reciprocal(h), way, trial), p.limit);
+    out.losses.dashpot = dot(out.acting - out.spring, way);
+  }
   out.losses.unloading = unloading_loss(p, k, old, out.spring);
   return out;
 }
