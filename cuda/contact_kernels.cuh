@@ -17,6 +17,7 @@
 #include "device_list.cuh"
 #include "for_each.cuh"
 #include "sums.cuh"
+#include "warp_rows.cuh"
 
 namespace scree {
 
@@ -32,6 +33,18 @@ __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, Ro
       in.position,        in.velocity, in.material, {r.rows, r.counts, r.neighbors, use, margin, r.places},
       in.surface_offsets, in.surfaces, in.planes,   in.ground,
       in.loads,           in.steps,    in.history,  in.spin};
+}
+
+// The same for a warp that shares out the contacts of its rows.
+__device__ inline ContactViews<WarpRows> warp_views(const PrunedViews& in, RowUse use, Real margin,
+                                                    WarpContacts* shared, bool idle) {
+  const PrunedRows<0>& r = in.rows;
+  return {in.position,        in.velocity,
+          in.material,        {{r.rows, r.counts, r.neighbors, use, margin, r.places}, shared, idle},
+          in.surface_offsets, in.surfaces,
+          in.planes,          in.ground,
+          in.loads,           in.steps,
+          in.history,         in.spin};
 }
 
 // Force, Newton matrix and residual of the particles [first, end).

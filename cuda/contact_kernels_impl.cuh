@@ -7,6 +7,7 @@
 #include "contact_kernels.cuh"
 #include "for_each.cuh"
 #include "staging.cuh"
+#include "warp_rows.cuh"
 
 namespace scree {
 
@@ -147,10 +148,6 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
       r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
   item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
-  if constexpr (LawOf<Laws>::kMoves) {
-    item.forces.walk.in.spin = v == 0 ? r.spin[0] : r.spin[1];
-    item.state.spin = v == 0 ? r.spin[1] : r.spin[0];
-  }
   Vec4 position, velocity;
   item.state.position = only(position, i), item.state.velocity = only(velocity, i);
   item.state.acceleration = acceleration;
@@ -165,6 +162,60 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   stage.store(r.state.acceleration);
   stage.put(position, p == 0 ? r.position[1] : r.position[0]);
   stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
+
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
+}
+
+// Registers for so many blocks: what a contact takes must not spill.
+inline constexpr int kRubbingBlocks = 4;
+
+// The same of laws that move: a warp's lanes share out its contacts.
+template <class Laws>
+__global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
+    rubbing_advance_kernel(const __grid_constant__ VerletRequest r, const Laws laws) {
+  await_step_before();
+  if (r.control->stop) return;
+  const int p = r.control->parity[0], v = r.control->parity[1];
+  __shared__ union {
+    WarpContacts contacts;
+    alignas(16) unsigned char stage[kSlice * sizeof(Vec4)];
+  } shared[kStepBlock / kSlice];  // of a warp each
+  __shared__ BlockLargest largest_of_step;
+  largest_of_step.clear();
+  const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const bool idle = i >= r.rows.end;
+  auto& room = shared[threadIdx.x / kSlice];
+  const auto views =
+      at_open_step<Laws>(warp_views(r.in, r.control->rows, r.control->margin, &room.contacts, idle), r);
+  VerletAdvanceItem<Laws, WarpRows> item{
+      {explicit_walk(views, laws, r.state.h), r.gravity, nullptr, nullptr, nullptr}, r.state};
+  item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
+  item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
+  item.forces.walk.in.spin = v == 0 ? r.spin[0] : r.spin[1];
+  TotalForce force;
+  if (first < r.rows.end) {
+    auto self = item.forces.walk.self(idle ? r.rows.end - 1 : i);
+    self.i = i;
+    force = {self.u.w * r.gravity, 0, {}};
+    item.forces.add_neighbors(self, force);
+  }
+  if (!idle) item.forces.add_surfaces(item.forces.walk.self(i), force);
+  Vec4 position, velocity, spin;
+  Quaternion orientation;
+  item.state.position = only(position, i), item.state.velocity = only(velocity, i);
+  item.state.spin = only(spin, i), item.state.orientation = only(orientation, i);
+  Real d_squared = 0;
+  if (!idle) {
+    orientation = r.state.orientation[i];
+    d_squared = item.advance(i, force);
+    if (is_outside(r, i, item.forces.walk.in.position[i], position, d_squared)) r.control->outside = 1;
+  }
+  __syncwarp();
+  const VerletStage stage(room.stage, first, min(static_cast<Index>(warpSize), r.rows.end - first));
+  stage.put(position, p == 0 ? r.position[1] : r.position[0]);
+  stage.put(velocity, v == 0 ? r.velocity[1] : r.velocity[0]);
+  stage.put(spin, v == 0 ? r.spin[1] : r.spin[0]);
+  stage.put(orientation, r.state.orientation);
 
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
@@ -257,7 +308,10 @@ template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
-    prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
+    if constexpr (LawOf<Laws>::kMoves)
+      prefer_cache(rubbing_advance_kernel<Laws>, kRubbingBlocks * kStepBlock / kSlice * sizeof(WarpContacts));
+    else
+      prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
   }
 
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
@@ -308,9 +362,13 @@ class ContactKernelsOf : public DeviceContactKernels {
     for_each(device, n, DepartureItem<Laws, SlicedRows>{{in, laws_}, gravity, box, start});
   }
   void verlet_advance(Device device, const VerletRequest& r) const override {
-    const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
-    launch(device, r,
-           eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Laws> : verlet_advance_kernel<0, Laws>);
+    if constexpr (LawOf<Laws>::kMoves) {
+      launch(device, r, rubbing_advance_kernel<Laws>);
+    } else {
+      const bool eagerly = several_at_once(r.rows, verlet_blocks(kFewThreadsAtOnce));
+      launch(device, r,
+             eagerly ? verlet_advance_kernel<kFewThreadsAtOnce, Laws> : verlet_advance_kernel<0, Laws>);
+    }
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
     if constexpr (LawOf<Laws>::kMoves)
@@ -361,7 +419,7 @@ class ContactKernelsOf : public DeviceContactKernels {
 
   Laws laws_;
   // Kernels compiled for older generations do not wait for the step before.
-  bool overlaps_ = generation_of(verlet_advance_kernel<0, Laws>) >= 90;
+  bool overlaps_ = generation_of(verlet_finish_kernel<Laws>) >= 90;
   unsigned multiprocessors_ = static_cast<unsigned>(multiprocessors());
 };
 

@@ -19,7 +19,9 @@ class WarpStage {
   };
   // The warp's elements are first ... first + n - 1.
   __device__ WarpStage(Shared& shared, Index first, Index n)
-      : bytes_(shared.bytes + threadIdx.x / warpSize * warpSize * kBytes), first_(first), n_(n) {}
+      : WarpStage(shared.bytes + threadIdx.x / warpSize * warpSize * kBytes, first, n) {}
+  // With room of the warp alone, kBytes per lane.
+  __device__ WarpStage(unsigned char* room, Index first, Index n) : bytes_(room), first_(first), n_(n) {}
 
   // Begins to bring the warp's elements of the array in and returns what stands for the array: an item that
   // reads and writes only its own element may use it from await to store.

@@ -35,10 +35,26 @@ struct LoadOf {
   }
 };
 
+// Of one contact, or of all that acts on a particle.
 struct TotalForce {
   Vec3 force;       // [N], gravity included
-  Real loss_power;  // the particle's share of its contacts' dissipation [W]
+  Real loss_power;  // dissipation of the contacts, or the particle's share of it [W]
   Vec3 torque;      // about its centre, of laws that move [N m]
+
+  SCREE_HD TotalForce& operator+=(const TotalForce& part) {
+    force += part.force, loss_power += part.loss_power, torque += part.torque;
+    return *this;
+  }
+};
+
+// What a contact of a law that moves does to one of its partners.
+struct TurningForceOf {
+  template <class Law, class Pair, class History>
+  SCREE_HD LoadWithHistory<TotalForce, History> operator()(const Law& law, const Pair& pair,
+                                                           const History& old) const {
+    const auto outcome = law.load(pair, old);
+    return {{outcome.load.force, outcome.load.loss, outcome.load.torque_i}, outcome.history};
+  }
 };
 
 // Total force on particle i at the current positions and velocities, and its share of the dissipation.
@@ -61,18 +77,32 @@ struct ContactForceItem {
   }
 
   SCREE_HD TotalForce total(Index i) const {
-    const auto self = walk.self(i);
-    Vec3 f = self.u.w * gravity, torque;
-    Real loss = 0;
-    const auto add = [&](const auto& load, Index) {
-      f += load.force;
-      loss += load.loss;
-      if constexpr (kMoves) torque += load.torque_i;
-    };
-    walk.template neighbors<kAccepts>(self, LoadOf{}, add);
-    loss *= kPairShare;
-    walk.template surfaces<kAccepts>(self, LoadOf{}, add);
-    return {f, loss, torque};
+    const Self self = walk.self(i);
+    TotalForce sum{self.u.w * gravity, 0, {}};
+    add_neighbors(self, sum);
+    add_surfaces(self, sum);
+    return sum;
+  }
+
+  // The two parts of it, in this order, on top of the weight.
+  using Self = typename decltype(walk)::Self;
+  SCREE_HD void add_neighbors(const Self& self, TotalForce& sum) const {
+    if constexpr (kMoves)
+      walk.template sum_neighbors<kAccepts>(self, TurningForceOf{}, sum);
+    else
+      walk.template neighbors<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) { add(load, sum); });
+    sum.loss_power *= kPairShare;
+  }
+  SCREE_HD void add_surfaces(const Self& self, TotalForce& sum) const {
+    walk.template surfaces<kAccepts>(self, LoadOf{}, [&](const auto& load, Index) { add(load, sum); });
+  }
+
+ private:
+  template <class Load>
+  SCREE_HD static void add(const Load& load, TotalForce& sum) {
+    sum.force += load.force;
+    sum.loss_power += load.loss;
+    if constexpr (kMoves) sum.torque += load.torque_i;
   }
 };
 

@@ -63,6 +63,13 @@ struct PackedRows {
   }
 };
 
+// Whether rows are summed up together with those of other items: sum_contacts(i, test, evaluate, sum) calls
+// evaluate(i, j, slot) once for every contact, maybe of another row.
+template <class Rows>
+inline constexpr bool kShared = false;
+template <class Rows>
+requires Rows::kShared inline constexpr bool kShared<Rows> = true;
+
 // Read-only views of items and neighbour list.
 template <class Rows>
 struct ContactViews {
@@ -294,6 +301,16 @@ struct ContactWalk {
   SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
     walk<kAccepts>(self, look.test(in, self), of, visit);
   }
+  // Adds `of` the contacts with neighbours to sum, which is of its type but for the history.
+  SCREE_HD_CALLER
+  template <bool kAccepts, class Of, class Sum>
+  SCREE_HD void sum_neighbors(const Self& self, const Of& of, Sum& sum) const {
+    if constexpr (kShared<Rows>) {
+      in.rows.sum_contacts(self.i, look.test(in, self), SharedContact<kAccepts, Of, Sum>{*this, of}, sum);
+    } else {
+      neighbors<kAccepts>(self, of, [&](const Sum& contact, Index) { sum += contact; });
+    }
+  }
   // Of the neighbours those of which only(j) holds.
   template <class Only, class Of, class Visit>
   SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
@@ -328,6 +345,26 @@ struct ContactWalk {
   }
 
  private:
+  // Evaluates contacts of any row.
+  template <bool kAccepts, class Of, class Sum>
+  struct SharedContact {
+    const ContactWalk& walk;
+    const Of& of;
+
+    SCREE_HD Sum operator()(Index i, Index j, std::int64_t slot) const {
+      const auto& in = walk.in;
+      const Self owner = walk.look.self(in, i);
+      const auto contact = of(walk.laws.get(owner.material, in.material[j]), walk.look.pair(in, owner, j),
+                              in.history.template read<Law>(in.history.neighbors, slot));
+      if constexpr (kAccepts) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
+      return contact;
+    }
+    // It will be called for this neighbour and slot.
+    SCREE_HD void prepare(Index j, std::int64_t slot) const {
+      fetch_ahead(walk.in.history.neighbors + slot * records_of(Law::kHistory));
+    }
+  };
+
   template <class Of, class Pair>
   SCREE_HD static constexpr bool sees_history() {
     if constexpr (Law::kHistory > 0)

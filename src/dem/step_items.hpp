@@ -300,7 +300,6 @@ struct VerletAdvanceItem {
     const auto& in = forces.walk.in;
     const Vec4 v = in.velocity[i], w = in.spin[i];
     const Vec3 turning = reciprocal(w.w) * total.torque;
-    state.acceleration[i] = a, state.angular_acceleration[i] = turning;
     if (total.loss_power != 0) state.contact_loss[i] += state.h * total.loss_power;
     return verlet_open(state, i,
                        {in.position[i], vec4(verlet_half_kick(state.h, xyz(v), a), v.w), a,

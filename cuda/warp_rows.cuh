@@ -1,0 +1,126 @@
+// Rows of a warp whose contacts its lanes share out: for laws that take so long that lanes with few contacts
+// must not wait for those with many.
+#pragma once
+
+#include "device_list.cuh"
+
+namespace scree {
+
+// Where a warp keeps what its lanes have found and evaluated, and what a lane's contacts sum up to.
+struct WarpContacts {
+  static constexpr int kRoom = 12;  // entries of a row that are shared out at a time
+  static constexpr int kWords = 7;  // of a result, an odd number: lanes that store theirs meet other banks
+  Index neighbor[kRoom][kSlice];
+  RowPlace place[kRoom][kSlice];
+  double result[kSlice][kWords], sum[kSlice][kWords];
+};
+
+// Each lane looks for the entries of its row that touch; the lanes then evaluate what all have found, one
+// each, whosever it is; and the results are added up row by row, in the order of the row. All lanes of a warp
+// go through it together; their rows are a slice.
+struct WarpRows {
+  static constexpr bool kShared = true;
+  PrunedRows<0> rows;
+  WarpContacts* shared;  // of the warp
+  bool idle;             // the lane has no row
+
+  // Adds evaluate(i, j, slot) of the entries j of row i of which test(j) holds to sum, a structure of kWords
+  // numbers. It is called once for each, by any lane. test: as in PrunedRows.
+  template <class Test, class Evaluate, class Sum>
+  __device__ void sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
+    static_assert(sizeof(Sum) == sizeof(shared->sum[0]));
+    const Index lane = lane_of_warp();
+    reinterpret_cast<Sum&>(shared->sum[lane]) = sum;
+    const std::int64_t slice = rows.rows.slice_start[i / kSlice], start = slice + lane;
+    const bool whole = rows.use != RowUse::pruned;
+    const Index* const row = (whole ? rows.rows.neighbors : rows.neighbors) + start;
+    const Index count = idle ? 0 : (whole ? rows.rows.counts : rows.counts)[i];
+    Index next = 0, kept = 0;
+    do {
+      Index found = 0;
+      // Loads that do not wait for each other.
+      constexpr int kAtOnce = 4;
+      for (; next < count && found + kAtOnce <= WarpContacts::kRoom; next += kAtOnce) {
+        Index j[kAtOnce];
+        RowPlace place[kAtOnce];
+        bool touches[kAtOnce];
+        for (int k = 0; k < kAtOnce; ++k) {
+          const bool is_entry = next + k < count;
+          j[k] = is_entry ? row[(next + k) * kSlice] : i;
+          place[k] =
+              whole || !is_entry ? static_cast<RowPlace>(next + k) : rows.places[start + (next + k) * kSlice];
+        }
+        for (int k = 0; k < kAtOnce; ++k) touches[k] = test(j[k]) & (next + k < count);
+        if (rows.use == RowUse::prune)
+          for (int k = 0; k < kAtOnce && next + k < count; ++k)
+            if (test.near(j[k], rows.margin)) keep(start + kept++ * kSlice, j[k], next + k);
+        for (int k = 0; k < kAtOnce; ++k) {
+          if (!touches[k]) continue;
+          shared->neighbor[found][lane] = j[k];
+          evaluate.prepare(j[k], start + kSlice * place[k]);
+          shared->place[found][lane] = place[k];
+          ++found;
+        }
+      }
+      share<Sum>(found, i - lane, slice, evaluate);
+    } while (__any_sync(~0u, next < count));
+    if (rows.use == RowUse::prune && !idle) rows.counts[i] = kept;
+    sum = reinterpret_cast<const Sum&>(shared->sum[lane]);
+  }
+
+ private:
+  __device__ static Index lane_of_warp() { return static_cast<Index>(threadIdx.x) % kSlice; }
+  __device__ void keep(std::int64_t slot, Index j, Index place) const {
+    rows.places[slot] = static_cast<RowPlace>(place), rows.neighbors[slot] = j;
+  }
+
+  // found: entries of the lane; first: the warp's first row.
+  template <class Sum, class Evaluate>
+  __device__ void share(Index found, Index first, std::int64_t slice, const Evaluate& evaluate) const {
+    const Index lane = lane_of_warp();
+    Index after = found;  // entries of all lanes up to this one
+    for (int step = 1; step < kSlice; step *= 2) {
+      const Index other = __shfl_up_sync(~0u, after, step);
+      if (lane >= step) after += other;
+    }
+    const Index all = __shfl_sync(~0u, after, kSlice - 1), before = after - found;
+    __syncwarp();
+#pragma unroll 1
+    for (Index begin = 0; begin < all; begin += kSlice) {
+      const Index turn = begin + lane;
+      int owner = 0;  // the last lane with no more than `turn` before it
+      for (int step = kSlice / 2; step > 0; step /= 2)
+        if (__shfl_sync(~0u, before, owner + step) <= turn) owner += step;
+      const Index k = turn - __shfl_sync(~0u, before, owner);
+      if (turn < all)
+        reinterpret_cast<Sum&>(shared->result[lane]) =
+            evaluate(first + owner, shared->neighbor[k][owner],
+                     slice + owner + kSlice * static_cast<std::int64_t>(shared->place[k][owner]));
+      __syncwarp();
+      const int first_owner = __shfl_sync(~0u, owner, 0),
+                owners = __shfl_sync(~0u, owner, min(all - begin, kSlice) - 1) - first_owner + 1;
+      add_up(first_owner, owners, begin, min(all, begin + kSlice), before, after);
+      __syncwarp();
+    }
+  }
+
+  // The results of the turns begin ... end - 1, of so many owners, four at a time: each lane adds up one of
+  // the numbers.
+  __device__ void add_up(int first_owner, int owners, Index begin, Index end, Index before,
+                         Index after) const {
+#pragma unroll 1
+    for (int next = 0; next < owners; next += 4) {
+      const int owner = first_owner + next + lane_of_warp() / 8, word = lane_of_warp() % 8;
+      const Index from = max(__shfl_sync(~0u, before, owner), begin),
+                  to = min(__shfl_sync(~0u, after, owner), end);
+      if (from >= to || word >= WarpContacts::kWords) continue;
+      double sum = shared->sum[owner][word];
+      const double* result = shared->result[from - begin] + word;
+#pragma unroll 2
+      for (Index left = to - from; left > 0; --left, result += WarpContacts::kWords) sum += *result;
+      shared->sum[owner][word] = sum;
+    }
+  }
+};
+
+}  // namespace scree
