@@ -14,8 +14,9 @@ const Vec3* CudaBodies::upload_steps() {
 void CudaBodies::find_loads() {
   if (!have_surfaces()) return;
   const Device on = items_.device();
-  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step, items_.now.position.data(),
-                             items_.now.velocity.data(), items_.history.views());
+  items_.surfaces.find_loads(on, *items_.kernels, Loads::of_step,
+                             {items_.now.position.data(), items_.now.velocity.data(),
+                              items_.now.angular_velocity.data(), items_.history.views().only_read()});
   wait_for(items_.stream);
   side_.take_loads(items_.surfaces.load_sums());
 }
@@ -32,12 +33,11 @@ void CudaBodies::take_steps(Real h) {
   side_.take_steps(items_.surfaces.step_sums(), h);
 }
 
-void CudaBodies::queue_loads(const Vec4* position, const Vec4* velocity, const Event& ready) {
+void CudaBodies::queue_loads(const SurfaceLook& look, const Event& ready) {
   const Device beside{stream_};
   items_.surfaces.place(beside, side_.placed());
   ready.hold(stream_);
-  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_step, position, velocity,
-                             items_.history.views());
+  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_step, look);
   loads_found_.record(stream_);
 }
 
@@ -46,12 +46,11 @@ void CudaBodies::take_loads() {
   side_.take_loads(items_.surfaces.load_sums());
 }
 
-void CudaBodies::find_loads_beside(const Vec4* position, const Vec4* velocity) {
+void CudaBodies::find_loads_beside(const SurfaceLook& look) {
   if (!have_surfaces()) return;
   const Device beside{stream_};
   items_.surfaces.place(beside, side_.placed());
-  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, position, velocity,
-                             items_.history.views());
+  items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, look);
   take_loads();
 }
 

@@ -31,13 +31,13 @@ class CudaBodies {
   void take_steps(Real h);
 
   // Beside an explicit step, behind `ready`: places the surfaces, and queues the contacts with the particles
-  // at position and velocity. The step's kernel reads them, behind hold_until_found(); take_loads() waits for
+  // as `look` has them. The step's kernel reads them, behind hold_until_found(); take_loads() waits for
   // their sums.
-  void queue_loads(const Vec4* position, const Vec4* velocity, const Event& ready);
+  void queue_loads(const SurfaceLook& look, const Event& ready);
   void hold_until_found(cudaStream_t stream) const { loads_found_.hold(stream); }
   void take_loads();
   // The same where the step's kernel may still read its own. Waits.
-  void find_loads_beside(const Vec4* position, const Vec4* velocity);
+  void find_loads_beside(const SurfaceLook& look);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
 
  private:

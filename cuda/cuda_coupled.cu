@@ -34,10 +34,11 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
       finish();
       return false;
     }
-    closed_step_ = {control_.open_position(), control_.open_velocity()};
+    closed_step_ = {control_.open_position(), control_.open_velocity(), control_.open_spin()};
     control_.turn();
     ++closed_;
-    items_.history.closed(closed_);
+    items_.history.closed(closed_), items_.history.take_ahead();
+    bodies_.side().close_step();
     return true;
   }
 }
@@ -46,14 +47,21 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
 // beside it.
 void CudaExplicitRun::queue_loads() {
   workspace_.step_queued.record(items_.stream);
-  bodies_.queue_loads(control_.open_position(), control_.open_velocity(), workspace_.step_queued);
+  bodies_.queue_loads(
+      {control_.open_position(), control_.open_velocity(), control_.open_spin(), items_.history.views(), h_},
+      workspace_.step_queued);
   items_.results.copy(&Results::control, bodies_.stream());
   bodies_.hold_until_found(items_.stream);
 }
 
-// Beside the step that was queued last: its kernel reads the same arrays, but contacts of its own.
+// Beside the step that was queued last: its kernel reads the same arrays, but contacts of its own. What
+// contacts remember of the step is that of the bodies' last place, from where the next step begins; only this
+// stream reads and writes it.
 void CudaExplicitRun::shape_contacts() {
-  bodies_.find_loads_beside(closed_step_.position, closed_step_.velocity);
+  bodies_.side().reopen_step();
+  bodies_.find_loads_beside(
+      {closed_step_.position, closed_step_.velocity, closed_step_.spin, items_.history.views_before(), h_});
+  bodies_.side().close_step();
 }
 
 }  // namespace scree

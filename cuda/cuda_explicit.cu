@@ -24,6 +24,7 @@ CudaExplicitRun::CudaExplicitRun(CudaItems& items, CudaBodies& bodies, CudaList&
       queue_(items, list, control_, workspace, h),
       h_(h) {
   items.other.grow(items.now.position.size(), static_cast<std::size_t>(items.owned), 0, items.stream);
+  bodies_.side().close_step();
   control_.start(queue_.request());
   items.open_run = this;
 }
@@ -89,7 +90,7 @@ void CudaExplicitRun::finish() {
   items_.lane.halo.update_motion(items_.device(), control_.open_position(), control_.open_velocity(),
                                  r.spin[control_.velocity_parity()], items_.owned);
   items_.kernels->verlet_finish(items_.device(), r, items_.results.at(&Results::largest));
-  items_.history.accepted();
+  items_.history.accepted(), bodies_.side().close_step();
   if (!std::isfinite(items_.ranks.max(items_.results.fetch(&Results::largest))))
     items_.report_not_finite(now.force.data());
   if (control_.position_parity() == 1) std::swap(now.position, other.position);
@@ -100,7 +101,7 @@ void CudaExplicitRun::finish() {
   control_.at_home();
   items_.open_run = nullptr;
   items_.seen_velocity = other.velocity.data(), items_.seen_spin = other.angular_velocity.data();
-  closed_step_ = {now.position.data(), other.velocity.data()};
+  closed_step_ = {now.position.data(), other.velocity.data(), other.angular_velocity.data()};
   bodies_.put();
   items_.refresh_ghosts();
 }

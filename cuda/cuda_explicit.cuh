@@ -41,7 +41,7 @@ class CudaExplicitRun : public ExplicitRun {
   Index closed_ = 0;  // with bodies: steps since the start of the run
   // Where the particles as the last step left them are, with the velocities that the law saw.
   struct {
-    const Vec4 *position, *velocity;
+    const Vec4 *position, *velocity, *spin;
   } closed_step_{};
 };
 

@@ -8,81 +8,68 @@
 namespace scree {
 namespace {
 
-// The list as it names contacts.
-struct NamedRows {
-  const Vec4* position;
-  const std::int64_t* row_key;
-  SlicedRows rows;
-  SurfaceList surfaces;
-  PeriodicBox box;
-
-  // Calls visit(slot, key) for what stands in row i, key() being its name: neighbours, then surfaces.
-  template <class AtNeighbor, class AtSurface>
-  __device__ void visit(Index i, const AtNeighbor& at_neighbor, const AtSurface& at_surface) const {
-    const Vec3 p = xyz(position[i]);
-    std::int64_t slot = rows.first(i);
-    for (Index left = rows.counts[i]; left > 0; --left, slot += kSlice)
-      at_neighbor(slot, [&] {
-        const Index j = rows.neighbors[slot];
-        return row_key_of(id_of(row_key[j]), box.image_beside(p, xyz(position[j])));
-      });
-    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
-      at_surface(entry, [&] {
-        const Index s = surfaces.surfaces[entry];
-        if (s < surfaces.ground) return row_key_of(kFirstSurfaceId + s, kNoShift);
-        return row_key_of(kFirstSurfaceId + s, box.image_beside(p, surfaces.placed[s - surfaces.ground].point,
-                                                                surfaces.images[entry]));
-      });
-  }
-
- private:
-  __device__ static std::int64_t row_key_of(GlobalId id, std::int8_t image) {
-    return ::scree::row_key(id, image);
-  }
-};
-
-struct CountClosedItem {
-  NamedRows names;
-  HistoryViews history;
-  int records;
-  Index* counts;
-  __device__ void operator()(Index i) const {
-    Index count = 0;
-    const auto add = [&](const Vec4* of) {
-      return [this, of, &count](std::int64_t slot, const auto&) {
-        count += of[slot * records].w == history.step;
-      };
-    };
-    names.visit(i, add(history.neighbors), add(history.surfaces));
-    counts[i] = count;
-  }
-};
-
 struct KeptViews {
   const Index* offsets;
   std::int64_t* keys;
   Real* values;
 };
 
+// The list with what contacts remember, and how it names them.
+struct NamedRows {
+  const Vec4* position;
+  const std::int64_t* row_keys;
+  SlicedRows rows;
+  SurfaceList surfaces;
+  PeriodicBox box;
+  HistoryViews history;
+  int numbers, records;  // per contact
+
+  // Calls visit(record, key) for what stands in row i, key() being its name; in their order.
+  template <class Visit>
+  __device__ void visit(Index i, const Visit& visit) const {
+    const Vec3 p = xyz(position[i]);
+    std::int64_t slot = rows.first(i);
+    for (Index left = rows.counts[i]; left > 0; --left, slot += kSlice)
+      visit(history.neighbors + slot * records, [&] {
+        const Index j = rows.neighbors[slot];
+        return row_key(id_of(row_keys[j]), box.image_beside(p, xyz(position[j])));
+      });
+    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry) {
+      const Index s = surfaces.surfaces[entry];
+      const bool on_ground = s < surfaces.ground;
+      visit((on_ground ? history.ground : history.bodies) + std::int64_t{entry} * records, [&] {
+        const std::int8_t image = on_ground ? kNoShift
+                                            : box.image_beside(p, surfaces.placed[s - surfaces.ground].point,
+                                                               surfaces.images[entry]);
+        return row_key(kFirstSurfaceId + s, image);
+      });
+    }
+  }
+};
+
+struct CountClosedItem {
+  NamedRows names;
+  Index* counts;
+  __device__ void operator()(Index i) const {
+    Index count = 0;
+    names.visit(i, [&](const Vec4* record, const auto&) { count += record->w == names.history.step; });
+    counts[i] = count;
+  }
+};
+
 struct KeepItem {
   NamedRows names;
-  HistoryViews history;
-  int records, numbers;
   KeptViews kept;
   Index* row_of;
   __device__ void operator()(Index i) const {
     Index at = kept.offsets[i];
-    const auto keep = [&](const Vec4* of) {
-      return [this, of, &at](std::int64_t slot, const auto& key) {
-        const Vec4* const record = of + slot * records;
-        if (record->w != history.step) return;
-        kept.keys[at] = key();
-        for (int k = 0; k < numbers; ++k)
-          kept.values[static_cast<std::int64_t>(at) * numbers + k] = number_of(record, k);
-        ++at;
-      };
-    };
-    names.visit(i, keep(history.neighbors), keep(history.surfaces));
+    names.visit(i, [&](const Vec4* record, const auto& key) {
+      if (record->w != names.history.step) return;
+      kept.keys[at] = key();
+      Real* const to = kept.values + std::int64_t{at} * names.numbers;
+      for (int k = 0; k < names.numbers; ++k) to[k] = number_of(record, k);
+      ++at;
+    });
     row_of[i] = i;
   }
 };
@@ -90,27 +77,21 @@ struct KeepItem {
 // Both the row and what was kept are ordered by key: one pass over both.
 struct TakeItem {
   NamedRows names;
-  HistoryViews history;
-  int records, numbers;
   KeptViews kept;
   const Index* row_of;
   __device__ void operator()(Index i) const {
     Index at = kept.offsets[row_of[i]];
     const Index end = kept.offsets[row_of[i] + 1];
-    const auto take = [&](Vec4* to) {
-      return [this, to, end, &at](std::int64_t slot, const auto& key) {
-        Vec4* const record = to + slot * records;
-        record->w = 0;
-        if (at == end) return;
-        const std::int64_t wanted = key();
-        while (at < end && kept.keys[at] < wanted) ++at;
-        if (at == end || kept.keys[at] != wanted) return;
-        for (int k = 0; k < numbers; ++k)
-          number_of(record, k) = kept.values[static_cast<std::int64_t>(at) * numbers + k];
-        record->w = history.step;
-      };
-    };
-    names.visit(i, take(history.neighbors), take(history.surfaces));
+    names.visit(i, [&](Vec4* record, const auto& key) {
+      for (int r = 0; r < names.records; ++r) record[r] = {};
+      if (at == end) return;
+      const std::int64_t wanted = key();
+      while (at < end && kept.keys[at] < wanted) ++at;
+      if (at == end || kept.keys[at] != wanted) return;
+      const Real* const from = kept.values + std::int64_t{at} * names.numbers;
+      for (int k = 0; k < names.numbers; ++k) number_of(record, k) = from[k];
+      record->w = names.history.step;
+    });
   }
 };
 
@@ -154,8 +135,10 @@ KeptViews kept_views(Rows& rows) {
   return {rows.offsets.data(), rows.keys.data(), rows.values.data()};
 }
 
-NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box) {
-  return {at.position, at.row_key, at.list.rows(), at.surfaces.list(), box};
+NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box, const HistoryViews& history,
+                   int numbers) {
+  return {at.position, at.row_key, at.list.rows(), at.surfaces.list(),
+          box,         history,    numbers,        records_of(numbers)};
 }
 
 }  // namespace
@@ -167,13 +150,19 @@ DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t s
 
 HistoryViews DeviceHistory::views() {
   if (!exists()) return {};
-  return {neighbors_.data(), surfaces_.data(), ahead_.data(), step_};
+  return {neighbors_.data(), ground_.data(), bodies_.data(), ahead_.data(), step_};
 }
 
-// The number itself is the device's, so that the launches of one run are those of the next.
+HistoryViews DeviceHistory::views_before() {
+  if (!exists()) return {};
+  return {nullptr, nullptr, ahead_.data(), bodies_.data(), step_ - 1};
+}
+
+// The number itself is the device's, and contacts with bodies are not this kernel's, so that the launches of
+// one run are those of the next.
 HistoryViews DeviceHistory::views_in_run() {
   HistoryViews views = this->views();
-  views.step = 0;
+  views.bodies = views.ahead = nullptr, views.step = 0;
   return views;
 }
 
@@ -203,12 +192,10 @@ void DeviceHistory::keep(const Listed& at) {
   const auto owned = static_cast<std::size_t>(at.owned);
   countable(static_cast<std::size_t>(at.list.entries()), "stage migrate: more contacts");
   counts_.resize(owned + 1), row_of_.resize(owned);
-  const NamedRows names = names_of(at, box_);
-  const int records = records_of(numbers_);
-  for_each({stream_}, at.owned, CountClosedItem{names, views(), records, counts_.data()});
+  const NamedRows names = names_of(at, box_, views(), numbers_);
+  for_each({stream_}, at.owned, CountClosedItem{names, counts_.data()});
   lay_out(kept_, at.owned);
-  for_each({stream_}, at.owned,
-           KeepItem{names, views(), records, numbers_, kept_views(kept_), row_of_.data()});
+  for_each({stream_}, at.owned, KeepItem{names, kept_views(kept_), row_of_.data()});
 }
 
 void DeviceHistory::leave_slots(const Listed& at) {
@@ -221,11 +208,11 @@ void DeviceHistory::take_slots(const Listed& at) {
   if (!exists()) return;
   const auto records = static_cast<std::size_t>(records_of(numbers_));
   neighbors_.resize_with_spare(static_cast<std::size_t>(at.list.used()) * records);
-  surfaces_.resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
-  ahead_.resize_with_spare(surfaces_.size());
+  for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
+    of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
+  ahead_.zero(stream_);
   for_each({stream_}, at.owned,
-           TakeItem{names_of(at, box_), views(), static_cast<int>(records), numbers_, kept_views(kept_),
-                    row_of_.data()});
+           TakeItem{names_of(at, box_, views(), numbers_), kept_views(kept_), row_of_.data()});
   at_slots_ = true;
 }
 

@@ -26,7 +26,12 @@ class DeviceHistory {
   const Real* first_step() const { return first_step_.data(); }
   HistoryViews views_in_run();
   void closed(Index steps) { step_ = run_start_ + steps; }  // since the run began
-  void accepted() { step_ += 1; }
+  void accepted() { step_ += 1, take_ahead(); }
+  // What was evaluated ahead of contacts with bodies holds; accepted() does this, closed() does not.
+  void take_ahead() { bodies_.swap(ahead_); }
+  // For another look at the contacts with bodies over the step that was accepted last: from before it, to be
+  // held in place of what the step left.
+  HistoryViews views_before();
 
   // The list as it is with the items where they are now, ghosts and surfaces on bodies included.
   struct Listed {
@@ -65,8 +70,8 @@ class DeviceHistory {
   const PeriodicBox box_;
   const cudaStream_t stream_;
   bool at_slots_ = false;
-  DeviceArray<Vec4> neighbors_, surfaces_, ahead_;  // HistoryViews
-  Real step_ = 1, run_start_ = 1;
+  DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews
+  Real step_ = 2, run_start_ = 2;                          // there is one before the first
   DeviceArray<Real> first_step_;
   PinnedArray<Real> h_first_step_;
   // Unless at the slots: what is kept, and which row of it is that of each particle.

@@ -214,28 +214,26 @@ void DeviceSurfaces::keep_start(Device device) {
   copy_async(start_places_.data(), places_.data(), places_.size(), device.stream);
 }
 
-SurfaceViews DeviceSurfaces::entry_views(const Vec4* position, const Vec4* velocity) const {
-  return {position,       velocity,
+SurfaceViews DeviceSurfaces::entry_views(const SurfaceLook& look) const {
+  return {look.position,  look.velocity,
           material_,      {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
           places_.data(), ground_,
-          period_};
+          period_,        look.history,
+          look.spin,      look.h};
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
-                                const Vec4* position, const Vec4* velocity, HistoryViews history) {
+                                const SurfaceLook& look) {
   h_load_sums_.resize(h_chunks_.size());
-  if (which == Loads::of_look) history.ahead = nullptr;
-  SurfaceViews views = entry_views(position, velocity);
-  views.history = history;
-  kernels.surface_loads(device, views, chunk_list(), loads_[which == Loads::of_step ? 0 : 1].data(),
-                        h_load_sums_.data());
+  kernels.surface_loads(device, entry_views(look), chunk_list(),
+                        loads_[which == Loads::of_step ? 0 : 1].data(), h_load_sums_.data());
 }
 
 void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
                                 const Vec4* velocity, const StepStart& start) {
   h_step_sums_.resize(h_chunks_.size());
-  kernels.surface_steps(device, entry_views(position, velocity), chunk_list(), {start, start_places_.data()},
-                        steps_.data(), h_step_sums_.data());
+  kernels.surface_steps(device, entry_views({position, velocity, nullptr, {}}), chunk_list(),
+                        {start, start_places_.data()}, steps_.data(), h_step_sums_.data());
 }
 
 std::vector<InstantSums> DeviceSurfaces::load_sums() const { return touched(h_load_sums_); }

@@ -51,11 +51,9 @@ class DeviceSurfaces {
   // Queues the copy of the surfaces' new places, which no longer change once it is done.
   void place(Device device, std::span<const PlacedSurface> placed);
   void keep_start(Device device);  // of an implicit step
-  // Queues the contacts with the surfaces on bodies, placed as they are, of particles at these places; their
-  // sums are on the way to the host, too. What they remember if the step is accepted goes ahead into the
-  // history, but for another look.
-  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const Vec4* position,
-                  const Vec4* velocity, HistoryViews history);
+  // Queues the contacts with the surfaces on bodies, placed as they are, of particles as `look` has them;
+  // their sums are on the way to the host, too.
+  void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& look);
   void find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
                   const Vec4* velocity, const StepStart& start);
   // The sums of the last contacts found, once the stream is done: a surface may come in several parts.
@@ -74,7 +72,7 @@ class DeviceSurfaces {
   void find_entries(Device device, const Particles& particles, Real skin);
   void group_by_surface(Device device);
   SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
-  SurfaceViews entry_views(const Vec4* position, const Vec4* velocity) const;
+  SurfaceViews entry_views(const SurfaceLook& look) const;
 
   Vec3 period_;
   DeviceArray<WallPlane> planes_;

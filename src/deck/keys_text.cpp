@@ -14,8 +14,9 @@ constexpr std::size_t kWidth = 110;
 
 // README.md says the same; tests/cli/test_words.py compares them.
 constexpr const char* kLeftOut =
-    "What the model leaves out today. Particles rub and rotate in explicit steps (velocity-verlet, "
-    "double precision) and where no body has shapes; else contact forces act along the normal alone. "
+    "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies, "
+    "in explicit steps (velocity-verlet, double precision); else contact forces act along the normal "
+    "alone. "
     "There is no rolling resistance and no cohesion. All that touches is a disc (2D), "
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
     "meshes. Bodies are rigid, and in 3D too they and their joints are planar: they move along x and "

@@ -152,7 +152,7 @@ Real BodyContacts::pairs() const {
 
 ContactSum BodyContacts::on_wall(int wall) const {
   Real sums[kWallTerms];
-  kernels_->wall_sums(views(), originals_, {wall, model_.space.min, subdomain_.period()}, Ranks(), sums);
+  kernels_->body_wall_sums(views(), originals_, {wall, model_.space.min, subdomain_.period()}, sums);
   return make_wall_contact(sums);
 }
 

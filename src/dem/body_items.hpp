@@ -42,7 +42,7 @@ struct BodyLoadOf {
 
 template <class Laws, class Rows>
 struct BodyLoadItem {
-  ContactWalk<Laws, Rows> walk;
+  ContactWalk<Laws, Rows, AtInstant> walk;
   const Vec3* arm;  // of the surfaces' centres from their bodies' [m]
   BodyLoad* out;
 

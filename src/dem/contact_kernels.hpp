@@ -49,6 +49,8 @@ class ContactKernels {
   // Of the first n items of WallContactItem, over all ranks.
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
+  virtual void body_wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
+                              Real (&sums)[kWallTerms]) const = 0;  // likewise of surfaces on bodies
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
   // An output field that reads contacts.
   virtual void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const = 0;

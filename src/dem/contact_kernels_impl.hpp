@@ -60,6 +60,11 @@ class CpuContactKernels : public ContactKernels {
                  Real (&sums)[kWallTerms]) const override {
     reproducible_sums(n, WallContactItem<Laws, PackedRows>{{in, laws_}, choice}, sums, ranks);
   }
+  void body_wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
+                      Real (&sums)[kWallTerms]) const override {
+    reproducible_sums(n, WallContactItem<Laws, PackedRows, BodyWallLoadOf, AtInstant>{{in, laws_}, choice},
+                      sums, Ranks());
+  }
   void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
     for_each(Serial{}, n,
              ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});

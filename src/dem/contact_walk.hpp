@@ -320,23 +320,19 @@ struct ContactWalk {
   }
   template <bool kAccepts = false, class Of, class Visit>
   SCREE_HD void surfaces(const Self& self, const Of& of, const Visit& visit) const {
-    constexpr bool kSeesHistory = sees_history<Of, decltype(look.wall(in, self, in.planes[0]))>();
     for (Index entry = in.surface_offsets[self.i]; entry < in.surface_offsets[self.i + 1]; ++entry) {
       const Index surface = in.surfaces[entry];
       if (surface >= in.ground) {
-        if (const auto* stored = of.stored(in, entry)) {
-          if constexpr (kAccepts && kSeesHistory) in.history.template take_ahead<Law>(entry);
-          visit(*stored, surface);
-        }
+        if (const auto* stored = of.stored(in, entry)) visit(*stored, surface);
         continue;
       }
       const WallPlane& plane = in.planes[surface];
       const auto pair = look.wall(in, self, plane);
       if (!Look::closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
-      if constexpr (kSeesHistory) {
-        const auto contact = of(law, pair, in.history.template read<Law>(in.history.surfaces, entry));
-        if constexpr (kAccepts) in.history.template write<Law>(in.history.surfaces, entry, contact.history);
+      if constexpr (sees_history<Of, decltype(pair)>()) {
+        const auto contact = of(law, pair, in.history.template read<Law>(in.history.ground, entry));
+        if constexpr (kAccepts) in.history.template write<Law>(in.history.ground, entry, contact.history);
         visit(contact, surface);
       } else {
         visit(of(law, pair), surface);

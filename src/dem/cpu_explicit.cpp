@@ -8,6 +8,7 @@
 namespace scree {
 
 CpuExplicitRun::CpuExplicitRun(CpuItems& items, CpuList& list, Real h) : items_(items), list_(list), h_(h) {
+  items.side.close_step();
   const VerletStartItem item{
       views_of(items.store.position, items.store.velocity, items.store.angular_velocity)};
   step_bound_ = std::sqrt(max_over(Serial{}, items.layout.owned, item));
@@ -58,33 +59,37 @@ StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& t
   return {taken, open_};
 }
 
-// Particles as the last step left them before it opened the next: with the velocities that the law saw.
+// Particles as the last step left them before it opened the next: with the velocities that the law saw. What
+// contacts remember of the step is that of the bodies' last place, from where the next step begins.
 void CpuExplicitRun::shape_contacts() {
-  items_.surfaces.find_loads(items_.store, items_.list.surfaces,
-                             open_ ? items_.spare_position : items_.store.position, items_.spare_velocity,
-                             items_.history.views());
+  items_.side.reopen_step();
+  items_.surfaces.find_loads(
+      items_.store, items_.list.surfaces,
+      {(open_ ? items_.spare_position : items_.store.position).data(), items_.spare_velocity.data(),
+       items_.spare_spin.data(), items_.history.views_before(), h_});
+  items_.side.close_step();
 }
 
 void CpuExplicitRun::advance() {
-  items_.find_loads();
+  items_.find_loads(h_);
   items_.side.book_losses(h_);
   step_bound_ = std::sqrt(items_.kernels->verlet_advance(
       items_.views(), items_.model.gravity, items_.layout.owned,
       views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin)));
-  items_.history.accepted();
+  items_.history.accepted(), items_.side.close_step();
   std::swap(items_.store.position, items_.spare_position);
   std::swap(items_.store.velocity, items_.spare_velocity);
   std::swap(items_.store.angular_velocity, items_.spare_spin);
 }
 
 void CpuExplicitRun::finish() {
-  items_.find_loads();
+  items_.find_loads(h_);
   items_.side.book_losses(h_);
   std::vector<Vec3>& force = items_.store.force;
   const Real squared = items_.kernels->verlet_finish(
       items_.views(), items_.model.gravity, items_.layout.owned,
       views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin), force.data());
-  items_.history.accepted();
+  items_.history.accepted(), items_.side.close_step();
   if (!std::isfinite(items_.ranks.max(squared))) items_.report_not_finite(force);
   std::swap(items_.store.velocity, items_.spare_velocity);
   std::swap(items_.store.angular_velocity, items_.spare_spin);

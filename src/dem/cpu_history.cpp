@@ -19,7 +19,12 @@ std::int64_t CpuHistory::surface_key(const Listed& at, Vec3 p, Index entry) cons
 
 HistoryViews CpuHistory::views() {
   if (!exists()) return {};
-  return {neighbors_.data(), surfaces_.data(), ahead_.data(), step_};
+  return {neighbors_.data(), ground_.data(), bodies_.data(), ahead_.data(), step_};
+}
+
+HistoryViews CpuHistory::views_before() {
+  if (!exists()) return {};
+  return {nullptr, nullptr, ahead_.data(), bodies_.data(), step_ - 1};
 }
 
 KeptContacts CpuHistory::contacts(const Listed& at) const {
@@ -39,7 +44,8 @@ KeptContacts CpuHistory::contacts(const Listed& at) const {
     for (Index k = at.list.offsets[i]; k < at.list.offsets[i + 1]; ++k)
       add_if_closed(neighbors_, k, [&] { return neighbor_key(at, p, k); });
     for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
-      add_if_closed(surfaces_, entry, [&] { return surface_key(at, p, entry); });
+      add_if_closed(surfaces.surfaces[entry] < at.ground ? ground_ : bodies_, entry,
+                    [&] { return surface_key(at, p, entry); });
     out.end_row();
   }
   return out;
@@ -73,13 +79,15 @@ void CpuHistory::take_row(const Listed& at, Index i) {
   for (Index slot = at.list.offsets[i]; slot < at.list.offsets[i + 1]; ++slot)
     take(neighbors_, slot, [&] { return neighbor_key(at, p, slot); });
   for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
-    take(surfaces_, entry, [&] { return surface_key(at, p, entry); });
+    take(surfaces.surfaces[entry] < at.ground ? ground_ : bodies_, entry,
+         [&] { return surface_key(at, p, entry); });
 }
 
 void CpuHistory::take_slots(const Listed& at) {
   if (!exists()) return;
   neighbors_.assign(first_record(std::ssize(at.list.neighbors)), {});
-  surfaces_.assign(first_record(std::ssize(at.list.surfaces.surfaces)), {}), ahead_.resize(surfaces_.size());
+  for (std::vector<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
+    of_surfaces->assign(first_record(std::ssize(at.list.surfaces.surfaces)), {});
   for (Index i = 0; i < at.store.owned; ++i) take_row(at, i);
   kept_ = no_contacts(numbers_, 0);
   at_slots_ = true;

@@ -22,7 +22,10 @@ class CpuHistory {
   // For walks on the list.
   HistoryViews views();
   // A walk has accepted a step.
-  void accepted() { step_ += 1; }
+  void accepted() { step_ += 1, bodies_.swap(ahead_); }
+  // For another look at the contacts with bodies over the step that was accepted last: from before it, to be
+  // held in place of what the step left.
+  HistoryViews views_before();
 
   // The list as it is with the items where they are now, ghosts included.
   struct Listed {
@@ -57,9 +60,9 @@ class CpuHistory {
   int numbers_;
   PeriodicBox box_;
   bool at_slots_ = false;
-  KeptContacts kept_;                               // of the owned particles, unless at the slots
-  std::vector<Vec4> neighbors_, surfaces_, ahead_;  // HistoryViews
-  Real step_ = 1;
+  KeptContacts kept_;                                      // of the owned particles, unless at the slots
+  std::vector<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews
+  Real step_ = 2;                                          // there is one before the first
 };
 
 }  // namespace scree

@@ -33,9 +33,13 @@ struct CpuItems {
   void refresh_ghosts() {
     halo.update_motion(store.position, store.velocity, store.angular_velocity, layout.owned);
   }
-  // Contacts with surfaces on bodies, where all are now: what forces and reports read next.
-  void find_loads() {
-    surfaces.find_loads(store, list.surfaces, store.position, store.velocity, history.views());
+  // Contacts with surfaces on bodies, where all are now: what forces and reports read next. h: of the
+  // explicit step that ends now, and will be accepted [s]; 0: at this instant.
+  void find_loads(Real h = 0) {
+    const HistoryViews at = history.views();
+    surfaces.find_loads(store, list.surfaces,
+                        {store.position.data(), store.velocity.data(), store.angular_velocity.data(),
+                         h > 0 ? at : at.only_read(), h});
   }
   // For `history`, while there is a list.
   CpuHistory::Listed listed() const { return {store, list, side.placed(), side.surfaces().ground()}; }

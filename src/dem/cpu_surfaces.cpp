@@ -23,30 +23,27 @@ CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, Surface
     : side_(side), kernels_(kernels), planes_(wall_planes(model)), period_(subdomain.period()) {}
 
 SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceRows& rows,
-                                      const std::vector<Vec4>& position,
-                                      const std::vector<Vec4>& velocity) const {
-  return {position.data(), velocity.data(),       store.material.data(),
-          rows.entries(),  side_.placed().data(), side_.surfaces().ground(),
-          period_};
+                                      const SurfaceLook& look) const {
+  return {look.position,  look.velocity,         store.material.data(),
+          rows.entries(), side_.placed().data(), side_.surfaces().ground(),
+          period_,        look.history,          look.spin,
+          look.h};
 }
 
-void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows,
-                             const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
-                             const HistoryViews& history) {
+void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows, const SurfaceLook& look) {
   if (side_.size() == 0) return;
   loads_.resize(rows.surfaces.size());
-  SurfaceViews views = entry_views(store, rows, position, velocity);
-  views.history = history;
-  kernels_.surface_loads(views, static_cast<Index>(rows.by_surface.size()), loads_.data());
+  kernels_.surface_loads(entry_views(store, rows, look), static_cast<Index>(rows.by_surface.size()),
+                         loads_.data());
   side_.take_loads(sums_of<InstantSums>(loads_, rows, side_.surfaces().ground()));
 }
 
 void CpuSurfaces::find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start) {
   if (side_.size() == 0) return;
   steps_.resize(rows.surfaces.size());
-  kernels_.surface_steps(entry_views(store, rows, store.position, store.velocity),
-                         static_cast<Index>(rows.by_surface.size()), start, side_.start().data(),
-                         steps_.data());
+  kernels_.surface_steps(
+      entry_views(store, rows, {store.position.data(), store.velocity.data(), nullptr, {}}),
+      static_cast<Index>(rows.by_surface.size()), start, side_.start().data(), steps_.data());
   side_.take_steps(sums_of<StepSums>(steps_, rows, side_.surfaces().ground()), start.h);
 }
 

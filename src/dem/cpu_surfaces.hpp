@@ -15,10 +15,9 @@ class CpuSurfaces {
   CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
               const ContactKernels& kernels);
 
-  // The surfaces as they are placed, with particles at these places, at an instant: for the loads in views(),
-  // and for the side's sums.
-  void find_loads(const ParticleStore& store, const SurfaceRows& rows, const std::vector<Vec4>& position,
-                  const std::vector<Vec4>& velocity, const HistoryViews& history);
+  // The surfaces as they are placed, with the particles of the store as `look` has them: for the loads in
+  // views(), and for the side's sums.
+  void find_loads(const ParticleStore& store, const SurfaceRows& rows, const SurfaceLook& look);
   // The same over an implicit step, with the particles of the store.
   void find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start);
 
@@ -29,7 +28,7 @@ class CpuSurfaces {
 
  private:
   SurfaceViews entry_views(const ParticleStore& store, const SurfaceRows& rows,
-                           const std::vector<Vec4>& position, const std::vector<Vec4>& velocity) const;
+                           const SurfaceLook& look) const;
 
   SurfaceSide& side_;
   const ContactKernels& kernels_;

@@ -14,7 +14,7 @@ namespace scree {
 
 // What a contact remembers is one or two Vec4s, whole sectors of memory, so that contacts here and there in
 // the rows cost no more than their own. In w of the first: the number of the step that wrote them. What the
-// last step did not write is of a contact that has ended: nothing is ever cleared.
+// last step did not write is of a contact that has ended: nothing need be cleared.
 inline constexpr int kMostNumbers = 7;  // that a law may remember of a contact
 SCREE_HD constexpr int records_of(int numbers) { return numbers == 0 ? 0 : numbers <= 3 ? 1 : 2; }
 
@@ -40,11 +40,19 @@ SCREE_HD void fetch_ahead([[maybe_unused]] const Vec4* record) {
 // Pointers are null where nobody remembers.
 struct HistoryViews {
   Vec4* neighbors = nullptr;  // [slots][records]
-  Vec4* surfaces = nullptr;   // [entries of the surfaces][records]
-  // Likewise: what contacts with surfaces on bodies, which are evaluated before the particles' walk, remember
-  // if the step is accepted. Null where they are only looked at.
-  Vec4* ahead = nullptr;
-  Real step = 0;  // number of the last accepted step, 1 or more
+  Vec4* ground = nullptr;     // [entries of the surfaces][records], of those on the ground
+  // Likewise of those on bodies, whose contacts are evaluated before the particles' walk: after the last
+  // step, and after the step that is evaluated, if it is accepted. The latter is null where they are only
+  // looked at.
+  Vec4 *bodies = nullptr, *ahead = nullptr;
+  Real step = 0;  // number of the last accepted step, above 0
+
+  // For a look that leaves no trace.
+  HistoryViews only_read() const {
+    HistoryViews views = *this;
+    views.ahead = nullptr;
+    return views;
+  }
 
   // What the contact at the slot remembers: what the law's read_history() makes of nothing but zeros where it
   // was not closed at the last step.
@@ -65,11 +73,10 @@ struct HistoryViews {
     at[0].w = step + 1;
     for (int r = 0; r < kRecords; ++r) records[slot * kRecords + r] = at[r];
   }
-  // The step is accepted: what was evaluated ahead holds.
+  // The contact at the slot is open.
   template <class Law>
-  SCREE_HD void take_ahead(std::int64_t entry) const {
-    constexpr int kRecords = records_of(Law::kHistory);
-    for (int r = 0; r < kRecords; ++r) surfaces[entry * kRecords + r] = ahead[entry * kRecords + r];
+  SCREE_HD void write_none(Vec4* records, std::int64_t slot) const {
+    records[slot * records_of(Law::kHistory)].w = 0;
   }
 };
 

@@ -10,6 +10,13 @@
 
 namespace scree {
 
+// Particles as contacts with bodies are looked at.
+struct SurfaceLook {
+  const Vec4 *position, *velocity, *spin;  // spin: null where particles do not rotate
+  HistoryViews history;
+  Real h = 0;  // of the explicit step that ends there [s]; 0: an instant
+};
+
 // The particles, the surfaces on bodies and the list of those that are near each other.
 struct SurfaceViews {
   const Vec4 *position, *velocity;  // x, y, z, radius; x, y, z, mass
@@ -19,17 +26,22 @@ struct SurfaceViews {
   Index ground;
   Vec3 period;  // [m]
   HistoryViews history{};
+  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
+  Real h = 0;                  // SurfaceLook
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], period); }
   SCREE_HD Index surface_of(Index entry) const { return entries.surfaces[entry] - ground; }
 };
 
-// Contacts at one instant, for the k-th of the entries by_surface.
+// Contacts at one instant or, of laws that move, over the explicit step that ends there; for the k-th of the
+// entries by_surface.
 template <class Laws>
 struct SurfaceLoadItem {
   SurfaceViews in;
   Laws laws;
   SurfaceLoad* loads;  // per entry
+
+  using Law = LawOf<Laws>;
 
   SCREE_HD void operator()(Index k) const {
     const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
@@ -38,26 +50,73 @@ struct SurfaceLoadItem {
     SurfaceLoad& out = loads[entry];
     const SurfacePair pair = surface_pair(surface, in.shift_of(entry), p);
     out.touches = pair.geometry.overlap > 0;
-    if (!out.touches) return;
+    if (!out.touches) return find_none(entry);
     const PairState state{
         pair.geometry, xyz(u) - surface.velocity_at(pair.contact), {p.w, surface.radius, u.w, kInfinity}};
-    const auto& law = laws.get(in.material[i], surface.material);
-    find_load(law, state, entry);
-    out.energy = EnergyOf{}(law, state);
-    out.arm = surface.arm + pair.contact, out.particle_arm = contact_arm(state);
+    const Law& law = laws.get(in.material[i], surface.material);
+    if constexpr (Law::kMoves)
+      find_moving(law, state, surface, entry);
+    else
+      find_load(law, state, entry);
+    out.arm = Law::kMoves ? surface.arm : surface.arm + pair.contact;
+    out.particle_arm = contact_arm(state);
   }
 
  private:
-  template <class Law>
   SCREE_HD void find_load(const Law& law, const PairState& state, Index entry) const {
-    if constexpr (Law::kHistory == 0 || Law::kMoves) {
-      loads[entry].load = law.normal_load(state);
+    SurfaceLoad& out = loads[entry];
+    if constexpr (Law::kHistory == 0) {
+      out.load = law.load(state);
     } else {
-      const HistoryViews& at = in.history;
-      const auto load = LoadOf{}(law, state, at.template read<Law>(at.surfaces, entry));
-      loads[entry].load = load;
-      if (at.ahead != nullptr) at.template write<Law>(at.ahead, entry, load.history);
+      const auto load = LoadOf{}(law, state, in.history.template read<Law>(in.history.bodies, entry));
+      out.load = load;
+      remember(load.history, entry);
     }
+    out.energy = EnergyOf{}(law, state);
+  }
+
+  // As between two spheres that move, of which the surface is one: its force acts at its centre, with a
+  // couple about that.
+  SCREE_HD void find_moving(const Law& law, const PairState& state, const PlacedSurface& surface,
+                            Index entry) const {
+    const ContactHistory old = in.history.template read<Law>(in.history.bodies, entry);
+    if (in.h > 0) {
+      const MovingPair pair = over_step(state, surface, in.entries.particles[entry]);
+      const ContactOutcome outcome = law.load(pair, old);
+      take(law, pair, outcome.load, outcome.history, entry);
+      remember(outcome.history, entry);
+    } else {
+      const InstantPair pair = at_rest(state, surface, in.entries.particles[entry]);
+      take(law, pair, law.load(pair, old).load, old, entry);
+    }
+  }
+  SCREE_HD MovingPair over_step(PairState state, const PlacedSurface& surface, Index i) const {
+    const Vec3 travel = in.h * xyz(in.velocity[i]) - surface.travel;
+    state.velocity = reciprocal(in.h) * travel;
+    return {state, sphere_motion(state.geometry, travel, particle(i),
+                                 {reciprocal(in.h) * surface.turn, surface.radius}, in.h)};
+  }
+  SCREE_HD InstantPair at_rest(PairState state, const PlacedSurface& surface, Index i) const {
+    state.velocity = xyz(in.velocity[i]) - surface.velocity_at({});
+    return at_instant(
+        {state, sphere_motion(state.geometry, {}, particle(i), {surface.spin, surface.radius}, 0)},
+        xyz(in.spin[i]), surface.spin);
+  }
+  SCREE_HD TurningPartner particle(Index i) const {
+    return {xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
+  }
+  SCREE_HD void take(const Law& law, const PairState& state, const ContactLoadOf<Real, Vec3>& load,
+                     const ContactHistory& history, Index entry) const {
+    loads[entry].load = load, loads[entry].energy = EnergyOf{}(law, state, history);
+  }
+
+  template <class History>
+  SCREE_HD void remember(const History& history, Index entry) const {
+    if (in.history.ahead != nullptr) in.history.template write<Law>(in.history.ahead, entry, history);
+  }
+  SCREE_HD void find_none(Index entry) const {
+    if constexpr (Law::kHistory > 0)
+      if (in.history.ahead != nullptr) in.history.template write_none<Law>(in.history.ahead, entry);
   }
 };
 

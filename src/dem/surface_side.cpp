@@ -12,6 +12,8 @@ SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const R
       surfaces_(model),
       bodies_(model, surfaces_, subdomain),
       motion_(model.bodies.size()),
+      step_start_(motion_),
+      start_before_(motion_),
       image_(static_cast<std::size_t>(size())),
       placed_(static_cast<std::size_t>(size())),
       step_(static_cast<std::size_t>(size())) {}
@@ -35,23 +37,45 @@ Real SurfaceSide::place() {
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.on_body(s);
     const BodyMotion& body = motion_[surface.carrier];
-    const Vec3 arm = arm_of(s);
+    const Vec3 arm = body_arm(body, surface.point);
     const ImageCount image = image_[s];
-    const Vec3 point = moved_by_periods(snap(body.position + arm, subdomain_.snap_constant()),
-                                        {-image.x, -image.y, -image.z}, subdomain_.period());
+    const Vec3 with_body = snap(body.position + arm, subdomain_.snap_constant());
+    const Vec3 point = moved_by_periods(with_body, {-image.x, -image.y, -image.z}, subdomain_.period());
     step_[s] = point - placed_[s].point;
     squared = std::max(squared, dot(step_[s], step_[s]));
-    placed_[s] = {surface.kind,   surface.material,
-                  surface.radius, point,
-                  surface.normal, arm,
-                  body.velocity,  {0, 0, body.angular_velocity}};
+    placed_[s] = {surface.kind,
+                  surface.material,
+                  surface.radius,
+                  point,
+                  surface.normal,
+                  arm,
+                  body.velocity,
+                  {0, 0, body.angular_velocity},
+                  {},
+                  {}};
+    if (!model_.rotates()) continue;
+    placed_[s].travel = with_body - point_with(step_start_, s);
+    placed_[s].turn = {0, 0, body.angle - step_start_[surface.carrier].angle};
   }
   return std::sqrt(squared);
 }
 
-Vec3 SurfaceSide::arm_of(Index s) const {
+Vec3 SurfaceSide::point_with(const std::vector<BodyMotion>& motion, Index s) const {
   const Surface& surface = surfaces_.on_body(s);
-  return body_arm(motion_[surface.carrier], surface.point);
+  const BodyMotion& body = motion[surface.carrier];
+  return snap(body.position + body_arm(body, surface.point), subdomain_.snap_constant());
+}
+
+void SurfaceSide::close_step() {
+  if (!model_.rotates()) return;
+  start_before_ = step_start_, step_start_ = motion_;
+  for (PlacedSurface& surface : placed_) surface.travel = surface.turn = {};
+}
+
+void SurfaceSide::reopen_step() {
+  if (!model_.rotates()) return;
+  step_start_ = start_before_;
+  place();
 }
 
 Real SurfaceSide::largest_displacement(const std::vector<PlacedSurface>& from) const {

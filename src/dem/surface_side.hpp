@@ -47,6 +47,11 @@ class SurfaceSide {
   const std::vector<PlacedSurface>& placed() const { return placed_; }
   const std::vector<Vec3>& step() const { return step_; }  // displacement by the last place() [m]
 
+  // Explicit steps of laws that move see how far the surfaces have come since the last one was closed, where
+  // they were then. It may be opened again, for the surfaces where they are now: it then began where it did.
+  void close_step();
+  void reopen_step();
+
   // Start of an implicit step, to look back at.
   void keep_start() { start_ = placed_; }
   const std::vector<PlacedSurface>& start() const { return start_; }
@@ -80,7 +85,8 @@ class SurfaceSide {
   ContactSum on_wall(int wall) const { return bodies_.on_wall(wall); }
 
  private:
-  Vec3 arm_of(Index surface) const;  // from the centre of its body [m]
+  // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].
+  Vec3 point_with(const std::vector<BodyMotion>& motion, Index surface) const;
   Real largest_displacement(const std::vector<PlacedSurface>& from) const;
   template <class Sums>
   std::vector<Sums> merged(std::vector<Sums> sums) const;
@@ -90,8 +96,9 @@ class SurfaceSide {
   Ranks ranks_;
   SurfaceSet surfaces_;
   BodyContacts bodies_;
-  std::vector<BodyMotion> motion_;  // of the bodies as last set
-  std::vector<ImageCount> image_;   // of each surface when it was brought into the box
+  // Of the bodies as last set, where the explicit step began, and the one before it.
+  std::vector<BodyMotion> motion_, step_start_, start_before_;
+  std::vector<ImageCount> image_;  // of each surface when it was brought into the box
   std::vector<PlacedSurface> placed_, start_, listed_;
   std::vector<Vec3> step_;
   std::vector<InstantSums> loads_;

@@ -55,6 +55,9 @@ struct PlacedSurface {
   Vec3 point, normal;   // as in Surface, in the global frame
   Vec3 arm;             // of the point, from the body's centre [m]
   Vec3 velocity, spin;  // of the body [m/s], [rad/s]
+  // Since the explicit step began, for laws that move: of the point [m], and of the body about its centre
+  // [rad]. The point's is exact, so that nothing is left over of a surface that comes back.
+  Vec3 travel, turn;
 
   // Of the place on the body at `from_point` from the point.
   SCREE_HD Vec3 velocity_at(Vec3 from_point) const { return velocity + cross(spin, arm + from_point); }

@@ -202,11 +202,6 @@ void check_friction(const DeckTable& deck, const Model& model) {
                 "needs integrator.particles = \"velocity-verlet\": implicit steps have no friction yet");
     if (model.integrator.precision == Precision::mixed)
       integrator.fail("precision", "must be \"double\" where a pair has friction");
-    for (const Body& body : model.bodies)
-      if (!body.shapes.empty())
-        pair.fail(
-            "friction",
-            fmt::format("particles do not rub against bodies yet, and body \"{}\" has shapes", body.name));
   }
   if (model.rotates()) return;
   for (const DeckTable& group : deck.tables("particles"))

@@ -74,8 +74,10 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       MaterialUse& use = uses[static_cast<std::size_t>(shape.material)];
       ++use.shapes;
       take_smaller(use.smallest_radius, shape.radius);
+      const Real rubbed = norm(shape.offset) + shape.radius;
       take_smaller(use.smallest_body_mass,
                    1 / (1 / body.mass + dot(shape.offset, shape.offset) / body.inertia));
+      take_smaller(use.smallest_rubbed_mass, 1 / (1 / body.mass + rubbed * rubbed / body.inertia));
     }
   }
   for (const Wall& wall : model.walls) ++uses[static_cast<std::size_t>(wall.material)].walls;

@@ -14,7 +14,9 @@ struct MaterialUse {
   int shapes = 0, walls = 0;
   Real smallest_radius = 0;         // [m]
   Real smallest_particle_mass = 0;  // [kg]
-  Real smallest_body_mass = 0;      // [kg] at a shape: 1 / (1/m + offset^2 / inertia)
+  // [kg] At a shape: 1 / (1/m + arm^2 / inertia), the arm being the offset where the body is pushed at the
+  // shape's centre, and reaching to its far side where its surface is rubbed.
+  Real smallest_body_mass = 0, smallest_rubbed_mass = 0;
 };
 
 std::vector<MaterialUse> material_uses(const Model& model);

@@ -211,7 +211,11 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
       if (mass == 0 || of_particles.particles == 0) continue;
       const PairSize size = smallest_partners(of_body, of_particles);
       const KelvinVoigt& law = model.contact.law(a, b);
-      const Real frequency = contact_frequency(typical_stiffness(law, size), mass);
+      Real frequency = contact_frequency(typical_stiffness(law, size), mass);
+      if (model.rotates())
+        frequency = std::max(frequency,
+                             contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size),
+                                               of_body.smallest_rubbed_mass));
       if (frequency > fastest) fastest = frequency, is_exact = law.of_size(size).exponent == 1;
     }
   }
