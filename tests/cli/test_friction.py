@@ -87,8 +87,7 @@ class FrictionTest(CommandLineTest):
              'needs integrator.particles = "velocity-verlet"'),
             (RUBBING.replace('"velocity-verlet"\n', '"velocity-verlet"\nprecision = "mixed"\n'), "precision",
              "integrator.precision", 'must be "double" where a pair has friction'),
-            (RUBBING + BALL, friction, "contact.pairs.0.friction",
-             'particles do not rub against bodies yet, and body "ball" has shapes'),
+            (RUBBING + BALL.replace("0.005", "1e-7"), "step", "time.step = 0.0001", "a body on a contact oscillates with"),
             (RUBBING.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",
              "no particle rotates: no pair in contact.pairs has friction"),
             (RUBBING.replace("[0.0, 5.0, 1.0]", "[5.0]"), "angular_velocity", "particles.grains.angular_velocity",
@@ -109,9 +108,10 @@ class FrictionTest(CommandLineTest):
             message = self.expect(code, "check", self.write("flat.toml", text), *EXPLICIT[:2]).stderr
             self.assertEqual("must have 1 entry, about z" in message, code == BAD_INPUT)
 
-    def test_decks_with_friction_run_with_hertz_and_bodies_without_shapes(self):
+    def test_decks_with_friction_go_with_hertz_and_bodies(self):
         self.expect(DONE, "check", self.write("hertz.toml", RUBBING.replace(*HERTZ) + GLASS))
         self.expect(DONE, "check", self.write("body.toml", RUBBING + BALL.replace("shapes", "# shapes")))
+        self.expect(DONE, "run", self.write("ball.toml", RUBBING + BALL), "--output", self.folder / "ball")
         self.expect(DONE, "check", self.deck, "--set", "contact.pairs.0.friction=0.0")
 
     def test_check_says_how_contacts_rub_and_what_that_does_to_the_step(self):

@@ -48,6 +48,7 @@ TEST_CASE("rubbing particles go on from any number of ranks on any other") {
     RememberingBox many(model, world, make_test_backend), one(model, Ranks(), make_test_backend);
     for (RememberingBox* box : {&many, &one}) box->start(), box->take_steps(200);
     RememberingBox again(model, world, make_test_backend), alone(model, Ranks(), make_test_backend);
+    again.motion = alone.motion = one.motion;
     again.start(many.in_id_order()), alone.start(one.in_id_order());
     for (RememberingBox* box : {&many, &one, &again, &alone}) box->take_steps(200);
     check_equal(kind, one, many), check_equal(kind, one, again), check_equal(kind, one, alone);

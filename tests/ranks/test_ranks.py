@@ -26,6 +26,8 @@ MAIN_CASES = {
     "rubbing after Hertz and Mindlin": ([HERE / "rubbing_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
                                         (1, 2, 3, 4)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
+    # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
+    "rubbing on bodies": ([HERE / "rubbing_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
 }
 CASES = {
     **MAIN_CASES,
@@ -108,7 +110,7 @@ class SameBitsTest(RanksTest):
         self.assertLess(sizes[1], sizes[0])
 
     def test_lists_built_often_and_seldom_give_the_bits_of_rubbing_particles(self):
-        for deck in ("rubbing.toml", "rubbing_hertz.toml", "rolling.toml"):
+        for deck in ("rubbing.toml", "rubbing_hertz.toml", "rolling.toml", "rubbing_bodies.toml"):
             builds = []
             for skin in (1e-5, 1e-3, 8e-3):
                 output = f"{deck} {skin}"

@@ -1,4 +1,5 @@
-// A box of particles whose contacts remember, and bodies that go on at their velocity: what is lost shows.
+// A box of particles whose contacts remember, and bodies that go on and turn at their velocities: what is
+// lost shows.
 #pragma once
 
 #include <memory>
@@ -54,11 +55,12 @@ struct RememberingBox {
   void take_steps(Index steps, Real h = kMovingStep) {
     const std::unique_ptr<ExplicitRun> run = backend->start_run(h);
     while (steps > 0) {
+      for (BodyMotion& body : motion)
+        body.position += h * body.velocity, body.angle += h * body.angular_velocity;
       backend->list().place_bodies(motion);
       const Index most = motion.empty() ? steps : 1;
       const StepsTaken taken = run->take_steps(most, most < steps, timers);
       steps -= taken.closed;
-      for (BodyMotion& body : motion) body.position += h * body.velocity;
       if (!taken.open) break;
     }
     const std::vector<Leaver> leavers = backend->particles().outside();

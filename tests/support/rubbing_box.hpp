@@ -1,5 +1,5 @@
-// Boxes of particles that rub and roll on each other and on walls, dense enough for contacts that slide, that
-// stick, that turn and that part.
+// Boxes of particles that rub and roll on each other, on walls and on bodies, dense enough for contacts that
+// slide, that stick, that turn and that part.
 #pragma once
 
 #include "support/contact_book.hpp"
@@ -7,13 +7,16 @@
 
 namespace scree {
 
-// Laws whose bits are the same on all backends, without bodies.
+// Laws whose bits are the same on all backends.
 inline const BoxCase kRubbingBoxes[] = {
     {"2D, polydisperse, periodic", 2, 2, 0.2, false, false, 2, 1, true},
     {"2D, walls, periodic in x", 2, 1, 0.4, true, false, 2, 1, false},
     {"3D, polydisperse, periodic", 3, 3, 0.3, false, false, 2, 1, false},
     {"3D, polydisperse, walls", 3, 0, 0.3, true, false, 1, 1, false},
-    {"3D, Hertz and Mindlin, walls", 3, 1, 0.3, true, false, 2, 1, false, 2e4}};
+    {"3D, Hertz and Mindlin, walls", 3, 1, 0.3, true, false, 2, 1, false, 2e4},
+    {"2D, bodies, periodic in x", 2, 1, 0.4, true, true, 2, 1, false},
+    {"3D, bodies, periodic", 3, 3, 0.3, false, true, 2, 1, false},
+    {"3D, Hertz and Mindlin, bodies and walls", 3, 1, 0.3, true, true, 2, 1, false, 2e4}};
 
 // The model with friction, weak and strong, with a dashpot and without, and with particles that spin.
 inline Model rubbing(Model model) {

@@ -49,6 +49,7 @@ TEST_CASE("particles rub the same on both backends, and each goes on from what t
         check_equal(kind, cpu, cuda), check_ledgers(cpu, cuda);
       }
       RememberingBox on_cpu(model, {}, make_cpu), on_cuda(model, {}, make_cuda);
+      on_cpu.motion = on_cuda.motion = cpu.motion;
       on_cpu.start(cuda.state()), on_cuda.start(cpu.state());
       for (RememberingBox* box : {&on_cpu, &on_cuda, &cpu}) box->take_steps(100);
       check_equal(kind, on_cpu, on_cuda), check_equal(kind, cpu, on_cuda);

@@ -1,0 +1,223 @@
+// A particle that meets the disc or sphere of a body obliquely, with spins: against two particles.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/bars.hpp"
+#include "support/catch.hpp"
+#include "support/near.hpp"
+#include "verification/contact/errors.hpp"
+#include "verification/friction/grain_decks.hpp"
+
+namespace scree {
+
+namespace {
+
+// One that meets the particle: a body, or another particle.
+struct Partner {
+  Vec3 position, velocity;
+  Real spin, radius, mass, inertia;  // spin: about z [rad/s]
+  Vec3 offset{};                     // of the shape in the body's frame [m]
+};
+
+struct Meeting {
+  int dimension;
+  Grain grain;
+  Partner partner;
+  std::string law;
+  Real step, end;
+  int substeps = 1;
+  std::string sides{};
+  Real half = 2;  // of the space [m]
+
+  std::string vector(Vec3 a) const { return dimension == 3 ? toml(a) : fmt::format("[{}, {}]", a.x, a.y); }
+  std::string spin(Vec3 w) const { return dimension == 3 ? toml(w) : fmt::format("[{}]", w.z); }
+  std::string setup() const {
+    return fmt::format(
+               "[space]\ndimension = {}\nmin = {}\nmax = {}\n{}[time]\nend = {}\nstep = {}\n[integrator]\n"
+               "particles = \"velocity-verlet\"\nsubsteps = {}\n[[contact.pairs]]\n{}",
+               dimension, vector(-half * Vec3{1, 1, 1}), vector(half * Vec3{1, 1, 1}), sides, end, step,
+               substeps, law) +
+           particle("grain", grain.position, grain.velocity, grain.spin, grain.radius, grain.mass);
+  }
+  std::string particle(const char* name, Vec3 position, Vec3 velocity, Vec3 w, Real radius, Real mass) const {
+    return fmt::format(
+        "[[particles]]\nname = \"{}\"\nkind = \"list\"\npositions = [{}]\nvelocity = {}\n"
+        "angular_velocity = {}\nradius = {}\nmass = {}\n",
+        name, vector(position), vector(velocity), spin(w), radius, mass);
+  }
+  Model with_body() const {
+    return model_of(setup() + fmt::format("[[bodies]]\nname = \"partner\"\nposition = {}\nvelocity = {}\n"
+                                          "angular_velocity = {}\nmass = {}\ninertia = {}\n"
+                                          "shapes = [{{ radius = {}, offset = {} }}]\n",
+                                          vector(partner.position), vector(partner.velocity), partner.spin,
+                                          partner.mass, partner.inertia, partner.radius,
+                                          vector(partner.offset)));
+  }
+  Model with_particle() const {
+    return model_of(setup() + particle("partner", partner.position, partner.velocity, {0, 0, partner.spin},
+                                       partner.radius, partner.mass));
+  }
+};
+
+const std::string kUndamped = "stiffness = 1e6\nfriction = 0.3\ntangential_stiffness = 8e5\n";
+constexpr Real kContactTime = 2.3e-3;  // of 1 kg against as much [s]
+
+// Momentum and angular momentum about the origin of particle and body.
+struct Momenta {
+  Vec3 linear, angular;
+};
+Momenta momenta(SimulationRun& run, const Partner& partner) {
+  const ParticleLedger particles = run.particle_ledger();
+  const std::vector<Real>&q = run.bodies().position, &v = run.bodies().velocity;
+  const Vec3 of_body = partner.mass * Vec3{v[0], v[1], 0};
+  return {particles.momentum + of_body,
+          particles.angular_momentum + cross({q[0], q[1], 0}, of_body) + Vec3{0, 0, partner.inertia * v[2]}};
+}
+
+// Two discs that are equal and meet obliquely, or a disc and one beside the centre of its body.
+Meeting disc_meeting(Real steps, int substeps, Real phase, Vec3 offset) {
+  constexpr Real R = 0.05;
+  const Vec3 normal{0.8, 0.6, 0};
+  const Real h = kContactTime / steps;
+  Meeting out{2,
+              {.velocity = {-1.5, 0.4, 0}, .spin = {0, 0, 20}, .radius = R, .mass = 1},
+              {-offset, {0.5, 0.1, 0}, 12, R, 1, R * R / 2, offset},
+              kUndamped,
+              h,
+              2 * kContactTime};
+  out.substeps = substeps;
+  const Vec3 towards =
+      out.grain.velocity - out.partner.velocity - out.partner.spin * Vec3{-offset.y, offset.x};
+  out.grain.position = 2 * R * normal - (phase + 0.5) * h * dot(towards, normal) * normal;
+  return out;
+}
+
+Real difference(const Particle& p, const Particle& q, Real radius) {
+  return std::max(norm(p.velocity - q.velocity), radius * norm(p.angular_velocity - q.angular_velocity));
+}
+
+}  // namespace
+
+// So heavy that it goes on as it came: its centre moves and turns like a particle's.
+TEST_CASE("a heavy body's sphere and disc do to a particle what a particle does that moves as they do") {
+  for (const int dimension : {2, 3})
+    for (const char* law : {"stiffness = 1e5\ndamping = 30.0\nfriction = 0.4\ntangential_stiffness = 8e4\n"
+                            "tangential_damping_ratio = 0.2\n",
+                            "stiffness = 1e5\nfriction = 5.0\ntangential_stiffness = 8e4\n"}) {
+      CAPTURE(dimension, law);
+      const Real z = dimension == 3 ? 0.02 : 0;
+      Meeting meeting{dimension,
+                      {.position = {0.15, 0.15, z},
+                       .velocity = {-1.5, -1, 10 * z},
+                       .spin = {200 * z, -500 * z, 30},
+                       .radius = 0.05,
+                       .mass = 1},
+                      {{0, 0, 0}, {0.3, -0.2, 0}, 15, 0.1, 1e15, 1e13},
+                      law,
+                      2e-5,
+                      0.08};
+      SimulationRun on_body(meeting.with_body()), on_particle(meeting.with_particle());
+      Real largest = 0, turned = 0;
+      for (int part = 1; part <= 40; ++part) {
+        for (SimulationRun* run : {&on_body, &on_particle}) run->run_until(part * meeting.end / 40);
+        const Particle p = on_body.particles().at(0), q = on_particle.particles().at(0);
+        largest = std::max(largest, difference(p, q, meeting.grain.radius));
+        turned = std::max(turned, norm(q.angular_velocity - meeting.grain.spin));
+      }
+      CHECK(turned > 10);
+      CHECK(keeps(largest, {.promise = 1e-9, .measured = 1e-12}));
+      CHECK(near(on_body.particle_ledger().contact_loss, on_particle.particle_ledger().contact_loss,
+                 {.relative = 1e-9, .absolute = 1e-12}));
+    }
+}
+
+// Of first order, as two particles are that slide in changing directions.
+TEST_CASE("a free body's disc and a particle part as two particles do, to the order of the method") {
+  const auto errors_at = [](Real steps, int substeps) {
+    Errors errors;
+    for (const Real phase : {0.0, 0.25, 0.5, 0.75}) {
+      SimulationRun run(disc_meeting(steps, substeps, phase, {}).with_body()),
+          exact(disc_meeting(4000, 1, phase, {}).with_particle());
+      for (SimulationRun* one : {&run, &exact}) one->run();
+      REQUIRE(run.particle_ledger().contacts == 0);
+      const std::vector<Particle> after = exact.particles();
+      const std::vector<Real>& v = run.bodies().velocity;
+      errors.add(difference(run.particles().at(0), after.at(0), 0.05));
+      errors.add(norm(Vec3{v[0], v[1], 0} - after[1].velocity));
+      errors.add(Real(0.05) * (v[2] - after[1].angular_velocity.z));
+    }
+    return errors;
+  };
+  for (const int substeps : {1, 5}) {
+    CAPTURE(substeps);
+    const Errors coarse = errors_at(20, substeps), fine = errors_at(80, substeps);
+    CHECK(keeps(coarse.worst(), {.promise = 2e-2, .measured = 4.3e-3}));
+    CHECK(keeps(fine.worst(), {.promise = 5e-3, .measured = 1.1e-3}));
+    CHECK(order_between(coarse, fine) / 2 > 0.9);
+  }
+}
+
+// A step of the particles sees the body where it was predicted, the next one begins at its corrected place.
+TEST_CASE("a particle and a free body that it rubs keep their momentum and angular momentum to that order") {
+  for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}})
+    for (const int substeps : {1, 5}) {
+      CAPTURE(offset.x, substeps);
+      const auto errors_at = [&](Real steps, Errors& balance) {
+        Errors errors;
+        for (const Real phase : {0.0, 0.25, 0.5, 0.75}) {
+          const Meeting meeting = disc_meeting(steps, substeps, phase, offset);
+          SimulationRun run(meeting.with_body());
+          const Momenta before = momenta(run, meeting.partner);
+          run.run();
+          REQUIRE(run.particle_ledger().contacts == 0);
+          const Momenta after = momenta(run, meeting.partner);
+          errors.add(norm(after.linear - before.linear));
+          errors.add(norm(after.angular - before.angular) / meeting.grain.radius);
+          balance.add(run.balance_error() / run.exchanged());
+        }
+        return errors;
+      };
+      Errors coarse_balance, fine_balance;
+      const Errors coarse = errors_at(20, coarse_balance), fine = errors_at(80, fine_balance);
+      CHECK(keeps(coarse.worst(), {.promise = 1e-3, .measured = 2.4e-4}));
+      CHECK(keeps(fine.worst(), {.promise = 5e-5, .measured = 5.1e-6}));
+      CHECK(order_between(coarse, fine) / 2 > 1.75);
+      CHECK(keeps(coarse_balance.worst(), {.promise = 2e-2, .measured = 5.3e-3}));
+      CHECK(keeps(fine_balance.worst(), {.promise = 2e-3, .measured = 4.5e-4}));
+    }
+}
+
+// Both go through the side while they touch.
+TEST_CASE("a particle rubs on a body across a periodic side as in open space") {
+  Meeting meeting{2,
+                  {.position = {1.6, 0.1499, 0},
+                   .velocity = {2.5, -0.2, 0},
+                   .spin = {0, 0, 10},
+                   .radius = 0.05,
+                   .mass = 1},
+                  {{1.6, 0, 0}, {2, 0, 0}, 5, 0.1, 1e15, 1e13},
+                  "stiffness = 1e5\nfriction = 0.4\ntangential_stiffness = 8e4\n",
+                  2e-5,
+                  0.4};
+  meeting.law = "stiffness = 30.0\ndamping = 0.5\nfriction = 0.2\ntangential_stiffness = 20.0\n";
+  meeting.sides = "x_min = \"periodic\"\nx_max = \"periodic\"\n";
+  SimulationRun periodic(meeting.with_body());
+  meeting.sides = "", meeting.half = 5;
+  SimulationRun open(meeting.with_body());
+  int touching = 0;
+  bool through = false;
+  for (int part = 1; part <= 200; ++part) {
+    for (SimulationRun* run : {&periodic, &open}) run->run_until(part * meeting.end / 200);
+    const Particle p = periodic.particles().at(0), q = open.particles().at(0);
+    CHECK(difference(p, q, meeting.grain.radius) < 1e-11);
+    const std::int64_t contacts = open.particle_ledger().contacts;
+    CHECK(periodic.particle_ledger().contacts == contacts);
+    touching += contacts > 0 && p.image.x != 0, through = through || p.image.x != 0;
+  }
+  CHECK(touching > 10);
+  CHECK(through);
+}
+
+}  // namespace scree
