@@ -51,8 +51,8 @@ struct RememberingBox {
     start(state);
     backend->particles().initial_forces();
   }
-  // A run of so many steps; then the particles outside leave.
-  void take_steps(Index steps, Real h = kMovingStep) {
+  // A run of so many steps, each with so many looks at the bodies after it; then the particles outside leave.
+  void take_steps(Index steps, Real h = kMovingStep, int looks = 0) {
     const std::unique_ptr<ExplicitRun> run = backend->start_run(h);
     while (steps > 0) {
       for (BodyMotion& body : motion)
@@ -61,6 +61,7 @@ struct RememberingBox {
       const Index most = motion.empty() ? steps : 1;
       const StepsTaken taken = run->take_steps(most, most < steps, timers);
       steps -= taken.closed;
+      for (int look = 0; look < looks; ++look) run->shape_contacts();
       if (!taken.open) break;
     }
     const std::vector<Leaver> leavers = backend->particles().outside();

@@ -1,0 +1,83 @@
+// What particles remember of the bodies that they rub after a step: that of the bodies' last place, however
+// often one looks.
+#include "support/backends.hpp"
+#include "support/catch.hpp"
+#include "support/contact_book.hpp"
+#include "support/particle_bits.hpp"
+#include "support/rubbing_box.hpp"
+
+namespace scree {
+
+namespace {
+
+void shift_bodies(RememberingBox& box, Real shift, Real turn) {
+  for (BodyMotion& body : box.motion) body.position += Vec3{shift, -shift, 0}, body.angle += turn;
+  box.backend->list().place_bodies(box.motion);
+}
+
+// Of contacts with bodies alone.
+KeptContacts with_bodies(const RememberingBox& box) {
+  const KeptContacts all = box.state().contacts;
+  KeptContacts out;
+  out.numbers = all.numbers;
+  const GlobalId first = kFirstSurfaceId + std::ssize(box.model.walls);
+  for (std::int64_t i = 0; i < all.particles(); ++i) {
+    for (std::int64_t k = all.offsets[static_cast<std::size_t>(i)];
+         k < all.offsets[static_cast<std::size_t>(i) + 1]; ++k)
+      if (id_of(all.keys[static_cast<std::size_t>(k)]) >= first)
+        out.add(all.keys[static_cast<std::size_t>(k)], all.values_of(k));
+    out.end_row();
+  }
+  return out;
+}
+
+// The boxes with bodies that rub.
+template <class Check>
+void for_each_box(const Check& check) {
+  for (const BoxCase& c : kRubbingBoxes) {
+    if (!c.bodies) continue;
+    CAPTURE(c.name);
+    check(moving_rubbing_box(c, Leaving::drift));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("looks at the bodies after a step and in reports leave what contacts remember as it was") {
+  for_each_box([](const Model& model) {
+    RememberingBox one(model, {}, make_test_backend), looked_at(model, {}, make_test_backend);
+    for (RememberingBox* box : {&one, &looked_at}) box->start(), box->take_steps(60);
+    one.take_steps(40), looked_at.take_steps(40, kMovingStep, 3);
+    looked_at.backend->reports().ledger(kMovingStep), looked_at.backend->reports().body_contacts();
+    CHECK(difference(one.state().contacts, looked_at.state().contacts) == "");
+    CHECK(differing_fields(one.state().particles, looked_at.state().particles) == "");
+    CHECK(!with_bodies(one).keys.empty());
+  });
+}
+
+TEST_CASE("contacts remember a step to the bodies' corrected place as if they had gone there at once") {
+  for_each_box([](const Model& model) {
+    RememberingBox at_once(model, {}, make_test_backend), corrected(model, {}, make_test_backend);
+    for (RememberingBox* box : {&at_once, &corrected}) box->start(), box->take_steps(60);
+    REQUIRE(!with_bodies(at_once).keys.empty());
+    constexpr Real kShift = 2e-5, kTurn = 3e-4;
+    for (RememberingBox* box : {&at_once, &corrected}) {
+      const std::unique_ptr<ExplicitRun> run = box->backend->start_run(kMovingStep);
+      shift_bodies(*box, kShift, kTurn);
+      if (box == &corrected) shift_bodies(*box, -3 * kShift, kTurn);
+      run->take_steps(1, false, box->timers);
+      if (box == &corrected) shift_bodies(*box, 3 * kShift, -kTurn), run->shape_contacts();
+    }
+    at_once.motion = corrected.motion;
+    const KeptContacts a = with_bodies(at_once), b = with_bodies(corrected);
+    CHECK(a.offsets == b.offsets);
+    CHECK(a.keys == b.keys);
+    Real largest = 0, scale = 0;
+    for (std::size_t k = 0; k < a.values.size() && k < b.values.size(); ++k)
+      largest = std::max(largest, std::abs(a.values[k] - b.values[k])),
+      scale = std::max(scale, std::abs(a.values[k]));
+    CHECK(largest < 1e-9 * scale);  // of where the bodies are; the corrections leave round-off
+  });
+}
+
+}  // namespace scree
