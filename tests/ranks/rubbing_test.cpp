@@ -41,7 +41,7 @@ TEST_CASE("rubbing particles move on any number of ranks as on one") {
 TEST_CASE("rubbing particles go on from any number of ranks on any other") {
   petsc();
   for (const RubbingKind& kind : kRubbingKinds) {
-    const BoxCase& c = kRubbingBoxes[4];
+    const BoxCase& c = kRubbingBoxes[7];
     CAPTURE(kind.name, c.name);
     const Model model = kind.of(moving_rubbing_box(c, Leaving::remove));
     const Ranks world = Ranks::world();
