@@ -17,7 +17,7 @@ constexpr const char* kLeftOut =
     "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies, "
     "in explicit steps (velocity-verlet, double precision); else contact forces act along the normal "
     "alone. "
-    "There is no rolling resistance and no cohesion. All that touches is a disc (2D), "
+    "There is no cohesion. All that touches is a disc (2D), "
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
     "meshes. Bodies are rigid, and in 3D too they and their joints are planar: they move along x and "
     "y and turn about z, and forces along z do nothing to them. Joints have no play, no stops and no "
