@@ -29,10 +29,19 @@ using PrunedViews = ContactViews<PrunedRows<0>>;
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
   const PrunedRows<0>& r = in.rows;
-  return {
-      in.position,        in.velocity, in.material, {r.rows, r.counts, r.neighbors, use, margin, r.places},
-      in.surface_offsets, in.surfaces, in.planes,   in.ground,
-      in.loads,           in.steps,    in.history,  in.spin};
+  return {in.position,
+          in.velocity,
+          in.material,
+          {r.rows, r.counts, r.neighbors, use, margin, r.places},
+          in.surface_offsets,
+          in.surfaces,
+          in.planes,
+          in.ground,
+          in.loads,
+          in.steps,
+          in.history,
+          in.spin,
+          in.reach};
 }
 
 // The same for a warp that shares out the contacts of its rows.
@@ -44,7 +53,8 @@ __device__ inline ContactViews<WarpRows> warp_views(const PrunedViews& in, RowUs
           in.surface_offsets, in.surfaces,
           in.planes,          in.ground,
           in.loads,           in.steps,
-          in.history,         in.spin};
+          in.history,         in.spin,
+          in.reach};
 }
 
 // Force, Newton matrix and residual of the particles [first, end).

@@ -371,8 +371,8 @@ class ContactKernelsOf : public DeviceContactKernels {
     }
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    if constexpr (LawOf<Laws>::kMoves)
-      throw std::logic_error("mixed_advance: laws that move are computed in double precision");
+    if constexpr (LawOf<Laws>::kMoves || kReaches<LawOf<Laws>>)
+      throw std::logic_error("mixed_advance: laws that move or attract are computed in double precision");
     else
       advance_in_mixed(device, r);
   }

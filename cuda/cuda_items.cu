@@ -28,7 +28,7 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
 
 DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity, const Vec4* spin) {
   DeviceViews views = surfaces.views(position, velocity, now.material.data(), list.rows());
-  views.history = history.views(), views.spin = spin;
+  views.history = history.views(), views.spin = spin, views.reach = model.contact.reach;
   return views;
 }
 

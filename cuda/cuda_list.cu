@@ -187,12 +187,12 @@ void CudaList::search(Real skin) {
   in.ghost_starts = ghosts ? ghost_sort_.starts() : nullptr;
   in.ghost_items = ghosts ? ghost_items_.data() : nullptr;
   in.active = items_.layout.active, in.owned = items_.owned;
-  in.skin = skin;
+  in.skin = builder_.past_touch(skin);
   items_.list.build(items_.device(), in);
   const DeviceSurfaces::Particles particles{
       now.position.data(),     now.material.data(),      items_.owned, items_.layout.active, &grid_,
       particle_sort_.starts(), builder_.largest_radius()};
-  items_.surfaces.build(items_.device(), particles, bodies_.side().placed(), skin);
+  items_.surfaces.build(items_.device(), particles, bodies_.side().placed(), builder_.past_touch(skin));
 }
 
 // What of the list each rank makes alone: what takes most of the memory.

@@ -142,7 +142,7 @@ struct ListInput {
   const Index* ghost_starts;     // [cells + 1] into ghost_items; null without any
   const Index* ghost_items;
   Index active, owned;  // owned particles have rows, those that are not active empty ones
-  Real skin;            // [m]
+  Real skin;            // NeighborBuilder::past_touch() [m]
 };
 
 class DeviceList {

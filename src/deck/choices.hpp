@@ -57,6 +57,15 @@ inline constexpr auto kWords<Precision> = std::to_array<Word<Precision>>({{"doub
                                                                           {"mixed", Precision::mixed}});
 
 // The bodies' velocities at t = 0.
+// Of surfaces with a work of adhesion.
+enum class Adhesion {
+  jkr,  // a neck that holds beyond touch: Johnson, Kendall, Roberts
+  dmt   // a constant pull while they touch: Derjaguin, Muller, Toporov
+};
+template <>
+inline constexpr auto kWords<Adhesion> = std::to_array<Word<Adhesion>>({{"jkr", Adhesion::jkr},
+                                                                        {"dmt", Adhesion::dmt}});
+
 enum class StartVelocities {
   given,      // the run is refused where they contradict joints and drivers
   consistent  // changed to agree with them

@@ -199,7 +199,31 @@ const TableKeys& contact_keys() {
            .at_least(0)
            .left_out("friction, where something resists rolling in 3D; else nothing resists twisting")
            .about("mu of the spring against spinning about the normal, which slides at 2/3 a mu F, a: radius "
-                  "of contact, sqrt(R* d) (Marshall, 2009).")},
+                  "of contact, sqrt(R* d) (Marshall, 2009)."),
+       real("work_of_adhesion", "J/m^2")
+           .at_least(0)
+           .left_out("the two do not stick")
+           .about(
+               "w, beside Hertz's law: what parting the two surfaces takes. What attracts may pull, whatever "
+               "`tension` says, and friction counts the pull as load. In explicit steps, double precision."),
+       real("surface_energy", "J/m^2")
+           .at_least(0)
+           .left_out("work_of_adhesion is given, or none")
+           .about("In place of work_of_adhesion: w/2, of one of two surfaces that are alike."),
+       choice<Adhesion>("adhesion")
+           .otherwise_choice(Adhesion::jkr)
+           .about(
+               "With work_of_adhesion. Jkr: a neck that is made at touch and holds down to a pull of 3/2 pi "
+               "w R* (Johnson, Kendall, Roberts, 1971; soft, sticky, large). Dmt: a pull of 2 pi w R* while "
+               "they touch (Derjaguin, Muller, Toporov, 1975; hard, small). One of them in a deck."),
+       real("attraction", "N")
+           .at_least(0)
+           .left_out("none")
+           .about("A constant pull beside a linear law, or Hertz's, while the two touch."),
+       real("attraction_range", "m")
+           .above(0)
+           .left_out("the attraction ends with touch")
+           .about("Beyond touch the attraction falls evenly to zero over this distance.")},
       ""};
   static const TableKeys keys{
       "Contact laws and the pair search.",

@@ -17,12 +17,12 @@ constexpr const char* kLeftOut =
     "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies, "
     "in explicit steps (velocity-verlet, double precision); else contact forces act along the normal "
     "alone. "
-    "There is no cohesion. All that touches is a disc (2D), "
+    "Attraction is explicit, too, and not of bodies. All that touches is a disc (2D), "
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
     "meshes. Bodies are rigid, and in 3D too they and their joints are planar: they move along x and "
     "y and turn about z, and forces along z do nothing to them. Joints have no play, no stops and no "
-    "friction. All particles are there at the start: none flow in, bond or break. There is no fluid, "
-    "no heat, and particles that do not touch do not act on each other.";
+    "friction. All particles are there at the start: none flow in, bond or break. There is no fluid "
+    "and no heat.";
 
 // Appends the words of `text` in lines of kWidth, each line indented.
 void wrap(std::string& out, const std::string& text, std::size_t indent) {

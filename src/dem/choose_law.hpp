@@ -8,13 +8,32 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "physics/cohesion.hpp"
 #include "physics/contact_law.hpp"
 
 namespace scree {
 
-// The friction that goes with a normal law.
+// What goes with a normal law.
 template <class Normal>
-using SliderOf = std::conditional_t<std::is_same_v<Normal, HertzLaw>, MindlinSlider, LinearSlider>;
+struct Beside {
+  using Slider = LinearSlider;
+  static constexpr bool attracts = false;
+};
+template <>
+struct Beside<HertzLaw> {
+  using Slider = MindlinSlider;
+  static constexpr bool attracts = false;
+};
+template <>
+struct Beside<JkrLaw> {
+  using Slider = MindlinSlider;
+  static constexpr bool attracts = true;
+};
+template <class Repulsion>
+struct Beside<AttractedLaw<Repulsion>> {
+  using Slider = typename Beside<Repulsion>::Slider;
+  static constexpr bool attracts = true;
+};
 
 // Of all pairs of materials, in the order of Contact::laws, which `Law` accepts.
 template <class Law>
@@ -24,7 +43,8 @@ std::vector<Law> laws_of(const Contact& contact) {
     Law& law = laws.emplace_back();
     law.normal = typename Law::Normal(contact.laws[k]);
     if constexpr (Law::Tangential::acts) law.tangential = Law::Tangential::of(contact.friction[k]);
-    if constexpr (Law::Rolling::acts) law.rolling = Law::Rolling::of(contact.rolling[k]);
+    if constexpr (Law::Rolling::acts)
+      if (!contact.rolling.empty()) law.rolling = Law::Rolling::of(contact.rolling[k]);
   }
   return laws;
 }
@@ -35,20 +55,30 @@ inline constexpr bool kRolls = !std::is_same_v<Normal, LinearLaw>;
 
 // Calls use(laws) with the laws of all pairs of materials as a std::vector<ContactLaw<...>>: of the first of
 // NormalLaws that accepts them all, with friction where contacts rub, and with all that resists rolling where
-// some does. Returns what use returns, the same type for every law.
+// some does. Laws that attract have one form where contacts rub, with what resists rolling, and a neck has no
+// other. Returns what use returns, the same type for every law.
 template <std::size_t kFirst = 0, class Use>
 auto with_contact_laws(const Contact& contact, const Use& use) {
   using Normal = std::tuple_element_t<kFirst, NormalLaws>;
-  const bool rolls = !contact.rolling.empty();
-  const bool accepts =
-      std::all_of(contact.laws.begin(), contact.laws.end(), Normal::accepts) && (kRolls<Normal> || !rolls);
+  using Slider = typename Beside<Normal>::Slider;
+  constexpr bool attracts = Beside<Normal>::attracts;
+  const bool rolls = !contact.rolling.empty(), rubs = !contact.friction.empty();
+  const bool accepts = std::all_of(contact.laws.begin(), contact.laws.end(), Normal::accepts) &&
+                       (kRolls<Normal> || !rolls) && (!kHasNeck<Normal> || rubs);
   if constexpr (kFirst + 1 < std::tuple_size_v<NormalLaws>)
     if (!accepts) return with_contact_laws<kFirst + 1>(contact, use);
   if (!accepts) throw std::logic_error("with_contact_laws: no law accepts all pairs of materials");
-  if constexpr (kRolls<Normal>)
-    if (rolls) return use(laws_of<ContactLaw<Normal, SliderOf<Normal>, AnyRolling>>(contact));
-  if (contact.friction.empty()) return use(laws_of<ContactLaw<Normal>>(contact));
-  return use(laws_of<ContactLaw<Normal, SliderOf<Normal>>>(contact));
+  if constexpr (kHasNeck<Normal>) {
+    return use(laws_of<ContactLaw<Normal, Slider, AnyRolling>>(contact));
+  } else {
+    if (!rubs) return use(laws_of<ContactLaw<Normal>>(contact));
+    if constexpr (kRolls<Normal>)
+      if (rolls || attracts) return use(laws_of<ContactLaw<Normal, Slider, AnyRolling>>(contact));
+    if constexpr (!attracts)
+      return use(laws_of<ContactLaw<Normal, Slider>>(contact));
+    else
+      throw std::logic_error("with_contact_laws: a law that attracts has no form without rolling");
+  }
 }
 
 // How many numbers the law remembers of a contact.

@@ -45,6 +45,11 @@ struct TotalForce {
     force += part.force, loss_power += part.loss_power, torque += part.torque;
     return *this;
   }
+  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  SCREE_HD static TotalForce nothing() {
+    constexpr Real z = -0.0;
+    return {{z, z, z}, z, {z, z, z}};
+  }
 };
 
 // What a contact of a law that moves does to one of its partners.
@@ -123,7 +128,7 @@ struct EnergyOf {
   template <class Law, class History>
   requires Law::kMoves SCREE_HD Real operator()(const Law& law, const PairState& pair,
                                                 const History& history) const {
-    return (*this)(law, pair) + law.spring_energy_of(pair, history);
+    return law.energy_of(pair, history);
   }
   template <class Views>
   SCREE_HD const Real* stored(const Views& in, Index entry) const {

@@ -2,115 +2,14 @@
 // One text for the CPU and CUDA; what is done with a contact its visitors say.
 #pragma once
 
-#include <cstdint>
 #include <type_traits>
 #include <utility>
 
-#include "base/hd.hpp"
-#include "base/types.hpp"
-#include "base/vec3.hpp"
-#include "dem/history_slots.hpp"
-#include "dem/surface_sums.hpp"
-#include "dem/surfaces.hpp"
+#include "dem/contact_views.hpp"
 #include "physics/contact_law.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {
-
-// The law of every contact: one pair of materials, or a table of them.
-template <class Law>
-struct OneLaw {
-  Law law;
-  SCREE_HD const Law& get(int, int) const { return law; }
-};
-
-template <class Law>
-struct LawTable {
-  const Law* laws;  // [materials * materials]
-  int materials;
-  SCREE_HD const Law& get(int i, int j) const { return laws[i * materials + j]; }
-};
-
-// evaluate(j) of an entry of a row, or evaluate(j, slot) where that wants to know the list's slot of the
-// entry, too.
-template <class Evaluate>
-inline constexpr bool kAsksForSlot = std::is_invocable_v<const Evaluate&, Index, std::int64_t>;
-template <class Evaluate>
-SCREE_HD auto evaluate_entry(const Evaluate& evaluate, Index j, std::int64_t slot) {
-  if constexpr (kAsksForSlot<Evaluate>)
-    return evaluate(j, slot);
-  else
-    return evaluate(j);
-}
-
-// Where a neighbour list keeps the entries of its rows: one row after the other in the serial backend,
-// another type of the same form on a GPU.
-struct PackedRows {
-  const Index* offsets;  // [items + 1]
-  const Index* neighbors;
-
-  // Slot of the row's first entry, and from one entry to the next.
-  SCREE_HD std::int64_t first(Index i) const { return offsets[i]; }
-  SCREE_HD static constexpr int stride() { return 1; }
-  // Calls add(evaluate(j)) for the entries j of row i of which touches(j) holds, in their order. evaluate has
-  // no side effects: it may be called for others, too. It may ask for the slot (evaluate_entry).
-  template <class Touches, class Evaluate, class Add>
-  SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
-                                 const Add& add) const {
-    const Index end = offsets[i + 1];
-    for (Index k = offsets[i]; k < end; ++k)
-      if (const Index j = neighbors[k]; touches(j)) add(evaluate_entry(evaluate, j, k));
-  }
-};
-
-// Whether rows are summed up together with those of other items: sum_contacts(i, test, evaluate, sum) calls
-// evaluate(i, j, slot) once for every contact, maybe of another row.
-template <class Rows>
-inline constexpr bool kShared = false;
-template <class Rows>
-requires Rows::kShared inline constexpr bool kShared<Rows> = true;
-
-// Read-only views of items and neighbour list.
-template <class Rows>
-struct ContactViews {
-  const Vec4* position;  // x, y, z, radius
-  const Vec4* velocity;  // x, y, z, mass
-  const int* material;
-  Rows rows;
-  const Index* surface_offsets;  // [particles + 1]
-  const Index* surfaces;         // the first `ground` are planes, on the ground; the others are on bodies
-  const WallPlane* planes;
-  Index ground;
-  const SurfaceLoad* loads;  // per entry of the surfaces: what those on bodies do at this instant,
-  const SurfaceStep* steps;  // and over an implicit step
-  HistoryViews history{};
-  const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
-};
-
-SCREE_HD bool touch(Vec4 p, Vec4 q) {
-  const Vec3 r = xyz(p) - xyz(q);
-  const Real reach = p.w + q.w;
-  return dot(r, r) < reach * reach;
-}
-
-// Whether other items touch the one at p, or come within a margin of that [m].
-struct TouchTest {
-  Vec4 p;
-  const Vec4* position;  // all items
-  SCREE_HD bool operator()(Index j) const { return touch(p, position[j]); }
-  SCREE_HD bool near(Index j, Real margin) const {
-    const Vec4 q = position[j];
-    const Vec3 r = xyz(p) - xyz(q);
-    const Real reach = p.w + q.w + margin;
-    return dot(r, r) < reach * reach;
-  }
-};
-
-SCREE_HD ContactGeometry wall_pair(Vec4 p, const WallPlane& wall) {
-  return plane_pair(xyz(p), p.w, wall.point, wall.normal);
-}
-
-SCREE_HD PairSize wall_size(Real radius, Real mass) { return {radius, kInfinity, mass, kInfinity}; }
 
 // A look says what a walk sees of the items: what it reads of item i itself, which others touch it, and the
 // pair of the two. This is the look at one instant; the pair is a PairState.
@@ -299,14 +198,15 @@ struct ContactWalk {
 
   template <bool kAccepts = false, class Of, class Visit>
   SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
-    walk<kAccepts>(self, look.test(in, self), of, visit);
+    walk<kAccepts>(self, reaching(look.test(in, self)), of, visit);
   }
   // Adds `of` the contacts with neighbours to sum, which is of its type but for the history.
   SCREE_HD_CALLER
   template <bool kAccepts, class Of, class Sum>
   SCREE_HD void sum_neighbors(const Self& self, const Of& of, Sum& sum) const {
     if constexpr (kShared<Rows>) {
-      in.rows.sum_contacts(self.i, look.test(in, self), SharedContact<kAccepts, Of, Sum>{*this, of}, sum);
+      in.rows.sum_contacts(self.i, reaching(look.test(in, self)), SharedContact<kAccepts, Of, Sum>{*this, of},
+                           sum);
     } else {
       neighbors<kAccepts>(self, of, [&](const Sum& contact, Index) { sum += contact; });
     }
@@ -314,7 +214,7 @@ struct ContactWalk {
   // Of the neighbours those of which only(j) holds.
   template <class Only, class Of, class Visit>
   SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
-    const auto test = look.test(in, self);
+    const auto test = reaching(look.test(in, self));
     walk<false>(
         self, [&](Index j) { return only(j) && test(j); }, of, visit);
   }
@@ -328,13 +228,15 @@ struct ContactWalk {
       }
       const WallPlane& plane = in.planes[surface];
       const auto pair = look.wall(in, self, plane);
-      if (!Look::closed(pair)) continue;
+      if (!may_be_closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
       if constexpr (sees_history<Of, decltype(pair)>()) {
-        const auto contact = of(law, pair, in.history.template read<Law>(in.history.ground, entry));
+        const auto history = in.history.template read<Law>(in.history.ground, entry);
+        if (!found_closed(law, pair, history)) continue;
+        const auto contact = of(law, pair, history);
         if constexpr (kAccepts) in.history.template write<Law>(in.history.ground, entry, contact.history);
         visit(contact, surface);
-      } else {
+      } else if (found_closed(law, pair, ContactHistory{})) {
         visit(of(law, pair), surface);
       }
     }
@@ -350,8 +252,12 @@ struct ContactWalk {
     SCREE_HD Sum operator()(Index i, Index j, std::int64_t slot) const {
       const auto& in = walk.in;
       const Self owner = walk.look.self(in, i);
-      const auto contact = of(walk.laws.get(owner.material, in.material[j]), walk.look.pair(in, owner, j),
-                              in.history.template read<Law>(in.history.neighbors, slot));
+      const Law& law = walk.laws.get(owner.material, in.material[j]);
+      const auto pair = walk.look.pair(in, owner, j);
+      const auto history = in.history.template read<Law>(in.history.neighbors, slot);
+      if constexpr (kReaches<Law>)
+        if (!found_closed(law, pair, history)) return Sum::nothing();
+      const auto contact = of(law, pair, history);
       if constexpr (kAccepts) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;
     }
@@ -361,6 +267,32 @@ struct ContactWalk {
     }
   };
 
+  // What of the row may have a contact.
+  template <class Test>
+  SCREE_HD auto reaching(const Test& test) const {
+    if constexpr (kReaches<Law> && requires { test.near(Index{}, Real{}); })
+      return ReachTest<Test>{test, in.reach};
+    else
+      return test;
+  }
+  // Over a step that may open and close contacts the look alone says what touches.
+  template <class Pair>
+  static constexpr bool kLawCloses = kReaches<Law>&& std::is_base_of_v<PairState, Pair>;
+  template <class Pair>
+  SCREE_HD bool may_be_closed(const Pair& pair) const {
+    if constexpr (kLawCloses<Pair>)
+      return pair.geometry.overlap > -in.reach;
+    else
+      return Look::closed(pair);
+  }
+  // Of what may_be_closed(), or a test of the row, has let through.
+  template <class Pair, class History>
+  SCREE_HD static bool found_closed(const Law& law, const Pair& pair, const History& history) {
+    if constexpr (kLawCloses<Pair>)
+      return law.closed(pair, history);
+    else
+      return true;
+  }
   template <class Of, class Pair>
   SCREE_HD static constexpr bool sees_history() {
     if constexpr (Law::kHistory > 0)
@@ -373,7 +305,9 @@ struct ContactWalk {
   template <bool kAccepts, class Test, class Of, class Visit>
   SCREE_HD void walk(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     using Pair = decltype(look.pair(in, self, 0));
-    if constexpr (sees_history<Of, Pair>())
+    if constexpr (kLawCloses<Pair>)
+      walk_reaching<kAccepts>(self, test, of, visit);
+    else if constexpr (sees_history<Of, Pair>())
       walk_with_history<kAccepts>(self, test, of, visit);
     else
       walk_without(self, test, of, visit);
@@ -412,6 +346,36 @@ struct ContactWalk {
             in.history.template write<Law>(in.history.neighbors, found.slot, found.contact.history);
           visit(found.contact, found.j);
         });
+  }
+
+  // What the test has found may turn out to be no contact: it is evaluated where it is added.
+  template <bool kAccepts, class Test, class Of, class Visit>
+  SCREE_HD void walk_reaching(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
+    using Pair = decltype(look.pair(in, self, 0));
+    struct Place {
+      Index j;
+      std::int64_t slot;
+    };
+    const auto add = [&](const Place& at) {
+      const Law& law = laws.get(self.material, in.material[at.j]);
+      const auto pair = look.pair(in, self, at.j);
+      if constexpr (sees_history<Of, Pair>()) {
+        const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
+        if (!found_closed(law, pair, history)) return;
+        const auto contact = of(law, pair, history);
+        if constexpr (kAccepts)
+          in.history.template write<Law>(in.history.neighbors, at.slot, contact.history);
+        visit(contact, at.j);
+      } else if (found_closed(law, pair, ContactHistory{})) {
+        visit(of(law, pair), at.j);
+      }
+    };
+    in.rows.for_each_contact(
+        self.i, test,
+        [](Index j, std::int64_t slot) {
+          return Place{j, slot};
+        },
+        add);
   }
 };
 

@@ -24,7 +24,7 @@ CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::ve
                                 const std::vector<Vec4>& spin) {
   Views views =
       surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()}, list.surfaces);
-  views.history = history.views(), views.spin = spin.data();
+  views.history = history.views(), views.spin = spin.data(), views.reach = model.contact.reach;
   return views;
 }
 

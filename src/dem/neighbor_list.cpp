@@ -81,7 +81,7 @@ void NeighborBuilder::collect_row(const ParticleStore& store, Index i, NeighborL
         const Index j = near_.items[k];
         const Vec4 q = store.position[j];
         const Vec3 d = xyz(p) - xyz(q);
-        const Real reach = p.w + q.w + list.skin;
+        const Real reach = p.w + q.w + past_touch(list.skin);
         if (dot(d, d) < reach * reach && j != i) list.neighbors.push_back(j);
       }
 }
@@ -104,7 +104,7 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
   }
   const SortedParticles sorted{near_.grid,     near_.start,   near_.items,
                                store.position, layout.active, largest_radius_};
-  build_rows(sorted, layout.owned, planes_, placed, period_, skin, list.surfaces);
+  build_rows(sorted, layout.owned, planes_, placed, period_, past_touch(skin), list.surfaces);
 }
 
 }  // namespace scree

@@ -20,7 +20,7 @@ namespace scree {
 struct NeighborList {
   std::vector<Index> offsets, neighbors;  // [owned + 1], [entries]
   SurfaceRows surfaces;
-  Real skin = 0;  // reach past touching that this list covers [m]
+  Real skin = 0;  // what this list covers past contacts [m]
 };
 
 // Where items stand in the store: owned particles, of which the first `active` are in the search, then
@@ -52,13 +52,16 @@ class NeighborBuilder {
  public:
   explicit NeighborBuilder(const Model& model);
 
-  // The grid whose cells are at least one largest diameter plus skin wide.
+  // The grid whose cells are at least a cutoff wide.
   CellGrid grid(Real skin, Index items) const;
   // particles, items: of all ranks and of this one, for the number of cells.
   SearchCells cells(Real skin, std::int64_t particles) const;
   SearchCells cells(Real skin, std::int64_t particles, const DomainBox& box, Index items) const;
-  // Largest distance of centres that the list must see: largest diameter plus skin [m].
-  Real cutoff(Real skin) const { return 2 * largest_radius_ + skin; }
+  // Largest distance of centres that the list must see: largest diameter, what contacts reach beyond touch,
+  // and skin [m].
+  Real cutoff(Real skin) const { return 2 * largest_radius_ + past_touch(skin); }
+  // How far past touching the list must see [m].
+  Real past_touch(Real skin) const { return skin + model_.contact.reach; }
   // Largest radius of a particle [m].
   Real largest_radius() const { return largest_radius_; }
   // Fills the list from the positions of all items, and of the surfaces on bodies.

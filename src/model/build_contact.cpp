@@ -8,6 +8,7 @@
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
 #include "model/touching.hpp"
+#include "physics/cohesion.hpp"
 #include "physics/restitution.hpp"
 
 namespace scree {
@@ -220,6 +221,66 @@ void check_mixing(const DeckTable& table, const Contact& contact, const KelvinVo
                              law.effective_modulus > 0 ? "one" : "none"));
 }
 
+// What surfaces that attract each other add to a pair's law.
+void take_attraction(const DeckTable& table, KelvinVoigt& law) {
+  const char* key = table.has("surface_energy") ? "surface_energy" : "work_of_adhesion";
+  if (table.has(key)) {
+    if (table.has("surface_energy") && table.has("work_of_adhesion"))
+      table.fail(key, "stands beside work_of_adhesion; give one of the two");
+    if (law.effective_modulus == 0)
+      table.fail(key,
+                 "needs Hertz's law: young_modulus and poisson_ratio of both materials, spheres, and no "
+                 "stiffness; other laws may have an attraction");
+    law.adhesion_work = (table.has("surface_energy") ? 2 : 1) * table.real(key);
+    law.neck = table.choice<Adhesion>("adhesion") == Adhesion::jkr;
+  }
+  if (table.has("attraction")) {
+    if (law.effective_modulus == 0 && law.exponent != 1)
+      table.fail("attraction", "needs a pair with exponent = 1, or Hertz's law");
+    if (!law.acts()) table.fail("attraction", "must be left out where the stiffness is 0");
+    law.attraction = table.real("attraction");
+  }
+  if (table.has("attraction_range")) {
+    if (!table.has("attraction")) table.fail("attraction_range", "needs attraction beside it");
+    law.range = law.attraction > 0 ? table.real("attraction_range") : 0;
+  }
+  // What attracts is not cut: its damper acts to the end.
+  if (law.attracts() && table.has("restitution"))
+    law.damping_ratio = damping_ratio_of(table.real("restitution"), true);
+}
+
+// A run has one form of law: necks, or pulls that are added.
+void check_attraction_beside(const DeckTable& table, const Contact& contact, const KelvinVoigt& law) {
+  const auto has_neck = [](const KelvinVoigt& of) { return of.neck && of.adhesion_work > 0; };
+  const auto pulls = [&](const KelvinVoigt& of) {
+    return of.attracts() && (!has_neck(of) || of.attraction > 0);
+  };
+  const auto found = [&](const auto& is) {
+    return is(law) || std::any_of(contact.laws.begin(), contact.laws.end(), is);
+  };
+  if (!law.attracts() || !found(has_neck) || !found(pulls)) return;
+  table.fail(table.has("attraction") ? "attraction" : "adhesion",
+             "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
+}
+
+// What attraction does not go with yet.
+void check_attraction(const DeckTable& contact, const Model& model) {
+  for (const DeckTable& pair : contact.tables("pairs")) {
+    const char* key = pair.has("attraction")       ? "attraction"
+                      : pair.has("surface_energy") ? "surface_energy"
+                                                   : "work_of_adhesion";
+    if (!pair.has(key) || pair.real(key) == 0) continue;
+    if (model.integrator.particles != ParticleIntegrator::velocity_verlet)
+      pair.fail(key, "needs integrator.particles = \"velocity-verlet\"");
+    if (model.integrator.precision == Precision::mixed)
+      pair.fail(key, "needs integrator.precision = \"double\"");
+    for (const Body& body : model.bodies)
+      if (!body.shapes.empty())
+        pair.fail(key,
+                  fmt::format("bodies do not attract particles yet, and body \"{}\" has shapes", body.name));
+  }
+}
+
 void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, const ModelNames& names,
                 std::vector<bool>& given) {
   Contact& contact = model.contact;
@@ -231,11 +292,14 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   } else if (contact.materials() > 1) {
     table.fail("materials", "missing; it must be a list of two materials, as the deck has more than one");
   }
-  const KelvinVoigt law = build_law(deck, table, model, material);
+  KelvinVoigt law = build_law(deck, table, model, material);
   check_mixing(table, contact, law);
+  take_attraction(table, law);
+  check_attraction_beside(table, contact, law);
   const Friction friction = build_friction(deck, table, law, material);
   const RollingResistance rolling = build_rolling(table, friction, model.space.dimension);
-  if (table.has("friction")) contact.friction.resize(contact.laws.size());
+  // A neck turns with its partners: its law is one of contacts that rub.
+  if (table.has("friction") || (law.neck && law.attracts())) contact.friction.resize(contact.laws.size());
   if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
   for (int side = 0; side < 2; ++side) {
     const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
@@ -270,12 +334,12 @@ void check_periods(const DeckTable& deck, const Model& model, Real largest_radiu
   const Space& space = model.space;
   const Vec3 extent = space.max - space.min;
   const Real lengths[3] = {extent.x, extent.y, extent.z};
-  const Real reach = 2 * (2 * largest_radius + model.contact.skin);
+  const Real reach = 2 * (2 * largest_radius + model.contact.reach + model.contact.skin);
   for (int axis = 0; axis < 3; ++axis) {
     if (space.boundary[2 * axis] != Boundary::periodic || lengths[axis] >= reach) continue;
     deck.table("space").fail(
         "max", fmt::format("the periodic space must be at least {} m long in {}: twice the largest "
-                           "diameter plus contact.skin",
+                           "diameter plus contact.skin and what contacts reach beyond touch",
                            reach, "xyz"[axis]));
   }
 }
@@ -310,8 +374,11 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   // With nothing to search for, any positive length serves.
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
   contact.skin = table.has("skin") ? table.real("skin") : standard;
+  for (const KelvinVoigt& law : contact.laws)
+    contact.reach = std::max(contact.reach, longest_reach(law, largest));
   check_periods(deck, model, largest);
   check_friction(deck, model);
+  check_attraction(table, model);
 }
 
 }  // namespace scree

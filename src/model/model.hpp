@@ -41,6 +41,7 @@ struct Contact {
   std::vector<KelvinVoigt> laws;           // [i * materials + j], symmetric
   std::vector<Friction> friction;          // likewise; empty: no contact rubs
   std::vector<RollingResistance> rolling;  // likewise; empty: none resists rolling
+  Real reach = 0;                          // of contacts beyond touch, at most [m]
   Real skin = 0;                           // neighbour list reaches this far past touching [m]
   bool connected_bodies_touch = false;
 

@@ -1,14 +1,17 @@
 // Normal laws of surfaces that attract each other: the neck of Johnson, Kendall and Roberts, and a pull added
-// to another law, constant or after Derjaguin, Muller and Toporov. The force may pull: nothing is cut. w is
-// the work of adhesion [J/m^2]: twice the surface energy where both surfaces are alike.
+// to another law, constant or after Derjaguin, Muller and Toporov. The force may pull: nothing is cut, but
+// where a pair does not attract, which then follows the law without. w is the work of adhesion [J/m^2]: twice
+// the surface energy where both surfaces are alike.
 #pragma once
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <type_traits>
 
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
+#include "physics/normal_laws.hpp"
 
 namespace scree {
 
@@ -32,16 +35,15 @@ SCREE_HD Real cube_root(Real x) {
 // Damping as Hertz's law has it for a restitution that depends on no speed, with a in place of sqrt(R* d):
 // from the stiffness F/d it would be no number where F or d change their signs.
 struct JkrPair {
-  Real modulus;         // 4/3 E* [Pa]
-  Real damping_factor;  // sqrt(5) zeta [-]
-  Real mass;            // m* [kg]
-  Real pull_off;        // F_c [N]
-  Real last_radius;     // a_s [m]
-  Real range;           // reach() [m]
+  HertzPairOf<Real> bare;  // the law without adhesion
+  Real pull_off;           // F_c [N]
+  Real last_radius;        // a_s [m]
+  Real range;              // reach() [m]; 0: the pair does not attract
+  bool tension;
 
   static constexpr bool kNeck = true;
-  static constexpr bool tension = true;
 
+  SCREE_HD bool attracts() const { return range > 0; }
   SCREE_HD Real reach() const { return range; }
   // p of an overlap above -reach(): Newton's method from above, on a convex function.
   SCREE_HD Real root_of(Real d) const {
@@ -54,20 +56,24 @@ struct JkrPair {
     }
   }
   SCREE_HD Real contact_radius(Real d) const {
+    if (!attracts()) return bare.contact_radius(d);
     const Real p = root_of(d);
     return last_radius * p * p;
   }
   SCREE_HD Real elastic(Real d) const {
+    if (!attracts()) return bare.elastic(d);
     const Real p = root_of(d), cube = p * p * p;
     return pull_off / 9 * cube * (cube - 6);
   }
   SCREE_HD Real slope(Real d) const {  // infinite at -reach()
+    if (!attracts()) return bare.slope(d);
     const Real p = root_of(d), cube = p * p * p;
     return pull_off * p * p * (cube - 3) / (2 * range * (cube - 1));
   }
   // Relative to a contact that breaks, at d = -reach(). At first touch it is -making_loss(): that much goes
   // into waves where a neck snaps in and out, and is counted where it is made.
   SCREE_HD Real energy(Real d) const {
+    if (!attracts()) return bare.energy(d);
     const Real p = root_of(d), cube = p * p * p;
     return 4 * pull_off * range / 27 * (p * cube * (cube * cube / 10 - cube + Real(1.5)) - Real(0.6));
   }
@@ -77,26 +83,48 @@ struct JkrPair {
     return -4 * pull_off * range / 27 * kTouch;
   }
   SCREE_HD Real damping(Real d) const {
-    return damping_factor * std::sqrt(mass * modulus * contact_radius(d));
+    return bare.damping_factor * std::sqrt(bare.mass * bare.modulus * contact_radius(d));
   }
-  SCREE_HD Real contact_stiffness(Real d) const { return Real(1.5) * modulus * contact_radius(d); }
+  // With adhesion by the midpoint.
+  SCREE_HD Real mean_damping(Real d0, Real d1) const {
+    return attracts() ? damping((d0 + d1) / 2) : bare.mean_damping(d0, d1);
+  }
+  SCREE_HD Real cut(Real d0, Real pull) const { return bare.cut(d0, pull); }  // where nothing attracts
+  SCREE_HD Real contact_stiffness(Real d) const { return Real(1.5) * bare.modulus * contact_radius(d); }
   // The friction's limit is mu (F_n + 2 F_c): Thornton, J. Phys. D 24 (1991).
   SCREE_HD Real adhesion(Real) const { return 2 * pull_off; }
 };
 
 struct JkrLaw {
+  using Scalar = Real;
   Real modulus = 0;         // 4/3 E* [Pa]
   Real damping_factor = 0;  // sqrt(5) zeta [-]
-  Real adhesion_work = 0;   // w > 0 [J/m^2]
+  Real adhesion_work = 0;   // w [J/m^2]
+  bool tension = true;      // of a pair that does not attract
 
   static constexpr bool kNeck = true;
 
+  JkrLaw() = default;
+  SCREE_HD JkrLaw(Real m, Real factor, Real work, bool pulls = true)
+      : modulus(m), damping_factor(factor), adhesion_work(work), tension(pulls) {}
+  explicit JkrLaw(const KelvinVoigt& p)
+      : JkrLaw(4 * p.effective_modulus / 3, std::sqrt(Real(5)) * p.damping_ratio, p.adhesion_work,
+               p.tension) {}
+  static bool accepts(const KelvinVoigt& p) {
+    return (p.effective_modulus > 0 || !p.acts()) && p.attraction == 0 && (p.adhesion_work == 0 || p.neck);
+  }
+
   SCREE_HD JkrPair of_pair(const PairSize& size) const {
     const Real radius = size.effective_radius(), pi = std::numbers::pi_v<Real>;
+    const HertzPairOf<Real> bare{modulus, damping_factor, tension, radius, size.effective_mass()};
+    if (!(adhesion_work > 0)) return {bare, 0, 0, 0, tension};
     // 8 E* = 6 x 4/3 E*
     const Real last = cube_root(pi * adhesion_work * radius * radius / (6 * modulus));
-    return {modulus, damping_factor,          size.effective_mass(), Real(1.5) * pi * adhesion_work * radius,
-            last,    3 * last * last / radius};
+    return {bare, Real(1.5) * pi * adhesion_work * radius, last, 3 * last * last / radius, true};
+  }
+  template <class S>
+  SCREE_HD JkrLaw as() const {
+    return *this;
   }
 };
 
@@ -108,8 +136,7 @@ struct AttractedPair {
   Pair repulsion;
   T attraction;  // [N]
   T range;       // [m]
-
-  static constexpr bool tension = true;
+  bool tension;
 
   SCREE_HD T reach() const { return range; }
   SCREE_HD T pull(T d) const {
@@ -143,10 +170,22 @@ struct AttractedLaw {
   Scalar adhesion_per_radius = 0;  // [N/m]
   Scalar range = 0;                // [m]
 
+  AttractedLaw() = default;
+  SCREE_HD AttractedLaw(NormalLaw law, Scalar pull, Scalar per_radius, Scalar reach)
+      : repulsion(law), attraction(pull), adhesion_per_radius(per_radius), range(reach) {}
+  explicit AttractedLaw(const KelvinVoigt& p)
+      : AttractedLaw(NormalLaw(p), static_cast<Scalar>(p.attraction),
+                     static_cast<Scalar>(2 * std::numbers::pi_v<Real> * p.adhesion_work),
+                     static_cast<Scalar>(p.range)) {}
+  static bool accepts(const KelvinVoigt& p) {
+    return NormalLaw::accepts(p.without_attraction()) && !(p.neck && p.adhesion_work > 0);
+  }
+
   SCREE_HD auto of_pair(const PairSizeOf<Scalar>& size) const {
     const auto pair = repulsion.of_pair(size);
-    return AttractedPair<std::remove_const_t<decltype(pair)>, Scalar>{
-        pair, attraction + adhesion_per_radius * size.effective_radius(), range};
+    const Scalar pull = attraction + adhesion_per_radius * size.effective_radius();
+    return AttractedPair<std::remove_const_t<decltype(pair)>, Scalar>{pair, pull, range,
+                                                                      pair.tension || pull > 0};
   }
   template <class S>
   SCREE_HD auto as() const {
@@ -155,5 +194,18 @@ struct AttractedLaw {
         other, static_cast<S>(attraction), static_cast<S>(adhesion_per_radius), static_cast<S>(range)};
   }
 };
+
+// How far beyond touch a pair of materials can have a contact [m], of particles of at most this radius.
+inline Real longest_reach(const KelvinVoigt& law, Real largest_radius) {
+  if (law.range > 0) return law.range;
+  if (!law.neck || law.adhesion_work == 0) return 0;
+  // It grows with the radius of either: that of a sphere on a plane, and what round-off may add.
+  return JkrLaw(law).of_pair({largest_radius, kInfinity, 1, 1}).reach() * (1 + Real(1e-9));
+}
+
+// A run takes the first that accepts the parameters of all its pairs; each has its own kernels
+// (cuda/contact_kernels_*.cu).
+using NormalLaws = std::tuple<LinearLaw, RatedLinearLaw, PowerLaw, HertzLaw, AttractedLaw<RatedLinearLaw>,
+                              AttractedLaw<HertzLaw>, JkrLaw>;
 
 }  // namespace scree

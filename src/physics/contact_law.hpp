@@ -68,6 +68,7 @@ struct ContactLaw {
   RollingLaw rolling{};
 
   static constexpr bool kNeck = kHasNeck<NormalLaw>;
+  static constexpr bool kReaches = kReachesBeyondTouch<NormalLaw>;  // partners apart may have a contact
   static constexpr bool kMoves = TangentialLaw::acts || RollingLaw::acts || kNeck;
   // Numbers that a contact remembers: spring, moment, whether it has touched, in this order.
   static constexpr int kHistory = TangentialLaw::kHistory + RollingLaw::kHistory + (kNeck ? 1 : 0);
@@ -125,6 +126,15 @@ struct ContactLaw {
     return out;
   }
 
+  // Elastic energy of a closed contact [J]: of its normal force, with what a neck that the next step makes
+  // will lose, and of the springs that it remembers.
+  SCREE_HD Real energy_of(const PairState& pair, const ContactHistory& history) const {
+    const auto law = normal.of_pair(pair.size);
+    Real out = law.energy(pair.geometry.overlap);
+    if constexpr (kNeck)
+      if (!history.touched) out += law.making_loss();
+    return out + spring_energy_of(pair, history);
+  }
   // Elastic energy of the springs that a closed contact remembers [J]; that of its normal force not counted.
   SCREE_HD Real spring_energy_of(const PairState& pair, const ContactHistory& history) const {
     const Real d = pair.geometry.overlap;

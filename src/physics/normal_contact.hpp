@@ -29,6 +29,11 @@ template <class NormalLaw>
 requires requires { NormalLaw::kNeck; }
 inline constexpr bool kHasNeck<NormalLaw> = NormalLaw::kNeck;
 
+template <class NormalLaw>
+inline constexpr bool kReachesBeyondTouch = requires(const NormalLaw& law, const PairSize& size) {
+  law.of_pair(size).reach();
+};
+
 // How far beyond touch partners can have a contact [m]: what a search for contacts adds to the sum of their
 // radii.
 template <class Pair>

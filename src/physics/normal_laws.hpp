@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <tuple>
 
 #include "base/hd.hpp"
 #include "physics/contact_geometry.hpp"
@@ -20,9 +19,18 @@ struct KelvinVoigt {
   bool tension = false;  // true: Eq. 18 as printed, F may pull before separation; false: F is cut at zero
   Real effective_modulus = 0;  // E* [Pa]
   Real damping_ratio = 0;      // zeta [-]
+  // Of surfaces that attract each other (physics/cohesion.hpp).
+  Real adhesion_work = 0;  // w [J/m^2]
+  bool neck = false;       // of Johnson, Kendall and Roberts, else of Derjaguin, Muller and Toporov
+  Real attraction = 0;     // constant [N],
+  Real range = 0;          // falling to zero over this distance beyond touch [m]
 
   // Whether the two feel each other.
   bool acts() const { return normal_stiffness > 0 || effective_modulus > 0; }
+  bool attracts() const { return adhesion_work > 0 || attraction > 0; }
+  KelvinVoigt without_attraction() const {
+    return {normal_stiffness, normal_damping, exponent, tension, effective_modulus, damping_ratio};
+  }
   // For estimates: K, C and n of partners of these sizes that overlap by some 1 % of a radius.
   bool depends_on_size() const { return effective_modulus > 0 || damping_ratio > 0; }
   KelvinVoigt of_size(const PairSize& size) const;
@@ -54,7 +62,7 @@ struct LinearLawOf {
   explicit LinearLawOf(const KelvinVoigt& p)
       : LinearLawOf(T(p.normal_stiffness), T(p.normal_damping), p.tension) {}
   static bool accepts(const KelvinVoigt& p) {
-    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0;
+    return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.attracts();
   }
 
   SCREE_HD LinearLawOf of_pair(const PairSizeOf<T>&) const { return *this; }
@@ -86,7 +94,9 @@ struct RatedLinearLawOf {
   explicit RatedLinearLawOf(const KelvinVoigt& p)
       : RatedLinearLawOf(T(p.normal_stiffness), T(p.normal_damping),
                          T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness)), p.tension) {}
-  static bool accepts(const KelvinVoigt& p) { return p.exponent == 1 && p.effective_modulus == 0; }
+  static bool accepts(const KelvinVoigt& p) {
+    return p.exponent == 1 && p.effective_modulus == 0 && !p.attracts();
+  }
 
   SCREE_HD LinearLawOf<T> of_pair(const PairSizeOf<T>& size) const {
     return {normal_stiffness, normal_damping + damping_factor * std::sqrt(size.effective_mass()), tension};
@@ -120,7 +130,7 @@ struct PowerLawOf {
   explicit PowerLawOf(const KelvinVoigt& p)
       : PowerLawOf(T(p.normal_stiffness), T(p.normal_damping), T(p.exponent), p.tension,
                    T(2 * p.damping_ratio * std::sqrt(p.normal_stiffness * (p.exponent + 1) / 2))) {}
-  static bool accepts(const KelvinVoigt& p) { return p.effective_modulus == 0; }
+  static bool accepts(const KelvinVoigt& p) { return p.effective_modulus == 0 && !p.attracts(); }
 
   SCREE_HD PowerLawOf of_pair(const PairSizeOf<T>& size) const {
     PowerLawOf pair = *this;
@@ -199,7 +209,9 @@ struct HertzLawOf {
   explicit HertzLawOf(const KelvinVoigt& p)
       : HertzLawOf(T(4 * p.effective_modulus / 3), T(std::sqrt(Real(5)) * p.damping_ratio), p.tension) {}
   // Pairs that do not act are of any law.
-  static bool accepts(const KelvinVoigt& p) { return p.effective_modulus > 0 || !p.acts(); }
+  static bool accepts(const KelvinVoigt& p) {
+    return (p.effective_modulus > 0 || !p.acts()) && !p.attracts();
+  }
 
   SCREE_HD HertzPairOf<T> of_pair(const PairSizeOf<T>& size) const {
     return {modulus, damping_factor, tension, size.effective_radius(), size.effective_mass()};
@@ -219,9 +231,5 @@ inline KelvinVoigt KelvinVoigt::of_size(const PairSize& size) const {
   const auto pair = HertzLaw(*this).of_pair(size);
   return {pair.modulus * std::sqrt(pair.radius), pair.damping(overlap), Real(1.5), tension};
 }
-
-// A run takes the first that accepts the parameters of all its pairs; each has its own kernels
-// (cuda/contact_kernels_*.cu).
-using NormalLaws = std::tuple<LinearLaw, RatedLinearLaw, PowerLaw, HertzLaw>;
 
 }  // namespace scree

@@ -7,6 +7,7 @@
 
 #include "base/hd.hpp"
 #include "base/types.hpp"
+#include "physics/cohesion.hpp"
 #include "physics/normal_laws.hpp"
 #include "physics/rolling_laws.hpp"
 #include "physics/tangential_laws.hpp"
@@ -20,8 +21,10 @@ SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 // radius.
 inline Real typical_stiffness(const KelvinVoigt& of, const PairSize& size) {
   const KelvinVoigt law = of.of_size(size);
-  if (law.exponent == 1) return law.normal_stiffness;
+  // An attraction that falls off must be followed, too.
+  if (law.exponent == 1) return std::max(law.normal_stiffness, of.range > 0 ? of.attraction / of.range : 0);
   const Real overlap = Real(0.01) * std::min(size.radius_i, size.radius_j);
+  if (of.neck && of.attracts()) return JkrLaw(of).of_pair(size).slope(overlap);
   return law.normal_stiffness * law.exponent * std::pow(overlap, law.exponent - 1);
 }
 

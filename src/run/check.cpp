@@ -117,6 +117,19 @@ std::string rolling_line(const Model& model, const PairLimit& limit) {
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
 
+// How the two attract each other; "" where they do not.
+std::string attraction_line(const Model& model, const PairLimit& limit) {
+  const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
+  std::string parts;
+  if (law.adhesion_work > 0)
+    parts = fmt::format("{}, work of adhesion {:.6g} J/m^2", law.neck ? "JKR" : "DMT", law.adhesion_work);
+  if (law.attraction > 0)
+    parts += fmt::format("{}attraction {:.6g} N", parts.empty() ? "" : ", ", law.attraction);
+  const Real reach = longest_reach(law, model.particles.totals.largest_radius);
+  if (reach > 0) parts += fmt::format(", contacts hold up to {:.4g} m beyond touch", reach);
+  return parts.empty() ? "" : fmt::format("               {}\n", parts);
+}
+
 std::string limit_lines(const Model& model) {
   std::string lines;
   const std::vector<std::string>& names = model.contact.material_names;
@@ -131,12 +144,14 @@ std::string limit_lines(const Model& model) {
                          !sized              ? ""
                          : law.exponent == 1 ? " (smallest partners)"
                                              : " (smallest partners, at 1 % overlap)",
-                         law.tension ? "may pull" : "cut at zero");
+                         law.tension || model.contact.law(limit.material[0], limit.material[1]).attracts()
+                             ? "may pull"
+                             : "cut at zero");
     if (limit.slip_stiffness > 0)
       lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
                            model.contact.friction_of(limit.material[0], limit.material[1]).friction,
                            limit.slip_stiffness, sized ? " (likewise)" : "");
-    lines += rolling_line(model, limit);
+    lines += rolling_line(model, limit) + attraction_line(model, limit);
     lines += fmt::format("               shortest contact {:.4g} s{}\n", limit.contact_time,
                          law.exponent == 1 ? "" : " (at 1 % overlap)");
     for (const StepTrial& trial : trials)

@@ -25,6 +25,7 @@ MAIN_CASES = {
     "rubbing": ([*RUBBING, "time.end=0.08"], (1, 2, 3, 4, 8)),
     "rubbing after Hertz and Mindlin": ([HERE / "rubbing_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
                                         (1, 2, 3, 4)),
+    "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (1, 2, 4)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
     # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
     "rubbing on bodies": ([HERE / "rubbing_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),

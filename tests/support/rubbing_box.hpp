@@ -2,6 +2,7 @@
 // slide, that stick, that turn and that part.
 #pragma once
 
+#include "physics/cohesion.hpp"
 #include "support/contact_book.hpp"
 #include "support/remembering_box.hpp"
 
@@ -61,6 +62,31 @@ inline Model rolling(Model model) {
   return model;
 }
 
+// The model with all of that, and with particles that stick: JKR's necks beside Hertz's law, else a pull with
+// a range. Pairs of materials differ; some do not stick.
+inline Model sticky(Model model) {
+  model = rolling(std::move(model));
+  const int count = model.contact.materials();
+  for (int k = 0; k < count * count; ++k) {
+    const int kind = k / count + k % count;
+    KelvinVoigt& law = model.contact.laws[static_cast<std::size_t>(k)];
+    law.tension = false;
+    if (count > 1 && kind == 2) continue;
+    if (law.effective_modulus > 0)
+      law.neck = true, law.adhesion_work = kind == 0 ? 30 : 10;
+    else
+      law.attraction = kind == 0 ? 5 : 2, law.range = kind == 0 ? 0.01 : 0.02;
+    model.contact.reach =
+        std::max(model.contact.reach, longest_reach(law, model.particles.totals.largest_radius));
+  }
+  return model;
+}
+
+inline int unmirrored_sticky(const std::vector<Particle>& particles, const KeptContacts& contacts) {
+  return contacts.numbers == 7 ? unmirrored<7, 6>(particles, contacts)
+                               : unmirrored<6, 6>(particles, contacts);
+}
+
 // All boxes, with either way of leaving.
 inline std::vector<std::pair<BoxCase, Leaving>> moving_cases() {
   std::vector<std::pair<BoxCase, Leaving>> cases;
@@ -76,6 +102,7 @@ struct RubbingKind {
   int (*unmirrored)(const std::vector<Particle>&, const KeptContacts&);
 };
 inline const RubbingKind kRubbingKinds[] = {{"rubbing", [](Model model) { return model; }, unmirrored<3>},
-                                            {"rolling", rolling, unmirrored<6, 6>}};
+                                            {"rolling", rolling, unmirrored<6, 6>},
+                                            {"sticky", sticky, unmirrored_sticky}};
 
 }  // namespace scree

@@ -1,0 +1,98 @@
+// Keys of surfaces that attract each other: what they become, what the search must reach, what is refused.
+#include <numbers>
+
+#include "model/limits.hpp"
+#include "physics/cohesion.hpp"
+#include "physics/restitution.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/near.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kRoundOff = 8 * kUlp;
+
+const std::string kGrains = R"(
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+[time]
+end = 1.0
+step = 1e-7
+[integrator]
+particles = "velocity-verlet"
+[[particles]]
+name = "grains"
+kind = "list"
+positions = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]]
+radius = 0.02
+mass = 0.1
+material = "soft"
+)";
+const std::string kSoft = "[[materials]]\nname = \"soft\"\nyoung_modulus = 1e7\npoisson_ratio = 0.3\n";
+const std::string kBare = "[[materials]]\nname = \"soft\"\n";
+
+std::string pair_of(const std::string& keys) {
+  return "[[contact.pairs]]\nmaterials = [\"soft\", \"soft\"]\n" + keys;
+}
+std::string hertz(const std::string& keys) { return kSoft + kGrains + pair_of(keys); }
+std::string linear(const std::string& keys) { return kBare + kGrains + pair_of("stiffness = 1e5\n" + keys); }
+
+}  // namespace
+
+TEST_CASE("a work of adhesion, or twice a surface energy, is the pair's, with a neck or without") {
+  const Model neck = model_of(hertz("work_of_adhesion = 0.5\nrestitution = 0.6\n"));
+  const KelvinVoigt& law = neck.contact.law(0, 0);
+  CHECK((law.adhesion_work == 0.5 && law.neck));
+  CHECK(near(restitution_of(law.damping_ratio, true), 0.6, {.relative = kRoundOff}));
+  CHECK(neck.rotates());  // a neck turns with its partners
+  // The largest reach is that of a sphere on a plane.
+  const Real on_plane = JkrLaw(law).of_pair({0.02, kInfinity, 1, 1}).reach();
+  CHECK(near(neck.contact.reach, on_plane, {.relative = 1e-8}));
+  CHECK(neck.contact.reach > JkrLaw(law).of_pair({0.02, 0.02, 1, 1}).reach());
+  const KelvinVoigt same = model_of(hertz("surface_energy = 0.25\n")).contact.law(0, 0);
+  CHECK((same.adhesion_work == 0.5 && same.neck));
+  const Model dmt = model_of(hertz("work_of_adhesion = 0.5\nadhesion = \"dmt\"\n"));
+  CHECK((!dmt.contact.law(0, 0).neck && dmt.contact.reach == 0 && !dmt.rotates()));
+  CHECK(!model_of(hertz("work_of_adhesion = 0.0\n")).contact.law(0, 0).attracts());
+  // A neck is stiffer than the bare contact.
+  CHECK(pair_limits(neck)[0].explicit_step <
+        pair_limits(model_of(hertz("friction = 0.0\n")))[0].explicit_step);
+}
+
+TEST_CASE("a constant attraction stands beside a linear law or Hertz's") {
+  const Model near_only = model_of(linear("attraction = 2.0\n"));
+  CHECK((near_only.contact.law(0, 0).attraction == 2 && near_only.contact.reach == 0));
+  const Model far = model_of(linear("attraction = 2.0\nattraction_range = 1e-6\n"));
+  CHECK(far.contact.reach == 1e-6);
+  CHECK(pair_limits(far)[0].stiffness == 2e6);  // A / range, steeper than the spring
+  CHECK(model_of(hertz("attraction = 2.0\n")).contact.law(0, 0).attraction == 2);
+}
+
+TEST_CASE("what attraction does not go with is told with its remedy") {
+  CHECK(contains(model_error(linear("work_of_adhesion = 0.1\n")),
+                 "contact.pairs.0.work_of_adhesion = 0.1: needs Hertz's law: young_modulus"));
+  CHECK(contains(model_error(hertz("work_of_adhesion = 0.1\nsurface_energy = 0.05\n")),
+                 "surface_energy = 0.05: stands beside work_of_adhesion; give one of the two"));
+  CHECK(contains(model_error(linear("exponent = 1.5\nattraction = 0.1\n")),
+                 "attraction = 0.1: needs a pair with exponent = 1, or Hertz's law"));
+  CHECK(contains(model_error(linear("attraction_range = 0.1\n")),
+                 "attraction_range = 0.1: needs attraction beside it"));
+  CHECK(contains(model_error(hertz("work_of_adhesion = 0.1\nattraction = 0.1\n")),
+                 "attraction = 0.1: a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\""));
+  for (const std::string keys :
+       {"work_of_adhesion = 0.1\n", "surface_energy = 0.1\n", "attraction = 0.1\n"}) {
+    CHECK(contains(model_error(hertz(keys), {"integrator.particles=hht"}),
+                   "needs integrator.particles = \"velocity-verlet\""));
+    CHECK(contains(model_error(hertz(keys), {"integrator.precision=mixed"}), "\"double\""));
+    CHECK(contains(
+        model_error(hertz(keys) + "[[bodies]]\nname = \"ball\"\nposition = [0.0, 0.8, 0.0]\nmass = 1.0\n"
+                                  "inertia = 1.0\nshapes = [{ radius = 0.05, material = \"soft\" }]\n"),
+        "body \"ball\" has shapes"));
+  }
+}
+
+}  // namespace scree

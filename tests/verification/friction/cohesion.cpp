@@ -1,0 +1,200 @@
+// Surfaces that attract each other, through decks: on a wall and between two spheres, with friction and
+// without.
+#include "physics/cohesion.hpp"
+
+#include <regex>
+
+#include "physics/restitution.hpp"
+#include "support/bars.hpp"
+#include "support/catch.hpp"
+#include "support/near.hpp"
+#include "support/reference_table.hpp"
+#include "verification/contact/errors.hpp"
+#include "verification/friction/grain_decks.hpp"
+
+namespace scree {
+
+namespace {
+
+using Row = ReferenceTable::Row;
+
+// Time in which an impact would be over without attraction, about [s].
+Real impact_time(const Row& row) { return 3 * row["d_max"] / row["v"]; }
+
+// An impact of a sphere on a wall, or of two spheres of twice its radius and mass, one of them at rest.
+GrainDeck impact_deck_of(const Row& row, const std::string& more, Real parts, bool pair) {
+  const Real h = impact_time(row) / parts, v = row["v"], R = row["R_star"], m = row["m_star"];
+  GrainDeck deck{.law = fmt::format("work_of_adhesion = {}\n", row["w"]) + more,
+                 .grains = {},
+                 .step = h,
+                 .end = 6 * impact_time(row)};
+  deck.materials = hertz_materials((pair ? 2 : 1) * row["E_star"], 0), deck.plane = !pair;
+  const Real gap = 0.5 * v * h;
+  if (pair) {
+    deck.grains.push_back(
+        {.position = {0, 0, 0}, .velocity = {}, .spin = {}, .radius = 2 * R, .mass = 2 * m});
+    deck.grains.push_back({.position = {0, 0, 4 * R + gap},
+                           .velocity = {0, 0, -v},
+                           .spin = {},
+                           .radius = 2 * R,
+                           .mass = 2 * m});
+  } else {
+    deck.grains.push_back(
+        {.position = {0, 0, R + gap}, .velocity = {0, 0, -v}, .spin = {}, .radius = R, .mass = m});
+  }
+  return deck;
+}
+
+// Where no pair rubs no deck may say how particles spin.
+Model model_without_spins(const GrainDeck& deck) {
+  return model_of(std::regex_replace(deck.text(), std::regex("angular_velocity = .*\n"), ""));
+}
+
+struct ImpactErrors {
+  Errors energy;  // of the rebound, over the impact's
+  Errors books;   // over the impact's energy
+};
+
+void add_impact(const Row& row, const std::string& more, Real parts, bool pair, ImpactErrors& errors) {
+  std::string law = more;
+  if (row["z"] > 0) law += fmt::format("restitution = {}\n", restitution_of(row["z"], true));
+  SimulationRun run(impact_deck_of(row, law, parts, pair).model());
+  run.run();
+  const std::vector<Particle> after = run.particles();
+  const Real rate = after.back().velocity.z - (pair ? after.front().velocity.z : 0);
+  const bool holds = run.particle_ledger().contacts > 0;
+  CHECK(holds == (row["e"] == 0));
+  const Real rebound = holds ? 0 : rate / row["v"], start = row["m_star"] * row["v"] * row["v"] / 2;
+  errors.energy.add(rebound * rebound - row["e"] * row["e"]);
+  errors.books.add(run.balance_error() / start);
+}
+
+ImpactErrors neck_errors(const std::string& more, Real parts, bool pair) {
+  const ReferenceTable table("contact/jkr_impact.csv");
+  ImpactErrors errors;
+  for (const auto& row : table.rows()) {
+    CAPTURE(row.word("set"), row["z"], row["v"], pair);
+    add_impact(row, more, parts, pair, errors);
+  }
+  return errors;
+}
+
+}  // namespace
+
+TEST_CASE("spheres with a neck rebound from a wall and from each other, or stick") {
+  for (const bool pair : {false, true})
+    for (const std::string more : {"", "friction = 0.5\nrolling_friction = 0.1\n"}) {
+      const ImpactErrors coarse = neck_errors(more, 200, pair), fine = neck_errors(more, 400, pair);
+      CHECK(keeps(coarse.energy.worst(), {.promise = 2e-2, .measured = 3.1e-3}));
+      CHECK(keeps(fine.energy.worst(), {.promise = 1e-2, .measured = 1.1e-3}));
+      CHECK(keeps(fine.books.worst(), {.promise = 1e-2, .measured = 1.6e-3}));
+      CHECK(order_between(coarse.energy, fine.energy) > 0.9);
+    }
+}
+
+// What a contact made and broken takes: 7.0922 (w^5 R*^4 / E*^2)^(1/3), whatever the path is.
+TEST_CASE("the ledger books what making a neck loses, and its energy is negative while it holds") {
+  const ReferenceTable table("contact/jkr_points.csv");
+  for (const auto& row : table.rows()) {
+    const Real v = 2 * row["v_stick"], R = row["R_star"], h = std::abs(row["d_sep"]) / v / 50;
+    GrainDeck deck{.law = fmt::format("surface_energy = {}\n", row["w"] / 2),
+                   .grains = {{.position = {0, 0, R + h * v / 2},
+                               .velocity = {0, 0, -v},
+                               .spin = {},
+                               .radius = R,
+                               .mass = row["m_star"]}},
+                   .step = h,
+                   .end = 60 * std::abs(row["d_sep"]) / v};
+    deck.materials = hertz_materials(row["E_star"], 0);
+    SimulationRun run(deck.model());
+    run.step();
+    CHECK(run.particle_ledger().contacts == 1);
+    CHECK(near(run.particle_ledger().contact_loss, row["W_stick"], {.relative = 1e-2}));
+    CHECK(near(run.particle_ledger().contact_elastic, -row["W_stick"], {.relative = 0.1}));
+    run.run();
+    CHECK(run.particle_ledger().contacts == 0);
+    CHECK(run.particle_ledger().contact_elastic == 0);
+    const Real left = row["m_star"] / 2 * (v * v - std::pow(run.particles()[0].velocity.z, 2));
+    CHECK(near(left, row["W_stick"], {.relative = 1e-2}));
+  }
+}
+
+TEST_CASE("a contact that is there at the start has the energy of its neck to lose") {
+  const ReferenceTable table("contact/jkr_points.csv");
+  const auto& row = table.rows()[0];
+  const Real R = row["R_star"], period = 1e-2 * row["d_F0"] / row["v_stick"];
+  GrainDeck deck{.law = fmt::format("work_of_adhesion = {}\n", row["w"]),
+                 .grains = {{.position = {0, 0, R - 1.1 * row["d_F0"]},
+                             .velocity = {},
+                             .spin = {},
+                             .radius = R,
+                             .mass = row["m_star"]}},
+                 .step = period,
+                 .end = 1000 * period};
+  deck.materials = hertz_materials(row["E_star"], 0);
+  SimulationRun run(deck.model());
+  run.run();
+  CHECK(run.particle_ledger().contacts == 1);
+  CHECK(std::abs(run.balance_error()) < 1e-3 * row["W_stick"]);
+}
+
+TEST_CASE("DMT: spheres rebound from each other as they came, and rest where their pull is carried") {
+  const ReferenceTable table("contact/dmt.csv");
+  for (const auto& row : table.rows())
+    for (const std::string more : {"", "friction = 0.5\n"}) {
+      SimulationRun run(model_without_spins(impact_deck_of(row, "adhesion = \"dmt\"\n" + more, 400, true)));
+      run.run();
+      const std::vector<Particle> after = run.particles();
+      const Real rate = (after[1].velocity.z - after[0].velocity.z) / row["v"];
+      CHECK(keeps(rate * rate - 1, {.promise = 5e-2, .measured = 1.3e-2}));
+    }
+}
+
+TEST_CASE("an attraction with a range holds two spheres that are apart, up to its energy") {
+  // A = 1 N over 1 mm: 0.5 mJ beyond touch; two spheres of 0.1 kg, m* = 0.05 kg.
+  const Real R = 0.01, escape = std::sqrt(2 * 0.5e-3 / 0.05);
+  for (const std::string more : {"", "friction = 0.5\n"})
+    for (const Real speed : {0.9 * escape, 1.1 * escape}) {
+      GrainDeck deck{.law = "stiffness = 1e5\nattraction = 1.0\nattraction_range = 1e-3\n" + more,
+                     .grains = {},
+                     .step = 1e-5,
+                     .end = 0.05};
+      deck.plane = false;
+      deck.grains.push_back({.position = {0, 0, 0}, .velocity = {}, .spin = {}, .radius = R, .mass = 0.1});
+      deck.grains.push_back(
+          {.position = {0, 0, 2 * R}, .velocity = {0, 0, speed}, .spin = {}, .radius = R, .mass = 0.1});
+      SimulationRun run(model_without_spins(deck));
+      run.run();
+      CHECK((run.particle_ledger().contacts == 1) == (speed < escape));
+      CHECK(std::abs(run.balance_error()) < 1e-2 * run.exchanged());
+      if (speed < escape) continue;
+      const std::vector<Particle> after = run.particles();
+      const Real rate = after[1].velocity.z - after[0].velocity.z;
+      CHECK(near(rate * rate, speed * speed - escape * escape, {.relative = 2e-2}));
+    }
+}
+
+TEST_CASE("friction of a contact that is pulled apart holds up to mu times its load and twice the pull-off") {
+  // A sphere that hangs from a wall by its neck, drawn along it by gravity: JKR's limit is mu (F + 2 F_c).
+  const ReferenceTable table("contact/jkr_points.csv");
+  const auto& row = table.rows()[0];
+  const Real R = row["R_star"], Fc = row["Fc"], m = row["m_star"], mu = 0.5;
+  for (const Real share : {0.75, 1.1}) {
+    const Real g = share * mu * 2 * Fc / m;
+    GrainDeck deck{
+        .law = fmt::format("work_of_adhesion = {}\nfriction = {}\nrestitution = 0.1\n"
+                           "tangential_damping_ratio = 0.5\ntwisting_friction = 0.0\n"
+                           "rolling_friction = 20.0\nrolling_damping_ratio = 1.0\n",
+                           row["w"], mu),
+        .grains = {{.position = {0, 0, R - row["d_F0"]}, .velocity = {}, .spin = {}, .radius = R, .mass = m}},
+        .step = 1e-8,
+        .end = 4e-5};
+    deck.materials = hertz_materials(row["E_star"], 0), deck.gravity = {g, 0, 0};
+    SimulationRun run(deck.model());
+    run.run();
+    const Real fallen = g * deck.end * deck.end / 2;
+    CHECK((run.particles()[0].position.x < 0.03 * fallen) == (share < 1));
+  }
+}
+
+}  // namespace scree
