@@ -48,12 +48,18 @@ __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, Ro
 __device__ inline ContactViews<WarpRows> warp_views(const PrunedViews& in, RowUse use, Real margin,
                                                     WarpContacts* shared, bool idle) {
   const PrunedRows<0>& r = in.rows;
-  return {in.position,        in.velocity,
-          in.material,        {{r.rows, r.counts, r.neighbors, use, margin, r.places}, shared, idle},
-          in.surface_offsets, in.surfaces,
-          in.planes,          in.ground,
-          in.loads,           in.steps,
-          in.history,         in.spin,
+  return {in.position,
+          in.velocity,
+          in.material,
+          {{r.rows, r.counts, r.neighbors, use, margin, r.places}, shared, idle},
+          in.surface_offsets,
+          in.surfaces,
+          in.planes,
+          in.ground,
+          in.loads,
+          in.steps,
+          in.history,
+          in.spin,
           in.reach};
 }
 
