@@ -10,7 +10,7 @@
 #include "dem/contact_items.hpp"
 #include "dem/contact_kernels.hpp"
 #include "dem/leaver_items.hpp"
-#include "dem/mixed_items.hpp"
+#include "dem/mixed_rubbing_items.hpp"
 #include "dem/step_items.hpp"
 #include "dem/surface_items.hpp"
 #include "device.cuh"
@@ -45,8 +45,9 @@ __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, Ro
 }
 
 // The same for a warp that shares out the contacts of its rows.
-__device__ inline ContactViews<WarpRows> warp_views(const PrunedViews& in, RowUse use, Real margin,
-                                                    WarpContacts* shared, bool idle) {
+template <class Word>
+__device__ ContactViews<WarpRows<Word>> warp_views(const PrunedViews& in, RowUse use, Real margin,
+                                                   WarpContacts<Word>* shared, bool idle) {
   const PrunedRows<0>& r = in.rows;
   return {in.position,
           in.velocity,
@@ -179,6 +180,7 @@ struct MixedRequest {
   Index active;
   Vec3 gravity;
   MixedViews state;
+  Quaternion* orientation;  // null where particles do not rotate
   QuantumGrid grid;
   Real h;
   OpenBox box;
@@ -207,6 +209,8 @@ class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
   virtual int history() const = 0;  // how many numbers the law remembers of a contact
+  // Why steps cannot be in mixed precision with this law; empty if they can.
+  virtual const char* mixed_trouble() const = 0;
   virtual void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power, Vec3* angular_acceleration) const = 0;
   virtual void system(Device device, const SystemRequest& request) const = 0;

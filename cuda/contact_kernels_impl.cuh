@@ -84,6 +84,14 @@ __device__ inline bool is_outside(const VerletRequest& r, Index i, Vec4 old_plac
   return !r.box.inside(xyz(new_place)) && !r.drifting[i];
 }
 
+__device__ inline bool is_outside(const MixedRequest& r, Index i, int parity, Real d_squared) {
+  const MixedFraction part = r.state.fraction[i];
+  const Real margin = r.control->half_skin;
+  if (!part.near_side && !(d_squared > margin * margin)) return false;
+  const MixedPlace place = (parity == 0 ? r.state.place[1] : r.state.place[0])[i];
+  return !r.drifting[i] && !r.box.inside(mixed_position(r.grid, r.in.position[i], place, part));
+}
+
 // Entries of a row that a launch of few threads evaluates at once.
 inline constexpr int kFewThreadsAtOnce = 4;
 // Registers are rationed for so many blocks on a multiprocessor: the kernels live from many threads that
@@ -177,7 +185,7 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
   if (r.control->stop) return;
   const int p = r.control->parity[0], v = r.control->parity[1];
   __shared__ union {
-    WarpContacts contacts;
+    WarpContacts<double> contacts;
     alignas(16) unsigned char stage[kSlice * sizeof(Vec4)];
   } shared[kStepBlock / kSlice];  // of a warp each
   __shared__ BlockLargest largest_of_step;
@@ -187,7 +195,7 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
   auto& room = shared[threadIdx.x / kSlice];
   const auto views =
       at_open_step<Laws>(warp_views(r.in, r.control->rows, r.control->margin, &room.contacts, idle), r);
-  VerletAdvanceItem<Laws, WarpRows> item{
+  VerletAdvanceItem<Laws, WarpRows<double>> item{
       {explicit_walk(views, laws, r.state.h), r.gravity, nullptr, nullptr, nullptr}, r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
   item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
@@ -240,12 +248,48 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
         r.grid,
         r.h};
     d_squared = item(i);
-    const MixedFraction part = r.state.fraction[i];
-    const Real margin = r.control->half_skin;
-    if ((part.near_side || d_squared > margin * margin) && !r.drifting[i] &&
-        !r.box.inside(mixed_position(r.grid, r.in.position[i],
-                                     (parity == 0 ? r.state.place[1] : r.state.place[0])[i], part)))
-      r.control->outside = 1;
+    if (is_outside(r, i, parity, d_squared)) r.control->outside = 1;
+  }
+  close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
+}
+
+inline constexpr int kMixedRubbingBlocks = 5;
+
+template <class Laws>
+__global__ void __launch_bounds__(kStepBlock, kMixedRubbingBlocks)
+    mixed_rubbing_kernel(const __grid_constant__ MixedRequest r, const Laws laws) {
+  await_step_before();
+  if (r.control->stop) return;
+  const int parity = r.control->parity[0];
+  __shared__ WarpContacts<float> contacts[kStepBlock / kSlice];
+  __shared__ BlockLargest largest_of_step;
+  largest_of_step.clear();
+  const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const bool idle = i >= r.rows.end;
+  const auto views = at_open_step<Laws>(
+      warp_views(r.in, r.control->rows, r.control->margin, &contacts[threadIdx.x / kSlice], idle), r);
+  const MixedPlace* place = parity == 0 ? r.state.place[0] : r.state.place[1];
+  const MixedMotion* motion = parity == 0 ? r.state.motion[0] : r.state.motion[1];
+  const MixedSpin* spin = parity == 0 ? r.state.spin[0] : r.state.spin[1];
+  const MixedRubbingItem<Laws, WarpRows<float>> item{
+      {views, laws, {{place, motion, r.state.fraction, r.grid}, spin, r.h}},
+      r.gravity,
+      r.state,
+      r.orientation,
+      parity};
+  TotalForce force;
+  if (first < r.rows.end) {
+    auto self = item.walk.self(idle ? r.rows.end - 1 : i);
+    self.i = i;
+    force = item.weight(self);
+    item.add_neighbors(self, force);
+  }
+  Real d_squared = 0;
+  if (!idle) {
+    const auto self = item.walk.self(i);
+    item.add_surfaces(self, force);
+    d_squared = item.advance(self, force);
+    if (is_outside(r, i, parity, d_squared)) r.control->outside = 1;
   }
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
@@ -309,12 +353,19 @@ class ContactKernelsOf : public DeviceContactKernels {
  public:
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
     if constexpr (LawOf<Laws>::kMoves)
-      prefer_cache(rubbing_advance_kernel<Laws>, kRubbingBlocks * kStepBlock / kSlice * sizeof(WarpContacts));
+      prefer_cache(rubbing_advance_kernel<Laws>,
+                   kRubbingBlocks * kStepBlock / kSlice * sizeof(WarpContacts<double>));
     else
       prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
   }
 
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
+  const char* mixed_trouble() const override {
+    using Law = LawOf<Laws>;
+    return kReaches<Law>                     ? "particles attract each other"
+           : Law::kMoves && !kHasSingle<Law> ? "contacts resist rolling"
+                                             : "";
+  }
   void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
               Vec3* angular_acceleration) const override {
     for_each(
@@ -371,10 +422,12 @@ class ContactKernelsOf : public DeviceContactKernels {
     }
   }
   void mixed_advance(Device device, const MixedRequest& r) const override {
-    if constexpr (LawOf<Laws>::kMoves || kReaches<LawOf<Laws>>)
-      throw std::logic_error("mixed_advance: laws that move or attract are computed in double precision");
-    else
+    if constexpr (!LawOf<Laws>::kMoves && !kReaches<LawOf<Laws>>)
       advance_in_mixed(device, r);
+    else if constexpr (kHasSingle<LawOf<Laws>>)
+      launch(device, r, mixed_rubbing_kernel<Laws>);
+    else
+      throw std::logic_error("mixed_advance: this law is computed in double precision");
   }
   void verlet_finish(Device device, const VerletRequest& r, Real* largest) const override {
     require_cuda(cudaMemsetAsync(largest, 0, sizeof(Real), device.stream), "explicit step");

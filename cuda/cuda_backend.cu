@@ -9,12 +9,17 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr
       list_(items_, bodies_, implicit_arrays_),
       particles_(items_, bodies_, list_),
       reports_(items_, bodies_),
-      run_workspace_(model.integrator.precision == Precision::mixed && !bodies_.have_surfaces()) {}
+      run_workspace_(model.integrator.precision == Precision::mixed && double_reason().empty()) {}
+
+// Why a run is in double whatever the deck says.
+std::string CudaBackend::double_reason() const {
+  return bodies_.have_surfaces() ? "bodies have shapes" : items_.kernels->mixed_trouble();
+}
 
 std::string CudaBackend::description() const {
   const bool asked = items_.model.integrator.precision == Precision::mixed;
   const std::string precision = is_mixed() ? "mixed"
-                                : asked    ? "double, because bodies have shapes"
+                                : asked    ? "double, because " + double_reason()
                                            : "double";
   const Ranks& all = items_.ranks;
   const std::string ranks =

@@ -29,6 +29,8 @@ class CudaBackend : public Backend {
   bool is_mixed() const override { return run_workspace_.mixed; }
 
  private:
+  std::string double_reason() const;
+
   CudaItems items_;
   CudaBodies bodies_;
   CudaImplicitArrays implicit_arrays_;

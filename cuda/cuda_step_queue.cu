@@ -45,6 +45,17 @@ struct MixedGhostItem {
   }
 };
 
+struct MixedSpinGhostItem {
+  const Ghost* ghosts;
+  GhostField<MixedSpin> spin[2];
+  const VerletControl* control;
+
+  __device__ void operator()(Index entry) const {
+    const GhostField<MixedSpin>& spins = control->parity[0] == 0 ? spin[0] : spin[1];
+    spins.put(entry, spins.field[ghosts[entry].source]);
+  }
+};
+
 template <class T>
 std::string bytes(const T& value) {
   return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
@@ -52,14 +63,21 @@ std::string bytes(const T& value) {
 
 }  // namespace
 
-void MixedArrays::resize(std::size_t items, std::size_t owned) {
+void MixedArrays::resize(std::size_t items, std::size_t owned, bool rotates) {
   for (int k = 0; k < 2; ++k) place[k].resize(items), motion[k].resize(items);
   fraction.resize(owned), rest.resize(owned);
+  if (!rotates) return;
+  for (int k = 0; k < 2; ++k) spin[k].resize(items);
+  spin_rest.resize(owned);
 }
 
 MixedViews MixedArrays::views() {
-  return {
-      {place[0].data(), place[1].data()}, {motion[0].data(), motion[1].data()}, fraction.data(), rest.data()};
+  return {{place[0].data(), place[1].data()},
+          {motion[0].data(), motion[1].data()},
+          fraction.data(),
+          rest.data(),
+          {spin[0].data(), spin[1].data()},
+          spin_rest.data()};
 }
 
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
@@ -105,15 +123,20 @@ VerletRequest StepQueue::request() {
   return r;
 }
 
+// Null unless particles rotate.
+Vec4* StepQueue::spins() const {
+  return items_.model.rotates() ? items_.now.angular_velocity.data() : nullptr;
+}
+
 void StepQueue::convert_to_mixed() {
   ParticleArrays& now = items_.now;
   workspace_.arrays.resize(static_cast<std::size_t>(items_.layout.items),
-                           static_cast<std::size_t>(items_.owned));
+                           static_cast<std::size_t>(items_.owned), items_.model.rotates());
   mixed_ = {make_quantum_grid(list_.cutoff()), control_.seen().closed};
   // Ghosts come with the first step's halo.
   for_each(
       items_.device(), items_.owned,
-      ToMixedItem{now.position.data(), now.velocity.data(), now.acceleration.data(),
+      ToMixedItem{now.position.data(), now.velocity.data(), spins(), now.acceleration.data(),
                   workspace_.arrays.views(), mixed_->quanta, items_.subdomain.box(), h_, list_.skin() / 2});
 }
 
@@ -121,7 +144,7 @@ void StepQueue::convert_from_mixed() {
   ParticleArrays& now = items_.now;
   for_each(items_.device(), items_.owned,
            FromMixedItem{workspace_.arrays.views(), control_.position_parity(), mixed_->quanta,
-                         now.position.data(), now.velocity.data(), now.acceleration.data(),
+                         now.position.data(), now.velocity.data(), spins(), now.acceleration.data(),
                          now.contact_loss.data(), now.drifting.data(), items_.model.gravity, h_,
                          control_.seen().closed - mixed_->start});
   mixed_.reset();
@@ -204,6 +227,7 @@ void StepQueue::queue_mixed(Index steps) {
   r.active = items_.layout.active;
   r.gravity = items_.model.gravity;
   r.state = workspace_.arrays.views(), r.grid = mixed_->quanta, r.h = h_;
+  r.orientation = items_.now.orientation.data();
   r.box = items_.subdomain.box(), r.drifting = items_.now.drifting.data(), r.control = control_.on_device();
   r.first_step = items_.history.first_step();
   const auto field = [&](int buffer, auto* of) { return halo.field(buffer, of, items_.owned); };
@@ -212,10 +236,15 @@ void StepQueue::queue_mixed(Index steps) {
                               {field(1, r.state.motion[0]), field(1, r.state.motion[1])},
                               r.grid,
                               r.control};
+  const bool rotates = items_.model.rotates();
+  MixedSpinGhostItem spins{halo.ghosts(), {}, r.control};
+  if (rotates) spins.spin[0] = field(2, r.state.spin[0]), spins.spin[1] = field(2, r.state.spin[1]);
   const auto queue_ghosts = [&](Device on, Index k) {
     for_each(on, halo.entries(), ghosts);
     const Index parity = (control_.position_parity() + k) % 2;
-    halo.exchange(on, ghosts.place[parity], ghosts.motion[parity]);
+    if (!rotates) return halo.exchange(on, ghosts.place[parity], ghosts.motion[parity]);
+    for_each(on, halo.entries(), spins);
+    halo.exchange(on, ghosts.place[parity], ghosts.motion[parity], spins.spin[parity]);
   };
   const auto queue_rows = [&](Device on, Index first, Index end) {
     MixedRequest of_rows = r;

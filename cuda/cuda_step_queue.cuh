@@ -16,8 +16,10 @@ struct MixedArrays {
   DeviceArray<MixedMotion> motion[2];
   DeviceArray<MixedFraction> fraction;
   DeviceArray<MixedRest> rest;
+  DeviceArray<MixedSpin> spin[2];
+  DeviceArray<Vec3f> spin_rest;
 
-  void resize(std::size_t items, std::size_t owned);
+  void resize(std::size_t items, std::size_t owned, bool rotates);
   MixedViews views();
 };
 
@@ -58,6 +60,7 @@ class StepQueue {
   template <class QueueGhosts, class QueueRows>
   void queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
                      const QueueRows& queue_rows);
+  Vec4* spins() const;
   void convert_to_mixed();
   void convert_from_mixed();
 

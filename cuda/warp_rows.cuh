@@ -6,26 +6,31 @@
 
 namespace scree {
 
-// Where a warp keeps what its lanes have found and evaluated, and what a lane's contacts sum up to.
+// Where a warp keeps what its lanes have found and evaluated, and what a lane's contacts sum up to. Word: of
+// a result.
+template <class Word>
 struct WarpContacts {
   static constexpr int kRoom = 12;  // entries of a row that are shared out at a time
   static constexpr int kWords = 7;  // of a result, an odd number: lanes that store theirs meet other banks
   Index neighbor[kRoom][kSlice];
   RowPlace place[kRoom][kSlice];
-  double result[kSlice][kWords], sum[kSlice][kWords];
+  Word result[kSlice][kWords];
+  double sum[kSlice][kWords];
 };
 
 // Each lane looks for the entries of its row that touch; the lanes then evaluate what all have found, one
 // each, whosever it is; and the results are added up row by row, in the order of the row. All lanes of a warp
 // go through it together; their rows are a slice.
+template <class Word>
 struct WarpRows {
+  using Contacts = WarpContacts<Word>;
   static constexpr bool kShared = true;
   PrunedRows<0> rows;
-  WarpContacts* shared;  // of the warp
-  bool idle;             // the lane has no row
+  Contacts* shared;  // of the warp
+  bool idle;         // the lane has no row
 
-  // Adds evaluate(i, j, slot) of the entries j of row i of which test(j) holds to sum, a structure of kWords
-  // numbers. It is called once for each, by any lane. test: as in PrunedRows.
+  // Adds evaluate(i, j, slot), a structure of kWords Words, of the entries j of row i of which test(j) holds
+  // to sum, a structure of as many doubles. It is called once for each, by any lane. test: as in PrunedRows.
   template <class Test, class Evaluate, class Sum>
   __device__ void sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
     static_assert(sizeof(Sum) == sizeof(shared->sum[0]));
@@ -40,7 +45,7 @@ struct WarpRows {
       Index found = 0;
       // Loads that do not wait for each other.
       constexpr int kAtOnce = 4;
-      for (; next < count && found + kAtOnce <= WarpContacts::kRoom; next += kAtOnce) {
+      for (; next < count && found + kAtOnce <= Contacts::kRoom; next += kAtOnce) {
         Index j[kAtOnce];
         RowPlace place[kAtOnce];
         bool touches[kAtOnce];
@@ -62,7 +67,7 @@ struct WarpRows {
           ++found;
         }
       }
-      share<Sum>(found, i - lane, slice, evaluate);
+      share(found, i - lane, slice, evaluate);
     } while (__any_sync(~0u, next < count));
     if (rows.use == RowUse::prune && !idle) rows.counts[i] = kept;
     sum = reinterpret_cast<const Sum&>(shared->sum[lane]);
@@ -70,12 +75,17 @@ struct WarpRows {
 
  private:
   __device__ static Index lane_of_warp() { return static_cast<Index>(threadIdx.x) % kSlice; }
+  template <class Result>
+  __device__ static void put(Word (&words)[Contacts::kWords], const Result& result) {
+    static_assert(sizeof(Result) == sizeof(words));
+    reinterpret_cast<Result&>(words) = result;
+  }
   __device__ void keep(std::int64_t slot, Index j, Index place) const {
     rows.places[slot] = static_cast<RowPlace>(place), rows.neighbors[slot] = j;
   }
 
   // found: entries of the lane; first: the warp's first row.
-  template <class Sum, class Evaluate>
+  template <class Evaluate>
   __device__ void share(Index found, Index first, std::int64_t slice, const Evaluate& evaluate) const {
     const Index lane = lane_of_warp();
     Index after = found;  // entries of all lanes up to this one
@@ -93,9 +103,9 @@ struct WarpRows {
         if (__shfl_sync(~0u, before, owner + step) <= turn) owner += step;
       const Index k = turn - __shfl_sync(~0u, before, owner);
       if (turn < all)
-        reinterpret_cast<Sum&>(shared->result[lane]) =
+        put(shared->result[lane],
             evaluate(first + owner, shared->neighbor[k][owner],
-                     slice + owner + kSlice * static_cast<std::int64_t>(shared->place[k][owner]));
+                     slice + owner + kSlice * static_cast<std::int64_t>(shared->place[k][owner])));
       __syncwarp();
       const int first_owner = __shfl_sync(~0u, owner, 0),
                 owners = __shfl_sync(~0u, owner, min(all - begin, kSlice) - 1) - first_owner + 1;
@@ -113,11 +123,11 @@ struct WarpRows {
       const int owner = first_owner + next + lane_of_warp() / 8, word = lane_of_warp() % 8;
       const Index from = max(__shfl_sync(~0u, before, owner), begin),
                   to = min(__shfl_sync(~0u, after, owner), end);
-      if (from >= to || word >= WarpContacts::kWords) continue;
+      if (from >= to || word >= Contacts::kWords) continue;
       double sum = shared->sum[owner][word];
-      const double* result = shared->result[from - begin] + word;
+      const Word* result = shared->result[from - begin] + word;
 #pragma unroll 2
-      for (Index left = to - from; left > 0; --left, result += WarpContacts::kWords) sum += *result;
+      for (Index left = to - from; left > 0; --left, result += Contacts::kWords) sum += *result;
       shared->sum[owner][word] = sum;
     }
   }

@@ -39,9 +39,13 @@ SCREE_HD Vec4 vec4(Vec3 a, Real w) { return {a.x, a.y, a.z, w}; }
 struct Vec3f {
   float x = 0, y = 0, z = 0;
 
+  friend SCREE_HD Vec3f operator+(Vec3f a, Vec3f b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend SCREE_HD Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend SCREE_HD Vec3f operator*(float s, Vec3f a) { return {s * a.x, s * a.y, s * a.z}; }
   friend SCREE_HD float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  friend SCREE_HD Vec3f cross(Vec3f a, Vec3f b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
 };
 
 SCREE_HD Vec3 in_double(Vec3f a) { return {a.x, a.y, a.z}; }

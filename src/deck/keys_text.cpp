@@ -15,7 +15,7 @@ constexpr std::size_t kWidth = 110;
 // README.md says the same; tests/cli/test_words.py compares them.
 constexpr const char* kLeftOut =
     "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies, "
-    "in explicit steps (velocity-verlet, double precision); else contact forces act along the normal "
+    "in explicit steps (velocity-verlet); else contact forces act along the normal "
     "alone. "
     "Attraction is explicit, too, and not of bodies. All that touches is a disc (2D), "
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "

@@ -54,6 +54,8 @@ struct TotalForce {
 
 // What a contact of a law that moves does to one of its partners.
 struct TurningForceOf {
+  using Result = TotalForce;
+
   template <class Law, class Pair, class History>
   SCREE_HD LoadWithHistory<TotalForce, History> operator()(const Law& law, const Pair& pair,
                                                            const History& old) const {

@@ -200,15 +200,15 @@ struct ContactWalk {
   SCREE_HD void neighbors(const Self& self, const Of& of, const Visit& visit) const {
     walk<kAccepts>(self, reaching(look.test(in, self)), of, visit);
   }
-  // Adds `of` the contacts with neighbours to sum, which is of its type but for the history.
+  // Adds `of` the contacts with neighbours, its Result each, to sum.
   SCREE_HD_CALLER
   template <bool kAccepts, class Of, class Sum>
   SCREE_HD void sum_neighbors(const Self& self, const Of& of, Sum& sum) const {
     if constexpr (kShared<Rows>) {
-      in.rows.sum_contacts(self.i, reaching(look.test(in, self)), SharedContact<kAccepts, Of, Sum>{*this, of},
+      in.rows.sum_contacts(self.i, reaching(look.test(in, self)), SharedContact<kAccepts, Of>{*this, of},
                            sum);
     } else {
-      neighbors<kAccepts>(self, of, [&](const Sum& contact, Index) { sum += contact; });
+      neighbors<kAccepts>(self, of, [&](const typename Of::Result& contact, Index) { sum += contact; });
     }
   }
   // Of the neighbours those of which only(j) holds.
@@ -244,19 +244,19 @@ struct ContactWalk {
 
  private:
   // Evaluates contacts of any row.
-  template <bool kAccepts, class Of, class Sum>
+  template <bool kAccepts, class Of>
   struct SharedContact {
     const ContactWalk& walk;
     const Of& of;
 
-    SCREE_HD Sum operator()(Index i, Index j, std::int64_t slot) const {
+    SCREE_HD typename Of::Result operator()(Index i, Index j, std::int64_t slot) const {
       const auto& in = walk.in;
       const Self owner = walk.look.self(in, i);
       const Law& law = walk.laws.get(owner.material, in.material[j]);
       const auto pair = walk.look.pair(in, owner, j);
       const auto history = in.history.template read<Law>(in.history.neighbors, slot);
       if constexpr (kReaches<Law>)
-        if (!found_closed(law, pair, history)) return Sum::nothing();
+        if (!found_closed(law, pair, history)) return Of::Result::nothing();
       const auto contact = of(law, pair, history);
       if constexpr (kAccepts) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;

@@ -116,8 +116,10 @@ std::size_t device_memory(const Model& model) {
   bytes += history_bytes(history_of(model.contact), n);
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
-  if (model.integrator.precision == Precision::mixed && !n.on_bodies)
+  if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
+    if (model.rotates()) bytes += n.items * 2 * sizeof(MixedSpin) + n.particles * sizeof(Vec3f);
+  }
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
            static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
   return static_cast<std::size_t>(bytes);

@@ -40,11 +40,19 @@ struct alignas(16) MixedRest {
   float loss;     // dissipated since the last conversion [J]
 };
 
+// Angular velocity in the middle of the step, and the moment of inertia. What another particle reads.
+struct alignas(16) MixedSpin {
+  float x, y, z;  // [rad/s]
+  float inertia;  // [kg m^2]
+};
+
 struct MixedViews {
   MixedPlace* place[2];  // all items; a step reads one and writes the other
   MixedMotion* motion[2];
   MixedFraction* fraction;  // owned particles
   MixedRest* rest;
+  MixedSpin* spin[2];  // all items; null where particles do not rotate
+  Vec3f* spin_rest;    // what a single leaves out of it [rad/s]
 };
 
 // Grid of quanta for pairs up to `reach` [m] apart: eight times that far before differences wrap.
@@ -63,6 +71,17 @@ struct QuantumGrid {
     return static_cast<Real>(from + whole * std::int64_t{65536} + parts) * fraction;
   }
 };
+
+// The place dx [m] on, and the rest of it.
+SCREE_HD MixedPlace moved_by(const QuantumGrid& grid, Vec3 dx, MixedPlace place, MixedFraction& rest) {
+  const auto move = [&](std::uint32_t& whole, std::uint16_t& part, Real by) {
+    const std::int64_t parts = part + grid.count(by);
+    whole += static_cast<std::uint32_t>(parts >> 16);
+    part = static_cast<std::uint16_t>(parts & 0xffff);
+  };
+  move(place.x, rest.x, dx.x), move(place.y, rest.y, dx.y), move(place.z, rest.z, dx.z);
+  return place;
+}
 
 inline QuantumGrid make_quantum_grid(Real reach) {
   int exponent = 0;
@@ -116,7 +135,7 @@ struct MixedTouchTest {
 
 // From the double state of an open explicit step.
 struct ToMixedItem {
-  const Vec4 *position, *velocity;
+  const Vec4 *position, *velocity, *spin;  // null unless particles rotate: then both are of the middle
   const Vec3* acceleration;
   MixedViews out;
   QuantumGrid grid;
@@ -131,8 +150,15 @@ struct ToMixedItem {
     const auto part = [&](Real x) { return static_cast<std::uint16_t>(grid.count(x) & 0xffff); };
     out.fraction[i] = {part(p.x), part(p.y), part(p.z),
                        static_cast<std::uint16_t>(box.inside(xyz(p), 2 * half_skin) ? 0 : 1)};
-    const Vec3f rest = in_single(verlet_middle_velocity(h, xyz(v), acceleration[i]) - in_double(seen));
+    const Vec3 middle = spin != nullptr ? xyz(v) : verlet_middle_velocity(h, xyz(v), acceleration[i]);
+    const Vec3f rest = in_single(middle - in_double(seen));
     out.rest[i] = {rest.x, rest.y, rest.z, 0};
+    if (spin != nullptr) {
+      const Vec4 w = spin[i];
+      const Vec3f single = in_single(xyz(w));
+      out.spin[0][i] = {single.x, single.y, single.z, static_cast<float>(w.w)};
+      out.spin_rest[i] = in_single(xyz(w) - in_double(single));
+    }
   }
 };
 
@@ -141,7 +167,7 @@ struct FromMixedItem {
   MixedViews in;
   int parity;
   QuantumGrid grid;
-  Vec4 *position, *velocity;
+  Vec4 *position, *velocity, *spin;  // null unless particles rotate
   Vec3* acceleration;
   Real* contact_loss;
   const std::uint8_t* drifting;
@@ -158,21 +184,30 @@ struct FromMixedItem {
     // A velocity that is not finite must not hide behind a place that always is.
     const Vec3 x = is_finite(middle) ? mixed_position(grid, position[i], place, in.fraction[i]) : middle;
     position[i] = vec4(x, position[i].w);
+    contact_loss[i] += rest.loss;
+    if (spin != nullptr) {
+      velocity[i] = vec4(middle, velocity[i].w);
+      take_spin(i);
+      return;
+    }
     velocity[i] = vec4(seen, velocity[i].w);
     acceleration[i] = verlet_acceleration(h, seen, middle);
-    contact_loss[i] += rest.loss;
   }
 
  private:
+  SCREE_HD void take_spin(Index i) const {
+    const MixedSpin w = (parity == 0 ? in.spin[0] : in.spin[1])[i];
+    spin[i] = vec4(Vec3{w.x, w.y, w.z} + in_double(in.spin_rest[i]), spin[i].w);
+  }
   // No list covers what drifts, so that it may be farther away than places tell apart; but it feels gravity
   // alone.
   SCREE_HD void drift(Index i) const {
     if (steps == 0) return;
     const Vec4 p = position[i], v = velocity[i];
-    const Vec3 first = verlet_middle_velocity(h, xyz(v), acceleration[i]);
+    const Vec3 first = spin != nullptr ? xyz(v) : verlet_middle_velocity(h, xyz(v), acceleration[i]);
     const Vec3 last = verlet_middle_after(steps, h, first, gravity);
     position[i] = vec4(xyz(p) + verlet_displacement_of(steps, h, first, gravity), p.w);
-    velocity[i] = vec4(verlet_predicted_from_middle(h, last, gravity), v.w);
+    velocity[i] = vec4(spin != nullptr ? last : verlet_predicted_from_middle(h, last, gravity), v.w);
     acceleration[i] = gravity;
   }
 };
@@ -259,19 +294,11 @@ struct MixedAdvanceItem {
     const Vec3f seen = in_single(verlet_predicted_from_middle(h, middle, a));
     const Vec3f new_rest = in_single(middle - in_double(seen));
     MixedFraction part = state.fraction[i];
-    MixedPlace place = p;
-    move(place.x, part.x, dx.x), move(place.y, part.y, dx.y), move(place.z, part.z, dx.z);
-    (parity == 0 ? state.place[1] : state.place[0])[i] = place;
+    (parity == 0 ? state.place[1] : state.place[0])[i] = moved_by(grid, dx, p, part);
     state.fraction[i] = part;
     (parity == 0 ? state.motion[1] : state.motion[0])[i] = {seen.x, seen.y, seen.z, u.mass};
     state.rest[i] = {new_rest.x, new_rest.y, new_rest.z, rest.loss + static_cast<float>(h) * loss};
     return dot(dx, dx);
-  }
-
-  SCREE_HD void move(std::uint32_t& place, std::uint16_t& part, Real dx) const {
-    const std::int64_t parts = part + grid.count(dx);
-    place += static_cast<std::uint32_t>(parts >> 16);
-    part = static_cast<std::uint16_t>(parts & 0xffff);
   }
 };
 

@@ -195,14 +195,11 @@ bool resists_rolling(const DeckTable& table) {
 
 // Where contacts rub; what that does not go with yet.
 void check_friction(const DeckTable& deck, const Model& model) {
-  const DeckTable& integrator = deck.table("integrator");
   for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
     if (!pair.has("friction")) continue;
     if (model.integrator.particles != ParticleIntegrator::velocity_verlet)
       pair.fail("friction",
                 "needs integrator.particles = \"velocity-verlet\": implicit steps have no friction yet");
-    if (model.integrator.precision == Precision::mixed)
-      integrator.fail("precision", "must be \"double\" where a pair has friction");
   }
   if (model.rotates()) return;
   for (const DeckTable& group : deck.tables("particles"))

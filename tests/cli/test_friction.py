@@ -85,8 +85,6 @@ class FrictionTest(CommandLineTest):
              "contact.pairs.0.tangential_stiffness", "left out for Hertz's law: Mindlin's follows from the moduli"),
             (RUBBING.replace('"velocity-verlet"', '"hht"'), friction, "contact.pairs.0.friction",
              'needs integrator.particles = "velocity-verlet"'),
-            (RUBBING.replace('"velocity-verlet"\n', '"velocity-verlet"\nprecision = "mixed"\n'), "precision",
-             "integrator.precision", 'must be "double" where a pair has friction'),
             (RUBBING + BALL.replace("0.005", "1e-7"), "step", "time.step = 0.0001",
              "a body on a contact oscillates with"),
             (RUBBING.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",

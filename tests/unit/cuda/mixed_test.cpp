@@ -132,6 +132,66 @@ TEST_CASE("mixed precision: a gas of 1e5 spheres keeps its momentum", "[long]") 
   std::printf("momentum of the gas: changed by %.1e of the sum of sizes in 20000 steps\n", drift * 1e-9);
 }
 
+TEST_CASE("mixed precision: spheres that rub leave with the velocities and spins of double") {
+  Model model = box_model(1000, Precision::mixed);
+  const bool hertz = GENERATE(false, true);
+  if (hertz) {
+    KelvinVoigt& law = model.contact.laws[0];
+    law = {}, law.effective_modulus = 5e6, law.damping_ratio = 0.1;
+    model.contact.friction = {{0.3, 0, 2e6, 0.1}};
+  } else {
+    model.contact.friction = {{0.3, Real(2) / 7 * 2e5, 0, 0.1}};
+  }
+  model.walls = {{"floor", {0, 0, 980}, {0, 0, 1}, 0}};
+  for (int k = 0; k < 64; ++k) {  // they stick, slide, or do the one after the other; some against the floor
+    const Vec3 at{900 + 1e-5 * k, 3.0 + 4 * k, 990};
+    add_sphere(model, at, {1, 0.03 * k, 0}), add_sphere(model, at + Vec3{1.01, 0.2, 0.1}, {-1, 0, 0.3});
+    add_sphere(model, {920, 3.0 + 4 * k, 980.505}, {0.03 * k, 0, -1});
+  }
+  Run mixed(model, true), exact(model, false);
+  mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
+  const std::vector<Particle> a = mixed.backend->particles().records(),
+                              b = exact.backend->particles().records();
+  Real velocity = 0, spin = 0, fastest_spin = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    velocity = std::max(velocity, norm(a[i].velocity - b[i].velocity));
+    spin = std::max(spin, norm(a[i].angular_velocity - b[i].angular_velocity));
+    fastest_spin = std::max(fastest_spin, norm(b[i].angular_velocity));
+  }
+  CHECK(fastest_spin > 0.5);  // they did rub
+  CHECK(velocity <= 1e-4);
+  CHECK(spin <= 4e-4);
+  const Real lost = mixed.backend->reports().ledger(1e-4).contact_loss,
+             exactly = exact.backend->reports().ledger(1e-4).contact_loss;
+  CHECK(near(lost, exactly, {.relative = 1e-3, .absolute = 1e-9}));
+  std::printf("%s and friction: velocities within %.1e m/s, spins within %.1e rad/s, dissipation %.9g of %.9g J\n",
+              hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);
+}
+
+// What contacts remember would creep if singles kept it.
+TEST_CASE("mixed precision: a pile that friction holds stays where it is", "[long]") {
+  Model model = box_model(12, Precision::mixed);
+  model.gravity = {0, 0, -1};
+  model.walls = {{"floor", {0, 0, 0}, {0, 0, 1}, 0}};
+  model.contact.friction = {{0.5, Real(2) / 7 * 2e5, 0, 0.2}};
+  // Three spheres on the floor that do not touch, and one on top between them.
+  const Real aside = 0.6;
+  for (int k = 0; k < 3; ++k)
+    add_sphere(model, {6 + aside * std::cos(2.0943951 * k), 6 + aside * std::sin(2.0943951 * k), 0.5}, {});
+  add_sphere(model, {6, 6, 0.5 + std::sqrt(1 - aside * aside)}, {});
+  Run run(model, true);
+  run.advance(1e-4, 300000);
+  const std::vector<Particle> settled = run.backend->particles().records();
+  run.advance(1e-4, 1000000);
+  const std::vector<Particle> after = run.backend->particles().records();
+  Real moved = 0;
+  for (std::size_t i = 0; i < after.size(); ++i)
+    moved = std::max(moved, norm(after[i].position - settled[i].position));
+  CHECK(after[3].position.z > 1);  // it stands
+  CHECK(moved < 1e-6);             // diameters
+  std::printf("pile held by friction after 1e6 steps: moved by %.1e diameters\n", moved);
+}
+
 TEST_CASE("mixed precision: what drifts outside keeps its place however far it goes") {
   Model model = box_model(100, Precision::mixed);
   model.gravity = {0, -9.81, 0};

@@ -1,0 +1,139 @@
+// A contact that rubs, over an explicit step, in single precision; what it remembers stays in double, because
+// a step changes it by less than a single's last bit. For laws of spheres with a spring and a slider
+// (contact_law.hpp), which is what each formula here is: to the rounding of singles, and to second order in
+// the step where there the turn of a contact is exact at any.
+#pragma once
+
+#include <cmath>
+
+#include "physics/contact_law.hpp"
+
+namespace scree {
+
+// Whether there is this form of a law that moves.
+template <class Law>
+inline constexpr bool kHasSingle = Law::Tangential::acts && !Law::Rolling::acts && !Law::kReaches;
+
+// How two spheres have moved over the step that ends at the instant of the pair. Differences of normals would
+// lose their digits; the way of the centres has all of them.
+struct SinglePair : PairStateOf<float, Vec3f> {
+  Vec3f normal;                // at the end of the step
+  Vec3f slip;                  // of i over j, across the normal [m]
+  Vec3f turn;                  // of the pair as a whole [rad]
+  float overlap0;              // at its start [m]
+  float leverage;              // (R_i + R_j) / |r|
+  float inertia_i, inertia_j;  // [kg m^2]
+  float h;                     // [s]
+};
+
+// spin_i, spin_j: of the half step [rad/s].
+SCREE_HD SinglePair single_pair(const PairStateOf<float, Vec3f>& state, Vec3f spin_i, Vec3f spin_j, float h) {
+  SinglePair out{state, state.geometry.normal(), {}, {}, 0, 0, 0, 0, h};
+  const float inverse = state.geometry.scale, reach = state.size.radius_i + state.size.radius_j;
+  const Vec3f way = h * state.velocity;
+  const auto across = [](Vec3f a, Vec3f n) { return a - dot(a, n) * n; };
+  const Vec3f middle = out.normal - (0.5f * inverse) * across(way, out.normal);
+  const Vec3f sideways = across(way, middle);
+  const Vec3f rolling = state.size.radius_i * spin_i + state.size.radius_j * spin_j;
+  out.leverage = reach * inverse;
+  out.slip = out.leverage * sideways - h * cross(rolling, middle);
+  out.turn = inverse * cross(middle, sideways) + (h / 2 * dot(spin_i + spin_j, middle)) * middle;
+  out.overlap0 = state.geometry.overlap + dot(way, middle);
+  return out;
+}
+
+struct SingleLoad {
+  Vec3f force;     // on i [N]
+  float loss;      // [W]
+  Vec3f torque_i;  // [N m]
+};
+struct SingleOutcome : SingleLoad {
+  Vec3 history;  // the spring's force [N]
+};
+
+// spring_slider.hpp's spring_step with stiffnesses, dashpot and limit of the step.
+struct SingleSlider {
+  float stiffness, stiffness0, dashpot, limit;
+};
+
+struct SingleSpring {
+  Vec3 spring;   // [N]
+  Vec3f acting;  // with the dashpot's [N]
+  float loss;    // of the step [J]
+};
+
+SCREE_HD SingleSpring single_spring_step(const SingleSlider& p, const SinglePair& pair, Vec3 old) {
+  const Vec3f start = in_single(old), first = cross(pair.turn, start);
+  const bool shrinks = p.stiffness < p.stiffness0;
+  const float kept = shrinks ? p.stiffness / p.stiffness0 : 1;
+  float of_way = p.stiffness;
+  if (p.stiffness > p.stiffness0)
+    of_way = (p.stiffness * p.stiffness + p.stiffness * p.stiffness0 + p.stiffness0 * p.stiffness0) /
+             (1.5f * (p.stiffness + p.stiffness0));
+  const Vec3f way = pair.slip;
+  Vec3f change = first + 0.5f * cross(pair.turn, first) + (kept - 1) * start + of_way * way;
+  change = change - dot(start + change, pair.normal) * pair.normal;
+  const Vec3f trial = start + change;
+  SingleSpring out{old + in_double(change), {}, 0};
+  const float square = dot(trial, trial);
+  if (square > p.limit * p.limit) {
+    const float share = p.limit * root_and_inverse(square).inverse;
+    out.acting = share * trial;
+    out.loss = dot(kept * start + out.acting, (1 - share) * trial) / (2 * of_way);
+    out.spring = Real(share) * out.spring;
+  } else {
+    out.acting = in_single(out.spring);
+    if (p.dashpot > 0) {
+      const Vec3f sum = out.acting + (p.dashpot / pair.h) * way;
+      const float length = dot(sum, sum);
+      const Vec3f spring = out.acting;
+      out.acting = length > p.limit * p.limit ? (p.limit * root_and_inverse(length).inverse) * sum : sum;
+      out.loss = dot(out.acting - spring, way);
+    }
+  }
+  if (shrinks)
+    out.loss += dot(start, start) / 2 * (1 - kept) / p.stiffness0;
+  else if (p.stiffness > p.stiffness0) {
+    const Vec3f spring = in_single(out.spring);
+    const float after = dot(spring, spring) * (p.stiffness - of_way) / (p.stiffness * of_way);
+    out.loss += p.stiffness0 > 0
+                    ? (after + dot(start, start) * (of_way - p.stiffness0) / (p.stiffness0 * of_way)) / 2
+                    : after / 2;
+  }
+  return out;
+}
+
+SCREE_HD float single_contact_radius(const PairSizeOf<float>& size, float d) {
+  return d > 0 ? std::sqrt(size.effective_radius() * d) : 0;
+}
+
+template <class Law>
+SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 old) {
+  static_assert(kHasSingle<Law>);
+  const auto normal = law.normal.template as<float>().of_pair(step.size);
+  const auto& g = step.geometry;
+  const ContactForceOf<float> f = contact_force(normal, g.overlap, g.rate(step.velocity));
+  SinglePair pair = step;
+  if (step.overlap0 < 0) pair.slip = (g.overlap / (g.overlap - step.overlap0)) * step.slip;
+  const auto stiffness = [&](float d) {
+    return law.tangential.stiffness_at(single_contact_radius(step.size, d));
+  };
+  SingleSlider slider{stiffness(g.overlap), stiffness(step.overlap0), 0,
+                      static_cast<float>(law.tangential.friction) * f.force / step.leverage};
+  if (law.tangential.damping_ratio > 0) {
+    const float i = step.size.radius_i, j = step.size.radius_j;
+    const float inverse_mass =
+        1 / step.size.mass_i + 1 / step.size.mass_j + i * i / step.inertia_i + j * j / step.inertia_j;
+    slider.dashpot =
+        2 * static_cast<float>(law.tangential.damping_ratio) * std::sqrt(slider.stiffness / inverse_mass);
+  }
+  const SingleSpring spring = single_spring_step(slider, pair, old);
+  SingleOutcome out;
+  out.force = g.along(f.force) - step.leverage * spring.acting;
+  out.torque_i = step.size.radius_i * cross(step.normal, spring.acting);
+  out.loss = f.loss + spring.loss / step.h;
+  out.history = spring.spring;
+  return out;
+}
+
+}  // namespace scree
