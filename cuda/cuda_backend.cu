@@ -29,6 +29,8 @@ std::string CudaBackend::description() const {
 }
 
 std::unique_ptr<ImplicitStep> CudaBackend::open_step(Real h) {
+  if (items_.model.rotates())
+    throw InputError("integrator.particles = \"hht\" with friction runs on the CPU: choose --backend cpu");
   return std::make_unique<CudaImplicitStep>(items_, bodies_, implicit_arrays_, h);
 }
 

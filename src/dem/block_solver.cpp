@@ -21,10 +21,8 @@ int BlockSolver::solve(const System& system, std::vector<Vec4>& d, std::vector<V
   SubtractMatrixItem<PackedRows> subtract = system.matrix;
   subtract.d = d.data(), subtract.residual = system.residual.data();
 
-  ChebyshevWeights weights = solver_weights(system.largest_stiffening);
   for (Index i = 0; i < n; ++i) d[i] = {}, solution[i] = {};
-  int products = 0;
-  while (products < kMostProducts) {
+  return iterate_chebyshev(system.largest_stiffening, system.tolerance, [&](const ChebyshevWeights& weights) {
     const DirectionItem direction{system.inverse_block.data(), system.residual.data(), weights.from_last,
                                   weights.from_residual};
     for (Index i = 0; i < n; ++i) {
@@ -34,11 +32,8 @@ int BlockSolver::solve(const System& system, std::vector<Vec4>& d, std::vector<V
     }
     system.halo.update(std::span<Vec4>(d), n);
     for_each(Serial{}, n, subtract);
-    ++products;
-    if (system.ranks.max(largest_norm(system.residual)) <= system.tolerance) break;
-    weights.advance();
-  }
-  return products;
+    return system.ranks.max(largest_norm(system.residual));
+  });
 }
 
 }  // namespace scree

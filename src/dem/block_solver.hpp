@@ -58,6 +58,20 @@ struct DirectionItem {
 
 inline constexpr int kMostProducts = 2000;  // matrix products of one solve
 
+// The iteration itself: take(weights) finds the next directions and adds them to the solution, and returns
+// the largest |residual| that is left, over all ranks. Returns the number of matrix products.
+template <class Take>
+int iterate_chebyshev(Real largest_stiffening, Real tolerance, const Take& take) {
+  ChebyshevWeights weights = solver_weights(largest_stiffening);
+  int products = 0;
+  while (products < kMostProducts) {
+    ++products;
+    if (take(weights) <= tolerance) break;
+    weights.advance();
+  }
+  return products;
+}
+
 // The matrix is M' + sum over pairs of [b; -b][b; -b]^T with M' = mass / (1 + alpha): each pair term is at
 // most twice its own diagonal, so D^-1 A has no eigenvalue above 2, and none below 1 / (1 + largest
 // stiffening).

@@ -8,6 +8,7 @@
 #include "dem/contact_items.hpp"
 #include "dem/leaver_items.hpp"
 #include "dem/output_fields.hpp"
+#include "dem/rubbing_items.hpp"
 #include "dem/step_items.hpp"
 #include "dem/surface_items.hpp"
 #include "dem/system_items.hpp"
@@ -16,6 +17,17 @@
 #include "partition/ranks.hpp"
 
 namespace scree {
+
+// Force, torque and Newton matrix of particles over an implicit step in which contacts rub.
+struct RubbingRequest {
+  Vec3 gravity;
+  NewtonWeights weights;
+  RubbingStart start;
+  StepForces forces;
+  StepTorques torques;
+  RubbingMatrix matrix;
+  Real* sharpness;
+};
 
 struct EnergyOutputs {
   Real* energy;
@@ -57,6 +69,13 @@ class ContactKernels {
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;
+  // The same where contacts rub, for laws of which kRubs holds; and the limits at an iterate.
+  virtual void rubbing_system(const ContactViews<PackedRows>& in, Index n,
+                              const RubbingRequest& request) const = 0;
+  virtual void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
+                             Real* contact_loss, Real* integrator_loss) const = 0;
+  virtual void freeze(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
+                      const FrozenLimits& to) const = 0;
   // n particles that leave, and what they leave to all others: see the items.
   virtual void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
                        Leaver* leavers) const = 0;

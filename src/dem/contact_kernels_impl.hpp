@@ -1,6 +1,7 @@
 // The contact stages of one law; included where they are compiled.
 #pragma once
 
+#include <stdexcept>
 #include <utility>
 
 #include "base/for_each.hpp"
@@ -78,6 +79,25 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n,
              ContactBooksItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
+  void rubbing_system(const ContactViews<PackedRows>& in, Index n, const RubbingRequest& r) const override {
+    over_rubbing_step(in, r.start, [&](const auto& walk) {
+      for_each(Serial{}, n,
+               RubbingSystemItem<Laws, PackedRows>{walk, r.gravity, r.weights, r.forces, r.torques, r.matrix,
+                                                   r.sharpness});
+    });
+  }
+  void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
+                     Real* contact_loss, Real* integrator_loss) const override {
+    over_rubbing_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, RubbingBooksItem<Laws, PackedRows>{walk, contact_loss, integrator_loss});
+    });
+  }
+  void freeze(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
+              const FrozenLimits& to) const override {
+    over_rubbing_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, FreezeItem<Laws, PackedRows>{walk, to});
+    });
+  }
   void leavers(const ContactViews<PackedRows>& in, const OpenBox& box, Index n,
                Leaver* leavers) const override {
     for_each(Serial{}, n, LeaverEnergyItem<Laws, PackedRows>{{in, laws_}, box, leavers});
@@ -88,6 +108,16 @@ class CpuContactKernels : public ContactKernels {
   }
 
  private:
+  // use(walk): compiled for laws that have steps in which they rub.
+  template <class Use>
+  void over_rubbing_step(const ContactViews<PackedRows>& in, const RubbingStart& start,
+                         const Use& use) const {
+    if constexpr (kRubs<LawOf<Laws>>)
+      use(RubbingWalk<Laws, PackedRows>{in, laws_, {start}});
+    else
+      throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
+  }
+
   Laws laws_;
 };
 

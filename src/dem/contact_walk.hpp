@@ -227,14 +227,16 @@ struct ContactWalk {
         continue;
       }
       const WallPlane& plane = in.planes[surface];
-      const auto pair = look.wall(in, self, plane);
+      auto pair = look.wall(in, self, plane);
+      if constexpr (requires { look.at_entry(pair, entry); }) look.at_entry(pair, entry);
       if (!may_be_closed(pair)) continue;
       const Law& law = laws.get(self.material, plane.material);
       if constexpr (sees_history<Of, decltype(pair)>()) {
         const auto history = in.history.template read<Law>(in.history.ground, entry);
         if (!found_closed(law, pair, history)) continue;
         const auto contact = of(law, pair, history);
-        if constexpr (kAccepts) in.history.template write<Law>(in.history.ground, entry, contact.history);
+        if constexpr (kAccepts)
+          if (lasts(contact)) in.history.template write<Law>(in.history.ground, entry, contact.history);
         visit(contact, surface);
       } else if (found_closed(law, pair, ContactHistory{})) {
         visit(of(law, pair), surface);
@@ -293,6 +295,16 @@ struct ContactWalk {
     else
       return true;
   }
+
+  // Whether a contact is there at the end of the step: of one that has ended nothing is remembered.
+  template <class Contact>
+  SCREE_HD static bool lasts(const Contact& contact) {
+    if constexpr (requires { contact.lasts; })
+      return contact.lasts;
+    else
+      return true;
+  }
+
   template <class Of, class Pair>
   SCREE_HD static constexpr bool sees_history() {
     if constexpr (Law::kHistory > 0)
@@ -339,11 +351,14 @@ struct ContactWalk {
         self.i, test,
         [&](Index j, std::int64_t slot) {
           const auto history = in.history.template read<Law>(in.history.neighbors, slot);
-          return Found{of(laws.get(self.material, in.material[j]), look.pair(in, self, j), history), j, slot};
+          auto pair = look.pair(in, self, j);
+          if constexpr (requires { look.at_slot(pair, slot); }) look.at_slot(pair, slot);
+          return Found{of(laws.get(self.material, in.material[j]), pair, history), j, slot};
         },
         [&](const Found& found) {
           if constexpr (kAccepts)
-            in.history.template write<Law>(in.history.neighbors, found.slot, found.contact.history);
+            if (lasts(found.contact))
+              in.history.template write<Law>(in.history.neighbors, found.slot, found.contact.history);
           visit(found.contact, found.j);
         });
   }

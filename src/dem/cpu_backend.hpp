@@ -10,6 +10,7 @@
 #include "dem/cpu_implicit.hpp"
 #include "dem/cpu_particles.hpp"
 #include "dem/cpu_reports.hpp"
+#include "dem/cpu_rubbing.hpp"
 
 namespace scree {
 
@@ -25,6 +26,8 @@ class CpuBackend : public Backend {
   RankList& list() override { return list_; }
   Reports& reports() override { return reports_; }
   std::unique_ptr<ImplicitStep> open_step(Real h) override {
+    if (items_.store.rotates)
+      return std::make_unique<CpuRubbingStep>(items_, implicit_arrays_, rubbing_arrays_, h);
     return std::make_unique<CpuImplicitStep>(items_, implicit_arrays_, h);
   }
   std::unique_ptr<ExplicitRun> start_run(Real h) override {
@@ -37,6 +40,7 @@ class CpuBackend : public Backend {
   CpuParticles particles_;
   CpuReports reports_;
   CpuImplicitArrays implicit_arrays_;
+  CpuRubbingArrays rubbing_arrays_;
 };
 
 }  // namespace scree

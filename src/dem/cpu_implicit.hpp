@@ -44,22 +44,25 @@ class CpuImplicitStep : public ImplicitStep {
   void accept() override;
   void undo() override;
 
- private:
+ protected:
   void move_particles();
   StepViews step_views();
   StepForces step_forces();
   StepStart step_start() const;
   NewtonWeights newton_weights() const;
   void find_steps() { items_.surfaces.find_steps(items_.store, items_.list.surfaces, step_start()); }
+
+  CpuItems& items_;
+  CpuImplicitArrays& arrays_;
+  const Real h_;
+
+ private:
   ContactMatrix matrix();
   CorrectItem correct_item(Real share);
   StepNorms largest_norms();
   void subtract_surface_steps();
   Real along_correction(const std::vector<Vec3>& residual) const;
 
-  CpuItems& items_;
-  CpuImplicitArrays& arrays_;
-  const Real h_;
   LineSearch line_search_;                         // along arrays_.correction
   Real largest_stiffening_ = 0, force_scale_ = 0;  // of the last contact_force
 };

@@ -36,6 +36,9 @@ class ImplicitStep {
   virtual ParticleCorrection particle_correct() = 0;
   // Takes part of the last correction back, after contact_force has reported an overshoot.
   virtual void shorten_correction() = 0;
+  // From now on friction's limits stay what they are at the iterate: a step that converges where one whose
+  // limits follow the normal forces may not. Of particles that rub; at most once a step, after contact_force.
+  virtual void freeze_limits() {}
   virtual Real error() = 0;  // local position error of the step over the radius
 
   // Either ends the step: nothing else may be called then. A step that goes without either leaves the

@@ -55,4 +55,27 @@ class LineSearch {
   Real start_slope_ = 0, slope_ = 0;  // of the potential, where the correction starts and at the iterate
 };
 
+// The same where friction leaves no potential: a correction is shortened while the largest scaled residual is
+// larger than where it started. That is a maximum, the same on any number of ranks.
+class ResidualSearch {
+ public:
+  // The whole correction has been applied. residual: where it started.
+  void open(Real residual) { share_ = 1, start_ = residual, residual_ = 0; }
+  bool is_open() const { return share_ > kLeastShare; }
+  void look(Real residual) { residual_ = residual; }
+  bool overshoots() const { return is_open() && residual_ > kMostGrowth * start_; }
+  // By how much the share changes, which is what to apply of the correction.
+  Real shorten() {
+    const Real last = share_;
+    share_ *= Real(0.5);
+    return share_ - last;
+  }
+
+ private:
+  static constexpr Real kMostGrowth = 1;
+  static constexpr Real kLeastShare = 0.1;
+
+  Real share_ = 0, start_ = 0, residual_ = 0;
+};
+
 }  // namespace scree

@@ -197,9 +197,16 @@ bool resists_rolling(const DeckTable& table) {
 void check_friction(const DeckTable& deck, const Model& model) {
   for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
     if (!pair.has("friction")) continue;
-    if (model.integrator.particles != ParticleIntegrator::velocity_verlet)
-      pair.fail("friction",
-                "needs integrator.particles = \"velocity-verlet\": implicit steps have no friction yet");
+    for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
+      if (pair.has(key) && model.integrator.particles != ParticleIntegrator::velocity_verlet)
+        pair.fail(key,
+                  "needs integrator.particles = \"velocity-verlet\": implicit steps have friction alone");
+    for (const Body& body : model.bodies)
+      if (!body.shapes.empty() && model.integrator.particles != ParticleIntegrator::velocity_verlet)
+        pair.fail("friction",
+                  fmt::format("needs integrator.particles = \"velocity-verlet\": in implicit steps "
+                              "particles do not rub against bodies yet, and body \"{}\" has shapes",
+                              body.name));
   }
   if (model.rotates()) return;
   for (const DeckTable& group : deck.tables("particles"))

@@ -21,16 +21,18 @@ struct StepSpring {
 };
 
 // From the spring's force at the start (committed: iterations never change it), turned with the contact, by
-// the same rules as spring_step(). That force is first shortened to the limit: work of the mean force less
-// the change of spring_energy() is then never negative, whatever the step and the way; while it sticks it is
-// the dashpot's loss exactly, and the step is of second order.
-SCREE_HD StepSpring step_spring(const SpringSlider& p, Vec3 old, Vec3 way, Real h) {
+// the same rules as spring_step(). p.limit: of the mean force L; end_limit: of the spring at the end L1, at
+// most 2 L. The force at the start is first shortened to 2 L - L1, which is the limit there where limits are
+// linear in time. Work of the mean force less the change of spring_energy() is then never negative, whatever
+// the step and the way; while it sticks it is the dashpot's loss exactly, and the step is of second order.
+SCREE_HD StepSpring step_spring(const SpringSlider& p, Vec3 old, Vec3 way, Real h, Real end_limit) {
   StepSpring out{};
   const StiffnessStep k = stiffness_step(p);
-  const Vec3 kept = k.kept * old, start = shortened(kept, p.limit), trial = start + k.of_way * way;
+  const Vec3 kept = k.kept * old, start = shortened(kept, 2 * p.limit - end_limit),
+             trial = start + k.of_way * way;
   const Real rate = p.dashpot * reciprocal(h);
   const Vec3 pull = Real(0.5) * (start + trial) + rate * way;
-  out.spring = shortened(trial, p.limit);
+  out.spring = shortened(trial, end_limit);
   out.mean = shortened(pull, p.limit);
   out.stiffness = k.of_way / 2 + rate;
   const Real square = dot(pull, pull);

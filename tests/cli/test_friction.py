@@ -83,8 +83,6 @@ class FrictionTest(CommandLineTest):
              "contact.pairs.0.tangential_stiffness: missing", "only where exponent = 1"),
             (hertz.replace(friction, friction + "tangential_stiffness = 2e4\n"), "tangential_stiffness",
              "contact.pairs.0.tangential_stiffness", "left out for Hertz's law: Mindlin's follows from the moduli"),
-            (RUBBING.replace('"velocity-verlet"', '"hht"'), friction, "contact.pairs.0.friction",
-             'needs integrator.particles = "velocity-verlet"'),
             (RUBBING + BALL.replace("0.005", "1e-7"), "step", "time.step = 0.0001",
              "a body on a contact oscillates with"),
             (RUBBING.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",

@@ -13,6 +13,7 @@ FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_l
 # Spheres that fall, slide, stick, roll, part and leave; some of them do not rub on each other.
 RUBBING = [HERE / "rubbing.toml", "parallel.imbalance=0.05"]
 RUBBING_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
+FIXED = ["time.control=fixed"]
 # The cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
@@ -29,6 +30,10 @@ MAIN_CASES = {
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
     # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
     "rubbing on bodies": ([HERE / "rubbing_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
+    "rubbing, implicit": ([*RUBBING, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
+    "rubbing after Hertz and Mindlin, implicit": ([HERE / "rubbing_hertz.toml", *IMPLICIT, *FIXED,
+                                                   "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
+                                                  (1, 2, 3, 4)),
 }
 CASES = {
     **MAIN_CASES,

@@ -15,6 +15,12 @@ namespace scree {
 
 inline std::string toml(Vec3 a) { return fmt::format("[{}, {}, {}]", a.x, a.y, a.z); }
 
+// Implicit steps of a fixed length.
+inline std::vector<std::string> implicit_steps(Real hht_alpha) {
+  return {"integrator.particles=hht", "time.control=fixed",
+          fmt::format("integrator.hht_alpha={}", hht_alpha)};
+}
+
 struct GrainDeck {
   std::string law;  // keys of the pairs
   std::vector<Grain> grains;
@@ -22,6 +28,7 @@ struct GrainDeck {
   std::string materials = {};  // tables of "grain" and "plate"; none: one material
   Vec3 gravity = {};
   bool plane = true;
+  std::vector<std::string> settings = {};  // as of the command line
 
   std::string text() const {
     Vec3 lower = {1, 1, 1}, upper = {-1, -1, -1};
@@ -40,7 +47,7 @@ struct GrainDeck {
                        step);
     return out + materials + pairs() + groups();
   }
-  Model model() const { return model_of(text()); }
+  Model model() const { return model_of(text(), settings); }
 
  private:
   std::string pairs() const {

@@ -22,6 +22,7 @@ struct Setting {
   std::string law, materials;
   bool operator<(const Setting& o) const { return law + materials < o.law + o.materials; }
 };
+using Words = std::vector<std::string>;
 
 Setting setting_of(const LinearImpact& impact, const Row&) {
   const Real damping = contact_damping(impact.damping_ratio, impact.grain.mass, impact.stiffness, 1);
@@ -39,12 +40,13 @@ Setting setting_of(const HertzImpact& impact, const Row& row) {
 // A deck of all the impacts of a setting, side by side, and the errors of its rebounds as rebound_error() has
 // them. Steps are counted in the shortest contact.
 template <class Impact>
-void add_rebounds(const Setting& setting, const std::vector<Impact>& impacts, Real parts, Errors& errors) {
+void add_rebounds(const Setting& setting, const std::vector<Impact>& impacts, Real parts, const Words& words,
+                  Errors& errors) {
   Real contact_time = kInfinity;
   for (const Impact& impact : impacts) contact_time = std::min(contact_time, impact.contact_time);
   const Real h = contact_time / parts;
   GrainDeck deck{.law = setting.law, .grains = {}, .step = h, .end = 8 * contact_time};
-  deck.materials = setting.materials;
+  deck.materials = setting.materials, deck.settings = words;
   for (const Impact& impact : impacts)
     for (const Real phase : kPhases) {
       Grain grain = impact.grain;
@@ -67,13 +69,13 @@ void add_rebounds(const Setting& setting, const std::vector<Impact>& impacts, Re
 }
 
 template <class Impact, class Which>
-Errors rebound_errors(const std::string& table, Real parts, const Which& which) {
+Errors rebound_errors(const std::string& table, Real parts, const Which& which, const Words& words = {}) {
   const ReferenceTable rows(table);
   std::map<Setting, std::vector<Impact>> decks;
   for (const Row& row : rows.rows())
     if (which(row)) decks[setting_of(Impact(row), row)].push_back(Impact(row));
   Errors errors;
-  for (const auto& [setting, impacts] : decks) add_rebounds(setting, impacts, parts, errors);
+  for (const auto& [setting, impacts] : decks) add_rebounds(setting, impacts, parts, words, errors);
   return errors;
 }
 
@@ -137,6 +139,52 @@ TEST_CASE("oblique impacts on a wall after Hertz and Mindlin") {
     CHECK(keeps(fine.worst(), {.promise = 5e-3, .measured = 2.4e-3}));
     CHECK(order_between(coarse, fine) > kLaggingDashpot);
   }
+}
+
+TEST_CASE("oblique impacts on a wall in implicit steps: of second order, too where a normal dashpot jumps") {
+  for (const Real alpha : {0.0, -0.05}) {
+    CAPTURE(alpha);
+    const auto at = [&](Real parts, bool damped) {
+      return rebound_errors<LinearImpact>(
+          "contact/oblique_linear.csv", parts, [&](const Row& row) { return (row["e"] < 1) == damped; },
+          implicit_steps(alpha));
+    };
+    for (const bool damped : {false, true}) {
+      CAPTURE(damped);
+      const Errors coarse = at(50, damped), fine = at(100, damped);
+      CHECK(keeps(coarse.worst(), {.promise = 2e-3, .measured = 6.4e-4}));
+      CHECK(keeps(fine.worst(), {.promise = 5e-4, .measured = 1.7e-4}));
+      CHECK(order_between(coarse, fine) > (damped ? 1.4 : 1.9));
+    }
+  }
+}
+
+// A spring that weakens while its contact parts is rescaled where the step starts.
+TEST_CASE("oblique impacts on a wall after Hertz and Mindlin in implicit steps: of first order") {
+  const auto steps = implicit_steps(-0.05);
+  const auto check = [](const char* name, Bars coarse_bars, Bars fine_bars, const auto& at) {
+    CAPTURE(name);
+    const Errors coarse = at(100), fine = at(200);
+    CHECK(keeps(coarse.worst(), coarse_bars));
+    CHECK(keeps(fine.worst(), fine_bars));
+    CHECK(order_between(coarse, fine) > 0.9);
+  };
+  check("oblique", {.promise = 5e-3, .measured = 2.6e-3}, {.promise = 2.5e-3, .measured = 1.2e-3},
+        [&](Real parts) {
+          return rebound_errors<MindlinImpact>("contact/oblique_mindlin.csv", parts, rescales, steps);
+        });
+  check("test 4", {.promise = 2e-3, .measured = 5.3e-4}, {.promise = 1e-3, .measured = 2.5e-4},
+        [&](Real parts) {
+          return rebound_errors<AngleImpact>("contact/chung_ooi_4.csv", parts, rescales, steps);
+        });
+  check("test 5", {.promise = 5e-3, .measured = 1.7e-3}, {.promise = 2e-3, .measured = 7.7e-4},
+        [&](Real parts) {
+          return rebound_errors<RecoilImpact>("contact/chung_ooi_5.csv", parts, rescales, steps);
+        });
+  check("test 6", {.promise = 2e-3, .measured = 4.6e-4}, {.promise = 1e-3, .measured = 1.7e-4},
+        [&](Real parts) {
+          return rebound_errors<SpinImpact>("contact/chung_ooi_6.csv", parts, rescales, steps);
+        });
 }
 
 }  // namespace scree

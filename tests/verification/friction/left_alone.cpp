@@ -67,9 +67,17 @@ Real largest_move(const std::vector<Particle>& a, const std::vector<Particle>& b
 
 // Discs: spheres, without resistance to rolling and twisting, go on to roll on the floor and to spin on top.
 TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1e5 steps") {
-  constexpr Real kSettled = 6, kAlone = 1e5 * kStep;
-  SimulationRun run(
-      model_of(heap_deck(2, 60, kSettled + kAlone, "damping = 20.0\ntangential_damping_ratio = 0.5")));
+  Real step = kStep, stirred = 1e-23;  // [J]: implicit steps leave residuals
+  std::vector<std::string> settings;
+  SECTION("explicit ones") {}
+  SECTION("implicit ones") {
+    step = 5 * kStep, stirred = 7e-21;
+    settings = {"integrator.particles=hht", "time.control=fixed", fmt::format("time.step={}", step)};
+  }
+  constexpr Real kSettled = 6;
+  const Real alone = 1e5 * step;
+  SimulationRun run(model_of(
+      heap_deck(2, 60, kSettled + alone, "damping = 20.0\ntangential_damping_ratio = 0.5"), settings));
   run.run_until(kSettled);
   const std::vector<Particle> before = run.particles();
   const ParticleLedger settled = run.particle_ledger();
@@ -78,7 +86,7 @@ TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1
   const ParticleLedger now = run.particle_ledger();
   CHECK(now.contacts == settled.contacts);
   CHECK(keeps(largest_move(run.particles(), before) / (2 * kRadius), {.promise = 1e-9, .measured = 5e-12}));
-  CHECK(now.kinetic < 1e-22);  // [J]; a weight times its radius is 1e-2 J
+  CHECK(keeps(now.kinetic, {.promise = 1e-16, .measured = stirred}));  // a weight times its radius is 1e-2 J
   CHECK(now.contact_loss - settled.contact_loss < 1e-15);
 }
 

@@ -24,12 +24,13 @@ struct RollingErrors {
 };
 
 // After the slip a sphere swings about v = 5/7 v0: five periods of it.
-void add_slide_to_roll(const ReferenceTable::Row& row, Real parts, RollingErrors& errors) {
+void add_slide_to_roll(const ReferenceTable::Row& row, Real parts, RollingErrors& errors,
+                       const std::vector<std::string>& settings = {}) {
   const Real v0 = row["v0"], t_roll = row["t_roll"], period = row["period"];
   const Real h = t_roll / std::ceil(t_roll / period * parts);
   const Grain grain{.velocity = {v0, 0, 0}, .radius = row["R"], .mass = row["m"]};
   SimulationRun run(
-      resting_model(grain, row["mu"], row["kt"], 0, inclined_gravity(0), h, t_roll + 6 * period));
+      resting_model(grain, row["mu"], row["kt"], 0, inclined_gravity(0), h, t_roll + 6 * period, settings));
   errors.place.add(PlaneState(run, t_roll, h).x / row["x_roll"] - 1);
   for (int k = 0; k <= 50; ++k) {
     const Real t = t_roll + k * period / 10;
@@ -39,6 +40,29 @@ void add_slide_to_roll(const ReferenceTable::Row& row, Real parts, RollingErrors
     errors.speed.add(row["R"] * (at.w - (row["w_roll"] + 2.5 * swing / row["R"])) / v0);
   }
   errors.loss.add(run.particle_ledger().contact_loss / row["slip_loss"] - 1);
+}
+
+// Places, speeds, spins and springs down inclines, each over itself.
+Errors incline_errors(Real parts, const std::vector<std::string>& settings = {}) {
+  const ReferenceTable table("contact/incline.csv");
+  Errors errors;
+  for (std::size_t first = 0; first < table.rows().size(); first += 4) {
+    const auto& head = table.rows()[first];
+    const Real m = head["m"], R = head["R"], kt = head["kt"];
+    const Vec3 gravity = inclined_gravity(head["deg"] * std::numbers::pi_v<Real> / 180);
+    const Real h = step_in(1e-3, slip_period(m, kt) / parts);
+    SimulationRun run(
+        resting_model({.radius = R, .mass = m}, head["mu"], kt, 0.3, gravity, h, 0.11, settings));
+    for (std::size_t k = first; k < first + 4; ++k) {
+      const auto& row = table.rows()[k];
+      const PlaneState at(run, row["t"], h);
+      errors.add((at.x - row["x"]) / row["x"]);
+      errors.add((at.v - row["v"]) / row["v"]);
+      errors.add((at.w - row["w"]) / row["w"]);
+      errors.add((at.spring - row["T"]) / row["T"]);
+    }
+  }
+  return errors;
 }
 
 }  // namespace
@@ -86,30 +110,33 @@ TEST_CASE("a sphere that slides on a wall with a dashpot, which is off while it 
 }
 
 TEST_CASE("a sphere on an inclined wall rolls up to tan = 7/2 mu and slides beyond") {
-  const ReferenceTable table("contact/incline.csv");
-  const auto errors_at = [&](Real parts) {
-    Errors errors;
-    for (std::size_t first = 0; first < table.rows().size(); first += 4) {
-      const auto& head = table.rows()[first];
-      const Real m = head["m"], R = head["R"], kt = head["kt"];
-      const Vec3 gravity = inclined_gravity(head["deg"] * std::numbers::pi_v<Real> / 180);
-      const Real h = step_in(1e-3, slip_period(m, kt) / parts);
-      SimulationRun run(resting_model({.radius = R, .mass = m}, head["mu"], kt, 0.3, gravity, h, 0.11));
-      for (std::size_t k = first; k < first + 4; ++k) {
-        const auto& row = table.rows()[k];
-        const PlaneState at(run, row["t"], h);
-        errors.add((at.x - row["x"]) / row["x"]);
-        errors.add((at.v - row["v"]) / row["v"]);
-        errors.add((at.w - row["w"]) / row["w"]);
-        errors.add((at.spring - row["T"]) / row["T"]);
-      }
-    }
-    return errors;
-  };
+  const auto errors_at = [](Real parts) { return incline_errors(parts); };
   const Errors coarse = errors_at(200), fine = errors_at(400);
   CHECK(keeps(coarse.worst(), {.promise = 2e-2, .measured = 4.8e-3}));
   CHECK(keeps(fine.worst(), {.promise = 1e-2, .measured = 2.4e-3}));
   CHECK(order_between(coarse, fine) > 0.9);
+}
+
+TEST_CASE("sliding, rolling and inclines in implicit steps") {
+  const ReferenceTable table("contact/slide_to_roll.csv");
+  for (const Real alpha : {0.0, -0.3}) {
+    CAPTURE(alpha);
+    RollingErrors coarse, fine;
+    for (const auto& row : table.rows()) {
+      add_slide_to_roll(row, 25, coarse, implicit_steps(alpha));
+      add_slide_to_roll(row, 50, fine, implicit_steps(alpha));
+    }
+    CHECK(keeps(coarse.speed.worst(), {.promise = 2e-2, .measured = 8e-3}));
+    CHECK(keeps(fine.speed.worst(), {.promise = 5e-3, .measured = 1.5e-3}));
+    CHECK(keeps(fine.place.worst(), {.promise = 2e-3, .measured = 7.1e-4}));
+    CHECK(keeps(fine.loss.worst(), {.promise = 2e-3, .measured = 8.8e-4}));
+    CHECK(order_between(coarse.speed, fine.speed) > 1.9);
+    const Errors coarse_incline = incline_errors(100, implicit_steps(alpha)),
+                 fine_incline = incline_errors(200, implicit_steps(alpha));
+    CHECK(keeps(coarse_incline.worst(), {.promise = 2e-3, .measured = 4.4e-4}));
+    CHECK(keeps(fine_incline.worst(), {.promise = 5e-4, .measured = 1.0e-4}));
+    CHECK(order_between(coarse_incline, fine_incline) > 1.8);
+  }
 }
 
 // I = m R^2 / 2. What slips and what rolls alike keep the angular momentum about the line of contact:

@@ -10,7 +10,7 @@ namespace scree {
 
 // damping_ratio: of the slip. A model of a sphere whose weight its normal spring carries from the start on.
 inline Model resting_model(Grain grain, Real friction, Real stiffness, Real damping_ratio, Vec3 gravity,
-                           Real step, Real end) {
+                           Real step, Real end, const std::vector<std::string>& settings = {}) {
   grain.position = {0, 0, grain.radius + grain.mass * gravity.z / kRestStiffness};
   GrainDeck deck{.law = fmt::format("stiffness = {}\nfriction = {}\ntangential_stiffness = {}\n"
                                     "tangential_damping_ratio = {}\n",
@@ -18,7 +18,7 @@ inline Model resting_model(Grain grain, Real friction, Real stiffness, Real damp
                  .grains = {grain},
                  .step = step,
                  .end = end};
-  deck.gravity = gravity;
+  deck.gravity = gravity, deck.settings = settings;
   return deck.model();
 }
 

@@ -74,28 +74,36 @@ std::string pile_positions(int lower, Real phi) {
 }
 
 // How far the upper one has come down, in radii.
-Real sunk(int lower, Real phi, Real friction, Real floor_friction) {
-  SimulationRun run(
-      model_of(pile_deck(lower == 2 ? 2 : 3, pile_positions(lower, phi), friction, floor_friction)));
+Real sunk(int lower, Real phi, Real friction, Real floor_friction,
+          const std::vector<std::string>& settings = {}) {
+  SimulationRun run(model_of(
+      pile_deck(lower == 2 ? 2 : 3, pile_positions(lower, phi), friction, floor_friction), settings));
   run.run();
   return 1 + 2 * std::cos(phi) - run.particles().back().position.y / kRadius;
 }
 
 }  // namespace
 
+// Implicit steps are as long as the fastest contact.
 TEST_CASE("the smallest piles stand above their limits of friction, and not below") {
   const ReferenceTable table("contact/piles.csv");
   constexpr Real kMargin = 0.05;  // of the limits; soft contacts shift them by the overlap over the radius
+  std::vector<std::string> settings;
+  SECTION("in explicit steps") {}
+  SECTION("in implicit steps") {
+    settings = implicit_steps(-0.05);
+    settings.emplace_back("time.step=1e-3");
+  }
   for (std::size_t k = 0; k < 2; ++k) {
     const auto& row = table.rows().at(k);
     const int lower = static_cast<int>(k) + 2;
     const Real phi = row["phi_deg"] * std::numbers::pi_v<Real> / 180;
     const Real upper = row["mu_upper"], floor = row["mu_floor"];
     CAPTURE(lower);
-    CHECK(keeps(sunk(lower, phi, (1 + kMargin) * upper, (1 + kMargin) * floor),
+    CHECK(keeps(sunk(lower, phi, (1 + kMargin) * upper, (1 + kMargin) * floor, settings),
                 {.promise = 1e-2, .measured = 7e-4}));
-    CHECK(sunk(lower, phi, (1 - kMargin) * upper, 2 * floor) > 0.05);
-    CHECK(sunk(lower, phi, 2 * upper, (1 - kMargin) * floor) > 0.05);
+    CHECK(sunk(lower, phi, (1 - kMargin) * upper, 2 * floor, settings) > 0.05);
+    CHECK(sunk(lower, phi, 2 * upper, (1 - kMargin) * floor, settings) > 0.05);
   }
 }
 
@@ -163,6 +171,13 @@ mass = {m}
 
 TEST_CASE("a column of spheres in zigzag between two walls comes to the rest of its springs") {
   const ReferenceTable spheres("contact/zigzag_spheres.csv");
+  std::vector<std::string> settings;
+  SECTION("in explicit steps") {}
+  SECTION("in implicit steps") {
+    settings = implicit_steps(-0.05);
+    settings.insert(settings.end(), {"time.step=1e-4", "integrator.residual_tolerance=1e-11",
+                                     "integrator.correction_tolerance=1e-11"});
+  }
   constexpr Real R = 0.01, m = 0.01, kRise = 0.714142842854285;
   std::string positions = "[";
   for (int i = 0; i < 6; ++i)
@@ -196,7 +211,8 @@ mass = {}
 [output]
 history_contacts = ["x_min", "x_max", "z_min"]
 )",
-                                         positions, R, m)));
+                                         positions, R, m),
+                             settings));
   run.run();
   const std::vector<Particle> after = run.particles();
   Errors places, turns;

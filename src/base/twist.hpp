@@ -1,0 +1,117 @@
+// Six numbers of a particle that moves and turns, and symmetric 6 x 6 blocks.
+#pragma once
+
+#include "base/hd.hpp"
+#include "base/vec3.hpp"
+
+namespace scree {
+
+// Of one unit: what belongs to the rotation is scaled by the radius.
+struct Twist {
+  Vec3 move, turn;
+};
+
+SCREE_HD Twist operator+(Twist a, Twist b) { return {a.move + b.move, a.turn + b.turn}; }
+SCREE_HD Twist operator-(Twist a, Twist b) { return {a.move - b.move, a.turn - b.turn}; }
+SCREE_HD Twist operator*(Real s, Twist a) { return {s * a.move, s * a.turn}; }
+SCREE_HD Twist& operator+=(Twist& a, Twist b) { return a = a + b; }
+SCREE_HD Twist& operator-=(Twist& a, Twist b) { return a = a - b; }
+// The larger of the two parts.
+SCREE_HD Real largest_part(Twist a) {
+  const Real move = norm(a.move), turn = norm(a.turn);
+  return move > turn ? move : turn;
+}
+
+// 3 x 3, by rows.
+struct Mat3 {
+  Vec3 x, y, z;
+};
+SCREE_HD Vec3 operator*(const Mat3& a, Vec3 v) { return {dot(a.x, v), dot(a.y, v), dot(a.z, v)}; }
+SCREE_HD Vec3 transposed_times(const Mat3& a, Vec3 v) { return v.x * a.x + v.y * a.y + v.z * a.z; }
+SCREE_HD Mat3& operator+=(Mat3& a, const Mat3& b) {
+  a.x += b.x, a.y += b.y, a.z += b.z;
+  return a;
+}
+// s a b^T.
+SCREE_HD Mat3 outer(Real s, Vec3 a, Vec3 b) { return {(s * a.x) * b, (s * a.y) * b, (s * a.z) * b}; }
+
+// Symmetric: [move, mixed; mixed^T, turn].
+struct Block6 {
+  Sym3 move, turn;
+  Mat3 mixed;
+};
+
+// Largest sum of |entries| over the rows, row and column k scaled by the root of 1 / mass of its part: bounds
+// the eigenvalues of the block over the masses.
+SCREE_HD Real largest_row(const Block6& a, Real mass, Real inertia) {
+  const Real between = 1 / std::sqrt(mass * inertia);
+  const auto size = [](Vec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  const auto rows = [&](const Sym3& s, Real own, Vec3 mixed) {
+    const Real x = size({s.xx, s.xy, s.xz}) / own + between * mixed.x,
+               y = size({s.xy, s.yy, s.yz}) / own + between * mixed.y,
+               z = size({s.xz, s.yz, s.zz}) / own + between * mixed.z;
+    return x > y ? (x > z ? x : z) : (y > z ? y : z);
+  };
+  const Mat3& m = a.mixed;
+  const Real move = rows(a.move, mass, {size(m.x), size(m.y), size(m.z)});
+  const Real turn =
+      rows(a.turn, inertia,
+           {size({m.x.x, m.y.x, m.z.x}), size({m.x.y, m.y.y, m.z.y}), size({m.x.z, m.y.z, m.z.z})});
+  return move > turn ? move : turn;
+}
+
+// The same in single precision: for preconditioners.
+struct Block6f {
+  float value[21];
+
+  // Its inverse, of a positive definite block, through the Schur complement of `move`.
+  SCREE_HD static Block6f inverse_of(const Block6& a) {
+    const Sym3 first = inverse(a.move);
+    const auto column = [&](Real x, Real y, Real z) { return first * Vec3{x, y, z}; };
+    const Mat3& b = a.mixed;
+    // t = first b, by columns.
+    const Vec3 t0 = column(b.x.x, b.y.x, b.z.x), t1 = column(b.x.y, b.y.y, b.z.y),
+               t2 = column(b.x.z, b.y.z, b.z.z);
+    const auto b_t = [&](Vec3 t) { return transposed_times(b, t); };
+    const Vec3 s0 = b_t(t0), s1 = b_t(t1), s2 = b_t(t2);
+    Sym3 rest = a.turn;
+    rest += Sym3{-s0.x, -s1.x, -s2.x, -s1.y, -s2.y, -s2.z};
+    const Sym3 turn = inverse(rest);
+    // mixed = -t turn, and move = first + t turn t^T, by rows of t.
+    const Vec3 rows[3] = {{t0.x, t1.x, t2.x}, {t0.y, t1.y, t2.y}, {t0.z, t1.z, t2.z}};
+    const Vec3 m[3] = {turn * rows[0], turn * rows[1], turn * rows[2]};
+    const Real entries[21] = {first.xx + dot(m[0], rows[0]),
+                              first.xy + dot(m[0], rows[1]),
+                              first.xz + dot(m[0], rows[2]),
+                              first.yy + dot(m[1], rows[1]),
+                              first.yz + dot(m[1], rows[2]),
+                              first.zz + dot(m[2], rows[2]),
+                              turn.xx,
+                              turn.xy,
+                              turn.xz,
+                              turn.yy,
+                              turn.yz,
+                              turn.zz,
+                              -m[0].x,
+                              -m[0].y,
+                              -m[0].z,
+                              -m[1].x,
+                              -m[1].y,
+                              -m[1].z,
+                              -m[2].x,
+                              -m[2].y,
+                              -m[2].z};
+    Block6f out;
+    for (int k = 0; k < 21; ++k) out.value[k] = static_cast<float>(entries[k]);
+    return out;
+  }
+
+  SCREE_HD Twist operator*(Twist v) const {
+    const float* a = value;
+    const Sym3 move{a[0], a[1], a[2], a[3], a[4], a[5]}, turn{a[6], a[7], a[8], a[9], a[10], a[11]};
+    const Mat3 mixed{{a[12], a[13], a[14]}, {a[15], a[16], a[17]}, {a[18], a[19], a[20]}};
+    return {move * v.move + mixed * v.turn, transposed_times(mixed, v.move) + turn * v.turn};
+  }
+};
+
+}  // namespace scree

@@ -1,0 +1,214 @@
+#include "dem/cpu_rubbing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/for_each.hpp"
+
+namespace scree {
+
+void CpuRubbingArrays::resize(const CpuItems& items) {
+  const auto owned = static_cast<std::size_t>(items.layout.owned),
+             all = static_cast<std::size_t>(items.layout.items);
+  mean_spin.resize(all), move.resize(all), turn.resize(all);
+  entries.resize(items.list.neighbors.size()), surface_entries.resize(items.list.surfaces.surfaces.size());
+  start_torque.resize(owned), step_torque.resize(owned), end_torque.resize(owned);
+  sharpness.resize(owned), surface_count.resize(owned);
+  mass.resize(owned), inverse_block.resize(owned), residual.resize(owned), correction.resize(owned);
+}
+
+CpuRubbingStep::CpuRubbingStep(CpuItems& items, CpuImplicitArrays& motion, CpuRubbingArrays& arrays, Real h)
+    : CpuImplicitStep(items, motion, h), rubbing_(arrays) {
+  rubbing_.resize(items);
+  rubbing_.start_spin = items.store.angular_velocity;
+  rubbing_.start_acceleration = items.store.angular_acceleration;
+}
+
+TurningViews CpuRubbingStep::turning_views() {
+  return {items_.store.angular_velocity.data(), rubbing_.mean_spin.data(),
+          items_.store.angular_acceleration.data(), rubbing_.start_spin.data(),
+          rubbing_.start_acceleration.data()};
+}
+
+StepTorques CpuRubbingStep::step_torques() {
+  return {rubbing_.start_torque.data(), rubbing_.step_torque.data(), rubbing_.end_torque.data()};
+}
+
+RubbingStart CpuRubbingStep::rubbing_start() {
+  FrozenLimits frozen;
+  if (frozen_) frozen = {rubbing_.neighbor_limits.data(), rubbing_.surface_limits.data()};
+  return {step_start(), rubbing_.start_spin.data(), rubbing_.mean_spin.data(), frozen};
+}
+
+RubbingMatrix CpuRubbingStep::matrix() {
+  return {arrays_.matrix_count.data(), rubbing_.surface_count.data(), rubbing_.entries.data(),
+          rubbing_.surface_entries.data()};
+}
+
+// To where their accelerations take them.
+void CpuRubbingStep::turn_particles() {
+  for_each(Serial{}, items_.layout.owned, TurnItem{step_views(), turning_views()});
+  move_particles();
+  items_.halo.update(std::span<Vec4>(rubbing_.mean_spin), items_.layout.owned);
+}
+
+void CpuRubbingStep::predict() { turn_particles(); }
+
+void CpuRubbingStep::undo() {
+  std::copy_n(rubbing_.start_spin.begin(), items_.layout.owned, items_.store.angular_velocity.begin());
+  items_.store.angular_acceleration = rubbing_.start_acceleration;
+  CpuImplicitStep::undo();
+}
+
+// Over the particles of all ranks. Throws as report_not_finite where a residual is not.
+RubbingNorms CpuRubbingStep::largest_norms() {
+  RubbingNorms largest{};
+  bool finite = true;
+  const RubbingNormsItem of{step_views(),
+                            rubbing_.residual.data(),
+                            rubbing_.mass.data(),
+                            arrays_.force_magnitude.data(),
+                            arrays_.stiffening.data(),
+                            rubbing_.sharpness.data()};
+  for (Index i = 0; i < items_.layout.owned; ++i) {
+    const RubbingNorms one = of(i);
+    finite = finite && std::isfinite(one.residual);
+    largest.residual = std::max(largest.residual, one.residual);
+    largest.correction_bound = std::max(largest.correction_bound, one.correction_bound);
+    largest.force = std::max(largest.force, one.force);
+    largest.stiffening = std::max(largest.stiffening, one.stiffening);
+    largest.sharpness = std::max(largest.sharpness, one.sharpness);
+  }
+  Real maxima[6] = {largest.residual,   largest.correction_bound, largest.force,
+                    largest.stiffening, largest.sharpness,        finite ? Real(0) : Real(1)};
+  items_.ranks.max(maxima);
+  if (maxima[5] != 0) {
+    for (Index i = 0; i < items_.layout.owned; ++i)
+      arrays_.residual[i] = rubbing_.residual[i].move + rubbing_.residual[i].turn;
+    items_.report_not_finite(arrays_.residual);
+  }
+  largest.residual = maxima[0], largest.correction_bound = maxima[1], largest.force = maxima[2];
+  largest.stiffening = maxima[3], largest.sharpness = maxima[4];
+  return largest;
+}
+
+ParticleNorms CpuRubbingStep::contact_force() {
+  const Index n = items_.layout.owned;
+  items_.kernels->rubbing_system(items_.views(), n,
+                                 {items_.model.gravity, newton_weights(), rubbing_start(), step_forces(),
+                                  step_torques(), matrix(), rubbing_.sharpness.data()});
+  const RubbingResidualItem residual{step_views(),
+                                     turning_views(),
+                                     step_forces(),
+                                     step_torques(),
+                                     rubbing_.residual.data(),
+                                     rubbing_.mass.data(),
+                                     rubbing_.inverse_block.data(),
+                                     arrays_.stiffening.data()};
+  const PackedRows rows{items_.list.offsets.data(), items_.list.neighbors.data()};
+  for (Index i = 0; i < n; ++i)
+    residual(i, matrix(), rows, items_.list.surfaces.offsets[static_cast<std::size_t>(i)]);
+  const RubbingNorms largest = largest_norms();
+  force_scale_ = largest.force, largest_stiffening_ = largest.stiffening, sharpness_ = largest.sharpness;
+  scaled_residual_ = scaled_residual(largest);
+  if (search_.is_open()) search_.look(scaled_residual_);
+  return {scaled_residual_, largest.correction_bound, search_.overshoots()};
+}
+
+GlobalId CpuRubbingStep::worst_particle() {
+  Real own = 0;
+  for (const Twist& r : rubbing_.residual) own = std::max(own, largest_part(r));
+  const Real largest = items_.ranks.max(own);
+  GlobalId worst = CpuItems::kNone;
+  for (Index i = 0; i < items_.layout.owned; ++i)
+    if (largest_part(rubbing_.residual[static_cast<std::size_t>(i)]) == largest)
+      worst = std::min(worst, id_of(items_.store.row_key[static_cast<std::size_t>(i)]));
+  worst = items_.ranks.min(worst);
+  return worst == CpuItems::kNone ? -1 : worst;
+}
+
+RubbingCorrectItem CpuRubbingStep::correct_item(Real share) {
+  return {items_.store.acceleration.data(),
+          items_.store.angular_acceleration.data(),
+          rubbing_.correction.data(),
+          items_.store.position.data(),
+          share,
+          newmark_position_gain(items_.hht, h_)};
+}
+
+void CpuRubbingStep::shorten_correction() {
+  for_each(Serial{}, items_.layout.owned, correct_item(search_.shorten()));
+  turn_particles();
+}
+
+int CpuRubbingStep::solve(Real tolerance, bool with_grip) {
+  const Index n = items_.layout.owned;
+  std::vector<Vec4>&move = rubbing_.move, &turn = rubbing_.turn;
+  std::fill_n(move.begin(), n, Vec4{}), std::fill_n(turn.begin(), n, Vec4{});
+  std::fill(rubbing_.correction.begin(), rubbing_.correction.end(), Twist{});
+  const SubtractRubbingItem<PackedRows> subtract{matrix(),
+                                                 {items_.list.offsets.data(), items_.list.neighbors.data()},
+                                                 items_.list.surfaces.offsets.data(),
+                                                 rubbing_.mass.data(),
+                                                 with_grip,
+                                                 move.data(),
+                                                 turn.data(),
+                                                 rubbing_.residual.data()};
+  return iterate_chebyshev(largest_stiffening_, tolerance, [&](const ChebyshevWeights& weights) {
+    const TwistDirectionItem direction{rubbing_.inverse_block.data(), rubbing_.residual.data(),
+                                       weights.from_last, weights.from_residual};
+    for (Index i = 0; i < n; ++i) {
+      const Twist step = direction.next(i, {xyz(move[i]), xyz(turn[i])});
+      move[i] = vec4(step.move, 0), turn[i] = vec4(step.turn, 0);
+      rubbing_.correction[i] += step;
+    }
+    items_.halo.update(std::span<Vec4>(move), n), items_.halo.update(std::span<Vec4>(turn), n);
+    for_each(Serial{}, n, subtract);
+    Real largest = 0;
+    for (const Twist& r : rubbing_.residual) largest = std::max(largest, largest_part(r));
+    return items_.ranks.max(largest);
+  });
+}
+
+ParticleCorrection CpuRubbingStep::particle_correct() {
+  ParticleCorrection out;
+  search_ = {};
+  const Real largest = scaled_residual_ * force_scale_;
+  if (largest > 0) {
+    const Real tolerance =
+        solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, largest);
+    out.iterations = solve(tolerance, !frozen_ && is_consistent(sharpness_));
+    out.correction = items_.ranks.max(max_over(Serial{}, items_.layout.owned, correct_item(1)));
+    search_.open(scaled_residual_);
+  }
+  turn_particles();
+  return out;
+}
+
+void CpuRubbingStep::freeze_limits() {
+  rubbing_.neighbor_limits.assign(items_.list.neighbors.size(), -1);
+  rubbing_.surface_limits.assign(items_.list.surfaces.surfaces.size(), -1);
+  items_.kernels->freeze(items_.views(), items_.layout.owned, rubbing_start(),
+                         {rubbing_.neighbor_limits.data(), rubbing_.surface_limits.data()});
+  frozen_ = true, search_ = {};
+}
+
+Real CpuRubbingStep::error() {
+  return items_.ranks.max(
+      max_over(Serial{}, items_.layout.owned, TurningErrorItem{step_views(), turning_views()}));
+}
+
+void CpuRubbingStep::accept() {
+  ParticleStore& store = items_.store;
+  const Index n = items_.layout.owned;
+  items_.kernels->rubbing_books(items_.views(), n, rubbing_start(), store.contact_loss.data(),
+                                store.integrator_loss.data());
+  items_.history.accepted();
+  for_each(Serial{}, n,
+           AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
+  for_each(Serial{}, n,
+           AcceptTurnItem{step_views(), turning_views(), step_torques(), store.orientation.data(),
+                          store.integrator_loss.data()});
+}
+
+}  // namespace scree

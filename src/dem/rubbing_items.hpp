@@ -1,0 +1,356 @@
+// What happens for one particle over an implicit step in which contacts rub: forces and torques, Newton
+// matrix, energy books. One text for the CPU and CUDA.
+#pragma once
+
+#include <cstdint>
+
+#include "base/twist.hpp"
+#include "dem/contact_walk.hpp"
+#include "dem/step_items.hpp"
+#include "dem/system_items.hpp"
+#include "physics/step_friction.hpp"
+
+namespace scree {
+
+// Laws that have implicit steps in which particles turn: those with friction alone beside the normal law.
+template <class Law>
+inline constexpr bool kRubs = false;
+template <class Law>
+requires Law::kMoves inline constexpr bool kRubs<Law> =
+    Law::Tangential::acts && !decltype(std::declval<Law>().rolling)::acts && !Law::kNeck;
+
+// Limits of the mean force over the step that stay what they are while it is solved, at the list's slots and
+// at the entries of the surfaces [N]; negative: there was no contact. Null: limits follow from the normal
+// forces.
+struct FrozenLimits {
+  Real *neighbors = nullptr, *surfaces = nullptr;
+};
+
+// Where a step started, and how the particles turn within it; all items.
+struct RubbingStart {
+  StepStart step;
+  const Vec4* spin;       // at the start
+  const Vec4* mean_spin;  // over the step
+  FrozenLimits frozen;
+};
+
+// A contact over an implicit step with all that a law with friction sees of it.
+struct RubbingPath : ContactPath {
+  static constexpr Index kWall = -1;
+  ContactMotion motion;
+  Real leverage0;
+  Vec3 velocity0, velocity1;  // of i relative to j [m/s]
+  Vec3 turning;               // R_i times i's turn over the step, and j's likewise; even [m]
+  Index i, j;                 // items; j: kWall
+  std::int64_t slot;          // of the list, or of the surfaces
+  Real frozen_limit = -1;
+};
+
+// The look over an implicit step of laws that move; the pair is a RubbingPath.
+struct OverRubbingStep {
+  RubbingStart start;
+
+  struct Self : OverStep::Self {
+    Vec4 mean_spin;
+  };
+  template <class Rows>
+  SCREE_HD Self self(const ContactViews<Rows>& in, Index i) const {
+    return {OverStep{start.step}.self(in, i), start.mean_spin[i]};
+  }
+  // With frozen limits what has parted since then still rubs.
+  template <class Rows>
+  SCREE_HD auto test(const ContactViews<Rows>& in, const Self& self) const {
+    return [&in, &self, this](Index j) {
+      return start.frozen.neighbors != nullptr || touch(self.p, in.position[j]) ||
+             touch(self.p0, start.step.position[j]);
+    };
+  }
+  template <class Rows>
+  SCREE_HD RubbingPath pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
+    RubbingPath out{};
+    static_cast<ContactPath&>(out) = OverStep{start.step}.pair(in, self, j);
+    const Vec4 q = in.position[j];
+    const ContactGeometry end = sphere_pair(xyz(self.p) - xyz(q), self.p.w + q.w);
+    const TurningPartner one = partner(self.p, self.mean_spin), other = partner(q, start.mean_spin[j]);
+    out.motion = sphere_motion(end, out.travel, one, other, start.step.h);
+    out.leverage0 = out.motion.leverage * end.distance / (self.p.w + q.w - out.step.overlap0);
+    return finish(in, out, one, other, self.i, j);
+  }
+  template <class Rows>
+  SCREE_HD RubbingPath wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    RubbingPath out{};
+    static_cast<ContactPath&>(out) = OverStep{start.step}.wall(in, self, plane);
+    const TurningPartner one = partner(self.p, self.mean_spin);
+    out.motion = face_motion(wall_pair(self.p, plane), plane.normal, out.travel, one, {}, start.step.h);
+    out.leverage0 = 1;
+    return finish(in, out, one, {}, self.i, RubbingPath::kWall);
+  }
+  SCREE_HD void at_slot(RubbingPath& path, std::int64_t slot) const {
+    path.slot = slot;
+    if (start.frozen.neighbors != nullptr) path.frozen_limit = start.frozen.neighbors[slot];
+  }
+  SCREE_HD void at_entry(RubbingPath& path, Index entry) const {
+    path.slot = entry;
+    if (start.frozen.surfaces != nullptr) path.frozen_limit = start.frozen.surfaces[entry];
+  }
+  SCREE_HD static bool closed(const RubbingPath& path) {
+    return OverStep::closed(path) || path.frozen_limit > 0;
+  }
+
+ private:
+  SCREE_HD static TurningPartner partner(Vec4 p, Vec4 spin) { return {xyz(spin), p.w, spin.w}; }
+  template <class Rows>
+  SCREE_HD RubbingPath finish(const ContactViews<Rows>& in, RubbingPath out, const TurningPartner& one,
+                              const TurningPartner& other, Index i, Index j) const {
+    out.turning = start.step.h * (one.arm * one.spin + other.arm * other.spin);
+    out.i = i, out.j = j;
+    out.velocity0 = xyz(start.step.velocity[i]), out.velocity1 = xyz(in.velocity[i]);
+    if (j == RubbingPath::kWall) return out;
+    out.velocity0 -= xyz(start.step.velocity[j]), out.velocity1 -= xyz(in.velocity[j]);
+    return out;
+  }
+};
+
+// What the step solves with, of one contact.
+struct RubbingContact {
+  StepContact normal;
+  StepRub rub;
+  Vec3 normal0;
+  Real leverage0, leverage;
+  std::int64_t slot;
+  bool acts;   // else nothing above has a meaning
+  bool lasts;  // at the end of the step: the history is that of a contact
+  ContactHistory history;
+};
+
+struct RubbingContactOf {
+  RubbingStart start;
+  const Vec4* spin;  // at the end
+
+  template <class Law>
+  SCREE_HD RubbingContact operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
+    RubbingContact out{};
+    out.slot = c.slot;
+    out.acts = OverRubbingStep::closed(c), out.lasts = c.step.overlap1 > 0;
+    if (!out.acts) return out;
+    const auto normal = law.normal.of_pair(c.size);
+    out.normal = StepContactOf{start.step.resolve_events}.of(normal, c);
+    out.normal0 = c.normal0, out.leverage0 = c.leverage0, out.leverage = c.motion.leverage;
+    const Real start_force =
+        c.step.overlap0 > 0 ? contact_force(normal, c.step.overlap0, c.step.rate0).force : 0;
+    RubbingStep step{c.step,
+                     c.motion,
+                     c.leverage0,
+                     {},
+                     {},
+                     c.size,
+                     start_force,
+                     out.normal.end_force,
+                     out.normal.step.force,
+                     c.frozen_limit};
+    if (law.tangential.damping_ratio > 0) {
+      step.slip_rate0 = slip_rate(c, c.leverage0, c.velocity0, start.spin, c.normal0);
+      step.slip_rate1 = slip_rate(c, c.motion.leverage, c.velocity1, spin, c.normal1);
+    }
+    out.rub = step_rub(law, step, old.spring);
+    out.history.spring = out.rub.spring;
+    return out;
+  }
+  template <class Views>
+  SCREE_HD const RubbingContact* stored(const Views&, Index) const {
+    return nullptr;
+  }
+
+ private:
+  SCREE_HD static Vec3 slip_rate(const RubbingPath& c, Real leverage, Vec3 velocity, const Vec4* spin,
+                                 Vec3 normal) {
+    Vec3 turning = c.motion.arm_i * xyz(spin[c.i]);
+    if (c.j != RubbingPath::kWall) turning = turning + c.motion.arm_j * xyz(spin[c.j]);
+    return across(leverage * velocity - cross(turning, normal), normal);
+  }
+};
+
+// What it adds to the energy ledger, and the history.
+struct RubbingBooks : ContactBooks {
+  bool acts, lasts;
+  ContactHistory history;
+};
+struct RubbingBooksOf {
+  RubbingContactOf contact;
+
+  template <class Law>
+  SCREE_HD RubbingBooks operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
+    const RubbingContact at = contact(law, c, old);
+    if (!at.acts) return {{}, false, false, {}};
+    RubbingBooks out{StepBooksOf{{contact.start.step.resolve_events}}(law, c), true, at.lasts, at.history};
+    const StepRub& rub = at.rub;
+    const Vec3 force = at.leverage0 * rub.start + at.leverage * rub.step;
+    const Vec3 moment = cross(c.normal0, rub.start) + cross(c.normal1, rub.step);
+    const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel));
+    const Real lost = rub.losses.sum();
+    out.dissipated += lost, out.integrator += (rub.stored0 - rub.stored1) - work - lost;
+    return out;
+  }
+  template <class Views>
+  SCREE_HD const RubbingBooks* stored(const Views&, Index) const {
+    return nullptr;
+  }
+};
+
+template <class Laws, class Rows>
+using RubbingWalk = ContactWalk<Laws, Rows, OverRubbingStep>;
+
+// One contact in the Newton matrix. In single precision, as ContactEntry.
+struct alignas(16) RubbingEntry {
+  float nx, ny, nz;  // normal
+  Index neighbor;    // j; RubbingPath::kWall where the partner stays
+  float tx, ty, tz;  // direction of the slide, or zero
+  float along;       // of the overlap [kg]
+  float across;      // of the slip across the direction [kg]
+  float grip;        // along the direction, of the overlap [kg]
+  float unused[2];
+
+  // Force on i, and its torque over the radius, by how the partners move against each other and both turn.
+  SCREE_HD Twist pull(Vec3 apart, Vec3 turning, bool with_grip) const {
+    const Vec3 n{nx, ny, nz}, t{tx, ty, tz};
+    const Real approach = dot(n, apart);
+    const Vec3 slip = apart - approach * n - cross(turning, n);
+    Vec3 force = Real(across) * (slip - dot(t, slip) * t);
+    if (with_grip) force -= (Real(grip) * approach) * t;
+    return {(Real(along) * approach) * n + force, -cross(n, force)};
+  }
+  // Its symmetric part in the block of i.
+  SCREE_HD void add_to(Block6& block) const {
+    const Vec3 n{nx, ny, nz}, t{tx, ty, tz}, c = cross(n, t);
+    const Real k = across, slides = dot(t, t);
+    block.move += outer(along, n);
+    if (slides > Real(0.5)) {  // one direction is left: c, and the turn about t goes with it
+      block.move += outer(k, c), block.turn += outer(k, t), block.mixed += outer(k, c, t);
+      return;
+    }
+    Sym3 plane = outer(-k, n);
+    plane += Sym3{k, 0, 0, k, 0, k};
+    block.move += plane, block.turn += plane;
+    block.mixed += Mat3{{0, -k * n.z, k * n.y}, {k * n.z, 0, -k * n.x}, {-k * n.y, k * n.x, 0}};
+  }
+};
+
+// Entries of contacts with neighbours stand at the list's slots, packed to the front of a row; those with
+// surfaces at their entries, likewise.
+struct RubbingMatrix {
+  Index *count, *surface_count;
+  RubbingEntry *entries, *surface_entries;
+};
+
+// Inertia in the Newton matrix, with hht_inertia_weight: mass, and moment of inertia over R^2 [kg].
+struct ScaledMass {
+  Real move, turn;
+};
+
+// Of the particles' rotation; forces: see StepForces.
+struct StepTorques {
+  Vec3 *start, *step, *end;  // about the centre [N m]
+};
+
+// Force, torque and Newton matrix row of particle i.
+template <class Laws, class Rows>
+struct RubbingSystemItem {
+  RubbingWalk<Laws, Rows> walk;
+  Vec3 gravity;
+  NewtonWeights weights;
+  StepForces out;
+  StepTorques torques;
+  RubbingMatrix matrix;
+  Real* sharpness;  // largest 2 K h^2 / m of its contacts
+
+  SCREE_HD void operator()(Index i) const {
+    const StepStart& start = walk.look.start.step;
+    const Real mass = walk.in.velocity[i].w, radius = walk.in.position[i].w;
+    const Vec3 weight = mass * gravity;
+    Vec3 step_force = weight, end_force = weight, start_turn, step_turn, end_turn;
+    Real magnitude = norm(weight), sharpest = 0;
+    const auto add = [&](const RubbingContact& c) {
+      const Vec3 n = c.normal.normal;
+      step_force += c.normal.step.force * n - c.leverage * c.rub.step;
+      end_force += c.normal.end_force * n - c.leverage * c.rub.end;
+      start_turn += cross(c.normal0, c.rub.start);
+      step_turn += cross(n, c.rub.step), end_turn += cross(n, c.rub.end);
+      magnitude += std::abs(c.normal.step.force) + norm(c.rub.step);
+      const Real sharp = 2 * c.normal.step.stiffness * start.h * start.h / mass;
+      sharpest = sharp > sharpest ? sharp : sharpest;
+    };
+    const auto self = walk.self(i);
+    const RubbingContactOf of{walk.look.start, walk.in.spin};
+    std::int64_t slot = walk.in.rows.first(i);
+    Index entries = 0, surfaces = 0;
+    walk.neighbors(self, of, [&](const RubbingContact& c, Index j) {
+      if (!c.acts) return;
+      add(c);
+      matrix.entries[slot] = entry_of(c, j);
+      ++entries, slot += Rows::stride();
+    });
+    walk.surfaces(self, of, [&](const RubbingContact& c, Index) {
+      add(c);
+      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = entry_of(c, RubbingPath::kWall);
+    });
+    matrix.count[i] = entries, matrix.surface_count[i] = surfaces;
+    out.step_force[i] = step_force, out.end_force[i] = end_force, out.magnitude[i] = magnitude;
+    torques.start[i] = radius * start_turn, torques.step[i] = radius * step_turn;
+    torques.end[i] = radius * end_turn;
+    sharpness[i] = sharpest;
+  }
+
+ private:
+  SCREE_HD RubbingEntry entry_of(const RubbingContact& c, Index j) const {
+    const auto single = [](Real x) { return static_cast<float>(x); };
+    const Vec3 n = c.normal.normal, t = c.rub.direction;
+    const Real along = weights.of(c.normal.step);
+    return {single(n.x),
+            single(n.y),
+            single(n.z),
+            j,
+            single(t.x),
+            single(t.y),
+            single(t.z),
+            single(along),
+            single(weights.stiffness * c.rub.stiffness),
+            single(c.rub.grip * along),
+            {}};
+  }
+};
+
+// Books particle i's share of its contacts over an accepted step, and stores what they remember.
+template <class Laws, class Rows>
+struct RubbingBooksItem {
+  RubbingWalk<Laws, Rows> walk;
+  Real *contact_loss, *integrator_loss;  // [J]
+
+  SCREE_HD void operator()(Index i) const {
+    ContactBooks sum;
+    const auto self = walk.self(i);
+    const RubbingBooksOf of{{walk.look.start, walk.in.spin}};
+    walk.template neighbors<true>(self, of, [&](const RubbingBooks& one, Index) {
+      if (one.acts) sum.add(one, kPairShare);
+    });
+    walk.template surfaces<true>(self, of, [&](const RubbingBooks& one, Index) { sum.add(one, 1); });
+    contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
+  }
+};
+
+// Keeps the limits of particle i's contacts at the iterate, those that are frozen already included.
+template <class Laws, class Rows>
+struct FreezeItem {
+  RubbingWalk<Laws, Rows> walk;
+  FrozenLimits to;
+
+  SCREE_HD void operator()(Index i) const {
+    const auto self = walk.self(i);
+    const RubbingContactOf of{walk.look.start, walk.in.spin};
+    walk.neighbors(self, of, [&](const RubbingContact& c, Index) {
+      if (c.acts) to.neighbors[c.slot] = c.rub.limit;
+    });
+    walk.surfaces(self, of, [&](const RubbingContact& c, Index) { to.surfaces[c.slot] = c.rub.limit; });
+  }
+};
+
+}  // namespace scree

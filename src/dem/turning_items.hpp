@@ -1,0 +1,184 @@
+// What happens for one particle in an implicit step in which particles turn, in the stages that look at no
+// contacts: rotation, residual, linear solve. Beside step_items.hpp, whose items do the same for the motion
+// alone.
+#pragma once
+
+#include "dem/rubbing_items.hpp"
+#include "dem/step_items.hpp"
+#include "physics/orientation.hpp"
+
+namespace scree {
+
+// Unknowns of the rotation, beside StepViews.
+struct TurningViews {
+  Vec4 *spin, *mean_spin;  // iterate at t_{n+1} and over the step; moment of inertia
+  Vec3* acceleration;      // iterate [rad/s^2]
+  const Vec4* start_spin;
+  const Vec3* start_acceleration;
+};
+
+// Spin at the end and over the step from the current acceleration: as NewmarkItem, with the turn over the
+// step in place of the displacement.
+struct TurnItem {
+  StepViews step;
+  TurningViews turning;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 w = turning.start_spin[i];
+    const Vec3 a0 = turning.start_acceleration[i], a1 = turning.acceleration[i];
+    turning.spin[i] = vec4(newmark_velocity(step.hht, step.h, xyz(w), a0, a1), w.w);
+    const Vec3 turn = newmark_displacement(step.hht, step.h, xyz(w), a0, a1);
+    turning.mean_spin[i] = vec4((1 / step.h) * turn, w.w);
+  }
+};
+
+// Minus the residuals of Eq. 16 for motion and rotation, the latter over the radius; masses of the Newton
+// matrix and the inverse of its block.
+struct RubbingResidualItem {
+  StepViews step;
+  TurningViews turning;
+  StepForces forces;
+  StepTorques torques;
+  Twist* residual;  // [N]
+  ScaledMass* mass;
+  Block6f* inverse_block;
+  Real* stiffening;  // bound of the contacts' part of the block over the mass part
+
+  template <class Rows>
+  SCREE_HD void operator()(Index i, const RubbingMatrix& matrix, const Rows& rows,
+                           Index first_surface) const {
+    const Real weight = hht_inertia_weight(step.hht), radius = step.position[i].w;
+    const Real m = step.velocity[i].w, inertia = turning.start_spin[i].w;
+    const Vec3 force =
+        -hht_residual(step.hht, m, step.acceleration[i], forces.step_force[i], step.start_force[i]);
+    const Vec3 torque =
+        -hht_residual(step.hht, inertia, turning.acceleration[i], torques.step[i], torques.start[i]);
+    residual[i] = {force, (1 / radius) * torque};
+    const ScaledMass masses{weight * m, weight * inertia / (radius * radius)};
+    mass[i] = masses;
+    Block6 block;
+    std::int64_t slot = rows.first(i);
+    for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride())
+      matrix.entries[slot].add_to(block);
+    for (Index k = 0; k < matrix.surface_count[i]; ++k)
+      matrix.surface_entries[first_surface + k].add_to(block);
+    stiffening[i] = largest_row(block, masses.move, masses.turn);
+    block.move += Sym3{masses.move, 0, 0, masses.move, 0, masses.move};
+    block.turn += Sym3{masses.turn, 0, 0, masses.turn, 0, masses.turn};
+    inverse_block[i] = Block6f::inverse_of(block);
+  }
+};
+
+struct RubbingNorms : StepNorms {
+  Real sharpness;  // RubbingSystemItem::sharpness
+};
+
+struct RubbingNormsItem {
+  StepViews step;
+  const Twist* residual;
+  const ScaledMass* mass;
+  const Real *magnitude, *stiffening, *sharpness;
+
+  SCREE_HD RubbingNorms operator()(Index i) const {
+    const Real move = norm(residual[i].move), turn = norm(residual[i].turn);
+    const Real by_move = move / mass[i].move, by_turn = turn / mass[i].turn;
+    const Real gain = newmark_position_gain(step.hht, step.h) / step.position[i].w;
+    const Real at_start = norm(step.start_force[i]) + step.velocity[i].w * norm(step.start_acceleration[i]);
+    RubbingNorms out;
+    out.residual = move > turn ? move : turn;
+    out.correction_bound = gain * (by_move > by_turn ? by_move : by_turn);
+    out.force = magnitude[i] + at_start;
+    out.stiffening = stiffening[i], out.sharpness = sharpness[i];
+    return out;
+  }
+};
+
+// Applies a share of a correction of both accelerations, that of the rotation times the radius. Returns the
+// size of the whole correction of position or turn over the radius.
+struct RubbingCorrectItem {
+  Vec3 *acceleration, *angular_acceleration;
+  const Twist* correction;
+  const Vec4* position;  // radius in w
+  Real share;
+  Real weight;  // newmark_position_gain [s^2]
+
+  SCREE_HD Real operator()(Index i) const {
+    const Real radius = position[i].w;
+    acceleration[i] += share * correction[i].move;
+    angular_acceleration[i] += (share / radius) * correction[i].turn;
+    return weight * largest_part(correction[i]) / radius;
+  }
+};
+
+// residual_i -= (A d)_i for the Newton matrix A = masses + contacts.
+template <class Rows>
+struct SubtractRubbingItem {
+  RubbingMatrix matrix;
+  Rows rows;
+  const Index* surface_offsets;
+  const ScaledMass* mass;
+  bool with_grip;           // the limits' growth with the normal forces, too: not symmetric
+  const Vec4 *move, *turn;  // d of all items
+  Twist* residual;
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec3 u = xyz(move[i]), w = xyz(turn[i]);
+    Twist sum{mass[i].move * u, mass[i].turn * w};
+    std::int64_t slot = rows.first(i);
+    for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride()) {
+      const RubbingEntry entry = matrix.entries[slot];
+      sum += entry.pull(u - xyz(move[entry.neighbor]), w + xyz(turn[entry.neighbor]), with_grip);
+    }
+    for (Index k = 0; k < matrix.surface_count[i]; ++k)
+      sum += matrix.surface_entries[surface_offsets[i] + k].pull(u, w, with_grip);
+    residual[i] -= sum;
+  }
+};
+
+// Whether the Newton matrix takes the limits' growth in, from the largest 2 K h^2 / m: then Newton's method
+// needs 3 to 5 iterations, but the matrix is not symmetric, and for contacts much shorter than the step the
+// linear iteration would not converge.
+SCREE_HD bool is_consistent(Real sharpness) { return sharpness <= Real(1.5) * Real(1.5); }
+
+struct TwistDirectionItem {
+  const Block6f* inverse_block;
+  const Twist* residual;
+  Real from_last, from_residual;
+
+  SCREE_HD Twist next(Index i, Twist d) const {
+    return from_last * d + from_residual * (inverse_block[i] * residual[i]);
+  }
+};
+
+// Local error of position or turn of an implicit step over the radius.
+struct TurningErrorItem {
+  StepViews step;
+  TurningViews turning;
+
+  SCREE_HD Real operator()(Index i) const {
+    const Real move = StepErrorItem{step}(i);
+    const Real turn =
+        hht_position_error(step.hht, step.h, turning.start_acceleration[i], turning.acceleration[i], 1);
+    return move > turn ? move : turn;
+  }
+};
+
+// Closes the rotation of an implicit step, as AcceptItem the motion.
+struct AcceptTurnItem {
+  StepViews step;
+  TurningViews turning;
+  StepTorques torques;
+  Quaternion* orientation;
+  Real* integrator_loss;  // [J]
+
+  SCREE_HD void operator()(Index i) const {
+    const Vec4 w0 = turning.start_spin[i];
+    const Vec3 mean = xyz(turning.mean_spin[i]);
+    integrator_loss[i] += ::scree::integrator_loss(w0.w, step.h * mean, xyz(w0), xyz(turning.spin[i]),
+                                                   torques.start[i], torques.step[i]);
+    turning.acceleration[i] += hht_event_acceleration(step.hht, w0.w, torques.step[i], torques.end[i]);
+    orientation[i] = turned_by(orientation[i], mean, step.h);
+  }
+};
+
+}  // namespace scree
