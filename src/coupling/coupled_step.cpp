@@ -20,6 +20,10 @@ constexpr Real kSkinPerMotion = 5;
 // of every other. A step that needs more is shortened.
 constexpr Real kMostSkin = 4;
 
+// Newton iterations of a step whose limits of friction follow the normal forces. Steps that resolve their
+// contacts need 3 to 5.
+constexpr int kMostFollowing = 12;
+
 // sum += weight * wrenches
 void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
   for (std::size_t b = 0; b < wrenches.size(); ++b) {
@@ -157,7 +161,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   }
   step->accept();
   bodies = std::move(end);
-  ++counts_.steps;
+  ++counts_.steps, counts_.frozen_steps += frozen_;
   return outcome;
 }
 
@@ -178,18 +182,30 @@ std::vector<Leaver> CoupledStep::check_inside() const {
 
 void CoupledStep::iterate(ImplicitStep& step) {
   Iteration last;
-  for (int iteration = 0; iteration < model_.integrator.max_iterations; ++iteration) {
+  frozen_ = false;
+  const int most = model_.integrator.max_iterations;
+  for (int iteration = 1; iteration <= most; ++iteration) {
     ++counts_.newton_iterations;
     if (iterate_once(step, last)) return;
+    if (model_.rotates() && iteration == kMostFollowing && iteration < most) freeze(step, last);
   }
-  throw SimulationError(trouble_of(step, last));
+  throw SimulationError(trouble_of(step, last, most));
+}
+
+// Where Newton's method does not find which contacts slide: adaptive steps are taken again, shorter; fixed
+// ones are solved with limits that follow the normal forces no longer.
+void CoupledStep::freeze(ImplicitStep& step, const Iteration& last) {
+  if (model_.time.control == StepControl::adaptive)
+    throw SimulationError(trouble_of(step, last, kMostFollowing));
+  step.freeze_limits();
+  frozen_ = true;
 }
 
 // Whose residual or correction is above the limit: the particles', if both are.
-std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last) const {
+std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const {
   const Integrator& limits = model_.integrator;
   const auto trouble = [&](const char* stage, const std::string& what) {
-    return fmt::format("stage {}: no convergence in {} iterations; {}", stage, limits.max_iterations, what);
+    return fmt::format("stage {}: no convergence in {} iterations; {}", stage, iterations, what);
   };
   if (!(last.residual <= limits.residual_tolerance))
     return trouble("particle_correct",

@@ -26,6 +26,7 @@ struct StepOutcome {
 struct StepCounts {
   std::int64_t steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::int64_t rejected_error = 0, rejected_newton = 0;
+  std::int64_t frozen_steps = 0;  // accepted with frozen limits of friction: ImplicitStep::freeze_limits
 };
 
 class CoupledStep {
@@ -62,8 +63,9 @@ class CoupledStep {
   bool covered(OpenStep& step, const MultibodyState& bodies, int builds);
   void solve_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
   void iterate(ImplicitStep& step);
+  void freeze(ImplicitStep& step, const Iteration& last);
   bool iterate_once(ImplicitStep& step, Iteration& last);
-  std::string trouble_of(ImplicitStep& step, const Iteration& last) const;
+  std::string trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const;
   bool explicit_step_with_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h, bool keep_open);
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h);
 
@@ -74,6 +76,7 @@ class CoupledStep {
   const bool something_touches_;  // without, nothing is looked for
   const Real largest_radius_;     // of particles and shapes [m]
   StepCounts counts_;
+  bool frozen_ = false;                 // in the step that is open
   std::vector<BodyWrench> wrench_sum_;  // over the substeps of an explicit step
 };
 

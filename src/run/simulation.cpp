@@ -316,6 +316,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
                    {"linear_iterations", n.linear_iterations},
                    {"rejected_error", n.rejected_error},
                    {"rejected_newton", n.rejected_newton},
+                   {"frozen_steps", n.frozen_steps},
                    {"list_builds", backend_->list().builds()},
                    {"list_entries", ranks_.alone() ? backend_->list().entries() : list_entries_},
                    {"rebalances", balance.rebalances},
@@ -343,6 +344,9 @@ void Simulation::summarize() const {
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
       n.linear_iterations, backend_->list().builds()));
+  if (n.frozen_steps > 0)
+    log_.info(fmt::format("friction's limits were frozen in {} of the steps: shorter ones would resolve it",
+                          n.frozen_steps));
   const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
   log_.info(
       fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} left the space{}",

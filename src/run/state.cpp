@@ -158,7 +158,8 @@ void visit_state(Visitor& visit, StateType& state) {
   visit_ledger(visit, state.balance.last);
 }
 
-// Not part of the hash: how much a run has written says nothing about what it computed.
+// Not part of the hash: how much a run has written says nothing about what it computed, and the number of
+// frozen steps, there where particles rotate, follows from the rest.
 template <class Visitor, class StateType>
 void visit_output(Visitor& visit, StateType& state) {
   visit("clock/histories", state.clock.histories);
@@ -166,6 +167,7 @@ void visit_output(Visitor& visit, StateType& state) {
   visit("clock/checkpoints", state.clock.checkpoints);
   visit("output/history_rows", state.history_rows);
   visit("output/snapshots", state.snapshots);
+  if (state.rotates) visit("counts/frozen_steps", state.counts.frozen_steps);
 }
 
 // What a checkpoint holds of a particle: its identity and its fields, those of rotation where particles
@@ -266,9 +268,9 @@ State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
   ranks.together([&] {  // a file may be unreadable where one rank's rows are
     Reader reader(checkpoint);
+    state.rotates = rotates(checkpoint);
     visit_state(reader, state), visit_output(reader, state);
     state.particles = unpack_particles(checkpoint);
-    state.rotates = rotates(checkpoint);
   });
   state.contacts = unpack_contacts(checkpoint, ranks);
   return state;

@@ -1,0 +1,91 @@
+// Newton iterations of implicit steps in a pack that rubs, against those of one that does not.
+// With -s the test says how many: the numbers in src/README.md.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/simulation_run.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kStiffness = 1e4, kDensity = 2500, kRadius = 0.01;
+
+// Spheres that fall and slide on a floor, half of their contacts sliding, undamped; sharpness: sqrt(2 K / m)
+// h.
+StepCounts counts_of(Real sharpness, Real friction) {
+  const Real mass = kDensity * 4 / 3 * std::numbers::pi_v<Real> * kRadius * kRadius * kRadius;
+  SimulationRun run(model_of(fmt::format(
+      R"(
+gravity = [2.0, 0.0, -9.81]
+[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [0.126, 0.126, 0.3]
+x_min = "periodic"
+x_max = "periodic"
+y_min = "periodic"
+y_max = "periodic"
+z_min = "wall"
+[time]
+end = 0.4
+step = {step}
+control = "fixed"
+[integrator]
+particles = "hht"
+hht_alpha = -0.3
+residual_tolerance = 1e-9
+[[contact.pairs]]
+stiffness = {stiffness}
+{friction}
+[[particles]]
+name = "pack"
+kind = "lattice"
+origin = [0.0105, 0.0105, 0.011]
+spacing = [0.021, 0.021, 0.0205]
+size = [6, 6, 6]
+radius = {radius}
+density = {density}
+random_velocity = 0.1
+seed = 3
+)",
+      fmt::arg("step", sharpness / std::sqrt(2 * kStiffness / mass)), fmt::arg("stiffness", kStiffness),
+      fmt::arg("radius", kRadius), fmt::arg("density", kDensity),
+      fmt::arg("friction", friction > 0 ? fmt::format("friction = {}", friction) : std::string()))));
+  run.run();
+  return run.counts();
+}
+
+Real per_step(std::int64_t count, const StepCounts& counts) {
+  return static_cast<Real>(count) / static_cast<Real>(counts.steps);
+}
+
+}  // namespace
+
+TEST_CASE("Newton iterations of a pack that rubs") {
+  struct Expected {
+    Real sharpness, slick, rubbing;  // iterations per step, without friction and with it
+    bool freezes;
+  };
+  for (const Expected& e : {Expected{0.63, 5.0, 5.7, false}, Expected{1.2, 6.0, 6.9, false},
+                            Expected{1.9, 6.9, 8.2, false}, Expected{6.3, 11.7, 44, true}}) {
+    const StepCounts slick = counts_of(e.sharpness, 0), rubbing = counts_of(e.sharpness, 0.5);
+    const Real newton[2] = {per_step(slick.newton_iterations, slick),
+                            per_step(rubbing.newton_iterations, rubbing)};
+    INFO(fmt::format(
+        "sqrt(2K/m) h = {}: {:.1f} Newton iterations per step without friction, {:.1f} with it; {:.0f} "
+        "and {:.0f} products; limits frozen in {} of {} steps, {} steps rejected",
+        e.sharpness, newton[0], newton[1], per_step(slick.linear_iterations, slick),
+        per_step(rubbing.linear_iterations, rubbing), rubbing.frozen_steps, rubbing.steps,
+        rubbing.rejected_newton));
+    CHECK(newton[0] <= 1.1 * e.slick);
+    CHECK(newton[1] <= 1.1 * e.rubbing);
+    CHECK((rubbing.frozen_steps > 0) == e.freezes);
+  }
+}
+
+}  // namespace scree
