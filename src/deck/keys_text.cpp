@@ -14,10 +14,10 @@ constexpr std::size_t kWidth = 110;
 
 // README.md says the same; tests/cli/test_words.py compares them.
 constexpr const char* kLeftOut =
-    "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies, "
-    "in explicit steps (velocity-verlet); else contact forces act along the normal "
-    "alone. "
-    "Attraction is explicit, too, and not of bodies. All that touches is a disc (2D), "
+    "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies; "
+    "on bodies in explicit steps (velocity-verlet) only, which alone resist rolling and twisting, too. "
+    "Else contact forces act along the normal alone. "
+    "Attraction is explicit, and not of bodies. All that touches is a disc (2D), "
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
     "meshes. Bodies are rigid, and in 3D too they and their joints are planar: they move along x and "
     "y and turn about z, and forces along z do nothing to them. Joints have no play, no stops and no "

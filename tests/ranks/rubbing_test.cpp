@@ -38,6 +38,21 @@ TEST_CASE("rubbing particles move on any number of ranks as on one") {
     }
 }
 
+TEST_CASE("rubbing particles move in implicit steps on any number of ranks as on one") {
+  petsc();
+  for (const BoxCase& c : kRubbingBoxes)
+    for (const int freeze_after : {0, 2}) {
+      CAPTURE(c.name, freeze_after);
+      const Model model = hht_rubbing_box(c, Leaving::remove);
+      RememberingBox many(model, Ranks::world(), make_test_backend), one(model, Ranks(), make_test_backend);
+      for (RememberingBox* box : {&many, &one}) box->start();
+      for (int step = 0; step < 60; ++step) {
+        for (RememberingBox* box : {&many, &one}) rubbing_hht_step(*box, kHhtStep, freeze_after);
+        check_equal(kRubbingKinds[0], one, many);
+      }
+    }
+}
+
 TEST_CASE("rubbing particles go on from any number of ranks on any other") {
   petsc();
   for (const RubbingKind& kind : kRubbingKinds) {

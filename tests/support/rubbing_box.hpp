@@ -42,6 +42,37 @@ inline Model rubbing(Model model) {
   return model;
 }
 
+inline constexpr Real kHhtStep = 2e-4;
+
+// An implicit step, on a list of its own; its limits are frozen after so many iterations, if it needs more.
+// Then the particles outside leave.
+inline void rubbing_hht_step(RememberingBox& box, Real h, int freeze_after) {
+  box.backend->list().build(box.model.contact.skin, box.timers);
+  const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, h);
+  int iteration = 1;
+  for (;; ++iteration) {
+    REQUIRE(iteration < 100);
+    const ParticleNorms norms = step->contact_force();
+    if (norms.overshoot) {
+      step->shorten_correction();
+      continue;
+    }
+    if (norms.residual <= 1e-10) break;
+    step->particle_correct();
+    if (iteration == freeze_after) step->freeze_limits();
+  }
+  step->accept();
+  const std::vector<Leaver> leavers = box.backend->particles().outside();
+  if (!leavers.empty())
+    box.backend->particles().take_out(leavers), box.backend->list().build(box.model.contact.skin, box.timers);
+}
+
+inline Model hht_rubbing_box(const BoxCase& c, Leaving leaving) {
+  Model model = rubbing(moving_box(c, leaving));
+  model.integrator.particles = ParticleIntegrator::hht, model.integrator.hht_alpha = -0.1;
+  return model;
+}
+
 inline Model moving_rubbing_box(const BoxCase& c, Leaving leaving) { return rubbing(moving_box(c, leaving)); }
 
 // The model with all that resists rolling and twisting, of which pairs of materials have different parts, and

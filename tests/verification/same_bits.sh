@@ -71,6 +71,9 @@ same paper/net_9 --set time.end=0.5 --set time.step=1e-4
 same paper/net_400 --set time.end=0.7 --set time.step=5e-4 "${net[@]}"
 same paper/net_400 --set time.end=0.7 --set time.step=1e-4 "${explicit[@]}" "${net[@]}"
 for deck in rubbing rubbing_hertz rubbing_bodies; do same ../tests/ranks/$deck; done
+for deck in rubbing rubbing_hertz; do
+  same ../tests/ranks/$deck --set integrator.particles=hht --set time.control=fixed --set time.step=8e-5
+done
 # Implicit and explicit, with bodies and without, and with contacts that remember; particles touch at half time.
 continued paper/net_400 0.5 0.5625 --set time.step=1e-3
 continued paper/net_400 0.5 0.5625 --set time.step=1e-4 "${explicit[@]}"

@@ -56,6 +56,26 @@ TEST_CASE("particles rub the same on both backends, and each goes on from what t
     }
 }
 
+// Without limits that are frozen, and with.
+TEST_CASE("particles rub the same on both backends in implicit steps") {
+  for (const BoxCase& c : kRubbingBoxes)
+    for (const int freeze_after : {0, 2}) {
+      CAPTURE(c.name, freeze_after);
+      const Model model = hht_rubbing_box(c, Leaving::remove);
+      RememberingBox cpu(model, {}, make_cpu), cuda(model, {}, make_cuda);
+      for (RememberingBox* box : {&cpu, &cuda}) box->start();
+      for (int step = 0; step < 60; ++step) {
+        for (RememberingBox* box : {&cpu, &cuda}) rubbing_hht_step(*box, kHhtStep, freeze_after);
+        check_equal(kRubbingKinds[0], cpu, cuda);
+      }
+      RememberingBox on_cpu(model, {}, make_cpu), on_cuda(model, {}, make_cuda);
+      on_cpu.start(cuda.state()), on_cuda.start(cpu.state());
+      for (int step = 0; step < 10; ++step)
+        for (RememberingBox* box : {&on_cpu, &on_cuda}) rubbing_hht_step(*box, kHhtStep, freeze_after);
+      check_equal(kRubbingKinds[0], on_cpu, on_cuda);
+    }
+}
+
 // Steps so short that rows are pruned several times between two lists.
 TEST_CASE("many particles rub the same on both backends") {
   const Launches before = launches();

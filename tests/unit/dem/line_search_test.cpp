@@ -93,4 +93,18 @@ TEST_CASE("the next correction starts with all of it") {
   CHECK(search.next_share() == 0.5);
 }
 
+TEST_CASE("where there is no potential a correction is halved while the residual is larger than before") {
+  ResidualSearch search;
+  CHECK_FALSE(search.is_open());
+  search.open(1);
+  search.look(1);
+  CHECK_FALSE(search.overshoots());
+  Real share = 1;
+  int looks = 0;
+  for (search.look(2); search.overshoots(); search.look(2)) share += search.shorten(), ++looks;
+  CHECK((share == Real(0.0625) && looks == 4));
+  search.open(3), search.look(2);
+  CHECK((search.is_open() && !search.overshoots()));
+}
+
 }  // namespace scree
