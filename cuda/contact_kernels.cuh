@@ -80,6 +80,13 @@ struct SystemRequest {
   StepNorms* largest;  // maxima over these particles and those before
 };
 
+// The same where contacts rub: forces and torques alone, of the particles [first, end).
+struct DeviceRubbingRequest {
+  DeviceViews in;
+  Index first, end;
+  RubbingRequest of;
+};
+
 // Progress of a run of explicit steps, kept by the device: kernels that are queued behind the end of the run
 // see `stop` and change nothing.
 struct VerletControl {
@@ -229,6 +236,12 @@ class DeviceContactKernels {
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                      Real* contact_loss, Real* integrator_loss) const = 0;
+  // The same where contacts rub: see ContactKernels.
+  virtual void rubbing_system(Device device, const DeviceRubbingRequest& request) const = 0;
+  virtual void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
+                             Real* contact_loss, Real* integrator_loss) const = 0;
+  virtual void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
+                      const FrozenLimits& to) const = 0;
   // n particles that leave, and what they leave to all others: see the items.
   virtual void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
                        Leaver* leavers) const = 0;

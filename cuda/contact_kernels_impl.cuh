@@ -58,6 +58,18 @@ __global__ void __launch_bounds__(kSystemThreads)
   block_max(norms.stiffening, &r.largest->stiffening);
 }
 
+// Forces, torques and entries of the Newton matrix; what else a particle has in the solve, items find that
+// read the entries. The walk needs the registers by itself.
+template <class Laws>
+__global__ void __launch_bounds__(kSystemThreads)
+    rubbing_kernel(const __grid_constant__ DeviceRubbingRequest r, const Laws laws) {
+  const Index i = r.first + thread_index();
+  if (i >= r.end) return;
+  const RubbingRequest& of = r.of;
+  RubbingSystemItem<Laws, SlicedRows>{
+      {r.in, laws, {of.start}}, of.gravity, of.weights, of.forces, of.torques, of.matrix, of.sharpness}(i);
+}
+
 // With the number of the step before the open one, for what contacts remember.
 template <class Laws, class Views, class Request>
 __device__ Views at_open_step(Views views, const Request& r) {
@@ -404,6 +416,31 @@ class ContactKernelsOf : public DeviceContactKernels {
     for_each(device, n,
              ContactBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
+  void rubbing_system(Device device, const DeviceRubbingRequest& r) const override {
+    if constexpr (kRubs<LawOf<Laws>>) {
+      if (r.end == r.first) return;
+      rubbing_kernel<Laws>
+          <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
+      require_cuda(cudaGetLastError(), "rubbing system");
+    } else {
+      refuse_rubbing();
+    }
+  }
+  void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
+                     Real* contact_loss, Real* integrator_loss) const override {
+    if constexpr (kRubs<LawOf<Laws>>)
+      for_each(device, n,
+               RubbingBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
+    else
+      refuse_rubbing();
+  }
+  void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
+              const FrozenLimits& to) const override {
+    if constexpr (kRubs<LawOf<Laws>>)
+      for_each(device, n, FreezeItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
+    else
+      refuse_rubbing();
+  }
   void leavers(Device device, const DeviceViews& in, const OpenBox& box, Index n,
                Leaver* leavers) const override {
     for_each(device, n, LeaverEnergyItem<Laws, SlicedRows>{{in, laws_}, box, leavers});
@@ -438,6 +475,9 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
 
  private:
+  [[noreturn]] static void refuse_rubbing() {
+    throw std::logic_error("ContactKernelsOf: the law has no implicit steps with friction");
+  }
   // Whether so many particles have room side by side on the GPU, with so many blocks on a multiprocessor.
   bool several_at_once(const StepRows& rows, int blocks) const {
     const bool fits = step_blocks(rows.first, rows.end) <= multiprocessors_ * static_cast<unsigned>(blocks);

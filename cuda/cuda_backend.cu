@@ -29,8 +29,7 @@ std::string CudaBackend::description() const {
 }
 
 std::unique_ptr<ImplicitStep> CudaBackend::open_step(Real h) {
-  if (items_.model.rotates())
-    throw InputError("integrator.particles = \"hht\" with friction runs on the CPU: choose --backend cpu");
+  if (items_.model.rotates()) return std::make_unique<CudaRubbingStep>(items_, bodies_, implicit_arrays_, h);
   return std::make_unique<CudaImplicitStep>(items_, bodies_, implicit_arrays_, h);
 }
 

@@ -9,6 +9,7 @@
 #include "cuda_implicit.cuh"
 #include "cuda_particles.cuh"
 #include "cuda_reports.cuh"
+#include "cuda_rubbing.cuh"
 #include "dem/backend.hpp"
 
 namespace scree {

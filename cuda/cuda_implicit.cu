@@ -3,7 +3,6 @@
 
 #include "cuda_bodies.cuh"
 #include "cuda_implicit.cuh"
-#include "dem/block_solver.hpp"
 
 namespace scree {
 namespace {
@@ -47,36 +46,17 @@ struct SolverItem {
   }
 };
 
-__device__ void decide(SolverControl* c) {
-  c->stop = std::sqrt(c->largest) <= c->tolerance;
-  c->largest = 0;
-  ++c->products;
-}
-
-__global__ void decide_kernel(SolverControl* c) {
-  if (!c->stop) decide(c);
-}
-
-// For the particles [first, end).
-__global__ void solver_kernel(Index first, Index end, const __grid_constant__ SolverItem item,
-                              SolverControl* c) {
-  if (c->stop) return;
-  const Index i = first + thread_index();
-  block_max(i < end ? item(i) : 0, &c->largest);
-  if (threadIdx.x > 0) return;
-  if (c->alone && is_last_block(&c->finished_blocks, gridDim.x)) decide(c);
-}
-
 }  // namespace
 
 void CudaImplicitArrays::resize(const CudaItems& items) {
   const auto owned = static_cast<std::size_t>(items.owned),
              slots = static_cast<std::size_t>(items.list.slots());
+  step_force.resize(owned), end_force.resize(owned), force_magnitude.resize(owned);
+  stiffening.resize(owned), matrix_count.resize(owned), residual.resize(owned);
+  if (items.model.rotates()) return rubbing.resize(items);
   matrix_entries.resize(slots);
   for (DeviceArray<Vec4>& d : direction) d.resize(static_cast<std::size_t>(items.layout.items));
-  step_force.resize(owned), end_force.resize(owned), force_magnitude.resize(owned);
-  stiffening.resize(owned), matrix_count.resize(owned);
-  residual.resize(owned), right_hand_side.resize(owned), correction.resize(owned);
+  right_hand_side.resize(owned), correction.resize(owned);
   matrix_diagonal.resize(owned), inverse_block.resize(owned);
 }
 
@@ -231,48 +211,27 @@ void CudaImplicitStep::subtract_surface_steps() {
 // Solves for the correction in batches of products, so that the host seldom waits; returns the number of
 // products.
 int CudaImplicitStep::solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance) {
-  constexpr int kBatch = 8;
-  SolverControl* control = arrays_.solver.data();
-  SolverControl& h_control = arrays_.h_solver[0];
   Vec3 *residual = arrays_.residual.data(), *correction = arrays_.correction.data();
   DeviceHalo& halo = items_.lane.halo;
-  h_control = {tolerance, 0, 0, 0, 0, items_.ranks.alone()};
-  copy_async(control, &h_control, 1, items_.stream);
-  ChebyshevWeights weights = solver_weights(largest_stiffening_);
-  const auto direction = [&] {
+  const auto direction = [&](const ChebyshevWeights& weights) {
     return DirectionItem{arrays_.inverse_block.data(), residual, weights.from_last, weights.from_residual};
   };
-  for_each(items_.device(), items_.owned,
-           FirstDirectionItem{direction(), arrays_.direction[0].data(), correction});
-  items_.halo_after_rows();
-  for (int product = 0; product < kMostProducts; ++product) {
-    Vec4 *d = arrays_.direction[product % 2].data(), *next = arrays_.direction[1 - product % 2].data();
-    const DirectionGhostItem ghosts{halo.ghosts(), halo.field(0, d, items_.owned)};
-    weights.advance();
-    SolverItem item{matrix, direction(), next, correction};
-    item.subtract.d = d, item.subtract.residual = residual;
-    const auto queue_ghosts = [&](Device on) {
-      for_each(on, halo.entries(), ghosts);
-      halo.exchange(on, ghosts.direction);
-    };
-    const auto queue_rows = [&](Device on, Index first, Index end) {
-      const unsigned blocks = std::max(1u, blocks_for(end - first));
-      solver_kernel<<<blocks, launches().block, 0, on.stream>>>(first, end, item, control);
-    };
-    items_.queue_beside_halo(queue_ghosts, queue_rows, nullptr);
-    if (!items_.ranks.alone()) {
-      halo.max({items_.lane.stream}, &control->largest, 1);
-      decide_kernel<<<1, 1, 0, items_.lane.stream>>>(control);
-      items_.rows_after_halo();
-    }
-    require_cuda(cudaGetLastError(), "linear solve");
-    if (product % kBatch != kBatch - 1) continue;
-    copy_async(&h_control, control, 1, items_.stream);
-    items_.idle();
-    wait_for(items_.stream);
-    if (h_control.stop) break;
-  }
-  return h_control.products;
+  const auto begin = [&](const ChebyshevWeights& weights) {
+    for_each(items_.device(), items_.owned,
+             FirstDirectionItem{direction(weights), arrays_.direction[0].data(), correction});
+  };
+  const auto ghosts = [&](Device on, int product) {
+    const DirectionGhostItem item{halo.ghosts(),
+                                  halo.field(0, arrays_.direction[product % 2].data(), items_.owned)};
+    for_each(on, halo.entries(), item);
+    halo.exchange(on, item.direction);
+  };
+  const auto item = [&](int product, const ChebyshevWeights& weights) {
+    SolverItem out{matrix, direction(weights), arrays_.direction[1 - product % 2].data(), correction};
+    out.subtract.d = arrays_.direction[product % 2].data(), out.subtract.residual = residual;
+    return out;
+  };
+  return solve_on_device(items_, arrays_.solver, largest_stiffening_, tolerance, begin, ghosts, item);
 }
 
 ParticleCorrection CudaImplicitStep::particle_correct() {

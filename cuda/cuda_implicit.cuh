@@ -1,22 +1,32 @@
 // The implicit step of the GPU's backend.
 #pragma once
 
-#include "cuda_items.cuh"
+#include "cuda_solver.cuh"
 #include "dem/implicit_step.hpp"
 #include "dem/line_search.hpp"
+#include "dem/turning_items.hpp"
 
 namespace scree {
 
 class CudaBodies;
 
-// Progress of a linear solve: written by the last block of each product.
-struct SolverControl {
-  Real tolerance;  // on the largest |residual| [N]
-  Real largest;    // squared, of this product
-  unsigned finished_blocks;
-  int products;
-  int stop;
-  int alone;  // the last block decides; else the ranks do, together, after the product
+// What they have in addition where contacts rub and particles turn.
+struct CudaRubbingArrays {
+  DeviceArray<Vec4> mean_spin;  // iterate, all items
+  // contact_force
+  DeviceArray<Vec3> start_torque, step_torque, end_torque;
+  DeviceArray<Real> sharpness;
+  DeviceArray<Index> surface_count;
+  DeviceArray<RubbingEntry> entries, surface_entries;
+  DeviceArray<ScaledMass> mass;
+  DeviceArray<Block6f> inverse_block;
+  DeviceArray<Twist> residual, correction;
+  DeviceArray<Real> neighbor_limits, surface_limits;  // while they are frozen
+  DeviceArray<RubbingNorms> norms{1};
+  PinnedArray<RubbingNorms> h_norms{1};
+  DeviceArray<Vec4> move[2], turn[2];  // directions of all items
+
+  void resize(const CudaItems& items);
 };
 
 // Workspace of implicit steps, kept from one to the next.
@@ -30,8 +40,8 @@ struct CudaImplicitArrays {
   // particle_correct
   DeviceArray<Vec3> right_hand_side, correction;
   DeviceArray<Vec4> direction[2];
-  DeviceArray<SolverControl> solver{1};
-  PinnedArray<SolverControl> h_solver{1};
+  SolverProgress solver;
+  CudaRubbingArrays rubbing;
 
   // For the items and their list, when that is built.
   void resize(const CudaItems& items);
@@ -52,11 +62,19 @@ class CudaImplicitStep : public ImplicitStep {
   void accept() override;
   void undo() override;
 
- private:
+ protected:
   StepViews step_views();
   StepForces step_forces();
   StepStart step_start() const;
   NewtonWeights newton_weights() const;
+
+  CudaItems& items_;
+  CudaBodies& bodies_;
+  CudaImplicitArrays& arrays_;
+  const Real h_;
+  bool ghosts_stale_ = false;  // the next contact_force refreshes them
+
+ private:
   ContactMatrix matrix();
   CorrectItem correct_item(Real share);
   void queue_forces();
@@ -64,11 +82,6 @@ class CudaImplicitStep : public ImplicitStep {
   void subtract_surface_steps();
   int solve(const SubtractMatrixItem<SlicedRows>& matrix, Real tolerance);
 
-  CudaItems& items_;
-  CudaBodies& bodies_;
-  CudaImplicitArrays& arrays_;
-  const Real h_;
-  bool ghosts_stale_ = false;  // the next contact_force refreshes them
   // Of the last contact_force.
   Real largest_stiffening_ = 0, force_scale_ = 0, right_hand_side_norm_ = 0;
   LineSearch line_search_;  // along arrays_.correction

@@ -11,6 +11,7 @@
 #include "dem/mixed_items.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/output_fields.hpp"
+#include "dem/turning_items.hpp"
 #include "partition/halo.hpp"
 
 namespace scree {
@@ -27,9 +28,13 @@ constexpr double kRowArrays = 4 * sizeof(Index);  // lengths of rows, and three 
 constexpr double kGhostArrays = sizeof(Ghost) + kSortArrays + sizeof(Index);
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
+// The same where contacts rub: CudaRubbingArrays in place of the matrix and the solve.
+constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + 5 * sizeof(Vec4) +
+                                  sizeof(ScaledMass) + sizeof(Block6f) + 2 * sizeof(Twist);
 constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
 constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
+constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry) + sizeof(Real);  // the last: frozen limits
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kCellBytes = 2 * sizeof(Index);
@@ -115,7 +120,9 @@ std::size_t device_memory(const Model& model) {
   if (explicit_steps) bytes += (n.particles + n.slots) * sizeof(Index);             // pruned rows
   bytes += history_bytes(history_of(model.contact), n);
   bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
-  if (!explicit_steps) bytes += n.items * kStepArrays + n.slots * kStepArraysPerSlot;
+  if (!explicit_steps)
+    bytes += model.rotates() ? n.items * kRubbingArrays + n.slots * kRubbingArraysPerSlot
+                             : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
     if (model.rotates()) bytes += n.items * 2 * sizeof(MixedSpin) + n.particles * sizeof(Vec3f);

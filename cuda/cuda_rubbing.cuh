@@ -1,0 +1,42 @@
+// The implicit step of the GPU's backend where contacts rub and particles turn.
+#pragma once
+
+#include "cuda_implicit.cuh"
+
+namespace scree {
+
+class CudaRubbingStep : public CudaImplicitStep {
+ public:
+  CudaRubbingStep(CudaItems& items, CudaBodies& bodies, CudaImplicitArrays& arrays, Real h);
+
+  void predict() override;
+  ParticleNorms contact_force() override;
+  GlobalId worst_particle() override;
+  ParticleCorrection particle_correct() override;
+  void shorten_correction() override;
+  void freeze_limits() override;
+  Real error() override;
+  void accept() override;
+  void undo() override;
+
+ private:
+  TurningViews turning_views();
+  StepTorques step_torques();
+  RubbingStart rubbing_start();
+  RubbingMatrix matrix();
+  RubbingCorrectItem correct_item(Real share);
+  void turn_particles();
+  void refresh_ghosts(Device on);
+  void queue_system();
+  RubbingNorms largest_norms();
+  int solve(Real tolerance, bool with_grip);
+
+  CudaRubbingArrays& rubbing_;
+  bool frozen_ = false;
+  ResidualSearch search_;                          // along rubbing_.correction
+  Real scaled_residual_ = 0;                       // of the last contact_force
+  Real largest_stiffening_ = 0, force_scale_ = 0;  // likewise
+  Real sharpness_ = 0;
+};
+
+}  // namespace scree
