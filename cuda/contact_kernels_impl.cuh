@@ -149,8 +149,9 @@ class ContactKernelsOf : public DeviceContactKernels {
     exact_sums(device, n, WallContactItem<Laws, SlicedRows>{{in, laws_}, choice}, sums, share);
   }
   void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const override {
-    for_each(device, n,
-             ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});
+    for_each(
+        device, n,
+        ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out.energy, out.contacts, out.pairs, out.springs});
   }
   void output(Device device, const DeviceViews& in, const OutputRequest& request) const override {
     with_contact_output(request, ContactWalk<Laws, SlicedRows>{in, laws_},

@@ -51,6 +51,7 @@ class CudaReports : public Reports {
   // Of each particle's contacts.
   DeviceArray<Real> elastic_, pairs_;
   DeviceArray<Index> contacts_;
+  DeviceArray<SpringEnergies> springs_;
   DeviceArray<GlobalId> traced_ids_;
   DeviceArray<TracedParticle> traced_;
 };

@@ -30,6 +30,7 @@ struct Results {
   Index interior, active,
       staying;  // particles in the interior, in the search, and on this rank from now on
   ExactSums<kWallTerms> wall;
+  ExactSums<kRotationTerms> rotation;
 };
 
 class DeviceResults {

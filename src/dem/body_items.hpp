@@ -53,7 +53,7 @@ struct BodyLoadItem {
       SurfaceLoad contact = found.contact;
       contact.arm = arm[i] - self.p.w * found.normal;
       sum.sums.add_contact(contact);
-      sum.loss += share * contact.load.loss, sum.energy += share * contact.energy, sum.pairs += share;
+      sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
     };
     walk.neighbors(self, BodyLoadOf{}, [&](const auto& found, Index) { add(found, kPairShare); });
     walk.surfaces(self, BodyLoadOf{}, [&](const auto& found, Index) { add(found, 1); });

@@ -115,25 +115,26 @@ struct ContactForceItem {
 
 // Over the contacts of a particle, each with its weight.
 struct TouchSums {
-  Real energy = 0;  // elastic [J]
-  Real share = 0;   // sum of the weights
+  Real energy = 0;         // elastic [J]
+  SpringEnergies springs;  // parts of it
+  Real share = 0;          // sum of the weights
   Index contacts = 0;
 };
 
 // Elastic energy of a closed contact [J].
 struct EnergyOf {
   template <class Law>
-  SCREE_HD Real operator()(const Law& law, const PairState& pair) const {
-    return law.normal.of_pair(pair.size).energy(pair.geometry.overlap);
+  SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair) const {
+    return {law.normal.of_pair(pair.size).energy(pair.geometry.overlap), {}};
   }
   // With that of the springs that it remembers.
   template <class Law, class History>
-  requires Law::kMoves SCREE_HD Real operator()(const Law& law, const PairState& pair,
-                                                const History& history) const {
+  requires Law::kMoves SCREE_HD ContactEnergy operator()(const Law& law, const PairState& pair,
+                                                         const History& history) const {
     return law.energy_of(pair, history);
   }
   template <class Views>
-  SCREE_HD const Real* stored(const Views& in, Index entry) const {
+  SCREE_HD const ContactEnergy* stored(const Views& in, Index entry) const {
     return in.loads[entry].touches ? &in.loads[entry].energy : nullptr;
   }
 };
@@ -142,14 +143,15 @@ struct EnergyOf {
 template <class Laws, class Rows, class Share>
 SCREE_HD TouchSums touch_sums(const ContactWalk<Laws, Rows>& walk, Index i, const Share& share) {
   TouchSums sum;
-  const auto add = [&](Real energy, Real weight) {
-    sum.energy += weight * energy;
+  const auto add = [&](const ContactEnergy& energy, Real weight) {
+    sum.energy += weight * energy.sum;
+    if constexpr (LawOf<Laws>::kMoves) sum.springs.add(energy.springs, weight);
     sum.share += weight;
     ++sum.contacts;
   };
   const auto self = walk.self(i);
-  walk.neighbors(self, EnergyOf{}, [&](Real energy, Index j) { add(energy, share(j)); });
-  walk.surfaces(self, EnergyOf{}, [&](Real energy, Index) { add(energy, 1); });
+  walk.neighbors(self, EnergyOf{}, [&](const ContactEnergy& energy, Index j) { add(energy, share(j)); });
+  walk.surfaces(self, EnergyOf{}, [&](const ContactEnergy& energy, Index) { add(energy, 1); });
   return sum;
 }
 
@@ -159,13 +161,15 @@ struct ContactEnergyItem {
   ContactWalk<Laws, Rows> walk;
   Real* energy;  // [J]
   Index* contacts;
-  Real* pairs;  // half of each contact with another particle, all of any other
+  Real* pairs;              // half of each contact with another particle, all of any other
+  SpringEnergies* springs;  // parts of the energy; null where particles do not rotate
 
   SCREE_HD void operator()(Index i) const {
     const TouchSums sum = touch_sums(walk, i, [](Index) { return kPairShare; });
     energy[i] = sum.energy;
     contacts[i] = sum.contacts;
     pairs[i] = sum.share;
+    if (springs != nullptr) springs[i] = sum.springs;
   }
 };
 

@@ -33,6 +33,7 @@ struct EnergyOutputs {
   Real* energy;
   Index* contacts;
   Real* pairs;
+  SpringEnergies* springs;  // null where particles do not rotate
 };
 
 class ContactKernels {

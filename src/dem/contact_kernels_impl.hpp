@@ -67,8 +67,9 @@ class CpuContactKernels : public ContactKernels {
                       sums, Ranks());
   }
   void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
-    for_each(Serial{}, n,
-             ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out.energy, out.contacts, out.pairs});
+    for_each(
+        Serial{}, n,
+        ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out.energy, out.contacts, out.pairs, out.springs});
   }
   void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const override {
     with_contact_output(request, ContactWalk<Laws, PackedRows>{in, laws_},

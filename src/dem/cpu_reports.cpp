@@ -13,14 +13,23 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   const Index n = store.owned;
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
+  std::vector<SpringEnergies> springs(store.rotates ? n : 0);
   need_loads();
-  items_.kernels->energies(items_.views(), n, {elastic.data(), touching.data(), pairs.data()});
+  items_.kernels->energies(
+      items_.views(), n,
+      {elastic.data(), touching.data(), pairs.data(), store.rotates ? springs.data() : nullptr});
 
   const LedgerItem item{views_of(store),           elastic.data(), pairs.data(), items_.model.gravity,
                         items_.subdomain.period(), verlet_step};
   Real sums[kLedgerTerms];
   reproducible_sums(n, item, sums, items_.ranks);
   ParticleLedger out = make_particle_ledger(sums, items_.side);
+  if (store.rotates) {
+    Real of_rotation[kRotationTerms];
+    reproducible_sums(n, RotationItem{store.angular_velocity.data(), springs.data()}, of_rotation,
+                      items_.ranks);
+    out.rotation = make_rotation_energies(of_rotation);
+  }
   for (Index i = 0; i < n; ++i) out.drifting += store.drifting[i];
   out.drifting = items_.ranks.sum(out.drifting);
   return out;

@@ -37,6 +37,7 @@ constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry) + sizeof(Real);  // the last: frozen limits
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
+constexpr double kSpinReportArrays = sizeof(SpringEnergies);
 constexpr double kCellBytes = 2 * sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
@@ -112,7 +113,8 @@ std::size_t device_memory(const Model& model) {
   const bool periodic = n.ghosts > 0;
   const double spare = periodic ? 1.125 : 1;  // arrays that grow when ghosts are found
   double bytes = n.items * kItemFields * spare + n.particles * kOwnedFields;
-  if (model.rotates()) bytes += n.items * kSpinFields * spare + n.particles * kOwnedSpinFields;
+  if (model.rotates())
+    bytes += n.items * kSpinFields * spare + n.particles * (kOwnedSpinFields + kSpinReportArrays);
   bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays : 0);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
   bytes +=

@@ -6,6 +6,7 @@
 #include "base/vec3.hpp"
 #include "dem/particle_fields.hpp"
 #include "partition/subdomain.hpp"
+#include "physics/contact_law.hpp"
 #include "physics/energy.hpp"
 #include "physics/time_stepping.hpp"
 
@@ -69,6 +70,28 @@ struct LedgerItem {
     return {{kinetic_energy(in, i), gravitational_energy(mass, gravity, x), elastic[i], in.contact_loss[i],
              in.integrator_loss[i] - verlet_energy_shift(verlet_step, in, i), pairs[i], p.x, p.y, p.z, l.x,
              l.y, l.z}};
+  }
+};
+
+// Where particles rotate, sums of their own: those of other runs stay as they are.
+enum RotationTerm {
+  kRotational,       // kinetic energy [J]
+  kFrictionSprings,  // elastic energies [J]
+  kRollingSprings,
+  kRotationTerms
+};
+
+struct RotationTerms {
+  Real value[kRotationTerms];
+};
+
+struct RotationItem {
+  const Vec4* spin;               // angular velocity, moment of inertia
+  const SpringEnergies* springs;  // of ContactEnergyItem
+
+  SCREE_HD RotationTerms operator()(Index i) const {
+    const Vec4 w = spin[i];
+    return {{rotational_energy(w.w, xyz(w)), springs[i].friction, springs[i].rolling}};
   }
 };
 

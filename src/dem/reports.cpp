@@ -18,4 +18,8 @@ ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies)
   return out;
 }
 
+RotationEnergies make_rotation_energies(const Real* sums) {
+  return {sums[kRotational], sums[kFrictionSprings], sums[kRollingSprings]};
+}
+
 }  // namespace scree

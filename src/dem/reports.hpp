@@ -12,19 +12,30 @@
 
 namespace scree {
 
+// What of the energies of a ParticleLedger there is where particles rotate; zero elsewhere [J].
+struct RotationEnergies {
+  Real kinetic = 0;                                // of the rotation
+  Real friction_springs = 0, rolling_springs = 0;  // of contact_elastic: SpringEnergies
+
+  friend bool operator==(const RotationEnergies&, const RotationEnergies&) = default;
+};
+
 // Sums over all particles; order-independent.
 struct ParticleLedger {
   Real kinetic = 0, gravitational = 0, contact_elastic = 0;  // [J]
   Real contact_loss = 0, integrator_loss = 0;                // since t = 0 [J]
   Vec3 momentum;                                             // [kg m/s]
-  Vec3 angular_momentum;                                     // about the origin [kg m^2/s]
-  std::int64_t contacts = 0;                                 // touching pairs, walls and body shapes included
-  std::int64_t drifting = 0;                                 // particles outside that drift on
+  Vec3 angular_momentum;                                     // about the origin, with spins [kg m^2/s]
+  RotationEnergies rotation;
+  std::int64_t contacts = 0;  // touching pairs, walls and body shapes included
+  std::int64_t drifting = 0;  // particles outside that drift on
 };
 
 // From the sums of LedgerItem over the particles, indexed by LedgerTerm, and what the bodies do to each
 // other.
 ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies);
+// The same of RotationItem, indexed by RotationTerm.
+RotationEnergies make_rotation_energies(const Real* sums);
 
 // One entry per particle of this rank, any order.
 struct ParticleOutput {

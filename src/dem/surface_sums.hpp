@@ -25,9 +25,9 @@ struct StepContact {
 struct SurfaceLoad {
   bool touches;                    // else nothing below has a meaning
   ContactLoadOf<Real, Vec3> load;  // on the particle
-  Real energy;                     // elastic [J]
-  Vec3 arm;                        // from the body's centre to where they touch [m]
-  Vec3 particle_arm;               // contact_arm() of the particle
+  ContactEnergy energy;
+  Vec3 arm;           // from the body's centre to where they touch [m]
+  Vec3 particle_arm;  // contact_arm() of the particle
 };
 
 // The same over an implicit step.

@@ -47,6 +47,23 @@ struct ContactHistory {
   bool touched = false;  // the surfaces have met: a law with a neck may hold them beyond touch
 };
 
+// Elastic energy of the springs that contacts remember [J].
+struct SpringEnergies {
+  Real friction = 0;  // across the normal
+  Real rolling = 0;   // of rolling and twisting
+
+  SCREE_HD Real sum() const { return friction + rolling; }
+  SCREE_HD void add(const SpringEnergies& part, Real share) {
+    friction += share * part.friction, rolling += share * part.rolling;
+  }
+};
+
+// Elastic energy of a contact [J].
+struct ContactEnergy {
+  Real sum = 0;            // of the normal force, and of the springs that it remembers
+  SpringEnergies springs;  // parts of the sum
+};
+
 // A contact over the step that ends at the instant of its PairState.
 struct ContactOutcome {
   ContactLoadOf<Real, Vec3> load;  // at that instant; loss: of the normal law there, and of the step's others
@@ -126,26 +143,26 @@ struct ContactLaw {
     return out;
   }
 
-  // Elastic energy of a closed contact [J]: of its normal force, with what a neck that the next step makes
-  // will lose, and of the springs that it remembers.
-  SCREE_HD Real energy_of(const PairState& pair, const ContactHistory& history) const {
+  // Of a closed contact, with what a neck that the next step makes will lose.
+  SCREE_HD ContactEnergy energy_of(const PairState& pair, const ContactHistory& history) const {
     const auto law = normal.of_pair(pair.size);
     Real out = law.energy(pair.geometry.overlap);
     if constexpr (kNeck)
       if (!history.touched) out += law.making_loss();
-    return out + spring_energy_of(pair, history);
+    const SpringEnergies springs = springs_of(pair, history);
+    return {out + springs.sum(), springs};
   }
-  // Elastic energy of the springs that a closed contact remembers [J]; that of its normal force not counted.
-  SCREE_HD Real spring_energy_of(const PairState& pair, const ContactHistory& history) const {
+  SCREE_HD SpringEnergies springs_of(const PairState& pair, const ContactHistory& history) const {
     const Real d = pair.geometry.overlap;
     const NormalContact contact = normal_contact(normal.of_pair(pair.size), pair.size, 0, d, d);
-    Real out = 0, stiffness = 0;
+    SpringEnergies out;
+    Real stiffness = 0;
     if constexpr (TangentialLaw::acts) {
       stiffness = tangential.stiffness_at(contact.radius);
-      out += spring_energy(history.spring, stiffness);
+      out.friction = spring_energy(history.spring, stiffness);
     }
     if constexpr (RollingLaw::acts)
-      out += rolling.energy(pair.size, contact, stiffness, pair.geometry.normal(), history.moment);
+      out.rolling = rolling.energy(pair.size, contact, stiffness, pair.geometry.normal(), history.moment);
     return out;
   }
 

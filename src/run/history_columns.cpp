@@ -59,7 +59,11 @@ void energy_columns(Group energy) {
   entry("kinetic", "kinetic energy of particles and bodies", &Ledger::kinetic);
   entry("gravitational", "gravitational energy, zero at the origin", &Ledger::gravitational);
   entry("elastic_force_elements", "elastic energy of force elements", &Ledger::elastic_force_elements);
-  entry("elastic_contacts", "elastic energy of contacts", &Ledger::elastic_contacts);
+  entry(
+      "elastic_contacts",
+      "elastic energy of contacts, zero where partners are out of reach: of normal forces, below zero where "
+      "these attract, and of the springs of friction, rolling and twisting",
+      &Ledger::elastic_contacts);
   entry("dissipated_force_elements", "dissipated in force elements since t = 0",
         &Ledger::dissipated_force_elements);
   entry("dissipated_contacts", "dissipated in contacts since t = 0", &Ledger::dissipated_contacts);
@@ -82,10 +86,26 @@ void energy_columns(Group energy) {
              [](const Sample& s) { return s.exchanged; });
 }
 
+// Parts of what the energy columns hold.
+void rotation_columns(Group rotation) {
+  const auto part = [&](const char* name, const char* text, Real RotationEnergies::*value) {
+    rotation.add(name, "J", text, [value](const Sample& s) { return s.particles.rotation.*value; });
+  };
+  part("kinetic", "kinetic energy of the particles' rotation: a part of energy/kinetic",
+       &RotationEnergies::kinetic);
+  part("elastic_friction",
+       "elastic energy of the springs across the normals of contacts: a part of energy/elastic_contacts",
+       &RotationEnergies::friction_springs);
+  part("elastic_rolling",
+       "elastic energy of the springs against rolling and twisting: a part of energy/elastic_contacts",
+       &RotationEnergies::rolling_springs);
+}
+
 void momentum_columns(Group momentum) {
   momentum.add_vector("linear_", "kg m/s", "momentum of the particles",
                       [](const Sample& s) { return s.particles.momentum; });
-  momentum.add_vector("angular_", "kg m^2/s", "angular momentum of the particles about the origin",
+  momentum.add_vector("angular_", "kg m^2/s",
+                      "angular momentum of the particles about the origin, that of their spins included",
                       [](const Sample& s) { return s.particles.angular_momentum; });
 }
 
@@ -137,6 +157,7 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   const Output& output = model.output;
   step_columns({"step", out});
   energy_columns({"energy", out});
+  if (model.rotates()) rotation_columns({"rotation", out});
   momentum_columns({"momentum", out});
   for (std::size_t k = 0; k < reactions.size(); ++k)
     reaction_columns({"reactions/" + reactions[k].joint, out}, k);

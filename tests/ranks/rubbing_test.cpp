@@ -18,6 +18,8 @@ void check_equal(const RubbingKind& kind, const RememberingBox& one, const Remem
   CHECK(differing_fields(a.particles, many.ranks.gather_everywhere(own.particles)) == "");
   CHECK(one.hash() == many.hash());
   CHECK(!a.contacts.keys.empty());
+  CHECK(one.backend->reports().ledger(kMovingStep).rotation ==
+        many.backend->reports().ledger(kMovingStep).rotation);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ void check_ledgers(const RememberingBox& cpu, const RememberingBox& cuda) {
   CHECK(a.contact_elastic == b.contact_elastic);
   CHECK(a.contact_loss == b.contact_loss);
   CHECK(a.angular_momentum == b.angular_momentum);
+  CHECK(a.rotation == b.rotation);
 }
 
 }  // namespace

@@ -101,10 +101,14 @@ TEST_CASE("rolling and twisting springs take their stiffness from the contact") 
                {.absolute = 1e-12 * norm(out.history.moment)}));
     CHECK(near(twist_of(out.history.moment, c.pair.motion), 8 * 40 * a * a * a / 2 * c.pair.motion.twisting,
                {.absolute = 1e-12 * norm(out.history.moment)}));
-    const Real energy = dot(out.history.spring, out.history.spring) / (2 * 8 * 40 * a) +
-                        rolling / 2 * dot(c.pair.motion.rolling, c.pair.motion.rolling) +
-                        8 * 40 * a * a * a / 4 * c.pair.motion.twisting * c.pair.motion.twisting;
-    CHECK(near(law.spring_energy_of(c.pair, out.history), energy, {.relative = 1e-12}));
+    const Real rubs = dot(out.history.spring, out.history.spring) / (2 * 8 * 40 * a),
+               rolls = rolling / 2 * dot(c.pair.motion.rolling, c.pair.motion.rolling) +
+                       8 * 40 * a * a * a / 4 * c.pair.motion.twisting * c.pair.motion.twisting,
+               energy = rubs + rolls;
+    const SpringEnergies springs = law.springs_of(c.pair, out.history);
+    CHECK(near(springs.friction, rubs, {.relative = 1e-12}));
+    CHECK(near(springs.rolling, rolls, {.relative = 1e-12}));
+    CHECK(springs.sum() == springs.friction + springs.rolling);
     // From rest, without losses, it is the springs' work.
     CHECK(std::abs(out.friction.sum() + out.rolling.sum()) <= 1e-12 * energy);
   }

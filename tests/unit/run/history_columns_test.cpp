@@ -113,4 +113,22 @@ TEST_CASE("a column's value is that of its name") {
   CHECK(found == expected);
 }
 
+TEST_CASE("runs whose particles rotate have columns of that, beside all others") {
+  Model model = recorded_model();
+  HistorySample sample = distinct_sample();
+  sample.particles.rotation = {61, 62, 63};
+  const std::size_t others = history_columns(model, sample.reactions).size();
+  model.contact.friction.resize(1);
+  std::map<std::string, Real> found;
+  const std::vector<RecordedColumn> columns = history_columns(model, sample.reactions);
+  for (const RecordedColumn& column : columns) {
+    if (column.head.group != "rotation") continue;
+    found[column.head.name] = column.value(sample);
+    CHECK((column.head.unit == "J" && !column.head.description.empty()));
+  }
+  CHECK(found ==
+        std::map<std::string, Real>{{"kinetic", 61}, {"elastic_friction", 62}, {"elastic_rolling", 63}});
+  CHECK(columns.size() == others + found.size());
+}
+
 }  // namespace scree
