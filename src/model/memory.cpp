@@ -17,6 +17,10 @@ constexpr Real kToBuildBody = 600, kToBuildUnknowns = 1400, kToBuildLink = 1600;
 // A particle and its entry in the search for overlaps; a place of a random group, with what it keeps clear
 // of.
 constexpr Real kToBuildParticle = 150, kToPlace = 130;
+// Where particles rotate, and where something resists rolling: the fields of rotation, and what contacts
+// remember in the copies that a checkpoint is made of, of a dense packing
+// (tests/performance/bytes_per_item.py) [B].
+constexpr Real kOfRotation = 390, kOfRolling = 270;
 
 Real gigabytes(Real bytes) { return bytes / 1e9; }
 
@@ -24,7 +28,10 @@ Real gigabytes(Real bytes) { return bytes / 1e9; }
 
 Real bytes_per_particle(const Model& model) {
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
-  return implicit ? kBytesPerImplicitParticle : kBytesPerExplicitParticle;
+  Real bytes = implicit ? kBytesPerImplicitParticle : kBytesPerExplicitParticle;
+  if (model.rotates()) bytes += kOfRotation;
+  if (!model.contact.rolling.empty()) bytes += kOfRolling;
+  return bytes;
 }
 
 std::string counted(std::int64_t count, const std::string& one, const std::string& many) {

@@ -35,6 +35,7 @@ angular_velocity = [0.0, 5.0, 1.0]
 [output]
 history_csv = true
 """
+SMOOTH = re.sub(r"(?m)^(friction|angular_velocity) = .*\n", "", RUBBING)
 HERTZ = """stiffness = 1e5
 damping = 10.0
 """, """restitution = 0.8
@@ -115,6 +116,23 @@ class FrictionTest(CommandLineTest):
         self.expect(DONE, "run", self.write("ball.toml", RUBBING + BALL), "--output", self.folder / "ball")
         self.expect(DONE, "check", self.deck, "--set", "contact.pairs.0.friction=0.0")
 
+    def test_check_counts_rotation_and_what_contacts_remember(self):
+        rolling = RUBBING.replace("friction = 0.5\n", "friction = 0.5\nrolling_friction = 0.2\n")
+        for text, checkpoint, memory in ((SMOOTH, "1.5 kB", 920), (RUBBING, "4.2 kB", 1822), (rolling, "5.3 kB", 2556)):
+            with self.subTest(memory=memory):
+                report = self.expect(DONE, "check", self.write("counted.toml", text)).stdout
+                self.assertIn(f"\ncheckpoints    one at the end, about {checkpoint} each\n", report)
+                self.assertIn(f"(estimate: {memory} B per particle", report)
+
+    def test_the_history_has_columns_of_rotation_where_particles_rotate(self):
+        self.run_deck(DONE, "rubbing")
+        self.deck = self.write("deck.toml", SMOOTH)
+        self.run_deck(DONE, "smooth")
+        rubbing, smooth = (self.history(name)[0].split(",") for name in ("rubbing", "smooth"))
+        self.assertEqual([name for name in rubbing if name not in smooth],
+                         ["rotation/kinetic [J]", "rotation/elastic_friction [J]", "rotation/elastic_rolling [J]"])
+        self.assertEqual([name for name in smooth if name not in rubbing], [])
+
     def test_check_says_how_contacts_rub_and_what_that_does_to_the_step(self):
         def limit(*words):
             text = self.expect(DONE, "check", self.deck, *words).stdout
@@ -144,9 +162,8 @@ class FrictionTest(CommandLineTest):
         self.assert_same_results("parts", "whole")
 
     def test_friction_may_come_and_go_at_a_restart_that_allows_changes(self):
-        smooth = re.sub(r"(?m)^(friction|angular_velocity) = .*\n", "", RUBBING)
         half = ("--set", "time.end=0.1")
-        for first, second in ((RUBBING, smooth), (smooth, RUBBING), (RUBBING, RUBBING.replace("0.5", "0.1"))):
+        for first, second in ((RUBBING, SMOOTH), (SMOOTH, RUBBING), (RUBBING, RUBBING.replace("0.5", "0.1"))):
             with self.subTest(second=second):
                 self.deck = self.write("deck.toml", first)
                 self.run_deck(DONE, "first", *half)
