@@ -83,7 +83,7 @@ MixedViews MixedArrays::views() {
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
   PrunedViews views =
       items_.surfaces.views(position, nullptr, items_.now.material.data(), items_.list.pruned_rows());
-  views.history = items_.history.views_in_run();
+  views.history = items_.history.views_in_run(), views.reach = items_.model.contact.reach;
   return views;
 }
 
