@@ -164,8 +164,9 @@ TEST_CASE("mixed precision: spheres that rub leave with the velocities and spins
   const Real lost = mixed.backend->reports().ledger(1e-4).contact_loss,
              exactly = exact.backend->reports().ledger(1e-4).contact_loss;
   CHECK(near(lost, exactly, {.relative = 1e-3, .absolute = 1e-9}));
-  std::printf("%s and friction: velocities within %.1e m/s, spins within %.1e rad/s, dissipation %.9g of %.9g J\n",
-              hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);
+  std::printf(
+      "%s and friction: velocities within %.1e m/s, spins within %.1e rad/s, dissipation %.9g of %.9g J\n",
+      hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);
 }
 
 // What contacts remember would creep if singles kept it.
