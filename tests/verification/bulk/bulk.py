@@ -1,0 +1,171 @@
+"""What the scripts of this folder share: decks, runs, results, bands, the command line.
+
+A script has `decks(small)`, texts by name, and `show(folder, report)`, which measures and draws. Decks in units of the grains'
+diameter and mass and of gravity (or of the pressure), in which the laws stand as they are: scree takes them for SI.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import matplotlib
+import numpy
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "reference/contact"
+
+
+class Report:
+    """Prints what was measured beside its band and counts what is outside."""
+
+    def __init__(self, picture):
+        self.picture, self.checked, self.failed = pathlib.Path(picture), 0, 0
+
+    def say(self, text):
+        print(text, flush=True)
+
+    def check(self, what, value, low, high, source):
+        holds = bool(low <= value <= high)
+        self.checked += 1
+        self.failed += not holds
+        print(f"{'ok  ' if holds else 'FAIL'} {what}: {value:.4g}, band {low:.4g} to {high:.4g} ({source})", flush=True)
+
+    def draw(self, figure):
+        figure.savefig(self.picture, dpi=110, bbox_inches="tight")
+        plt.close(figure)
+        print(f"drawn: {self.picture}")
+
+
+def reference(name):
+    """Columns of a table of tests/reference/contact by their names."""
+    lines = [line for line in (REFERENCE / name).read_text().splitlines() if line and not line.startswith("#")]
+    rows = [[float(field or "nan") for field in line.split(",")] for line in lines[1:]]
+    return dict(zip(lines[0].split(","), numpy.array(rows).T))
+
+
+def numbers(values):
+    return "[" + ", ".join(f"{value:.9g}" for value in values) + "]"
+
+
+def body(name, position, shapes, ground=True, mass=1e6):
+    """A body of spheres or discs, (centre, radius) each, in the frame of its place, of the material "base"; ground: joined to
+    the ground for good."""
+    lines = ["[[bodies]]", f'name = "{name}"', f"position = {numbers(position)}", f"mass = {mass}", f"inertia = {1e3 * mass}",
+             "shapes = ["]
+    lines += [f'  {{ radius = {radius:.9g}, offset = {numbers(centre)}, material = "base" }},' for centre, radius in shapes]
+    lines += ["]"]
+    if ground:
+        lines += ["[[joints]]", f'name = "{name}_holds"', 'type = "fixed"', f'bodies = ["ground", "{name}"]']
+    return "\n".join(lines) + "\n"
+
+
+def pairs(law, materials=("grain", "base")):
+    """The materials, and one law between grains and of grains on the others, which do not touch each other."""
+    text = "".join(f'[[materials]]\nname = "{name}"\n' for name in materials)
+    for other in materials:
+        text += f'[[contact.pairs]]\nmaterials = ["grain", "{other}"]\n{law.strip()}\n'
+    others = [name for name in materials if name != "grain"]
+    for place, one in enumerate(others):
+        text += "".join(f'[[contact.pairs]]\nmaterials = ["{one}", "{other}"]\nstiffness = 0.0\n' for other in others[place:])
+    return text
+
+
+def table(name, /, **keys):
+    """A table of a deck; values as TOML has them."""
+    return f"[{name}]\n" + "".join(f"{key} = {value}\n" for key, value in keys.items())
+
+
+def output(name, snapshots, history, fields, /, **keys):
+    """Results of a case, small: compressed."""
+    listed = "[" + ", ".join(f'"{field}"' for field in fields) + "]"
+    return table("output", directory=f'"{name}"', snapshot_interval=snapshots, history_interval=history, fields=listed,
+                 compression=9, checkpoint_wall_interval=0, **keys)
+
+
+def history(folder, name):
+    """Columns of a run's history by their path."""
+    columns = {}
+    with h5py.File(folder / name / "history.h5") as file:
+        file.visititems(lambda path, item: columns.__setitem__(path, item[:]) if isinstance(item, h5py.Dataset) else None)
+    return columns
+
+
+def snapshots(folder, name):
+    """For each snapshot its time and fields: position and what the deck names, rows in the order of the file."""
+    with h5py.File(folder / name / "particles.vtkhdf") as file:
+        root = file["VTKHDF"]
+        times, starts = root["Steps/Values"][:], root["Steps/PointOffsets"][:]
+        counts, points = root["NumberOfPoints"][:][root["Steps/PartOffsets"][:]], root["Points"]
+        for step, time in enumerate(times):
+            rows = slice(starts[step], starts[step] + counts[step])
+            yield time, {"position": points[rows], **{key: data[rows] for key, data in root["PointData"].items()}}
+
+
+def finished(folder, name):
+    return (folder / name / "run_record.json").exists()
+
+
+def run_decks(folder, texts, arguments):
+    """Writes the decks and runs those that have no results yet."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in texts.items():
+        (folder / f"{name}.toml").write_text(text)
+
+    def run(name):
+        with open(folder / f"{name}.log", "w", encoding="utf-8") as log:
+            return subprocess.run([str(arguments.scree), "run", f"{name}.toml", "--overwrite", "--backend",
+                                   arguments.backend], cwd=folder, stdout=log, stderr=subprocess.STDOUT).returncode
+
+    todo = [name for name in texts if not finished(folder, name)]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        failed = [name for name, code in zip(todo, pool.map(run, todo)) if code != 0]
+    for name in failed:
+        print((folder / f"{name}.log").read_text()[-2000:])
+        print(f"FAIL {name}: the run failed")
+    return not failed
+
+
+def main(description, decks, show, smoke):
+    """The command line of a script. decks(): texts by name; show(folder, report); smoke(): (decks, check(folder, report))."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=("decks", "run", "show", "smoke"))
+    parser.add_argument("folder", nargs="?", type=pathlib.Path)
+    parser.add_argument("--scree", default=os.environ.get("SCREE", "scree"))
+    parser.add_argument("--backend", default="auto")
+    parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser.add_argument("--only", default="", help="cases whose names have this in them")
+    arguments = parser.parse_args()
+    if os.sep in arguments.scree:
+        arguments.scree = pathlib.Path(arguments.scree).resolve()
+    if arguments.what == "smoke":
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            texts, check = smoke()
+            report = Report(folder / "smoke.png")
+            good = run_decks(folder, texts, arguments)
+            if good:
+                check(folder, report)
+            return 0 if good and report.checked and not report.failed else 1
+    if arguments.folder is None:
+        parser.error("a folder is needed")
+    folder = arguments.folder
+    if arguments.what in ("decks", "run"):
+        texts = {name: text for name, text in decks().items() if arguments.only in name}
+        if arguments.what == "run":
+            return 0 if run_decks(folder, texts, arguments) else 1
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in texts.items():
+            (folder / f"{name}.toml").write_text(text)
+        print("\n".join(texts))
+        return 0
+    report = Report(folder / f"{pathlib.Path(sys.argv[0]).stem}.png")
+    show(folder, report)
+    print(f"{report.checked} checks, {report.failed} failed")
+    return 1 if report.failed or not report.checked else 0
