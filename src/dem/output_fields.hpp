@@ -88,11 +88,11 @@ struct StressOutput {
   struct Acting {
     template <class Law>
     SCREE_HD SurfaceLoad operator()(const Law& law, const PairState& pair) const {
-      return {true, law.load(pair), 0, {}, contact_arm(pair)};
+      return {true, law.load(pair), {}, {}, contact_arm(pair)};
     }
     template <class Law, class Pair, class History>
     SCREE_HD SurfaceLoad operator()(const Law& law, const Pair& pair, const History& old) const {
-      return {true, law.load(pair, old).load, 0, {}, contact_arm(pair)};
+      return {true, law.load(pair, old).load, {}, {}, contact_arm(pair)};
     }
     template <class Views>
     SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {

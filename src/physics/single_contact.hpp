@@ -116,7 +116,7 @@ SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 
   SinglePair pair = step;
   if (step.overlap0 < 0) pair.slip = (g.overlap / (g.overlap - step.overlap0)) * step.slip;
   const auto stiffness = [&](float d) {
-    return law.tangential.stiffness_at(single_contact_radius(step.size, d));
+    return static_cast<float>(law.tangential.stiffness_at(single_contact_radius(step.size, d)));
   };
   SingleSlider slider{stiffness(g.overlap), stiffness(step.overlap0), 0,
                       static_cast<float>(law.tangential.friction) * f.force / step.leverage};

@@ -62,10 +62,7 @@ struct LinearSlider {
   Real damping_ratio = 0;  // zeta [-]
 
   static LinearSlider of(const Friction& p) { return {p.stiffness, p.friction, p.damping_ratio}; }
-  template <class T>
-  SCREE_HD T stiffness_at(T) const {
-    return static_cast<T>(stiffness);
-  }
+  SCREE_HD Real stiffness_at(Real) const { return stiffness; }
   SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
                                const NormalContact& normal) const {
     return {stiffness, stiffness, slip_dashpot(damping_ratio, size, c, stiffness),
@@ -90,10 +87,7 @@ struct MindlinSlider {
   Real damping_ratio = 0;  // zeta [-]
 
   static MindlinSlider of(const Friction& p) { return {p.shear_modulus, p.friction, p.damping_ratio}; }
-  template <class T>
-  SCREE_HD T stiffness_at(T radius) const {
-    return static_cast<T>(8 * shear_modulus) * radius;
-  }
+  SCREE_HD Real stiffness_at(Real radius) const { return 8 * shear_modulus * radius; }
   SCREE_HD SpringSlider slider(const PairSize& size, const ContactMotion& c,
                                const NormalContact& normal) const {
     const Real stiffness = stiffness_at(normal.radius);
