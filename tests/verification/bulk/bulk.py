@@ -1,11 +1,13 @@
 """What the scripts of this folder share: decks, runs, results, bands, the command line.
 
-A script has `decks(small)`, texts by name, and `show(folder, report)`, which measures and draws. Decks in units of the grains'
-diameter and mass and of gravity (or of the pressure), in which the laws stand as they are: scree takes them for SI.
+A script has `decks(small)`, texts by name, and `show(folder, report)`, which measures and draws. Decks in units
+of the grains' diameter and mass and of gravity (or of the pressure), in which the laws stand as they are: scree
+takes them for SI.
 """
 
 import argparse
 import concurrent.futures
+import json
 import os
 import pathlib
 import subprocess
@@ -13,18 +15,21 @@ import sys
 import tempfile
 
 import h5py
-import matplotlib
 import numpy
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
 
 REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "reference/contact"
 
 
+def subplots(*shape, **options):
+    """A figure and its axes. The library is loaded for pictures alone: runs need none."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot
+    return matplotlib.pyplot.subplots(*shape, **options)
+
+
 class Report:
     """Prints what was measured beside its band and counts what is outside."""
-
     def __init__(self, picture):
         self.picture, self.checked, self.failed = pathlib.Path(picture), 0, 0
 
@@ -35,11 +40,11 @@ class Report:
         holds = bool(low <= value <= high)
         self.checked += 1
         self.failed += not holds
-        print(f"{'ok  ' if holds else 'FAIL'} {what}: {value:.4g}, band {low:.4g} to {high:.4g} ({source})", flush=True)
+        print(f"{'ok  ' if holds else 'FAIL'} {what}: {value:.4g}, band {low:.4g} to {high:.4g} ({source})",
+              flush=True)
 
     def draw(self, figure):
         figure.savefig(self.picture, dpi=110, bbox_inches="tight")
-        plt.close(figure)
         print(f"drawn: {self.picture}")
 
 
@@ -55,11 +60,16 @@ def numbers(values):
 
 
 def body(name, position, shapes, ground=True, mass=1e6):
-    """A body of spheres or discs, (centre, radius) each, in the frame of its place, of the material "base"; ground: joined to
-    the ground for good."""
-    lines = ["[[bodies]]", f'name = "{name}"', f"position = {numbers(position)}", f"mass = {mass}", f"inertia = {1e3 * mass}",
-             "shapes = ["]
-    lines += [f'  {{ radius = {radius:.9g}, offset = {numbers(centre)}, material = "base" }},' for centre, radius in shapes]
+    """A body of spheres or discs, (centre, radius) each, in the frame of its place, of the material "base";
+    ground: joined to the ground for good."""
+    lines = [
+        "[[bodies]]", f'name = "{name}"', f"position = {numbers(position)}", f"mass = {mass}",
+        f"inertia = {1e3 * mass}", "shapes = ["
+    ]
+    lines += [
+        f'  {{ radius = {radius:.9g}, offset = {numbers(centre)}, material = "base" }},'
+        for centre, radius in shapes
+    ]
     lines += ["]"]
     if ground:
         lines += ["[[joints]]", f'name = "{name}_holds"', 'type = "fixed"', f'bodies = ["ground", "{name}"]']
@@ -73,7 +83,8 @@ def pairs(law, materials=("grain", "base")):
         text += f'[[contact.pairs]]\nmaterials = ["grain", "{other}"]\n{law.strip()}\n'
     others = [name for name in materials if name != "grain"]
     for place, one in enumerate(others):
-        text += "".join(f'[[contact.pairs]]\nmaterials = ["{one}", "{other}"]\nstiffness = 0.0\n' for other in others[place:])
+        text += "".join(f'[[contact.pairs]]\nmaterials = ["{one}", "{other}"]\nstiffness = 0.0\n'
+                        for other in others[place:])
     return text
 
 
@@ -85,15 +96,22 @@ def table(name, /, **keys):
 def output(name, snapshots, history, fields, /, **keys):
     """Results of a case, small: compressed."""
     listed = "[" + ", ".join(f'"{field}"' for field in fields) + "]"
-    return table("output", directory=f'"{name}"', snapshot_interval=snapshots, history_interval=history, fields=listed,
-                 compression=9, checkpoint_wall_interval=0, **keys)
+    return table("output",
+                 directory=f'"{name}"',
+                 snapshot_interval=snapshots,
+                 history_interval=history,
+                 fields=listed,
+                 compression=9,
+                 checkpoint_wall_interval=0,
+                 **keys)
 
 
 def history(folder, name):
     """Columns of a run's history by their path."""
     columns = {}
     with h5py.File(folder / name / "history.h5") as file:
-        file.visititems(lambda path, item: columns.__setitem__(path, item[:]) if isinstance(item, h5py.Dataset) else None)
+        file.visititems(lambda path, item: columns.__setitem__(path, item[:])
+                        if isinstance(item, h5py.Dataset) else None)
     return columns
 
 
@@ -109,7 +127,9 @@ def snapshots(folder, name):
 
 
 def finished(folder, name):
-    return (folder / name / "run_record.json").exists()
+    """Whether a run went to its end: one that was stopped has a record, too."""
+    record = folder / name / "run_record.json"
+    return record.exists() and json.loads(record.read_text())["run"]["exit_code"] == 0
 
 
 def run_decks(folder, texts, arguments):
@@ -120,8 +140,11 @@ def run_decks(folder, texts, arguments):
 
     def run(name):
         with open(folder / f"{name}.log", "w", encoding="utf-8") as log:
-            return subprocess.run([str(arguments.scree), "run", f"{name}.toml", "--overwrite", "--backend",
-                                   arguments.backend], cwd=folder, stdout=log, stderr=subprocess.STDOUT).returncode
+            return subprocess.run(
+                [str(arguments.scree), "run", f"{name}.toml", "--overwrite", "--backend", arguments.backend],
+                cwd=folder,
+                stdout=log,
+                stderr=subprocess.STDOUT).returncode
 
     todo = [name for name in texts if not finished(folder, name)]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
@@ -133,8 +156,10 @@ def run_decks(folder, texts, arguments):
 
 
 def main(description, decks, show, smoke):
-    """The command line of a script. decks(): texts by name; show(folder, report); smoke(): (decks, check(folder, report))."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    """The command line of a script. decks(): texts by name; show(folder, report); smoke(): (decks,
+    check(folder, report))."""
+    parser = argparse.ArgumentParser(description=description,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("decks", "run", "show", "smoke"))
     parser.add_argument("folder", nargs="?", type=pathlib.Path)
     parser.add_argument("--scree", default=os.environ.get("SCREE", "scree"))
