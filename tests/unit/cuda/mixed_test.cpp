@@ -140,7 +140,9 @@ TEST_CASE("mixed precision: spheres that rub leave with the velocities and spins
     law = {}, law.effective_modulus = 5e6, law.damping_ratio = 0.1;
     model.contact.friction = {{0.3, 0, 2e6, 0.1}};
   } else {
-    model.contact.friction = {{0.3, Real(2) / 7 * 2e5, 0, 0.1}};
+    // Without a dashpot across the normal: it is off while a contact slides, and a step at which that begins
+    // for a single and not for a double would change the impulse by h c v, 2e-3 N s here.
+    model.contact.friction = {{0.3, Real(2) / 7 * 2e5, 0, 0}};
   }
   model.walls = {{"floor", {0, 0, 980}, {0, 0, 1}, 0}};
   for (int k = 0; k < 64; ++k) {  // they stick, slide, or do the one after the other; some against the floor
