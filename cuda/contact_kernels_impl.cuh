@@ -119,9 +119,9 @@ class ContactKernelsOf : public DeviceContactKernels {
   int history() const override { return ContactWalk<Laws, SlicedRows>::Law::kHistory; }
   const char* mixed_trouble() const override {
     using Law = LawOf<Laws>;
-    return kReaches<Law>                     ? "particles attract each other"
-           : Law::kMoves && !kHasSingle<Law> ? "contacts resist rolling"
-                                             : "";
+    return kReaches<Law>                         ? "particles attract each other"
+           : Law::kMoves && !kFrictionAlone<Law> ? "contacts resist rolling"
+                                                 : "";
   }
   void forces(Device device, const DeviceViews& in, Vec3 gravity, Index n, Vec3* force, Real* loss_power,
               Vec3* angular_acceleration) const override {
@@ -163,7 +163,7 @@ class ContactKernelsOf : public DeviceContactKernels {
              ContactBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
   void rubbing_system(Device device, const DeviceRubbingRequest& r) const override {
-    if constexpr (kRubs<LawOf<Laws>>) {
+    if constexpr (kFrictionAlone<LawOf<Laws>>) {
       if (r.end == r.first) return;
       rubbing_kernel<Laws>
           <<<blocks_for(r.end - r.first, kSystemThreads), kSystemThreads, 0, device.stream>>>(r, laws_);
@@ -174,7 +174,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
                      Real* contact_loss, Real* integrator_loss) const override {
-    if constexpr (kRubs<LawOf<Laws>>)
+    if constexpr (kFrictionAlone<LawOf<Laws>>)
       for_each(device, n,
                RubbingBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
     else
@@ -182,7 +182,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
               const FrozenLimits& to) const override {
-    if constexpr (kRubs<LawOf<Laws>>)
+    if constexpr (kFrictionAlone<LawOf<Laws>>)
       for_each(device, n, FreezeItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
     else
       refuse_rubbing();
@@ -207,7 +207,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   void mixed_advance(Device device, const MixedRequest& r) const override {
     if constexpr (!LawOf<Laws>::kMoves && !kReaches<LawOf<Laws>>)
       advance_in_mixed(device, r);
-    else if constexpr (kHasSingle<LawOf<Laws>>)
+    else if constexpr (kFrictionAlone<LawOf<Laws>>)
       launch(device, r, mixed_rubbing_kernel<Laws>);
     else
       throw std::logic_error("mixed_advance: this law is computed in double precision");

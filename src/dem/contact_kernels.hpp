@@ -70,7 +70,7 @@ class ContactKernels {
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;
-  // The same where contacts rub, for laws of which kRubs holds; and the limits at an iterate.
+  // The same where contacts rub, for laws of which kFrictionAlone holds; and the limits at an iterate.
   virtual void rubbing_system(const ContactViews<PackedRows>& in, Index n,
                               const RubbingRequest& request) const = 0;
   virtual void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,

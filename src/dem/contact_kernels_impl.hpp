@@ -113,7 +113,7 @@ class CpuContactKernels : public ContactKernels {
   template <class Use>
   void over_rubbing_step(const ContactViews<PackedRows>& in, const RubbingStart& start,
                          const Use& use) const {
-    if constexpr (kRubs<LawOf<Laws>>)
+    if constexpr (kFrictionAlone<LawOf<Laws>>)
       use(RubbingWalk<Laws, PackedRows>{in, laws_, {start}});
     else
       throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");

@@ -12,13 +12,6 @@
 
 namespace scree {
 
-// Laws that have implicit steps in which particles turn: those with friction alone beside the normal law.
-template <class Law>
-inline constexpr bool kRubs = false;
-template <class Law>
-requires Law::kMoves inline constexpr bool kRubs<Law> =
-    Law::Tangential::acts && !decltype(std::declval<Law>().rolling)::acts && !Law::kNeck;
-
 // Limits of the mean force over the step that stay what they are while it is solved, at the list's slots and
 // at the entries of the surfaces [N]; negative: there was no contact. Null: limits follow from the normal
 // forces.

@@ -130,7 +130,7 @@ struct ContactLaw {
       slider = tangential.slider(pair.size, motion, contact);
       SpringStep step = spring_step(slider, turned_across(motion, old.spring), motion.slip, motion.h);
       if constexpr (std::is_same_v<Pair, InstantPair>)
-        step.acting = shortened(step.spring + slider.dashpot * pair.slip_rate, slider.limit);
+        step.acting = acting_at(slider, step.spring, pair.slip_rate);
       rub(step, motion, out);
     }
     if constexpr (RollingLaw::acts) {
@@ -206,5 +206,13 @@ struct ContactLaw {
     out.history.moment = step.spring, out.rolling = step.losses;
   }
 };
+
+// Laws with a spring and slider beside a normal law without attraction, and nothing that resists rolling:
+// those of which there are implicit steps and a form in single precision.
+template <class Law>
+inline constexpr bool kFrictionAlone = false;
+template <class Law>
+requires Law::kMoves inline constexpr bool kFrictionAlone<Law> =
+    Law::Tangential::acts && !Law::Rolling::acts && !Law::kReaches;
 
 }  // namespace scree

@@ -33,11 +33,6 @@ struct RollingContact {
 // spring, rate), the moment at an instant. Every twisting law has the same with twisting(contact, old) and
 // twisting_at(), of the moment along the normal.
 
-// Of a spring and its dashpot at an instant; rate: of what the spring resists.
-SCREE_HD Vec3 acting_at(const SpringSlider& p, Vec3 spring, Vec3 rate) {
-  return shortened(spring + p.dashpot * rate, p.limit);
-}
-
 // No moment.
 struct FreeRolling {
   static constexpr bool acts = false;

@@ -1,7 +1,7 @@
 // A contact that rubs, over an explicit step, in single precision; what it remembers stays in double, because
-// a step changes it by less than a single's last bit. For laws of spheres with a spring and a slider
-// (contact_law.hpp), which is what each formula here is: to the rounding of singles, and to second order in
-// the step where there the turn of a contact is exact at any.
+// a step changes it by less than a single's last bit. For laws of kFrictionAlone (contact_law.hpp), which is
+// what each formula here is: to the rounding of singles, and to second order in the step where there the turn
+// of a contact is exact at any.
 #pragma once
 
 #include <cmath>
@@ -9,10 +9,6 @@
 #include "physics/contact_law.hpp"
 
 namespace scree {
-
-// Whether there is this form of a law that moves.
-template <class Law>
-inline constexpr bool kHasSingle = Law::Tangential::acts && !Law::Rolling::acts && !Law::kReaches;
 
 // How two spheres have moved over the step that ends at the instant of the pair. Differences of normals would
 // lose their digits; the way of the centres has all of them.
@@ -109,7 +105,7 @@ SCREE_HD float single_contact_radius(const PairSizeOf<float>& size, float d) {
 
 template <class Law>
 SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 old) {
-  static_assert(kHasSingle<Law>);
+  static_assert(kFrictionAlone<Law>);
   const auto normal = law.normal.template as<float>().of_pair(step.size);
   const auto& g = step.geometry;
   const ContactForceOf<float> f = contact_force(normal, g.overlap, g.rate(step.velocity));

@@ -39,6 +39,11 @@ struct SpringSlider {
   Real limit;       // [N]
 };
 
+// Of a spring and its dashpot at an instant; rate: of what the spring resists.
+SCREE_HD Vec3 acting_at(const SpringSlider& p, Vec3 spring, Vec3 rate) {
+  return shortened(spring + p.dashpot * rate, p.limit);
+}
+
 struct SpringStep {
   Vec3 spring;  // the spring's force at the end of the step: what is remembered
   Vec3 acting;  // with the dashpot's

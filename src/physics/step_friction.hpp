@@ -51,9 +51,6 @@ SCREE_HD SpringSlider slider_at(const Law& law, const RubbingStep& c, Real norma
   return law.tangential.slider(c.size, at,
                                normal_contact(law.normal.of_pair(c.size), c.size, normal_force, d, d));
 }
-SCREE_HD Vec3 acting(const SpringSlider& slider, Vec3 spring, Vec3 slip_rate) {
-  return shortened(spring + slider.dashpot * slip_rate, slider.limit);
-}
 
 // The mean of the force over the step is right, and with it work and impulse: step_spring() over the share of
 // the step that the two touch, with the limit of the mean normal force. The trapezoidal rule finds it where
@@ -69,7 +66,8 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   const Real mean_force = Real(0.5) * (c.start_force + c.step_force);
   const bool starts = c.step.overlap0 > 0, ends = c.step.overlap1 > 0;
   if (starts)
-    out.start = acting(slider_at(law, c, c.start_force, c.step.overlap0, c.leverage0), spring, c.slip_rate0);
+    out.start =
+        acting_at(slider_at(law, c, c.start_force, c.step.overlap0, c.leverage0), spring, c.slip_rate0);
   if (!(share > 0)) return out;
   const NormalContact contact = normal_contact(law.normal.of_pair(c.size), c.size, mean_force / share,
                                                c.step.overlap1, c.step.overlap0);
@@ -91,7 +89,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   out.stored0 = spring_energy(spring, slider.stiffness0);
   const Real left = spring_energy(over.spring, slider.stiffness);
   if (ends)
-    out.spring = over.spring, out.stored1 = left, out.end = acting(end, over.spring, c.slip_rate1);
+    out.spring = over.spring, out.stored1 = left, out.end = acting_at(end, over.spring, c.slip_rate1);
   else
     out.losses.sliding += left;  // of limits that were frozen
   return out;
