@@ -212,6 +212,13 @@ struct SurfaceStart {
   const PlacedSurface* placed;
 };
 
+// The same where contacts rub, and where what is found goes.
+struct SurfaceRubRequest {
+  RubbingStart particles;
+  const PlacedSurface* placed;
+  SurfaceRub* rubs;  // per entry
+};
+
 class DeviceContactKernels {
  public:
   virtual ~DeviceContactKernels() = default;
@@ -237,6 +244,8 @@ class DeviceContactKernels {
   virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                      Real* contact_loss, Real* integrator_loss) const = 0;
   // The same where contacts rub: see ContactKernels.
+  virtual void surface_rubs(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
+                            const SurfaceRubRequest& request, StepSums* sums) const = 0;
   virtual void rubbing_system(Device device, const DeviceRubbingRequest& request) const = 0;
   virtual void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
                              Real* contact_loss, Real* integrator_loss) const = 0;

@@ -162,6 +162,14 @@ class ContactKernelsOf : public DeviceContactKernels {
     for_each(device, n,
              ContactBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
+  void surface_rubs(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
+                    const SurfaceRubRequest& r, StepSums* sums) const override {
+    if constexpr (kFrictionAlone<LawOf<Laws>>)
+      launch_surfaces(device, chunks, SurfaceRubItem<Laws>{in, r.particles, r.placed, laws_, r.rubs}, r.rubs,
+                      sums);
+    else
+      refuse_rubbing();
+  }
   void rubbing_system(Device device, const DeviceRubbingRequest& r) const override {
     if constexpr (kFrictionAlone<LawOf<Laws>>) {
       if (r.end == r.first) return;

@@ -11,6 +11,11 @@ const Vec3* CudaBodies::upload_steps() {
   return step_.data();
 }
 
+SurfaceMoves CudaBodies::upload_moves() {
+  step_turn_.upload(side_.step_turn(), items_.stream);
+  return {upload_steps(), step_turn_.data()};
+}
+
 void CudaBodies::find_loads() {
   if (!have_surfaces()) return;
   const Device on = items_.device();
@@ -25,6 +30,13 @@ void CudaBodies::find_steps(const StepStart& start) {
   if (!have_surfaces()) return;
   items_.surfaces.find_steps(items_.device(), *items_.kernels, items_.now.position.data(),
                              items_.now.velocity.data(), start);
+}
+
+void CudaBodies::find_rubs(const RubbingStart& start) {
+  if (!have_surfaces()) return;
+  items_.surfaces.find_rubs(items_.device(), *items_.kernels, start,
+                            {items_.now.position.data(), items_.now.velocity.data(),
+                             items_.now.angular_velocity.data(), items_.history.views()});
 }
 
 void CudaBodies::take_steps(Real h) {

@@ -21,13 +21,15 @@ class CudaBodies {
 
   // Brings the surfaces, as they are placed on the host, to the device.
   void put();
-  // Displacements by the last placement, on the device.
+  // By the last placement, on the device: displacements, and of laws that move the turns, too.
   const Vec3* upload_steps();
+  SurfaceMoves upload_moves();
 
   // Contacts with the state now: what forces and reports read, and the side's sums. Waits.
   void find_loads();
   // Over an implicit step: queued, what the particles' system reads; then the side's sums; waits.
   void find_steps(const StepStart& start);
+  void find_rubs(const RubbingStart& start);  // where contacts rub
   void take_steps(Real h);
 
   // Beside an explicit step, behind `ready`: places the surfaces, and queues the contacts with the particles
@@ -45,7 +47,7 @@ class CudaBodies {
   SurfaceSide side_;
   Stream stream_{Priority::urgent};
   Event loads_found_;
-  DeviceArray<Vec3> step_;
+  DeviceArray<Vec3> step_, step_turn_;
 };
 
 }  // namespace scree

@@ -1,15 +1,12 @@
 // The schedule of src/dem/cpu_rubbing.cpp.
+#include <algorithm>
 #include <cmath>
 
+#include "cuda_bodies.cuh"
 #include "cuda_rubbing.cuh"
 
 namespace scree {
 namespace {
-
-struct TwistSizeItem {
-  const Twist* twist;
-  SCREE_HD Real operator()(Index i) const { return largest_part(twist[i]); }
-};
 
 struct IsLargest {
   const Twist* residual;
@@ -116,7 +113,8 @@ StepTorques CudaRubbingStep::step_torques() {
 RubbingStart CudaRubbingStep::rubbing_start() {
   FrozenLimits frozen;
   if (frozen_) frozen = {rubbing_.neighbor_limits.data(), rubbing_.surface_limits.data()};
-  return {step_start(), items_.other.angular_velocity.data(), rubbing_.mean_spin.data(), frozen};
+  return {step_start(), items_.other.angular_velocity.data(), rubbing_.mean_spin.data(), frozen,
+          items_.surfaces.rubs()};
 }
 
 RubbingMatrix CudaRubbingStep::matrix() {
@@ -194,7 +192,7 @@ void CudaRubbingStep::queue_system() {
   require_cuda(cudaGetLastError(), "rubbing residual");
 }
 
-// Over the particles of all ranks; waits. Throws as report_not_finite where a residual is not.
+// Over the particles of all ranks; waits.
 RubbingNorms CudaRubbingStep::largest_norms() {
   copy_async(rubbing_.h_norms.data(), rubbing_.norms.data(), 1, items_.stream);
   wait_for(items_.stream);
@@ -205,16 +203,19 @@ RubbingNorms CudaRubbingStep::largest_norms() {
   items_.ranks.max(maxima);
   largest.residual = maxima[0], largest.correction_bound = maxima[1], largest.force = maxima[2];
   largest.stiffening = maxima[3], largest.sharpness = maxima[4];
-  if (!std::isfinite(largest.residual)) {
-    for_each(items_.device(), items_.owned,
-             SumOfPartsItem{rubbing_.residual.data(), arrays_.residual.data()});
-    items_.report_not_finite(arrays_.residual.data());
-  }
+  if (!std::isfinite(largest.residual)) report_not_finite();
   return largest;
 }
 
+void CudaRubbingStep::report_not_finite() {
+  for_each(items_.device(), items_.owned, SumOfPartsItem{rubbing_.residual.data(), arrays_.residual.data()});
+  items_.report_not_finite(arrays_.residual.data());
+}
+
 ParticleNorms CudaRubbingStep::contact_force() {
+  bodies_.find_rubs(rubbing_start());
   queue_system();
+  bodies_.take_steps(h_);
   const RubbingNorms largest = largest_norms();
   force_scale_ = largest.force, largest_stiffening_ = largest.stiffening, sharpness_ = largest.sharpness;
   scaled_residual_ = scaled_residual(largest);
@@ -245,7 +246,24 @@ void CudaRubbingStep::shorten_correction() {
   turn_particles();
 }
 
-int CudaRubbingStep::solve(Real tolerance, bool with_grip) {
+// With frozen limits none grows.
+bool CudaRubbingStep::is_consistent() const { return !frozen_ && ::scree::is_consistent(sharpness_); }
+
+// Prepares it for the solve and returns its largest part [N]. The bodies have already taken their correction:
+// see CudaImplicitStep.
+Real CudaRubbingStep::right_hand_side() {
+  if (!bodies_.have_surfaces()) return scaled_residual_ * force_scale_;
+  for_each(items_.device(), items_.owned,
+           RubbingShiftItem{matrix(), items_.surfaces.list().offsets, newton_weights(), is_consistent(),
+                            bodies_.upload_moves(), rubbing_.residual.data()});
+  max_over(items_.device(), items_.owned, TwistSizeItem{rubbing_.residual.data()},
+           items_.results.at(&Results::largest));
+  const Real largest = items_.ranks.max(items_.results.fetch(&Results::largest));
+  if (!std::isfinite(largest)) report_not_finite();
+  return largest;
+}
+
+int CudaRubbingStep::solve(Real tolerance) {
   DeviceHalo& halo = items_.lane.halo;
   Twist *residual = rubbing_.residual.data(), *correction = rubbing_.correction.data();
   const auto direction = [&](const ChebyshevWeights& weights) {
@@ -265,7 +283,7 @@ int CudaRubbingStep::solve(Real tolerance, bool with_grip) {
   };
   const auto item = [&](int product, const ChebyshevWeights& weights) {
     return RubbingSolverItem{{matrix(), items_.list.rows(), items_.surfaces.list().offsets,
-                              rubbing_.mass.data(), with_grip, move(product), turn(product), residual},
+                              rubbing_.mass.data(), is_consistent(), move(product), turn(product), residual},
                              direction(weights),
                              move(product + 1),
                              turn(product + 1),
@@ -277,13 +295,13 @@ int CudaRubbingStep::solve(Real tolerance, bool with_grip) {
 ParticleCorrection CudaRubbingStep::particle_correct() {
   ParticleCorrection out;
   search_ = {};
-  const Real largest = scaled_residual_ * force_scale_;
+  const Real largest = right_hand_side();
   if (largest > 0) {
     const Real tolerance =
         solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, largest);
-    out.iterations = solve(tolerance, !frozen_ && is_consistent(sharpness_));
+    out.iterations = solve(tolerance);
     max_over(items_.device(), items_.owned, correct_item(1), items_.results.at(&Results::largest));
-    search_.open(scaled_residual_);
+    search_.open(std::max(scaled_residual_, largest / force_scale_));
   }
   turn_particles();
   if (largest > 0) out.correction = items_.ranks.max(items_.results.fetch(&Results::largest));
@@ -317,6 +335,7 @@ Real CudaRubbingStep::error() {
 
 void CudaRubbingStep::accept() {
   ParticleArrays& now = items_.now;
+  bodies_.find_rubs(rubbing_start());
   items_.kernels->rubbing_books(items_.device(), items_.views(), items_.owned, rubbing_start(),
                                 now.contact_loss.data(), now.integrator_loss.data());
   items_.history.accepted();
@@ -325,6 +344,8 @@ void CudaRubbingStep::accept() {
   for_each(items_.device(), items_.owned,
            AcceptTurnItem{step_views(), turning_views(), step_torques(), now.orientation.data(),
                           now.integrator_loss.data()});
+  bodies_.take_steps(h_);
+  bodies_.side().book_step();
 }
 
 }  // namespace scree

@@ -29,7 +29,10 @@ class CudaRubbingStep : public CudaImplicitStep {
   void refresh_ghosts(Device on);
   void queue_system();
   RubbingNorms largest_norms();
-  int solve(Real tolerance, bool with_grip);
+  bool is_consistent() const;
+  Real right_hand_side();
+  void report_not_finite();  // throws, as that of the items
+  int solve(Real tolerance);
 
   CudaRubbingArrays& rubbing_;
   bool frozen_ = false;

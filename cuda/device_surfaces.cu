@@ -236,6 +236,14 @@ void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kerne
                         {start, start_places_.data()}, steps_.data(), h_step_sums_.data());
 }
 
+void DeviceSurfaces::find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
+                               const SurfaceLook& look) {
+  rubs_.resize(static_cast<std::size_t>(entries_));
+  h_step_sums_.resize(h_chunks_.size());
+  kernels.surface_rubs(device, entry_views(look), chunk_list(), {start, start_places_.data(), rubs_.data()},
+                       h_step_sums_.data());
+}
+
 std::vector<InstantSums> DeviceSurfaces::load_sums() const { return touched(h_load_sums_); }
 
 std::vector<StepSums> DeviceSurfaces::step_sums() const { return touched(h_step_sums_); }

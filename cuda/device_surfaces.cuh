@@ -56,6 +56,10 @@ class DeviceSurfaces {
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& look);
   void find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
                   const Vec4* velocity, const StepStart& start);
+  // The same where contacts rub; `look`: at the end of the step.
+  void find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
+                 const SurfaceLook& look);
+  const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
   // The sums of the last contacts found, once the stream is done: a surface may come in several parts.
   std::vector<InstantSums> load_sums() const;
   std::vector<StepSums> step_sums() const;
@@ -90,6 +94,7 @@ class DeviceSurfaces {
   DeviceArray<PlacedSurface> places_, start_places_;
   DeviceArray<SurfaceLoad> loads_[2];
   DeviceArray<SurfaceStep> steps_;
+  DeviceArray<SurfaceRub> rubs_;  // empty unless contacts rub in implicit steps
   // Written by the device, of chunks with contacts but for their number.
   PinnedArray<InstantSums> h_load_sums_;
   PinnedArray<StepSums> h_step_sums_;

@@ -8,7 +8,7 @@
 #include "dem/contact_items.hpp"
 #include "dem/leaver_items.hpp"
 #include "dem/output_fields.hpp"
-#include "dem/rubbing_items.hpp"
+#include "dem/rubbing_surfaces.hpp"
 #include "dem/step_items.hpp"
 #include "dem/surface_items.hpp"
 #include "dem/system_items.hpp"
@@ -70,7 +70,10 @@ class ContactKernels {
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;
-  // The same where contacts rub, for laws of which kFrictionAlone holds; and the limits at an iterate.
+  // The same where contacts rub, for laws of which kFrictionAlone holds; and the limits at an iterate. rubs:
+  // per entry, of which n are with surfaces on bodies.
+  virtual void surface_rubs(const SurfaceViews& in, Index n, const RubbingStart& start,
+                            const PlacedSurface* start_placed, SurfaceRub* rubs) const = 0;
   virtual void rubbing_system(const ContactViews<PackedRows>& in, Index n,
                               const RubbingRequest& request) const = 0;
   virtual void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,

@@ -80,6 +80,13 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n,
              ContactBooksItem<Laws, PackedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
   }
+  void surface_rubs(const SurfaceViews& in, Index n, const RubbingStart& start,
+                    const PlacedSurface* start_placed, SurfaceRub* rubs) const override {
+    if constexpr (kFrictionAlone<LawOf<Laws>>)
+      for_each(Serial{}, n, SurfaceRubItem<Laws>{in, start, start_placed, laws_, rubs});
+    else
+      refuse_rubbing();
+  }
   void rubbing_system(const ContactViews<PackedRows>& in, Index n, const RubbingRequest& r) const override {
     over_rubbing_step(in, r.start, [&](const auto& walk) {
       for_each(Serial{}, n,
@@ -116,7 +123,10 @@ class CpuContactKernels : public ContactKernels {
     if constexpr (kFrictionAlone<LawOf<Laws>>)
       use(RubbingWalk<Laws, PackedRows>{in, laws_, {start}});
     else
-      throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
+      refuse_rubbing();
+  }
+  [[noreturn]] static void refuse_rubbing() {
+    throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
   }
 
   Laws laws_;

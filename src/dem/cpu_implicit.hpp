@@ -50,13 +50,13 @@ class CpuImplicitStep : public ImplicitStep {
   StepForces step_forces();
   StepStart step_start() const;
   NewtonWeights newton_weights() const;
-  void find_steps() { items_.surfaces.find_steps(items_.store, items_.list.surfaces, step_start()); }
 
   CpuItems& items_;
   CpuImplicitArrays& arrays_;
   const Real h_;
 
  private:
+  void find_steps() { items_.surfaces.find_steps(items_.store, items_.list.surfaces, step_start()); }
   ContactMatrix matrix();
   CorrectItem correct_item(Real share);
   StepNorms largest_norms();

@@ -37,7 +37,12 @@ StepTorques CpuRubbingStep::step_torques() {
 RubbingStart CpuRubbingStep::rubbing_start() {
   FrozenLimits frozen;
   if (frozen_) frozen = {rubbing_.neighbor_limits.data(), rubbing_.surface_limits.data()};
-  return {step_start(), rubbing_.start_spin.data(), rubbing_.mean_spin.data(), frozen};
+  return {step_start(), rubbing_.start_spin.data(), rubbing_.mean_spin.data(), frozen,
+          items_.surfaces.rubs()};
+}
+
+void CpuRubbingStep::find_rubs() {
+  items_.surfaces.find_rubs(items_.store, items_.list.surfaces, rubbing_start(), items_.history.views());
 }
 
 RubbingMatrix CpuRubbingStep::matrix() {
@@ -60,7 +65,7 @@ void CpuRubbingStep::undo() {
   CpuImplicitStep::undo();
 }
 
-// Over the particles of all ranks. Throws as report_not_finite where a residual is not.
+// Over the particles of all ranks.
 RubbingNorms CpuRubbingStep::largest_norms() {
   RubbingNorms largest{};
   bool finite = true;
@@ -82,18 +87,21 @@ RubbingNorms CpuRubbingStep::largest_norms() {
   Real maxima[6] = {largest.residual,   largest.correction_bound, largest.force,
                     largest.stiffening, largest.sharpness,        finite ? Real(0) : Real(1)};
   items_.ranks.max(maxima);
-  if (maxima[5] != 0) {
-    for (Index i = 0; i < items_.layout.owned; ++i)
-      arrays_.residual[i] = rubbing_.residual[i].move + rubbing_.residual[i].turn;
-    items_.report_not_finite(arrays_.residual);
-  }
+  if (maxima[5] != 0) report_not_finite();
   largest.residual = maxima[0], largest.correction_bound = maxima[1], largest.force = maxima[2];
   largest.stiffening = maxima[3], largest.sharpness = maxima[4];
   return largest;
 }
 
+void CpuRubbingStep::report_not_finite() {
+  for (Index i = 0; i < items_.layout.owned; ++i)
+    arrays_.residual[i] = rubbing_.residual[i].move + rubbing_.residual[i].turn;
+  items_.report_not_finite(arrays_.residual);
+}
+
 ParticleNorms CpuRubbingStep::contact_force() {
   const Index n = items_.layout.owned;
+  find_rubs();
   items_.kernels->rubbing_system(items_.views(), n,
                                  {items_.model.gravity, newton_weights(), rubbing_start(), step_forces(),
                                   step_torques(), matrix(), rubbing_.sharpness.data()});
@@ -141,7 +149,27 @@ void CpuRubbingStep::shorten_correction() {
   turn_particles();
 }
 
-int CpuRubbingStep::solve(Real tolerance, bool with_grip) {
+// With frozen limits none grows.
+bool CpuRubbingStep::is_consistent() const { return !frozen_ && ::scree::is_consistent(sharpness_); }
+
+// Prepares it for the solve and returns its largest part [N]. The bodies have already taken their correction:
+// see CpuImplicitStep.
+Real CpuRubbingStep::right_hand_side() {
+  if (items_.side.size() == 0) return scaled_residual_ * force_scale_;
+  for_each(Serial{}, items_.layout.owned,
+           RubbingShiftItem{matrix(),
+                            items_.list.surfaces.offsets.data(),
+                            newton_weights(),
+                            is_consistent(),
+                            {items_.side.step().data(), items_.side.step_turn().data()},
+                            rubbing_.residual.data()});
+  const Real largest =
+      items_.ranks.max(max_over(Serial{}, items_.layout.owned, TwistSizeItem{rubbing_.residual.data()}));
+  if (!std::isfinite(largest)) report_not_finite();
+  return largest;
+}
+
+int CpuRubbingStep::solve(Real tolerance) {
   const Index n = items_.layout.owned;
   std::vector<Vec4>&move = rubbing_.move, &turn = rubbing_.turn;
   std::fill_n(move.begin(), n, Vec4{}), std::fill_n(turn.begin(), n, Vec4{});
@@ -150,7 +178,7 @@ int CpuRubbingStep::solve(Real tolerance, bool with_grip) {
                                                  {items_.list.offsets.data(), items_.list.neighbors.data()},
                                                  items_.list.surfaces.offsets.data(),
                                                  rubbing_.mass.data(),
-                                                 with_grip,
+                                                 is_consistent(),
                                                  move.data(),
                                                  turn.data(),
                                                  rubbing_.residual.data()};
@@ -173,13 +201,13 @@ int CpuRubbingStep::solve(Real tolerance, bool with_grip) {
 ParticleCorrection CpuRubbingStep::particle_correct() {
   ParticleCorrection out;
   search_ = {};
-  const Real largest = scaled_residual_ * force_scale_;
+  const Real largest = right_hand_side();
   if (largest > 0) {
     const Real tolerance =
         solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, largest);
-    out.iterations = solve(tolerance, !frozen_ && is_consistent(sharpness_));
+    out.iterations = solve(tolerance);
     out.correction = items_.ranks.max(max_over(Serial{}, items_.layout.owned, correct_item(1)));
-    search_.open(scaled_residual_);
+    search_.open(std::max(scaled_residual_, largest / force_scale_));
   }
   turn_particles();
   return out;
@@ -201,9 +229,11 @@ Real CpuRubbingStep::error() {
 void CpuRubbingStep::accept() {
   ParticleStore& store = items_.store;
   const Index n = items_.layout.owned;
+  find_rubs();
   items_.kernels->rubbing_books(items_.views(), n, rubbing_start(), store.contact_loss.data(),
                                 store.integrator_loss.data());
   items_.history.accepted();
+  items_.side.book_step();
   for_each(Serial{}, n,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
   for_each(Serial{}, n,

@@ -49,10 +49,14 @@ class CpuRubbingStep : public CpuImplicitStep {
   StepTorques step_torques();
   RubbingStart rubbing_start();
   RubbingMatrix matrix();
+  void find_rubs();
   RubbingCorrectItem correct_item(Real share);
   void turn_particles();
   RubbingNorms largest_norms();
-  int solve(Real tolerance, bool with_grip);
+  bool is_consistent() const;
+  Real right_hand_side();
+  void report_not_finite();  // throws, as that of the items
+  int solve(Real tolerance);
 
   CpuRubbingArrays& rubbing_;
   bool frozen_ = false;

@@ -47,6 +47,17 @@ void CpuSurfaces::find_steps(const ParticleStore& store, const SurfaceRows& rows
   side_.take_steps(sums_of<StepSums>(steps_, rows, side_.surfaces().ground()), start.h);
 }
 
+void CpuSurfaces::find_rubs(const ParticleStore& store, const SurfaceRows& rows, const RubbingStart& start,
+                            const HistoryViews& history) {
+  if (side_.size() == 0) return;
+  rubs_.resize(rows.surfaces.size());
+  kernels_.surface_rubs(
+      entry_views(store, rows,
+                  {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history}),
+      static_cast<Index>(rows.by_surface.size()), start, side_.start().data(), rubs_.data());
+  side_.take_steps(sums_of<StepSums>(rubs_, rows, side_.surfaces().ground()), start.step.h);
+}
+
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,
                                             const std::vector<Vec4>& velocity, const PackedRows& neighbors,
                                             const SurfaceRows& rows) const {

@@ -20,6 +20,10 @@ class CpuSurfaces {
   void find_loads(const ParticleStore& store, const SurfaceRows& rows, const SurfaceLook& look);
   // The same over an implicit step, with the particles of the store.
   void find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start);
+  // And where contacts rub; history: with what they will remember if the step is accepted.
+  void find_rubs(const ParticleStore& store, const SurfaceRows& rows, const RubbingStart& start,
+                 const HistoryViews& history);
+  const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
 
   // What items see of particles at these places, with the contacts found last.
   ContactViews<PackedRows> views(const ParticleStore& store, const std::vector<Vec4>& position,
@@ -36,6 +40,7 @@ class CpuSurfaces {
   Vec3 period_;
   std::vector<SurfaceLoad> loads_;  // per entry
   std::vector<SurfaceStep> steps_;
+  std::vector<SurfaceRub> rubs_;
 };
 
 }  // namespace scree

@@ -19,12 +19,15 @@ struct FrozenLimits {
   Real *neighbors = nullptr, *surfaces = nullptr;
 };
 
+struct SurfaceRub;
+
 // Where a step started, and how the particles turn within it; all items.
 struct RubbingStart {
   StepStart step;
   const Vec4* spin;       // at the start
   const Vec4* mean_spin;  // over the step
   FrozenLimits frozen;
+  const SurfaceRub* on_bodies;  // per entry of the surfaces: what those on bodies do, once it was found
 };
 
 // A contact over an implicit step with all that a law with friction sees of it.
@@ -116,51 +119,57 @@ struct RubbingContact {
   ContactHistory history;
 };
 
+// How fast both partners turn at one end of a step, each spin times its arm; even [m/s]. Asked where a law
+// has a dashpot: turning(start), turning(end).
+template <class Law, class Turning>
+SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, const ContactHistory& old,
+                                        bool resolve_events, const Turning& turning) {
+  RubbingContact out{};
+  out.slot = c.slot;
+  out.acts = OverRubbingStep::closed(c), out.lasts = c.step.overlap1 > 0;
+  if (!out.acts) return out;
+  const auto normal = law.normal.of_pair(c.size);
+  out.normal = StepContactOf{resolve_events}.of(normal, c);
+  out.normal0 = c.normal0, out.leverage0 = c.leverage0, out.leverage = c.motion.leverage;
+  const Real start_force =
+      c.step.overlap0 > 0 ? contact_force(normal, c.step.overlap0, c.step.rate0).force : 0;
+  RubbingStep step{c.step,
+                   c.motion,
+                   c.leverage0,
+                   {},
+                   {},
+                   c.size,
+                   start_force,
+                   out.normal.end_force,
+                   out.normal.step.force,
+                   c.frozen_limit};
+  if (law.tangential.damping_ratio > 0) {
+    const auto rate = [](Real leverage, Vec3 velocity, Vec3 both, Vec3 across_normal) {
+      return across(leverage * velocity - cross(both, across_normal), across_normal);
+    };
+    step.slip_rate0 = rate(c.leverage0, c.velocity0, turning(false), c.normal0);
+    step.slip_rate1 = rate(c.motion.leverage, c.velocity1, turning(true), c.normal1);
+  }
+  out.rub = step_rub(law, step, old.spring);
+  out.history.spring = out.rub.spring;
+  return out;
+}
+
 struct RubbingContactOf {
   RubbingStart start;
   const Vec4* spin;  // at the end
 
   template <class Law>
   SCREE_HD RubbingContact operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
-    RubbingContact out{};
-    out.slot = c.slot;
-    out.acts = OverRubbingStep::closed(c), out.lasts = c.step.overlap1 > 0;
-    if (!out.acts) return out;
-    const auto normal = law.normal.of_pair(c.size);
-    out.normal = StepContactOf{start.step.resolve_events}.of(normal, c);
-    out.normal0 = c.normal0, out.leverage0 = c.leverage0, out.leverage = c.motion.leverage;
-    const Real start_force =
-        c.step.overlap0 > 0 ? contact_force(normal, c.step.overlap0, c.step.rate0).force : 0;
-    RubbingStep step{c.step,
-                     c.motion,
-                     c.leverage0,
-                     {},
-                     {},
-                     c.size,
-                     start_force,
-                     out.normal.end_force,
-                     out.normal.step.force,
-                     c.frozen_limit};
-    if (law.tangential.damping_ratio > 0) {
-      step.slip_rate0 = slip_rate(c, c.leverage0, c.velocity0, start.spin, c.normal0);
-      step.slip_rate1 = slip_rate(c, c.motion.leverage, c.velocity1, spin, c.normal1);
-    }
-    out.rub = step_rub(law, step, old.spring);
-    out.history.spring = out.rub.spring;
-    return out;
+    return rubbing_contact(law, c, old, start.step.resolve_events, [&](bool at_end) {
+      const Vec4* spins = at_end ? spin : start.spin;
+      Vec3 turning = c.motion.arm_i * xyz(spins[c.i]);
+      if (c.j != RubbingPath::kWall) turning = turning + c.motion.arm_j * xyz(spins[c.j]);
+      return turning;
+    });
   }
   template <class Views>
-  SCREE_HD const RubbingContact* stored(const Views&, Index) const {
-    return nullptr;
-  }
-
- private:
-  SCREE_HD static Vec3 slip_rate(const RubbingPath& c, Real leverage, Vec3 velocity, const Vec4* spin,
-                                 Vec3 normal) {
-    Vec3 turning = c.motion.arm_i * xyz(spin[c.i]);
-    if (c.j != RubbingPath::kWall) turning = turning + c.motion.arm_j * xyz(spin[c.j]);
-    return across(leverage * velocity - cross(turning, normal), normal);
-  }
+  SCREE_HD const RubbingContact* stored(const Views&, Index entry) const;
 };
 
 // What it adds to the energy ledger, and the history.
@@ -168,27 +177,50 @@ struct RubbingBooks : ContactBooks {
   bool acts, lasts;
   ContactHistory history;
 };
+template <class Law>
+SCREE_HD RubbingBooks rubbing_books(const Law& law, const RubbingPath& c, const RubbingContact& at,
+                                    bool resolve_events) {
+  if (!at.acts) return {{}, false, false, {}};
+  RubbingBooks out{StepBooksOf{{resolve_events}}(law, c), true, at.lasts, at.history};
+  const StepRub& rub = at.rub;
+  const Vec3 force = at.leverage0 * rub.start + at.leverage * rub.step;
+  const Vec3 moment = cross(c.normal0, rub.start) + cross(c.normal1, rub.step);
+  const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel));
+  const Real lost = rub.losses.sum();
+  out.dissipated += lost, out.integrator += (rub.stored0 - rub.stored1) - work - lost;
+  return out;
+}
+
 struct RubbingBooksOf {
   RubbingContactOf contact;
 
   template <class Law>
   SCREE_HD RubbingBooks operator()(const Law& law, const RubbingPath& c, const ContactHistory& old) const {
-    const RubbingContact at = contact(law, c, old);
-    if (!at.acts) return {{}, false, false, {}};
-    RubbingBooks out{StepBooksOf{{contact.start.step.resolve_events}}(law, c), true, at.lasts, at.history};
-    const StepRub& rub = at.rub;
-    const Vec3 force = at.leverage0 * rub.start + at.leverage * rub.step;
-    const Vec3 moment = cross(c.normal0, rub.start) + cross(c.normal1, rub.step);
-    const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel));
-    const Real lost = rub.losses.sum();
-    out.dissipated += lost, out.integrator += (rub.stored0 - rub.stored1) - work - lost;
-    return out;
+    return rubbing_books(law, c, contact(law, c, old), contact.start.step.resolve_events);
   }
   template <class Views>
-  SCREE_HD const RubbingBooks* stored(const Views&, Index) const {
-    return nullptr;
-  }
+  SCREE_HD const RubbingBooks* stored(const Views&, Index entry) const;
 };
+
+// One contact of a particle with a surface on a body over the step; evaluated once, for both.
+struct SurfaceRub {
+  bool touches;  // else nothing below has a meaning
+  RubbingContact contact;
+  RubbingBooks books;
+  Vec3 arm;     // from the body's centre to the surface's, at the end [m]
+  Real radius;  // of the surface [m]
+};
+
+template <class Views>
+SCREE_HD const RubbingContact* RubbingContactOf::stored(const Views&, Index entry) const {
+  const SurfaceRub& at = start.on_bodies[entry];
+  return at.touches ? &at.contact : nullptr;
+}
+template <class Views>
+SCREE_HD const RubbingBooks* RubbingBooksOf::stored(const Views&, Index entry) const {
+  const SurfaceRub& at = contact.start.on_bodies[entry];
+  return at.touches ? &at.books : nullptr;
+}
 
 template <class Laws, class Rows>
 using RubbingWalk = ContactWalk<Laws, Rows, OverRubbingStep>;
@@ -196,7 +228,7 @@ using RubbingWalk = ContactWalk<Laws, Rows, OverRubbingStep>;
 // One contact in the Newton matrix. In single precision, as ContactEntry.
 struct alignas(16) RubbingEntry {
   float nx, ny, nz;  // normal
-  Index neighbor;    // j; RubbingPath::kWall where the partner stays
+  Index neighbor;    // j; of a surface on a body its number among these; RubbingPath::kWall of the ground
   float tx, ty, tz;  // direction of the slide, or zero
   float along;       // of the overlap [kg]
   float across;      // of the slip across the direction [kg]
@@ -282,9 +314,10 @@ struct RubbingSystemItem {
       matrix.entries[slot] = entry_of(c, j);
       ++entries, slot += Rows::stride();
     });
-    walk.surfaces(self, of, [&](const RubbingContact& c, Index) {
+    walk.surfaces(self, of, [&](const RubbingContact& c, Index surface) {
       add(c);
-      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = entry_of(c, RubbingPath::kWall);
+      const Index on_body = surface < walk.in.ground ? RubbingPath::kWall : surface - walk.in.ground;
+      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = entry_of(c, on_body);
     });
     matrix.count[i] = entries, matrix.surface_count[i] = surfaces;
     out.step_force[i] = step_force, out.end_force[i] = end_force, out.magnitude[i] = magnitude;

@@ -16,7 +16,8 @@ SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const R
       start_before_(motion_),
       image_(static_cast<std::size_t>(size())),
       placed_(static_cast<std::size_t>(size())),
-      step_(static_cast<std::size_t>(size())) {}
+      step_(static_cast<std::size_t>(size())),
+      step_turn_(step_) {}
 
 void SurfaceSide::bring_into_box() {
   for (Index s = 0; s < size(); ++s) {
@@ -43,6 +44,7 @@ Real SurfaceSide::place() {
     const Vec3 point = moved_by_periods(with_body, {-image.x, -image.y, -image.z}, subdomain_.period());
     step_[s] = point - placed_[s].point;
     squared = std::max(squared, dot(step_[s], step_[s]));
+    const Vec3 turned = placed_[s].turn;
     placed_[s] = {surface.kind,
                   surface.material,
                   surface.radius,
@@ -56,6 +58,7 @@ Real SurfaceSide::place() {
     if (!model_.rotates()) continue;
     placed_[s].travel = with_body - point_with(step_start_, s);
     placed_[s].turn = {0, 0, body.angle - step_start_[surface.carrier].angle};
+    step_turn_[s] = surface.radius * (placed_[s].turn - turned);
   }
   return std::sqrt(squared);
 }

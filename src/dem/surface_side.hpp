@@ -45,15 +45,18 @@ class SurfaceSide {
   Real place();
   // One entry per surface on a body.
   const std::vector<PlacedSurface>& placed() const { return placed_; }
-  const std::vector<Vec3>& step() const { return step_; }  // displacement by the last place() [m]
+  // By the last place(): displacements, and of laws that move the turns times the radii [m].
+  const std::vector<Vec3>& step() const { return step_; }
+  const std::vector<Vec3>& step_turn() const { return step_turn_; }
 
-  // Explicit steps of laws that move see how far the surfaces have come since the last one was closed, where
-  // they were then. It may be opened again, for the surfaces where they are now: it then began where it did.
+  // Steps of laws that move see how far the surfaces have come since the last one was closed, where they were
+  // then. An explicit one may be opened again, for the surfaces where they are now: it then began where it
+  // did.
   void close_step();
   void reopen_step();
 
   // Start of an implicit step, to look back at.
-  void keep_start() { start_ = placed_; }
+  void keep_start() { start_ = placed_, close_step(); }
   const std::vector<PlacedSurface>& start() const { return start_; }
   Real step_displacement() const { return largest_displacement(start_); }   // [m]
   Real list_displacement() const { return largest_displacement(listed_); }  // since the list was built [m]
@@ -100,7 +103,7 @@ class SurfaceSide {
   std::vector<BodyMotion> motion_, step_start_, start_before_;
   std::vector<ImageCount> image_;  // of each surface when it was brought into the box
   std::vector<PlacedSurface> placed_, start_, listed_;
-  std::vector<Vec3> step_;
+  std::vector<Vec3> step_, step_turn_;
   std::vector<InstantSums> loads_;
   std::vector<StepSums> steps_;
   ShapeLosses losses_;

@@ -56,16 +56,26 @@ SCREE_HD Real sum_term(const SurfaceLoad& c, int k) {
   return component(force, cross(c.arm, force) + c.load.torque_j, k);
 }
 
+// Place of the k-th of kStepTerms in the blocks, from 2 kWrenchTerms on.
+struct BlockPlace {
+  bool is_stiffness;
+  int row, column;
+};
+SCREE_HD BlockPlace block_place(int k) {
+  const bool is_stiffness = k < 2 * kWrenchTerms + kBlockTerms;
+  int column = k - 2 * kWrenchTerms - (is_stiffness ? 0 : kBlockTerms), row = 0;
+  for (; column >= kWrenchTerms - row; ++row) column -= kWrenchTerms - row;
+  return {is_stiffness, row, row + column};
+}
+
 // The wrench is -F w with w = (n, arm x n), along which the overlap grows with the body's motion.
 SCREE_HD Real sum_term(const SurfaceStep& c, int k) {
   const Vec3 n = c.contact.normal, moment = cross(c.arm, n);
   if (k < kWrenchTerms) return -c.contact.end_force * component(n, moment, k);
   if (k < 2 * kWrenchTerms) return -c.contact.step.force * component(n, moment, k - kWrenchTerms);
-  const bool is_stiffness = k < 2 * kWrenchTerms + kBlockTerms;
-  int column = k - 2 * kWrenchTerms - (is_stiffness ? 0 : kBlockTerms), row = 0;
-  for (; column >= kWrenchTerms - row; ++row) column -= kWrenchTerms - row;
-  const Real slope = is_stiffness ? c.contact.step.stiffness : c.contact.step.damping;
-  return slope * component(n, moment, row) * component(n, moment, row + column);
+  const BlockPlace at = block_place(k);
+  const Real slope = at.is_stiffness ? c.contact.step.stiffness : c.contact.step.damping;
+  return slope * component(n, moment, at.row) * component(n, moment, at.column);
 }
 
 // Of the contacts of one surface.

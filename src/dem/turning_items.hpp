@@ -93,6 +93,12 @@ struct RubbingNormsItem {
   }
 };
 
+struct TwistSizeItem {
+  const Twist* twist;
+
+  SCREE_HD Real operator()(Index i) const { return largest_part(twist[i]); }
+};
+
 // Applies a share of a correction of both accelerations, that of the rotation times the radius. Returns the
 // size of the whole correction of position or turn over the radius.
 struct RubbingCorrectItem {

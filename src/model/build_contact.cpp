@@ -201,12 +201,6 @@ void check_friction(const DeckTable& deck, const Model& model) {
       if (pair.has(key) && model.integrator.particles != ParticleIntegrator::velocity_verlet)
         pair.fail(key,
                   "needs integrator.particles = \"velocity-verlet\": implicit steps have friction alone");
-    for (const Body& body : model.bodies)
-      if (!body.shapes.empty() && model.integrator.particles != ParticleIntegrator::velocity_verlet)
-        pair.fail("friction",
-                  fmt::format("needs integrator.particles = \"velocity-verlet\": in implicit steps "
-                              "particles do not rub against bodies yet, and body \"{}\" has shapes",
-                              body.name));
   }
   if (model.rotates()) return;
   for (const DeckTable& group : deck.tables("particles"))

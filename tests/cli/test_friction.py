@@ -84,8 +84,6 @@ class FrictionTest(CommandLineTest):
              "contact.pairs.0.tangential_stiffness: missing", "only where exponent = 1"),
             (hertz.replace(friction, friction + "tangential_stiffness = 2e4\n"), "tangential_stiffness",
              "contact.pairs.0.tangential_stiffness", "left out for Hertz's law: Mindlin's follows from the moduli"),
-            ((RUBBING + BALL).replace('"velocity-verlet"', '"hht"'), friction, "contact.pairs.0.friction",
-             'in implicit steps particles do not rub against bodies yet, and body "ball" has shapes'),
             (RUBBING.replace('"velocity-verlet"', '"hht"').replace(friction, friction + "rolling_friction = 0.1\n"),
              "rolling_friction", "contact.pairs.0.rolling_friction", "implicit steps have friction alone"),
             (RUBBING + BALL.replace("0.005", "1e-7"), "step", "time.step = 0.0001",

@@ -34,6 +34,8 @@ MAIN_CASES = {
     "rubbing after Hertz and Mindlin, implicit": ([HERE / "rubbing_hertz.toml", *IMPLICIT, *FIXED,
                                                    "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
                                                   (1, 2, 3, 4)),
+    "rubbing on bodies, implicit": ([HERE / "rubbing_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
+                                     "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
 }
 CASES = {
     **MAIN_CASES,

@@ -1,104 +1,13 @@
 // A particle that meets the disc or sphere of a body obliquely, with spins: against two particles.
-#include <fmt/format.h>
-
 #include <cmath>
-#include <numbers>
 
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "verification/contact/errors.hpp"
-#include "verification/friction/grain_decks.hpp"
+#include "verification/friction/meeting.hpp"
 
 namespace scree {
-
-namespace {
-
-// One that meets the particle: a body, or another particle.
-struct Partner {
-  Vec3 position, velocity;
-  Real spin, radius, mass, inertia;  // spin: about z [rad/s]
-  Vec3 offset{};                     // of the shape in the body's frame [m]
-};
-
-struct Meeting {
-  int dimension;
-  Grain grain;
-  Partner partner;
-  std::string law;
-  Real step, end;
-  int substeps = 1;
-  std::string sides{};
-  Real half = 2;  // of the space [m]
-
-  std::string vector(Vec3 a) const { return dimension == 3 ? toml(a) : fmt::format("[{}, {}]", a.x, a.y); }
-  std::string spin(Vec3 w) const { return dimension == 3 ? toml(w) : fmt::format("[{}]", w.z); }
-  std::string setup() const {
-    return fmt::format(
-               "[space]\ndimension = {}\nmin = {}\nmax = {}\n{}[time]\nend = {}\nstep = {}\n[integrator]\n"
-               "particles = \"velocity-verlet\"\nsubsteps = {}\n[[contact.pairs]]\n{}",
-               dimension, vector(-half * Vec3{1, 1, 1}), vector(half * Vec3{1, 1, 1}), sides, end, step,
-               substeps, law) +
-           particle("grain", grain.position, grain.velocity, grain.spin, grain.radius, grain.mass);
-  }
-  std::string particle(const char* name, Vec3 position, Vec3 velocity, Vec3 w, Real radius, Real mass) const {
-    return fmt::format(
-        "[[particles]]\nname = \"{}\"\nkind = \"list\"\npositions = [{}]\nvelocity = {}\n"
-        "angular_velocity = {}\nradius = {}\nmass = {}\n",
-        name, vector(position), vector(velocity), spin(w), radius, mass);
-  }
-  Model with_body() const {
-    return model_of(setup() + fmt::format("[[bodies]]\nname = \"partner\"\nposition = {}\nvelocity = {}\n"
-                                          "angular_velocity = {}\nmass = {}\ninertia = {}\n"
-                                          "shapes = [{{ radius = {}, offset = {} }}]\n",
-                                          vector(partner.position), vector(partner.velocity), partner.spin,
-                                          partner.mass, partner.inertia, partner.radius,
-                                          vector(partner.offset)));
-  }
-  Model with_particle() const {
-    return model_of(setup() + particle("partner", partner.position, partner.velocity, {0, 0, partner.spin},
-                                       partner.radius, partner.mass));
-  }
-};
-
-const std::string kUndamped = "stiffness = 1e6\nfriction = 0.3\ntangential_stiffness = 8e5\n";
-constexpr Real kContactTime = 2.3e-3;  // of 1 kg against as much [s]
-
-// Momentum and angular momentum about the origin of particle and body.
-struct Momenta {
-  Vec3 linear, angular;
-};
-Momenta momenta(SimulationRun& run, const Partner& partner) {
-  const ParticleLedger particles = run.particle_ledger();
-  const std::vector<Real>&q = run.bodies().position, &v = run.bodies().velocity;
-  const Vec3 of_body = partner.mass * Vec3{v[0], v[1], 0};
-  return {particles.momentum + of_body,
-          particles.angular_momentum + cross({q[0], q[1], 0}, of_body) + Vec3{0, 0, partner.inertia * v[2]}};
-}
-
-// Two discs that are equal and meet obliquely, or a disc and one beside the centre of its body.
-Meeting disc_meeting(Real steps, int substeps, Real phase, Vec3 offset) {
-  constexpr Real R = 0.05;
-  const Vec3 normal{0.8, 0.6, 0};
-  const Real h = kContactTime / steps;
-  Meeting out{2,
-              {.velocity = {-1.5, 0.4, 0}, .spin = {0, 0, 20}, .radius = R, .mass = 1},
-              {-offset, {0.5, 0.1, 0}, 12, R, 1, R * R / 2, offset},
-              kUndamped,
-              h,
-              2 * kContactTime};
-  out.substeps = substeps;
-  const Vec3 towards =
-      out.grain.velocity - out.partner.velocity - out.partner.spin * Vec3{-offset.y, offset.x};
-  out.grain.position = 2 * R * normal - (phase + 0.5) * h * dot(towards, normal) * normal;
-  return out;
-}
-
-Real difference(const Particle& p, const Particle& q, Real radius) {
-  return std::max(norm(p.velocity - q.velocity), radius * norm(p.angular_velocity - q.angular_velocity));
-}
-
-}  // namespace
 
 // So heavy that it goes on as it came: its centre moves and turns like a particle's.
 TEST_CASE("a heavy body's sphere and disc do to a particle what a particle does that moves as they do") {
