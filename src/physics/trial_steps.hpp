@@ -93,6 +93,22 @@ struct TrialMethod {
   bool resolve_events;
 };
 
+// A contact's force over such a step, and at its end [N].
+struct TrialForce {
+  StepContactForce step;
+  Real at_end;
+};
+template <class Pair>
+TrialForce trial_force(const Pair& pair, const ContactStep& step, bool resolve_events) {
+  TrialForce out{{0, 0, 0}, 0};
+  if (step.overlap1 > 0) {
+    const ContactForce at_end = contact_force(pair, step.overlap1, step.rate1);
+    out = {{at_end.force, at_end.stiffness, at_end.damping}, at_end.force};
+  }
+  if (resolve_events) out.step = step_contact_force(pair, step);
+  return out;
+}
+
 // In HHT steps along the normal, each solved to round-off. A step without a solution, where the damping of a
 // contact jumps at touch, is taken in halves, as a run does.
 template <class Pair>
@@ -117,24 +133,18 @@ class ImplicitTrial {
   // The end of a step of an acceleration there.
   struct End {
     ContactStep step;
-    StepContactForce force;  // for the step
-    Real end_force;          // that acts at its end [N]
-    Real residual;           // [N]
+    TrialForce force;
+    Real residual;  // [N]
   };
 
   End end_of(Real h, Real a) const {
     const HhtCoefficients& c = method_.hht;
     End end{{overlap_, rate_, overlap_ + newmark_displacement(c, h, rate_, acceleration_, a),
              newmark_velocity(c, h, rate_, acceleration_, a), h},
-            {0, 0, 0},
-            0,
+            {},
             0};
-    if (end.step.overlap1 > 0) {
-      const ContactForce at_end = contact_force(pair_, end.step.overlap1, end.step.rate1);
-      end.end_force = at_end.force, end.force = {at_end.force, at_end.stiffness, at_end.damping};
-    }
-    if (method_.resolve_events) end.force = step_contact_force(pair_, end.step);
-    end.residual = hht_residual(c, mass_, {a, 0, 0}, {-end.force.force, 0, 0}, {-force_, 0, 0}).x;
+    end.force = trial_force(pair_, end.step, method_.resolve_events);
+    end.residual = hht_residual(c, mass_, {a, 0, 0}, {-end.force.step.force, 0, 0}, {-force_, 0, 0}).x;
     return end;
   }
 
@@ -145,9 +155,10 @@ class ImplicitTrial {
       return;
     }
     const End end = end_of(h, a);
-    overlap_ = end.step.overlap1, rate_ = end.step.rate1, force_ = end.end_force;
-    acceleration_ =
-        a + hht_event_acceleration(method_.hht, mass_, {-end.force.force, 0, 0}, {-end.end_force, 0, 0}).x;
+    overlap_ = end.step.overlap1, rate_ = end.step.rate1, force_ = end.force.at_end;
+    acceleration_ = a + hht_event_acceleration(method_.hht, mass_, {-end.force.step.force, 0, 0},
+                                               {-end.force.at_end, 0, 0})
+                            .x;
   }
 
   // Newton's method for the acceleration at the end, within bounds that it has found: the residual grows with
@@ -160,11 +171,12 @@ class ImplicitTrial {
     Real low = -kInfinity, high = kInfinity;
     for (int k = 0; k < kMostIterations; ++k) {
       const End end = end_of(h, a);
-      const Real scale = std::abs(end.force.force) + std::abs(force_) + inertia * std::abs(a);
+      const StepContactForce& force = end.force.step;
+      const Real scale = std::abs(force.force) + std::abs(force_) + inertia * std::abs(a);
       if (std::abs(end.residual) <= kTolerance * scale) return true;
       (end.residual > 0 ? high : low) = a;
-      const Real slope = inertia + newmark_position_gain(c, h) * end.force.stiffness +
-                         newmark_velocity_gain(c, h) * end.force.damping;
+      const Real slope = inertia + newmark_position_gain(c, h) * force.stiffness +
+                         newmark_velocity_gain(c, h) * force.damping;
       const Real next = a - end.residual / slope;
       a = low < next && next < high ? next : low + (high - low) / 2;
     }

@@ -11,6 +11,7 @@
 #include "model/plausibility.hpp"
 #include "physics/particle_mass.hpp"
 #include "physics/plausible.hpp"
+#include "physics/rubbing_trial.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -88,15 +89,26 @@ void judge(StepTrial& trial, const auto& trials) {
   trial.any_step_good = trial.good_step == trials.longest_step();
 }
 
+// Far enough from the normal for a slide and near enough for it to end: what slides all the time leaves as
+// Coulomb's law says, whatever the steps are.
+Real incidence(Real friction) { return std::min(std::atan(2 * friction), std::numbers::pi_v<Real> / 4); }
+
 // In the steps of the model's integrator.
 template <class Law>
 void try_impact(const Model& model, const Law& law, const TrialImpact& impact, Real touch, StepTrial& trial) {
   if (model.integrator.particles == ParticleIntegrator::velocity_verlet) {
     const auto make = [&](Real gap) { return ExplicitTrial<Law>(law, impact, gap); };
     judge(trial, Trials(law, impact, touch, make));
-  } else if constexpr (!Law::kNeck) {
+    return;
+  }
+  const TrialMethod method{hht_coefficients(model.integrator.hht_alpha), model.integrator.resolve_events};
+  if constexpr (kFrictionAlone<Law>)
+    if (trial.rubs) {
+      const auto make = [&](Real gap) { return RubbingTrial<Law>(law, method, impact, gap); };
+      return judge(trial, Trials(law, impact, touch, make));
+    }
+  if constexpr (!Law::kNeck) {
     const auto pair = law.normal.of_pair(impact.size);
-    const TrialMethod method{hht_coefficients(model.integrator.hht_alpha), model.integrator.resolve_events};
     const auto make = [&](Real gap) { return ImplicitTrial(pair, method, impact, gap); };
     judge(trial, Trials(ContactLaw<typename Law::Normal>{law.normal}, impact, touch, make));
   }
@@ -106,7 +118,7 @@ StepTrial try_pair(const Model& model, const PairLimit& limit) {
   const Partners two = lightest_partners(model, limit);
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   const KelvinVoigt law = model.contact.law(limit.material[0], limit.material[1]).of_size(two.size());
-  StepTrial trial{limit, trial_speed(model, limit, law, two), 0, false, false, {}, 0, false};
+  StepTrial trial{limit, trial_speed(model, limit, law, two), 0, false, false, 0, {}, 0, false};
   const Real touch = impact_time(law, two.mass(), trial.speed);
   trial.is_adaptive = model.time.control == StepControl::adaptive;
   trial.step = model.time.step / (implicit ? 1 : model.integrator.substeps);
@@ -115,15 +127,18 @@ StepTrial try_pair(const Model& model, const PairLimit& limit) {
     trial.step = typical_adaptive_step(model, two, fastest > 0 ? fastest : trial.speed, touch);
   }
   with_contact_laws(model.contact, [&]<class Law>(const std::vector<Law>& laws) {
-    trial.rubs = !implicit && Law::kMoves;
+    const int at = limit.material[0] * model.contact.materials() + limit.material[1];
+    const Law& one = laws[static_cast<std::size_t>(at)];
+    if constexpr (Law::Tangential::acts)
+      if (two.i.is_particle) trial.incidence = incidence(one.tangential.friction);
+    trial.rubs = trial.incidence > 0;
     const TrialImpact impact{two.size(),
                              two.mass(),
                              inertia_of(model, two.i),
                              inertia_of(model, two.j),
                              trial.speed,
-                             trial.rubs ? trial.speed : 0};
-    const int at = limit.material[0] * model.contact.materials() + limit.material[1];
-    try_impact(model, laws[static_cast<std::size_t>(at)], impact, touch, trial);
+                             std::tan(trial.incidence) * trial.speed};
+    try_impact(model, one, impact, touch, trial);
   });
   return trial;
 }
@@ -165,8 +180,8 @@ std::string trial_lines(const StepTrial& trial) {
                   r.mean.restitution, percent(r.normal_error), good_steps(trial));
   if (trial.rubs)
     lines += fmt::format(
-        "               at 45 degrees it leaves at {:.1f} degrees, in these steps at {:.1f}, {} off\n",
-        degrees(r.exact.angle()), degrees(r.mean.angle()), percent(r.across_error));
+        "               at {:.0f} degrees it leaves at {:.1f} degrees, in these steps at {:.1f}, {} off\n",
+        degrees(trial.incidence), degrees(r.exact.angle()), degrees(r.mean.angle()), percent(r.across_error));
   return lines;
 }
 
@@ -194,8 +209,8 @@ std::string step_warning(const Model& model) {
       "{:.2g} s keep within {}{}",
       worst.step, names[static_cast<std::size_t>(worst.limit.material[0])],
       names[static_cast<std::size_t>(worst.limit.material[1])], others, percent(r.error()), rebound(r.mean),
-      rebound(r.exact), worst.rubs ? ", at 45 degrees" : "", worst.good_step, percent(kGoodRebound),
-      implicit ? ", time.control = \"adaptive\" within 0.02 %" : "");
+      rebound(r.exact), worst.rubs ? fmt::format(", at {:.0f} degrees", degrees(worst.incidence)) : "",
+      worst.good_step, percent(kGoodRebound), implicit ? ", time.control = \"adaptive\" within 0.02 %" : "");
 }
 
 }  // namespace scree

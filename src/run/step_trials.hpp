@@ -16,7 +16,8 @@ struct StepTrial {
   Real speed;  // of approach [m/s]; nothing depends on it where the force is linear in the overlap
   Real step;   // tried: that of the particles, or the one that adaptive steps come to [s]
   bool is_adaptive;
-  bool rubs;  // with friction: an impact at 45 degrees without spin, else head-on
+  bool rubs;       // with friction: an impact without spin at `incidence`, else head-on
+  Real incidence;  // from the normal [rad]
   TrialResult result;
   Real good_step;      // up to which errors stay below kGoodRebound [s]
   bool any_step_good;  // good_step is the longest that was tried

@@ -1,9 +1,12 @@
 // What the report and the warning of a deck say of its steps.
 #include "run/step_trials.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <numbers>
 
+#include "physics/rubbing_trial.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
@@ -110,10 +113,10 @@ TEST_CASE("explicit steps are tried with their substeps, and with friction") {
   for (const StepTrial& trial : trials_of(friction)) {
     CHECK(trial.rubs);
     CHECK(near(trial.step, 1e-4, {.relative = 1e-12}));
-    const Real tangent = std::tan(trial.result.exact.angle());
-    CHECK(tangent > 0.3);  // of what slides all the time: (1 - (1 + e) mu) / e
-    CHECK(tangent < 1);
-    CHECK(contains(trial_lines(trial), "at 45 degrees it leaves at "));
+    const Real tangent = std::tan(trial.result.exact.angle()), e = trial.result.exact.restitution;
+    CHECK(tangent > (2 - (1 + e)) * 0.3 / e + 0.05);  // it does not slide all the time
+    CHECK(tangent < 2 * 0.3 / e);
+    CHECK(contains(trial_lines(trial), "at 31 degrees it leaves at "));
   }
   CHECK(!trials_of()[0].rubs);
 }
@@ -174,8 +177,21 @@ mass = 1.0
     const TrialRebound whole =
         rebound({"integrator.hht_alpha=-0.2",
                  resolved ? "integrator.contact_events=resolved" : "integrator.contact_events=end-of-step"});
-    const ImplicitTrial trial(normal, {hht_coefficients(-0.2), resolved}, impact, gap);
+    const TrialMethod method{hht_coefficients(-0.2), resolved};
+    const ImplicitTrial trial(normal, method, impact, gap);
     same(rebound_of(trial, 1, h, 50), {whole.restitution, 0}, 1e-6);  // the iteration's tolerance
+    for (const Real dashpot : {0.0, 0.2}) {
+      // Its jump at touch leaves a step without a solution, in which a run freezes the limits of friction.
+      if (!resolved && dashpot > 0) continue;
+      CAPTURE(resolved, dashpot);
+      const ContactLaw<LinearLaw, LinearSlider> rubbing{normal, {2e4 / 7, 0.5, dashpot}};
+      same(rebound_of(RubbingTrial(rubbing, method, impact, gap), 1, h, 50),
+           rebound(
+               {"integrator.hht_alpha=-0.2", "contact.pairs.0.friction=0.5",
+                fmt::format("contact.pairs.0.tangential_damping_ratio={}", dashpot),
+                resolved ? "integrator.contact_events=resolved" : "integrator.contact_events=end-of-step"}),
+           1e-6);
+    }
   }
 }
 

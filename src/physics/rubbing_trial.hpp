@@ -1,0 +1,161 @@
+// Two partners that meet and rub, in the implicit steps that a run takes: beside trial_steps.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/step_friction.hpp"
+#include "physics/trial_steps.hpp"
+
+namespace scree {
+
+// In HHT steps of the relative motion in a plane. Friction turns both partners about the same axis, and slip
+// sees the sum of the spins times the radii alone: that speed of the surfaces is what is solved for, with
+// the mass that resists it. A step without a solution is taken in halves.
+template <class Law>
+class RubbingTrial {
+ public:
+  RubbingTrial(const Law& law, const TrialMethod& method, const TrialImpact& impact, Real gap)
+      : law_(law), method_(method), impact_(impact) {
+    const PairSize& size = impact.size;
+    const auto share = [](Real radius, Real inertia) {
+      return radius < kInfinity ? radius * radius / inertia : 0;
+    };
+    turning_mass_ = 1 / (share(size.radius_i, impact.inertia_i) + share(size.radius_j, impact.inertia_j));
+    at_.velocity = {impact.sliding, 0, -impact.approach};
+    at_.r = Vec3{0, 0, on_plane() ? size.radius_i : size.radius_i + size.radius_j} - gap * at_.velocity;
+  }
+
+  bool step(Real h) {
+    constexpr int kMostHalvings = 10;
+    take(h, kMostHalvings);
+    return geometry(at_.r).overlap > 0;
+  }
+  Real parting() const { return dot(at_.velocity, geometry(at_.r).normal()); }
+  Real across() const { return scree::across(at_.velocity, geometry(at_.r).normal()).x; }
+
+ private:
+  // The motion of i relative to j, that of the surfaces by turning, about y, and what acts at the instant.
+  struct State {
+    Vec3 r, velocity, acceleration{}, force{};
+    Real surface = 0, surface_rate = 0;  // [m/s], [m/s^2]
+    Vec3 spring{};
+  };
+  // What Newton's method looks for: the acceleration along x and z, the surfaces' in between.
+  using Unknowns = Vec3;
+  struct End {
+    State state;
+    Vec3 step_force{};                                 // for the step
+    Real start_pull = 0, step_pull = 0, end_pull = 0;  // on the surfaces [N]
+    Unknowns residual{};                               // [N]
+    Real scale = 0;
+  };
+
+  bool on_plane() const { return impact_.size.radius_j == kInfinity; }
+  ContactGeometry geometry(Vec3 r) const {
+    const PairSize& size = impact_.size;
+    return on_plane() ? plane_pair(r, size.radius_i, {0, 0, 0}, {0, 0, 1})
+                      : sphere_pair(r, size.radius_i + size.radius_j);
+  }
+
+  // The end of a step of these accelerations.
+  End end_of(Real h, const Unknowns& a) const {
+    const HhtCoefficients& c = method_.hht;
+    End end;
+    State& s = end.state;
+    s.acceleration = {a.x, 0, a.z}, s.surface_rate = a.y;
+    const Vec3 travel = newmark_displacement(c, h, at_.velocity, at_.acceleration, s.acceleration);
+    s.r = at_.r + travel;
+    s.velocity = newmark_velocity(c, h, at_.velocity, at_.acceleration, s.acceleration);
+    s.surface = newmark_velocity(c, h, at_.surface, at_.surface_rate, s.surface_rate);
+    const Real turned = newmark_displacement(c, h, at_.surface, at_.surface_rate, s.surface_rate);
+    add_contact(h, travel, turned, end);
+    const Vec3 move = hht_residual(c, impact_.mass, s.acceleration, end.step_force, at_.force);
+    const Real turn =
+        hht_residual(c, turning_mass_, {0, s.surface_rate, 0}, {0, end.step_pull, 0}, {0, end.start_pull, 0})
+            .y;
+    end.residual = {move.x, turn, move.z};
+    end.scale =
+        norm(end.step_force) + norm(at_.force) + hht_inertia_weight(c) * impact_.mass * norm(s.acceleration);
+    return end;
+  }
+
+  // turned: the way of the surfaces by turning [m].
+  void add_contact(Real h, Vec3 travel, Real turned, End& end) const {
+    State& s = end.state;
+    const ContactGeometry g0 = geometry(at_.r), g1 = geometry(s.r);
+    if (!(g0.overlap > 0 || g1.overlap > 0)) return;
+    const PairSize& size = impact_.size;
+    const Vec3 n0 = g0.normal(), n1 = g1.normal(), y{0, 1, 0};
+    const TurningPartner i{(turned / (h * size.radius_i)) * y, size.radius_i, impact_.inertia_i},
+        j{{}, on_plane() ? 0 : size.radius_j, impact_.inertia_j};
+    RubbingStep step{};
+    step.step = {g0.overlap, -dot(n0, at_.velocity), g1.overlap, -dot(n1, s.velocity), h};
+    step.motion = on_plane() ? face_motion(g1, n1, travel, i, j, h) : sphere_motion(g1, travel, i, j, h);
+    step.leverage0 = on_plane() ? 1 : step.motion.leverage * g1.distance / g0.distance;
+    const auto slip_rate = [&](Real leverage, const State& at, Vec3 n) {
+      return scree::across(leverage * at.velocity - at.surface * cross(y, n), n);
+    };
+    step.slip_rate0 = slip_rate(step.leverage0, at_, n0);
+    step.slip_rate1 = slip_rate(step.motion.leverage, s, n1);
+    const auto normal = law_.normal.of_pair(size);
+    const TrialForce force = trial_force(normal, step.step, method_.resolve_events);
+    step.size = size, step.frozen_limit = -1;
+    step.start_force = g0.overlap > 0 ? contact_force(normal, g0.overlap, step.step.rate0).force : 0;
+    step.end_force = force.at_end, step.step_force = force.step.force;
+    const StepRub rub = step_rub(law_, step, at_.spring);
+    s.spring = rub.spring;
+    end.step_force = force.step.force * n1 - step.motion.leverage * rub.step;
+    s.force = force.at_end * n1 - step.motion.leverage * rub.end;
+    end.start_pull = cross(n0, rub.start).y;
+    end.step_pull = cross(n1, rub.step).y, end.end_pull = cross(n1, rub.end).y;
+  }
+
+  void take(Real h, int halvings) {
+    Unknowns a{at_.acceleration.x, at_.surface_rate, at_.acceleration.z};
+    if (!solve(h, a) && halvings > 0) {
+      take(h / 2, halvings - 1), take(h / 2, halvings - 1);
+      return;
+    }
+    const End end = end_of(h, a);
+    at_ = end.state;
+    at_.acceleration += hht_event_acceleration(method_.hht, impact_.mass, end.step_force, at_.force);
+    at_.surface_rate +=
+        hht_event_acceleration(method_.hht, turning_mass_, {0, end.step_pull, 0}, {0, end.end_pull, 0}).y;
+  }
+
+  // Newton's method with the slopes of small differences; a correction is halved while the residual grows.
+  bool solve(Real h, Unknowns& a) const {
+    constexpr int kMostIterations = 40, kMostShortenings = 6;
+    constexpr Real kTolerance = 1e-10, kDifference = 1e-7;
+    const auto size = [](const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+    const Real typical = kDifference * (size(a) + norm(at_.velocity) / h);
+    End end = end_of(h, a);
+    for (int k = 0; k < kMostIterations; ++k) {
+      if (size(end.residual) <= kTolerance * end.scale) return true;
+      const auto slope = [&](Vec3 along) {
+        return (1 / typical) * (end_of(h, a + typical * along).residual - end.residual);
+      };
+      const Vec3 correction = solution(slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1}), -end.residual);
+      Real share = 1;
+      End next = end_of(h, a + correction);
+      for (int s = 0; s < kMostShortenings && !(size(next.residual) < size(end.residual)); ++s)
+        share /= 2, next = end_of(h, a + share * correction);
+      a += share * correction, end = next;
+    }
+    return false;
+  }
+  // Of x u + y v + z w = b, by Cramer's rule.
+  static Vec3 solution(Vec3 u, Vec3 v, Vec3 w, Vec3 b) {
+    const Real all = dot(u, cross(v, w));
+    return {dot(b, cross(v, w)) / all, dot(u, cross(b, w)) / all, dot(u, cross(v, b)) / all};
+  }
+
+  const Law& law_;
+  TrialMethod method_;
+  TrialImpact impact_;
+  Real turning_mass_;  // [kg]
+  State at_;
+};
+
+}  // namespace scree
