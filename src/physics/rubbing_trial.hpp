@@ -11,7 +11,8 @@ namespace scree {
 
 // In HHT steps of the relative motion in a plane. Friction turns both partners about the same axis, and slip
 // sees the sum of the spins times the radii alone: that speed of the surfaces is what is solved for, with
-// the mass that resists it. A step without a solution is taken in halves.
+// the mass that resists it. As in a run, the limit of friction is frozen where Newton's method does not find
+// in time whether the contact slides; a step that finds no solution then is taken in halves.
 template <class Law>
 class RubbingTrial {
  public:
@@ -27,7 +28,7 @@ class RubbingTrial {
   }
 
   bool step(Real h) {
-    constexpr int kMostHalvings = 10;
+    constexpr int kMostHalvings = 3;
     take(h, kMostHalvings);
     return geometry(at_.r).overlap > 0;
   }
@@ -47,6 +48,7 @@ class RubbingTrial {
     State state;
     Vec3 step_force{};                                 // for the step
     Real start_pull = 0, step_pull = 0, end_pull = 0;  // on the surfaces [N]
+    Real limit = -1;                                   // of the mean force of friction [N]
     Unknowns residual{};                               // [N]
     Real scale = 0;
   };
@@ -59,7 +61,7 @@ class RubbingTrial {
   }
 
   // The end of a step of these accelerations.
-  End end_of(Real h, const Unknowns& a) const {
+  End end_of(Real h, const Unknowns& a, Real frozen_limit) const {
     const HhtCoefficients& c = method_.hht;
     End end;
     State& s = end.state;
@@ -69,6 +71,7 @@ class RubbingTrial {
     s.velocity = newmark_velocity(c, h, at_.velocity, at_.acceleration, s.acceleration);
     s.surface = newmark_velocity(c, h, at_.surface, at_.surface_rate, s.surface_rate);
     const Real turned = newmark_displacement(c, h, at_.surface, at_.surface_rate, s.surface_rate);
+    end.limit = frozen_limit;
     add_contact(h, travel, turned, end);
     const Vec3 move = hht_residual(c, impact_.mass, s.acceleration, end.step_force, at_.force);
     const Real turn =
@@ -80,11 +83,11 @@ class RubbingTrial {
     return end;
   }
 
-  // turned: the way of the surfaces by turning [m].
+  // turned: the way of the surfaces by turning [m]; end.limit: where it is frozen.
   void add_contact(Real h, Vec3 travel, Real turned, End& end) const {
     State& s = end.state;
     const ContactGeometry g0 = geometry(at_.r), g1 = geometry(s.r);
-    if (!(g0.overlap > 0 || g1.overlap > 0)) return;
+    if (!(g0.overlap > 0 || g1.overlap > 0 || end.limit > 0)) return;
     const PairSize& size = impact_.size;
     const Vec3 n0 = g0.normal(), n1 = g1.normal(), y{0, 1, 0};
     const TurningPartner i{(turned / (h * size.radius_i)) * y, size.radius_i, impact_.inertia_i},
@@ -100,11 +103,11 @@ class RubbingTrial {
     step.slip_rate1 = slip_rate(step.motion.leverage, s, n1);
     const auto normal = law_.normal.of_pair(size);
     const TrialForce force = trial_force(normal, step.step, method_.resolve_events);
-    step.size = size, step.frozen_limit = -1;
+    step.size = size, step.frozen_limit = end.limit;
     step.start_force = g0.overlap > 0 ? contact_force(normal, g0.overlap, step.step.rate0).force : 0;
     step.end_force = force.at_end, step.step_force = force.step.force;
     const StepRub rub = step_rub(law_, step, at_.spring);
-    s.spring = rub.spring;
+    s.spring = rub.spring, end.limit = rub.limit;
     end.step_force = force.step.force * n1 - step.motion.leverage * rub.step;
     s.force = force.at_end * n1 - step.motion.leverage * rub.end;
     end.start_pull = cross(n0, rub.start).y;
@@ -112,38 +115,44 @@ class RubbingTrial {
   }
 
   void take(Real h, int halvings) {
-    Unknowns a{at_.acceleration.x, at_.surface_rate, at_.acceleration.z};
-    if (!solve(h, a) && halvings > 0) {
+    constexpr int kFollowing = 12, kFrozen = 40;  // iterations
+    End end = end_of(h, {at_.acceleration.x, at_.surface_rate, at_.acceleration.z}, -1);
+    if (!solve(h, kFollowing, -1, end) && !solve(h, kFrozen, std::max(end.limit, Real(0)), end) &&
+        halvings > 0) {
       take(h / 2, halvings - 1), take(h / 2, halvings - 1);
       return;
     }
-    const End end = end_of(h, a);
-    at_ = end.state;
+    at_ = end.state, largest_force_ = std::max(largest_force_, end.scale);
     at_.acceleration += hht_event_acceleration(method_.hht, impact_.mass, end.step_force, at_.force);
     at_.surface_rate +=
         hht_event_acceleration(method_.hht, turning_mass_, {0, end.step_pull, 0}, {0, end.end_pull, 0}).y;
   }
 
-  // Newton's method with the slopes of small differences; a correction is halved while the residual grows.
-  bool solve(Real h, Unknowns& a) const {
-    constexpr int kMostIterations = 40, kMostShortenings = 6;
-    constexpr Real kTolerance = 1e-10, kDifference = 1e-7;
+  // Newton's method from `end`, with the slopes of small differences; a correction is halved while the
+  // residual grows. Whether it got there.
+  bool solve(Real h, int most_iterations, Real frozen_limit, End& end) const {
+    constexpr int kMostShortenings = 6;
+    constexpr Real kTolerance = 1e-8, kDifference = 1e-7;
     const auto size = [](const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
-    const Real typical = kDifference * (size(a) + norm(at_.velocity) / h);
-    End end = end_of(h, a);
-    for (int k = 0; k < kMostIterations; ++k) {
-      if (size(end.residual) <= kTolerance * end.scale) return true;
+    Unknowns a = unknowns_of(end);
+    end = end_of(h, a, frozen_limit);
+    for (int k = 0; k < most_iterations; ++k) {
+      if (size(end.residual) <= kTolerance * (end.scale + largest_force_)) return true;
+      const Real little = kDifference * (size(a) + norm(at_.velocity) / h);
       const auto slope = [&](Vec3 along) {
-        return (1 / typical) * (end_of(h, a + typical * along).residual - end.residual);
+        return (1 / little) * (end_of(h, a + little * along, frozen_limit).residual - end.residual);
       };
       const Vec3 correction = solution(slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1}), -end.residual);
       Real share = 1;
-      End next = end_of(h, a + correction);
+      End next = end_of(h, a + correction, frozen_limit);
       for (int s = 0; s < kMostShortenings && !(size(next.residual) < size(end.residual)); ++s)
-        share /= 2, next = end_of(h, a + share * correction);
+        share /= 2, next = end_of(h, a + share * correction, frozen_limit);
       a += share * correction, end = next;
     }
     return false;
+  }
+  static Unknowns unknowns_of(const End& end) {
+    return {end.state.acceleration.x, end.state.surface_rate, end.state.acceleration.z};
   }
   // Of x u + y v + z w = b, by Cramer's rule.
   static Vec3 solution(Vec3 u, Vec3 v, Vec3 w, Vec3 b) {
@@ -156,6 +165,7 @@ class RubbingTrial {
   TrialImpact impact_;
   Real turning_mass_;  // [kg]
   State at_;
+  Real largest_force_ = 0;  // of the steps so far [N]
 };
 
 }  // namespace scree
