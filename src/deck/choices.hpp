@@ -74,6 +74,16 @@ template <>
 inline constexpr auto kWords<StartVelocities> = std::to_array<Word<StartVelocities>>(
     {{"given", StartVelocities::given}, {"consistent", StartVelocities::consistent}});
 
+// Of a pair of materials that the deck does not give: how coefficients follow from those of each with itself.
+enum class Mixing { none, geometric, arithmetic, harmonic, minimum, maximum };
+template <>
+inline constexpr auto kWords<Mixing> = std::to_array<Word<Mixing>>({{"none", Mixing::none},
+                                                                    {"geometric", Mixing::geometric},
+                                                                    {"arithmetic", Mixing::arithmetic},
+                                                                    {"harmonic", Mixing::harmonic},
+                                                                    {"minimum", Mixing::minimum},
+                                                                    {"maximum", Mixing::maximum}});
+
 // ---- bodies
 // --------------------------------------------------------------------------------------------------
 

@@ -238,6 +238,19 @@ const TableKeys& contact_keys() {
            .within(0, 1)
            .otherwise("0.05")
            .about("Overlap at t = 0 over the smaller radius: an error past this limit, a warning below it."),
+       choice<Mixing>("mixing")
+           .otherwise_choice(Mixing::none)
+           .about(
+               "How a pair of materials that can meet and is not given follows from those of each with "
+               "itself: "
+               "none, it must be given. Else springs act in series (K = 2 K_a K_b / (K_a + K_b) of two "
+               "linear "
+               "ones; Hertz's law takes the materials' moduli: 1/E* = sum (1 - nu^2)/E), and damping, "
+               "damping "
+               "ratios, restitution, coefficients of friction, adhesion and attraction are the mean of the "
+               "two "
+               "that is named (geometric, arithmetic, harmonic), or the smaller or larger one. `scree check` "
+               "prints what was made."),
        tables("pairs", pairs)},
       ""};
   return keys;

@@ -7,6 +7,7 @@
 
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
+#include "model/mixing.hpp"
 #include "model/touching.hpp"
 #include "physics/cohesion.hpp"
 #include "physics/restitution.hpp"
@@ -151,7 +152,7 @@ Friction build_friction(const DeckTable& deck, const DeckTable& table, const Kel
   } else if (table.has("tangential_stiffness")) {
     friction.stiffness = table.real("tangential_stiffness");
   } else if (law.exponent == 1) {
-    friction.stiffness = Real(2) / 7 * law.normal_stiffness;
+    friction.stiffness = standard_slip_stiffness(law.normal_stiffness);
   } else {
     table.fail("tangential_stiffness", "missing; it follows from the stiffness only where exponent = 1");
   }
@@ -311,18 +312,25 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   }
 }
 
-// Every pair that can meet needs a law.
-void check_pairs(const DeckTable& table, const Model& model, const std::vector<bool>& given) {
+// Every pair that can meet needs a law: what is not given is made, where the deck says how.
+void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names, std::vector<bool>& given) {
+  const DeckTable& table = deck.table("contact");
   const std::vector<MaterialUse> uses = material_uses(model);
   const int count = model.contact.materials();
   for (int a = 0; a < count; ++a) {
     for (int b = a; b < count; ++b) {
       if (given[static_cast<std::size_t>(a * count + b)] || !can_meet(model, uses, a, b)) continue;
-      table.fail("pairs",
-                 fmt::format("no pair with materials = [\"{}\", \"{}\"], which can meet; every pair that can "
-                             "meet must be given in [[contact.pairs]]",
-                             model.contact.material_names[static_cast<std::size_t>(a)],
-                             model.contact.material_names[static_cast<std::size_t>(b)]));
+      const std::string &name_a = model.contact.material_names[static_cast<std::size_t>(a)],
+                        &name_b = model.contact.material_names[static_cast<std::size_t>(b)];
+      if (a == b || table.choice<Mixing>("mixing") == Mixing::none)
+        table.fail(
+            "pairs",
+            fmt::format("no pair with materials = [\"{}\", \"{}\"], which can meet; every pair that can "
+                        "meet must be given in [[contact.pairs]]{}",
+                        name_a, name_b, a == b ? "" : ", unless contact.mixing says how it follows"));
+      const DeckTable made = combined_pair(table, name_a, name_b);
+      build_pair(deck, made, model, names, given);
+      model.contact.combined.push_back({{a, b}, keys_of(made)});
     }
   }
 }
@@ -367,7 +375,7 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   contact.connected_bodies_touch = table.boolean("connected_bodies_touch");
   std::vector<bool> given(slots, false);
   for (const DeckTable& pair : table.tables("pairs")) build_pair(deck, pair, model, names, given);
-  check_pairs(table, model, given);
+  complete_pairs(deck, model, names, given);
   const auto [smallest, largest] = radius_range(model);
   // With nothing to search for, any positive length serves.
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);

@@ -35,12 +35,19 @@ struct Wall {
   int material = 0;
 };
 
+// A pair of materials that the deck does not give, made by contact.mixing.
+struct CombinedPair {
+  int material[2] = {0, 0};
+  std::string keys;  // as they would stand in [[contact.pairs]]: "friction = 0.3, restitution = 0.8"
+};
+
 // One law per unordered pair of materials.
 struct Contact {
   std::vector<std::string> material_names;
   std::vector<KelvinVoigt> laws;           // [i * materials + j], symmetric
   std::vector<Friction> friction;          // likewise; empty: no contact rubs
   std::vector<RollingResistance> rolling;  // likewise; empty: none resists rolling
+  std::vector<CombinedPair> combined;      // those of the pairs that are not the deck's
   Real reach = 0;                          // of contacts beyond touch, at most [m]
   Real skin = 0;                           // neighbour list reaches this far past touching [m]
   bool connected_bodies_touch = false;

@@ -132,6 +132,14 @@ std::string attraction_line(const Model& model, const PairLimit& limit) {
   return parts.empty() ? "" : fmt::format("               {}\n", parts);
 }
 
+// The keys of a pair that the deck does not give; "" of others.
+std::string combined_line(const Model& model, const PairLimit& limit) {
+  for (const CombinedPair& pair : model.contact.combined)
+    if (pair.material[0] == limit.material[0] && pair.material[1] == limit.material[1])
+      return fmt::format("               made by contact.mixing: {}\n", pair.keys);
+  return "";
+}
+
 std::string limit_lines(const Model& model) {
   std::string lines;
   const std::vector<std::string>& names = model.contact.material_names;
@@ -149,6 +157,7 @@ std::string limit_lines(const Model& model) {
                          law.tension || model.contact.law(limit.material[0], limit.material[1]).attracts()
                              ? "may pull"
                              : "cut at zero");
+    lines += combined_line(model, limit);
     if (limit.slip_stiffness > 0)
       lines += fmt::format("               friction {}, k_t = {:.6g} N/m{}\n",
                            model.contact.friction_of(limit.material[0], limit.material[1]).friction,
