@@ -283,7 +283,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   if (worst.ratio <= kRoundOff) return;
   const DeckTable& contact = deck.table("contact");
   const ItemNames names(model);
-  const std::string finding = fmt::format("{} and {} overlap at t = 0 by {:.4g} of the smaller radius",
+  const std::string finding = fmt::format("{} and {} overlap at t = 0 by {:.6g} of the smaller radius",
                                           names.name(worst.first), names.name(worst.second), worst.ratio);
   const Real limit = contact.real("max_start_overlap");
   if (worst.ratio > limit)

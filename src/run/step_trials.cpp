@@ -177,9 +177,10 @@ std::string trial_lines(const StepTrial& trial) {
                                               : fmt::format("steps of {:.4g} s", trial.step);
   const bool linear = trial.limit.law.exponent == 1;
   std::string lines =
-      fmt::format("               rebounds{} with {:.4g} of the speed, in {} with {:.4g}, {} off; {}\n",
-                  linear ? "" : fmt::format(" at {:.3g} m/s", trial.speed), r.exact.restitution, steps,
-                  r.mean.restitution, percent(r.normal_error), good_steps(trial));
+      fmt::format("               rebounds{} with {:.4g} of the speed{}, in {} with {:.4g}, {} off; {}\n",
+                  linear ? "" : fmt::format(" at {:.3g} m/s", trial.speed), r.exact.restitution,
+                  trial.rubs ? " along the normal" : "", steps, r.mean.restitution, percent(r.normal_error),
+                  good_steps(trial));
   if (trial.rubs)
     lines += fmt::format(
         "               at {:.0f} degrees it leaves at {:.1f} degrees, in these steps at {:.1f}, {} off\n",

@@ -44,6 +44,7 @@ TEST_CASE("velocity Verlet is stable below its limit and not above") {
     CHECK(largest_swing(stiffness, damping, mass, 1.01 * limit) > 1e6);
   }
   CHECK(near(verlet_step_limit(frequency, stiffness, 0), 2 / frequency, {.relative = kRoundOff}));
+  CHECK(near(verlet_step_limit(frequency, stiffness, 1e12), mass / 1e12, {.relative = kRoundOff}));
 }
 
 namespace {
@@ -127,6 +128,8 @@ TEST_CASE("steps of particles that rotate are stable below their limit and not a
     CHECK(largest(0.99 * limit) < 1);
     CHECK(largest(1.01 * limit) > 1e6);
   }
+  CHECK(near(leapfrog_step_limit(contact_frequency(stiffness, mass), 1e12 / mass), 2 * mass / 1e12,
+             {.relative = kRoundOff}));
 }
 
 TEST_CASE("what friction adds to the stiffness of contacts") {
