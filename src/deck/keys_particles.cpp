@@ -56,7 +56,7 @@ const TableKeys& particle_keys() {
            .required()
            .about(
                "CSV with a header line, or HDF5 (.h5, .hdf5) with one dataset per column: x, y, z (3D) [m]; "
-               "optional vx, vy, vz [m/s], radius [m], mass [kg]."),
+               "optional vx, vy, vz [m/s], radius [m], mass [kg], inertia_factor."),
        quantity("radius", "m", distribution_keys())
            .left_out("the file has a column radius")
            .about("Radius, or a distribution to draw it from."),
@@ -68,6 +68,12 @@ const TableKeys& particle_keys() {
            .about("Density, or a distribution; gives the mass of a sphere (3D), or of a disc of the given "
                   "thickness (2D)."),
        real("thickness", "m").above(0).otherwise("1.0").about("2D: thickness of the discs, for density."),
+       real("inertia_factor", "")
+           .above(0)
+           .within(0, 1)
+           .left_out("the file's column inertia_factor, or 2/5 (3D) and 1/2 (2D), solid spheres and discs")
+           .about("Moment of inertia about the centre over m r^2, where particles rotate: 2/3 for a hollow "
+                  "sphere, 1 for a thin ring (2D), which has all mass at its radius."),
        text("material").left_out("the only material").about("Material."),
        vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0, added to a file's."),
        reals("angular_velocity", "rad/s")

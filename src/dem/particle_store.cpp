@@ -77,8 +77,7 @@ void take_constants(const ParticleSet& set, std::span<Particle> records) {
   for (Particle& p : records) {
     const auto at = static_cast<std::size_t>(p.global_id - set.first_id);
     p.radius = set.radius[at], p.mass = set.mass[at], p.material = set.material[at];
-    p.moment_of_inertia =
-        set.dimension == 2 ? disc_inertia(p.mass, p.radius) : sphere_inertia(p.mass, p.radius);
+    p.moment_of_inertia = moment_of_inertia(set.inertia_factor_of(at), p.mass, p.radius);
   }
 }
 

@@ -204,9 +204,11 @@ void check_friction(const DeckTable& deck, const Model& model) {
                   "needs integrator.particles = \"velocity-verlet\": implicit steps have friction alone");
   }
   if (model.rotates()) return;
-  for (const DeckTable& group : deck.tables("particles"))
-    if (!group.reals("angular_velocity").empty())
-      group.fail("angular_velocity", "no particle rotates: no pair in contact.pairs has friction");
+  const std::string still = "no particle rotates: no pair in contact.pairs has friction";
+  for (const DeckTable& group : deck.tables("particles")) {
+    if (!group.reals("angular_velocity").empty()) group.fail("angular_velocity", still);
+    if (group.has("inertia_factor")) group.fail("inertia_factor", still);
+  }
 }
 
 // A run has one form of law.

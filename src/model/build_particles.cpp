@@ -51,6 +51,7 @@ class Group {
   std::vector<Real> masses_from_density(const std::vector<Real>& radius);
   std::vector<Vec3> velocities();
   Vec3 angular_velocity() const;
+  std::vector<Real> inertia_factors() const;
   std::array<std::int64_t, 3> lattice_size() const;
   Vec3 lattice_origin() const;
   std::vector<Vec3> vectors_of(const std::string& prefix) const;
@@ -130,6 +131,11 @@ void Group::append_to(ParticleSet& particles, IdRange part, const std::vector<St
   if (spin != Vec3{}) particles.angular_velocity.resize(before);
   if (spin != Vec3{} || !particles.angular_velocity.empty())
     particles.angular_velocity.resize(particles.position.size(), spin);
+  const std::vector<Real> factors = inertia_factors();
+  const Real solid = solid_inertia_factor(model_.space.dimension);
+  if (!factors.empty()) particles.inertia_factor.resize(before, solid);
+  particles.inertia_factor.insert(particles.inertia_factor.end(), factors.begin(), factors.end());
+  if (!particles.inertia_factor.empty()) particles.inertia_factor.resize(particles.position.size(), solid);
   particles.radius.insert(particles.radius.end(), radius.begin(), radius.end());
   particles.mass.insert(particles.mass.end(), mass.begin(), mass.end());
   particles.material.insert(particles.material.end(), radius.size(), material_);
@@ -278,6 +284,17 @@ Vec3 Group::angular_velocity() const {
     table_.fail("angular_velocity",
                 fmt::format("must have {} {}", axes, axes == 1 ? "entry, about z" : "entries"));
   return axes == 1 ? Vec3{0, 0, given[0]} : Vec3{given[0], given[1], given[2]};
+}
+
+// I / (m R^2); empty: of solid spheres, or discs.
+std::vector<Real> Group::inertia_factors() const {
+  if (has_column("inertia_factor")) {
+    if (table_.has("inertia_factor"))
+      table_.fail("inertia_factor", "not used: the file has a column inertia_factor");
+    return columns_.at("inertia_factor");
+  }
+  if (!table_.has("inertia_factor")) return {};
+  return std::vector<Real>(static_cast<std::size_t>(part_.size()), table_.real("inertia_factor"));
 }
 
 // What stands already where a random group is placed: all ranks' particles and the bodies' shapes.

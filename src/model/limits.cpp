@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "model/touching.hpp"
-#include "physics/particle_mass.hpp"
 #include "physics/step_limits.hpp"
 
 namespace scree {
@@ -30,8 +29,8 @@ struct PairSprings {
 };
 
 // Springs and dashpots alike have their fastest modes; that both are of one mode is the worst.
-Real rubbing_step(const PairSprings& pair, Real mass, int dimension, bool dense) {
-  const Real inertia_share = dimension == 2 ? disc_inertia(1, 1) : sphere_inertia(1, 1);
+Real rubbing_step(const PairSprings& pair, const MaterialUse& use, int dimension, bool dense) {
+  const Real mass = use.smallest_particle_mass, inertia_share = use.smallest_inertia_factor;
   const Real slip_mass = mass / ((dense ? 2 : 1) * (1 + 1 / inertia_share));
   const Real slip_damping = dashpot_of(pair.friction.damping_ratio, slip_mass, pair.slip_stiffness);
   const Real square = pair.smallest_radius * pair.smallest_radius;
@@ -53,7 +52,7 @@ Real rubbing_step(const PairSprings& pair, Real mass, int dimension, bool dense)
 Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const PairSprings& pair) {
   if (use.particles == 0) return 0;
   const Real mass = use.smallest_particle_mass;
-  if (model.rotates()) return rubbing_step(pair, mass, model.space.dimension, dense);
+  if (model.rotates()) return rubbing_step(pair, use, model.space.dimension, dense);
   const Real frequency = dense ? dense_frequency(pair.stiffness, mass, model.space.dimension)
                                : contact_frequency(pair.stiffness, mass);
   return verlet_step_limit(frequency, pair.stiffness, pair.law.normal_damping);
@@ -68,6 +67,7 @@ std::vector<MaterialUse> material_uses(const Model& model) {
     uses[m].particles = particles.count;
     uses[m].smallest_radius = particles.smallest_radius;
     uses[m].smallest_particle_mass = particles.smallest_mass;
+    uses[m].smallest_inertia_factor = particles.smallest_inertia_factor;
   }
   for (const Body& body : model.bodies) {
     for (const Shape& shape : body.shapes) {

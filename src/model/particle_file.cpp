@@ -17,8 +17,8 @@ namespace scree {
 namespace {
 
 std::vector<std::string> known_columns(int dimension) {
-  if (dimension == 2) return {"x", "y", "vx", "vy", "radius", "mass"};
-  return {"x", "y", "z", "vx", "vy", "vz", "radius", "mass"};
+  if (dimension == 2) return {"x", "y", "vx", "vy", "radius", "mass", "inertia_factor"};
+  return {"x", "y", "z", "vx", "vy", "vz", "radius", "mass", "inertia_factor"};
 }
 
 std::vector<std::string> split_line(const std::string& line) {
@@ -33,10 +33,13 @@ std::vector<std::string> split_line(const std::string& line) {
   return cells;
 }
 
-bool is_positive(const std::string& column) { return column == "radius" || column == "mass"; }
+bool is_positive(const std::string& column) {
+  return column == "radius" || column == "mass" || column == "inertia_factor";
+}
 
 // What is wrong with a value, or "".
 std::string value_trouble(const std::string& column, Real value) {
+  if (column == "inertia_factor" && value > 1) return "must be at most 1, all mass at the radius";
   if (std::isfinite(value) && (!is_positive(column) || value > 0)) return "";
   return fmt::format("must be a {}finite number", is_positive(column) ? "positive, " : "");
 }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "physics/particle_mass.hpp"
-
 namespace scree {
 namespace {
 
@@ -27,13 +25,14 @@ void count_particles(ParticleSet& particles, int materials, const Share& share) 
   const auto slots = static_cast<std::size_t>(materials);
   Extremes radius, mass, density, radii_per_second;
   std::vector<std::int64_t> count(slots);
-  std::vector<Extremes> radius_of(slots), mass_of(slots);
+  std::vector<Extremes> radius_of(slots), mass_of(slots), factor_of(slots);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto material = static_cast<std::size_t>(particles.material[i]);
     radius.add(particles.radius[i]), mass.add(particles.mass[i]), ++count[material];
     density.add(particles.mass[i] / sphere_mass(particles.radius[i], 1));
     radii_per_second.add(norm(particles.velocity[i]) / particles.radius[i]);
     radius_of[material].add(particles.radius[i]), mass_of[material].add(particles.mass[i]);
+    factor_of[material].add(particles.inertia_factor_of(i));
   }
   totals.count = share.sum(static_cast<std::int64_t>(particles.size()));
   totals.smallest_radius = smallest_of_all(share, radius.smallest);
@@ -45,7 +44,8 @@ void count_particles(ParticleSet& particles, int materials, const Share& share) 
   totals.most_radii_per_second = share.max(radii_per_second.largest);
   for (std::size_t m = 0; m < slots; ++m)
     totals.materials.push_back({share.sum(count[m]), smallest_of_all(share, radius_of[m].smallest),
-                                smallest_of_all(share, mass_of[m].smallest)});
+                                smallest_of_all(share, mass_of[m].smallest),
+                                smallest_of_all(share, factor_of[m].smallest)});
   particles.totals = std::move(totals);
 }
 

@@ -6,6 +6,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/share.hpp"
+#include "physics/particle_mass.hpp"
 
 namespace scree {
 
@@ -14,6 +15,7 @@ struct ParticleTotals {
   struct OfMaterial {
     std::int64_t count = 0;
     Real smallest_radius = 0, smallest_mass = 0;  // [m], [kg]
+    Real smallest_inertia_factor = 0;             // I / (m R^2)
   };
   std::int64_t count = 0;
   Real smallest_radius = 0, largest_radius = 0;    // [m]
@@ -31,12 +33,16 @@ struct ParticleSet {
   std::vector<Vec3> angular_velocity;  // [rad/s]; empty: zero
   std::vector<Real> radius;            // [m]
   std::vector<Real> mass;              // [kg]
+  std::vector<Real> inertia_factor;    // I / (m R^2); empty: of solid spheres, or discs
   std::vector<int> material;           // index into Contact::material_names
   int dimension = 3;                   // 2: discs
   GlobalId first_id = 0;
   ParticleTotals totals;
 
   std::size_t size() const { return position.size(); }
+  Real inertia_factor_of(std::size_t i) const {
+    return inertia_factor.empty() ? solid_inertia_factor(dimension) : inertia_factor[i];
+  }
   IdRange ids() const { return {first_id, first_id + static_cast<GlobalId>(size())}; }
 };
 

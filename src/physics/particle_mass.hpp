@@ -18,8 +18,12 @@ SCREE_HD Real disc_mass(Real radius, Real thickness, Real density) {
   return density * thickness * std::numbers::pi_v<Real> * radius * radius;
 }
 
-// About the centre [kg m^2]; mass [kg], radius [m].
-SCREE_HD Real sphere_inertia(Real mass, Real radius) { return Real(0.4) * mass * radius * radius; }
-SCREE_HD Real disc_inertia(Real mass, Real radius) { return Real(0.5) * mass * radius * radius; }
+// Moment of inertia about the centre over m R^2, of a solid sphere, or in 2D a disc. A hollow sphere has 2/3,
+// a ring 1.
+SCREE_HD Real solid_inertia_factor(int dimension) { return dimension == 2 ? Real(0.5) : Real(0.4); }
+// [kg m^2]; mass [kg], radius [m].
+SCREE_HD Real moment_of_inertia(Real factor, Real mass, Real radius) {
+  return factor * mass * radius * radius;
+}
 
 }  // namespace scree

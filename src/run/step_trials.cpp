@@ -21,6 +21,7 @@ namespace {
 struct Partner {
   Real radius = kInfinity, mass = kInfinity;  // [m], [kg]
   bool is_particle = false;
+  Real inertia_factor = 0;  // of a particle, I / (m R^2)
 };
 
 // Two that can meet, particles before bodies before walls; i is never a wall.
@@ -43,7 +44,7 @@ Partners lightest_partners(const Model& model, const PairLimit& limit) {
   };
   const auto particle = [&](int side) {
     const auto& of = model.particles.totals.materials[static_cast<std::size_t>(limit.material[side])];
-    return Partner{of.smallest_radius, of.smallest_mass, true};
+    return Partner{of.smallest_radius, of.smallest_mass, true, of.smallest_inertia_factor};
   };
   const auto body = [&](int side) {
     return Partner{use(side).smallest_radius, use(side).smallest_body_mass, false};
@@ -77,10 +78,8 @@ Real typical_adaptive_step(const Model& model, const Partners& two, Real speed, 
   return std::clamp(step, model.time.min_step, model.time.max_step);
 }
 
-Real inertia_of(const Model& model, const Partner& one) {
-  if (!one.is_particle) return kInfinity;
-  return model.space.dimension == 2 ? disc_inertia(one.mass, one.radius)
-                                    : sphere_inertia(one.mass, one.radius);
+Real inertia_of(const Partner& one) {
+  return one.is_particle ? moment_of_inertia(one.inertia_factor, one.mass, one.radius) : kInfinity;
 }
 
 void judge(StepTrial& trial, const auto& trials) {
@@ -134,12 +133,8 @@ StepTrial try_pair(const Model& model, const PairLimit& limit) {
     if constexpr (Law::Tangential::acts)
       if (two.i.is_particle) trial.incidence = incidence(one.tangential.friction);
     trial.rubs = trial.incidence > 0;
-    const TrialImpact impact{two.size(),
-                             two.mass(),
-                             inertia_of(model, two.i),
-                             inertia_of(model, two.j),
-                             trial.speed,
-                             std::tan(trial.incidence) * trial.speed};
+    const TrialImpact impact{two.size(),        two.mass(),  inertia_of(two.i),
+                             inertia_of(two.j), trial.speed, std::tan(trial.incidence) * trial.speed};
     try_impact(model, one, impact, touch, trial);
   });
   return trial;

@@ -133,6 +133,7 @@ TEST_CASE("the ranks' parts of a model are the whole model") {
   CHECK((b.smallest_mass == a.smallest_mass && b.largest_mass == a.largest_mass && b.largest_radius == 0.2));
   REQUIRE(b.materials.size() == 1);
   CHECK((b.materials[0].count == 107 && b.materials[0].smallest_mass == a.smallest_mass));
+  CHECK(b.materials[0].smallest_inertia_factor == a.materials[0].smallest_inertia_factor);
   CHECK(model.contact.skin == alone.contact.skin);
   CHECK(warnings == alone_warnings);
 }

@@ -50,6 +50,7 @@ class SimulationRun {
   SimulationRun(const Model& model, const State& state) : SimulationRun(model, true) {
     state_ = state;
     backend_->particles().load(std::exchange(state_.particles, {}), state_.shapes);
+    backend_->particles().load_contacts(state_.contacts);
     step_.counts() = state_.counts;
     step_.resume(state_.bodies);
     make_loop();

@@ -63,6 +63,35 @@ TEST_CASE("particles from CSV") {
   CHECK(contains(model_error(deck, {"particles.0.radius=0.1"}), "not used: the file has a column radius"));
 }
 
+TEST_CASE("moments of inertia from a file, and of groups beside it") {
+  const Folder folder;
+  const std::string path = folder.write("p.csv", "x,y,inertia_factor\n0.1,0.2,0.7\n-0.3,0.4,1\n");
+  const std::string deck =
+      kSmallDeck +
+      "[[contact.pairs]]\nstiffness = 1e4\nfriction = 0.5\n"
+      "[[particles]]\nkind = \"list\"\npositions = [[0.6, 0.6]]\nmass = 1.0\nradius = 0.05\n"
+      "[[particles]]\nkind = \"file\"\nmass = 1.0\nradius = 0.05\nfile = \"" +
+      path +
+      "\"\n[[particles]]\nkind = \"list\"\npositions = [[0.8, 0.8]]\nmass = 1.0\n"
+      "radius = 0.05\n";
+  CHECK(model_of(deck).particles.inertia_factor == std::vector<Real>{0.5, 0.7, 1, 0.5});
+  CHECK(model_of(deck).particles.totals.materials[0].smallest_inertia_factor == 0.5);
+  CHECK(model_of(deck, {"particles.2.inertia_factor=0.25"}).particles.inertia_factor ==
+        std::vector<Real>{0.5, 0.7, 1, 0.25});
+  CHECK(contains(model_error(deck, {"particles.1.inertia_factor=0.5"}),
+                 "not used: the file has a column inertia_factor"));
+  for (const char* bad : {"0.0", "1.01", "-0.4"})
+    CHECK(contains(model_error(deck, {std::string("particles.0.inertia_factor=") + bad}),
+                   "must be a number above 0 and at most 1"));
+  CHECK(contains(
+      model_error(kSmallDeck + "[[contact.pairs]]\nstiffness = 1e4\n[[particles]]\nkind = \"list\"\n"
+                               "positions = [[0.6, 0.6]]\nmass = 1.0\nradius = 0.05\ninertia_factor = 0.5\n"),
+      "inertia_factor = 0.5: no particle rotates: no pair in contact.pairs has friction"));
+  CHECK(contains(
+      input_error([&] { read_particle_file(folder.write("q.csv", "x,y,inertia_factor\n0.1,0.2,1.1\n"), 2); }),
+      "q.csv:2: column inertia_factor = 1.1: must be at most 1, all mass at the radius"));
+}
+
 TEST_CASE("particles from HDF5") {
   const Folder folder;
   const std::string path = folder.file("p.h5");

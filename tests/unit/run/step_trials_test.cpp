@@ -203,6 +203,23 @@ TEST_CASE("impacts are tried at the speed of a fall where the law is not linear"
   CHECK(contains(trial_lines(trials[2]), "rebounds at 6.32 m/s with "));
 }
 
+// A spring across the normal of K f/(1 + f) swings as fast as the one along it: the slip is turned round, and
+// the centres keep (1 - f)/(1 + f) of their velocity across.
+TEST_CASE("the moment of inertia of a deck's particles is that of its trials") {
+  for (const Real factor : {Real(0.25), Real(2) / 3}) {
+    const Real across = (1 - factor) / (1 + factor);
+    std::vector<std::string> settings{"integrator.particles=velocity-verlet", "time.step=1e-6"};
+    for (const char* key : {"0.friction=10", "1.friction=10", "2.friction=10", "3.friction=10"})
+      settings.push_back(std::string("contact.pairs.") + key);
+    settings.push_back(fmt::format("contact.pairs.0.tangential_stiffness={}", 1e5 * factor / (1 + factor)));
+    for (const char* group : {"light", "heavy"})
+      settings.push_back(fmt::format("particles.{}.inertia_factor={}", group, factor));
+    const StepTrial trial = trials_of(settings)[0];
+    CHECK(near(trial.result.mean.across, across, {.absolute = 2e-3}));
+    CHECK(near(trial.result.exact.across, across, {.absolute = 2e-3}));
+  }
+}
+
 TEST_CASE("bodies are tried in implicit steps, and beside explicit particles with these alone") {
   const std::string body = kDeck +
                            "[[bodies]]\nname = \"ram\"\nposition = [0.7, 0.7, 0.7]\nmass = 0.01\n"

@@ -13,7 +13,7 @@ struct Grain {
   Vec3 velocity{};  // [m/s]
   Vec3 spin{};      // [rad/s]
   Real radius, mass;
-  Real inertia = sphere_inertia(mass, radius);  // [kg m^2]
+  Real inertia = moment_of_inertia(solid_inertia_factor(3), mass, radius);  // [kg m^2]
 
   TurningPartner partner() const { return {spin, radius, inertia}; }
   Real energy() const { return kinetic_energy(mass, velocity) + rotational_energy(inertia, spin); }

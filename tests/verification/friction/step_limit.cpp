@@ -91,6 +91,19 @@ TEST_CASE("a dense lattice that rubs is stable up to the step that is said, and 
   }
 }
 
+// Squares of the fastest: 16 k_t / (m f) of spins, 8 (K + k_t) / m of layers.
+TEST_CASE("a small moment of inertia shortens the step in a dense lattice, a large one does not") {
+  for (const auto& [factor, square] : {std::pair<Real, Real>{0.1, 160}, {1, 16}}) {
+    CAPTURE(factor);
+    const std::vector<std::string> settings{fmt::format("particles.lattice.inertia_factor={}", factor)};
+    const Model model = model_of(lattice_deck(kStiffness, 0, 1e-5, 1), settings);
+    const Real limit = pair_limits(model)[0].explicit_step;
+    CHECK(near(limit, 2 / std::sqrt(square * kStiffness / kMass), {.relative = 4 * kUlp}));
+    CHECK(growth(model, 0.98 * limit) < 3);
+    CHECK(growth(model, 1.03 * limit) > 100);
+  }
+}
+
 TEST_CASE("springs across the normal that are soft leave the limit to those along it") {
   const Model model = model_of(lattice_deck(kStiffness / 7, 0, 1e-5, 1));
   const Real limit = pair_limits(model)[0].explicit_step;
