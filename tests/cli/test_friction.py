@@ -128,7 +128,8 @@ class FrictionTest(CommandLineTest):
         self.run_deck(DONE, "smooth")
         rubbing, smooth = (self.history(name)[0].split(",") for name in ("rubbing", "smooth"))
         self.assertEqual([name for name in rubbing if name not in smooth],
-                         ["rotation/kinetic [J]", "rotation/elastic_friction [J]", "rotation/elastic_rolling [J]"])
+                         ["rotation/kinetic [J]", "rotation/elastic_friction [J]", "rotation/elastic_rolling [J]",
+                          "rotation/loss_friction [J]"])
         self.assertEqual([name for name in smooth if name not in rubbing], [])
 
     def test_check_says_how_contacts_rub_and_what_that_does_to_the_step(self):
