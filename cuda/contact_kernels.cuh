@@ -45,9 +45,9 @@ __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, Ro
 }
 
 // The same for a warp that shares out the contacts of its rows.
-template <class Word>
-__device__ ContactViews<WarpRows<Word>> warp_views(const PrunedViews& in, RowUse use, Real margin,
-                                                   WarpContacts<Word>* shared, bool idle) {
+template <class Word, int kWords>
+__device__ ContactViews<WarpRows<Word, kWords>> warp_views(const PrunedViews& in, RowUse use, Real margin,
+                                                           WarpContacts<Word, kWords>* shared, bool idle) {
   const PrunedRows<0>& r = in.rows;
   return {in.position,
           in.velocity,
@@ -248,7 +248,7 @@ class DeviceContactKernels {
                             const SurfaceRubRequest& request, StepSums* sums) const = 0;
   virtual void rubbing_system(Device device, const DeviceRubbingRequest& request) const = 0;
   virtual void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
-                             Real* contact_loss, Real* integrator_loss) const = 0;
+                             const RubbingBooksTo& to) const = 0;
   virtual void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
                       const FrozenLimits& to) const = 0;
   // n particles that leave, and what they leave to all others: see the items.

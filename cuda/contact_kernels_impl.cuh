@@ -111,7 +111,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
     if constexpr (LawOf<Laws>::kMoves)
       prefer_cache(rubbing_advance_kernel<Laws>,
-                   kRubbingBlocks * kStepBlock / kSlice * sizeof(WarpContacts<double>));
+                   kRubbingBlocks * kStepBlock / kSlice * sizeof(WarpContactsOf<double, Laws>));
     else
       prefer_cache(verlet_advance_kernel<0, Laws>, verlet_blocks(0) * sizeof(VerletStage::Shared));
   }
@@ -149,9 +149,7 @@ class ContactKernelsOf : public DeviceContactKernels {
     exact_sums(device, n, WallContactItem<Laws, SlicedRows>{{in, laws_}, choice}, sums, share);
   }
   void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const override {
-    for_each(
-        device, n,
-        ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out.energy, out.contacts, out.pairs, out.springs});
+    for_each(device, n, ContactEnergyItem<Laws, SlicedRows>{{in, laws_}, out});
   }
   void output(Device device, const DeviceViews& in, const OutputRequest& request) const override {
     with_contact_output(request, ContactWalk<Laws, SlicedRows>{in, laws_},
@@ -181,10 +179,9 @@ class ContactKernelsOf : public DeviceContactKernels {
     }
   }
   void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
-                     Real* contact_loss, Real* integrator_loss) const override {
+                     const RubbingBooksTo& to) const override {
     if constexpr (kFrictionAlone<LawOf<Laws>>)
-      for_each(device, n,
-               RubbingBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, contact_loss, integrator_loss});
+      for_each(device, n, RubbingBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
     else
       refuse_rubbing();
   }

@@ -23,7 +23,7 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       list(kernels->history() > 0),
       history(kernels->history(), {of.space.min, subdomain.period()}, stream),
       results(on, stream) {
-  now.rotates = other.rotates = of.rotates();
+  static_cast<FieldsThere&>(now) = static_cast<FieldsThere&>(other) = fields_there(of);
 }
 
 DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity, const Vec4* spin) {

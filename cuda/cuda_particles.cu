@@ -27,8 +27,9 @@ struct LeaverItem {
     if (slot >= room) return;
     const Real energy = energy_of_motion(in, i, gravity, period);
     const Real shift = verlet_energy_shift(verlet_step, in, i);
-    out[slot] = {id_of(in.row_key[i]),         i, xyz(x), false, energy, in.contact_loss[i],
-                 in.integrator_loss[i] - shift};
+    out[slot] = {
+        id_of(in.row_key[i]), i, xyz(x), false, energy, in.contact_loss[i], in.integrator_loss[i] - shift,
+        losses_of(in, i)};
   }
 };
 

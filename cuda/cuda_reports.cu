@@ -37,10 +37,12 @@ CudaReports::CudaReports(CudaItems& items, CudaBodies& bodies) : items_(items), 
 void CudaReports::queue_energies() {
   const auto n = static_cast<std::size_t>(items_.owned);
   const bool rotates = items_.now.rotates;
+  const bool attracts = items_.model.attracts();
+  cohesion_.resize(attracts ? n : 0);
   elastic_.resize(n), pairs_.resize(n), contacts_.resize(n), springs_.resize(rotates ? n : 0);
-  items_.kernels->energies(
-      items_.device(), items_.views(), items_.owned,
-      {elastic_.data(), contacts_.data(), pairs_.data(), rotates ? springs_.data() : nullptr});
+  items_.kernels->energies(items_.device(), items_.views(), items_.owned,
+                           {elastic_.data(), contacts_.data(), pairs_.data(),
+                            rotates ? springs_.data() : nullptr, attracts ? cohesion_.data() : nullptr});
 }
 
 ParticleLedger CudaReports::ledger(Real verlet_step) {
@@ -51,8 +53,8 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   const LedgerItem item{views_of(items_.now), elastic_.data(),           pairs_.data(),
                         items_.model.gravity, items_.subdomain.period(), verlet_step};
   items_.queue_sums(item, &Results::ledger);
-  if (now.rotates)
-    items_.queue_sums(RotationItem{now.angular_velocity.data(), springs_.data()}, &Results::rotation);
+  if (now.rotates) items_.queue_sums(RotationItem{views_of(now), springs_.data()}, &Results::rotation);
+  if (items_.model.attracts()) items_.queue_sums(CohesionItem{cohesion_.data()}, &Results::cohesion);
   Index* drifting = results.at(&Results::index);
   require_cuda(cudaMemsetAsync(drifting, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
   for_each(items_.device(), items_.owned, CountDriftingItem{now.drifting.data(), drifting});
@@ -61,6 +63,7 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   ParticleLedger out = make_particle_ledger(sums.data(), bodies_.side());
   if (now.rotates)
     out.rotation = make_rotation_energies(results.totals(results.fetch(&Results::rotation)).data());
+  if (items_.model.attracts()) out.cohesion = results.totals(results.fetch(&Results::cohesion))[0];
   out.drifting = items_.ranks.sum(std::int64_t{results.host().index});
   return out;
 }

@@ -49,7 +49,7 @@ class CudaReports : public Reports {
   Stream copy_stream_;  // for what goes out beside the steps
   OutputArrays output_;
   // Of each particle's contacts.
-  DeviceArray<Real> elastic_, pairs_;
+  DeviceArray<Real> elastic_, pairs_, cohesion_;
   DeviceArray<Index> contacts_;
   DeviceArray<SpringEnergies> springs_;
   DeviceArray<GlobalId> traced_ids_;

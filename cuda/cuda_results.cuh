@@ -31,6 +31,7 @@ struct Results {
       staying;  // particles in the interior, in the search, and on this rank from now on
   ExactSums<kWallTerms> wall;
   ExactSums<kRotationTerms> rotation;
+  ExactSums<1> cohesion;
 };
 
 class DeviceResults {

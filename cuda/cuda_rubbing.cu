@@ -336,8 +336,9 @@ Real CudaRubbingStep::error() {
 void CudaRubbingStep::accept() {
   ParticleArrays& now = items_.now;
   bodies_.find_rubs(rubbing_start());
-  items_.kernels->rubbing_books(items_.device(), items_.views(), items_.owned, rubbing_start(),
-                                now.contact_loss.data(), now.integrator_loss.data());
+  items_.kernels->rubbing_books(
+      items_.device(), items_.views(), items_.owned, rubbing_start(),
+      {now.contact_loss.data(), now.integrator_loss.data(), now.friction_loss.data()});
   items_.history.accepted();
   for_each(items_.device(), items_.owned,
            AcceptItem{step_views(), step_forces(), now.force.data(), now.integrator_loss.data()});

@@ -114,7 +114,8 @@ VerletRequest StepQueue::request() {
              items_.subdomain.snap_constant(),
              now.angular_velocity.data(),
              now.angular_acceleration.data(),
-             now.orientation.data()};
+             now.orientation.data(),
+             {now.friction_loss.data(), now.rolling_loss.data(), now.twisting_loss.data()}};
   r.force = now.force.data();
   r.box = items_.subdomain.box();
   r.drifting = now.drifting.data();
@@ -145,8 +146,8 @@ void StepQueue::convert_from_mixed() {
   for_each(items_.device(), items_.owned,
            FromMixedItem{workspace_.arrays.views(), control_.position_parity(), mixed_->quanta,
                          now.position.data(), now.velocity.data(), spins(), now.acceleration.data(),
-                         now.contact_loss.data(), now.drifting.data(), items_.model.gravity, h_,
-                         control_.seen().closed - mixed_->start});
+                         now.contact_loss.data(), now.friction_loss.data(), now.drifting.data(),
+                         items_.model.gravity, h_, control_.seen().closed - mixed_->start});
   mixed_.reset();
 }
 

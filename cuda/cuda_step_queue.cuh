@@ -17,7 +17,7 @@ struct MixedArrays {
   DeviceArray<MixedFraction> fraction;
   DeviceArray<MixedRest> rest;
   DeviceArray<MixedSpin> spin[2];
-  DeviceArray<Vec3f> spin_rest;
+  DeviceArray<MixedSpinRest> spin_rest;
 
   void resize(std::size_t items, std::size_t owned, bool rotates);
   MixedViews views();

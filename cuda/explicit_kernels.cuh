@@ -109,7 +109,7 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   Vec4 position, velocity;
   item.state.position = only(position, i), item.state.velocity = only(velocity, i);
   item.state.acceleration = acceleration;
-  TotalForce force;
+  typename decltype(item)::Total force;
   if (i < r.rows.end) force = item.forces.total(i);
   stage.await();
   Real d_squared = 0;
@@ -124,6 +124,14 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   close_by_last_block(largest_of_step, i < r.active ? d_squared : 0, r.rows.step_blocks, *r.control);
 }
 
+// The words of what a contact of a law does: force, torque, loss, and its kinds.
+template <class Laws>
+inline constexpr int kWordsOf = 7 + kLossKindsOf<LawOf<Laws>>;
+template <class Word, class Laws>
+using WarpContactsOf = WarpContacts<Word, kWordsOf<Laws>>;
+template <class Word, class Laws>
+using WarpRowsOf = WarpRows<Word, kWordsOf<Laws>>;
+
 // Registers for so many blocks: what a contact takes must not spill.
 inline constexpr int kRubbingBlocks = 4;
 
@@ -135,7 +143,7 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
   if (r.control->stop) return;
   const int p = r.control->parity[0], v = r.control->parity[1];
   __shared__ union {
-    WarpContacts<double> contacts;
+    WarpContactsOf<double, Laws> contacts;
     alignas(16) unsigned char stage[kSlice * sizeof(Vec4)];
   } shared[kStepBlock / kSlice];  // of a warp each
   __shared__ BlockLargest largest_of_step;
@@ -145,16 +153,16 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
   auto& room = shared[threadIdx.x / kSlice];
   const auto views =
       at_open_step<Laws>(warp_views(r.in, r.control->rows, r.control->margin, &room.contacts, idle), r);
-  VerletAdvanceItem<Laws, WarpRows<double>> item{
+  VerletAdvanceItem<Laws, WarpRowsOf<double, Laws>> item{
       {explicit_walk(views, laws, r.state.h), r.gravity, nullptr, nullptr, nullptr}, r.state};
   item.forces.walk.in.position = p == 0 ? r.position[0] : r.position[1];
   item.forces.walk.in.velocity = v == 0 ? r.velocity[0] : r.velocity[1];
   item.forces.walk.in.spin = v == 0 ? r.spin[0] : r.spin[1];
-  TotalForce force;
+  typename decltype(item)::Total force;
   if (first < r.rows.end) {
     auto self = item.forces.walk.self(idle ? r.rows.end - 1 : i);
     self.i = i;
-    force = {self.u.w * r.gravity, 0, {}};
+    force = item.forces.weight(self);
     item.forces.add_neighbors(self, force);
   }
   if (!idle) item.forces.add_surfaces(item.forces.walk.self(i), force);
@@ -211,7 +219,7 @@ __global__ void __launch_bounds__(kStepBlock, kMixedRubbingBlocks)
   await_step_before();
   if (r.control->stop) return;
   const int parity = r.control->parity[0];
-  __shared__ WarpContacts<float> contacts[kStepBlock / kSlice];
+  __shared__ WarpContactsOf<float, Laws> contacts[kStepBlock / kSlice];
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
   const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
@@ -221,13 +229,13 @@ __global__ void __launch_bounds__(kStepBlock, kMixedRubbingBlocks)
   const MixedPlace* place = parity == 0 ? r.state.place[0] : r.state.place[1];
   const MixedMotion* motion = parity == 0 ? r.state.motion[0] : r.state.motion[1];
   const MixedSpin* spin = parity == 0 ? r.state.spin[0] : r.state.spin[1];
-  const MixedRubbingItem<Laws, WarpRows<float>> item{
+  const MixedRubbingItem<Laws, WarpRowsOf<float, Laws>> item{
       {views, laws, {{place, motion, r.state.fraction, r.grid}, spin, r.h}},
       r.gravity,
       r.state,
       r.orientation,
       parity};
-  TotalForce force;
+  typename decltype(item)::Total force;
   if (first < r.rows.end) {
     auto self = item.walk.self(idle ? r.rows.end - 1 : i);
     self.i = i;

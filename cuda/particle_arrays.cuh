@@ -7,16 +7,14 @@
 
 namespace scree {
 
-struct ParticleArrays : FieldArrays<DeviceArray> {
-  bool rotates = false;  // Model::rotates: whether there are arrays of rotation
-
+struct ParticleArrays : FieldArrays<DeviceArray>, FieldsThere {
   // Room for so many items and particles; the first `keep` items stay.
   void grow(std::size_t items, std::size_t owned, std::size_t keep, cudaStream_t stream) {
     for_each_array<kItemArrays>(
-        rotates, [&](auto& array) { array.grow(items, keep, stream); }, *this);
+        FieldsThere(*this), [&](auto& array) { array.grow(items, keep, stream); }, *this);
     keep = std::min(keep, owned);
     for_each_array<kOwnedArrays>(
-        rotates, [&](auto& array) { array.grow(owned, keep, stream); }, *this);
+        FieldsThere(*this), [&](auto& array) { array.grow(owned, keep, stream); }, *this);
   }
 };
 
@@ -30,6 +28,7 @@ struct ReorderItem {
     const auto copy = [&](auto* new_values, const auto* values) { new_values[i] = values[k]; };
     for_each_array<kAllArrays>(copy, to, from);
     if (from.angular_velocity != nullptr) for_each_array<kRotationArrays>(copy, to, from);
+    if (from.rolling_loss != nullptr) for_each_array<kOwnedRolling>(copy, to, from);
   }
 };
 

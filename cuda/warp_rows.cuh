@@ -6,24 +6,24 @@
 
 namespace scree {
 
-// Where a warp keeps what its lanes have found and evaluated, and what a lane's contacts sum up to. Word: of
+// Where a warp keeps what its lanes have found and evaluated, and what a lane's contacts sum up to. Words: of
 // a result.
-template <class Word>
+template <class Word, int kWords>
 struct WarpContacts {
-  static constexpr int kRoom = 12;  // entries of a row that are shared out at a time
-  static constexpr int kWords = 7;  // of a result, an odd number: lanes that store theirs meet other banks
+  static constexpr int kRoom = 12;            // entries of a row that are shared out at a time
+  static constexpr int kStride = kWords | 1;  // odd: lanes that store their results meet other banks
   Index neighbor[kRoom][kSlice];
   RowPlace place[kRoom][kSlice];
-  Word result[kSlice][kWords];
-  double sum[kSlice][kWords];
+  Word result[kSlice][kStride];
+  double sum[kSlice][kStride];
 };
 
 // Each lane looks for the entries of its row that touch; the lanes then evaluate what all have found, one
 // each, whosever it is; and the results are added up row by row, in the order of the row. All lanes of a warp
 // go through it together; their rows are a slice.
-template <class Word>
+template <class Word, int kWords>
 struct WarpRows {
-  using Contacts = WarpContacts<Word>;
+  using Contacts = WarpContacts<Word, kWords>;
   static constexpr bool kShared = true;
   PrunedRows<0> rows;
   Contacts* shared;  // of the warp
@@ -33,7 +33,7 @@ struct WarpRows {
   // to sum, a structure of as many doubles. It is called once for each, by any lane. test: as in PrunedRows.
   template <class Test, class Evaluate, class Sum>
   __device__ void sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
-    static_assert(sizeof(Sum) == sizeof(shared->sum[0]));
+    static_assert(sizeof(Sum) == kWords * sizeof(double));
     const Index lane = lane_of_warp();
     reinterpret_cast<Sum&>(shared->sum[lane]) = sum;
     const std::int64_t slice = rows.rows.slice_start[i / kSlice], start = slice + lane;
@@ -74,10 +74,11 @@ struct WarpRows {
   }
 
  private:
+  static constexpr int kLanes = kWords <= 8 ? 8 : 16;  // that add up the results of an owner
   __device__ static Index lane_of_warp() { return static_cast<Index>(threadIdx.x) % kSlice; }
   template <class Result>
-  __device__ static void put(Word (&words)[Contacts::kWords], const Result& result) {
-    static_assert(sizeof(Result) == sizeof(words));
+  __device__ static void put(Word (&words)[Contacts::kStride], const Result& result) {
+    static_assert(sizeof(Result) == kWords * sizeof(Word));
     reinterpret_cast<Result&>(words) = result;
   }
   __device__ void keep(std::int64_t slot, Index j, Index place) const {
@@ -114,20 +115,20 @@ struct WarpRows {
     }
   }
 
-  // The results of the turns begin ... end - 1, of so many owners, four at a time: each lane adds up one of
+  // The results of the turns begin ... end - 1, of so many owners, a few at a time: each lane adds up one of
   // the numbers.
   __device__ void add_up(int first_owner, int owners, Index begin, Index end, Index before,
                          Index after) const {
 #pragma unroll 1
-    for (int next = 0; next < owners; next += 4) {
-      const int owner = first_owner + next + lane_of_warp() / 8, word = lane_of_warp() % 8;
+    for (int next = 0; next < owners; next += kSlice / kLanes) {
+      const int owner = first_owner + next + lane_of_warp() / kLanes, word = lane_of_warp() % kLanes;
       const Index from = max(__shfl_sync(~0u, before, owner), begin),
                   to = min(__shfl_sync(~0u, after, owner), end);
-      if (from >= to || word >= Contacts::kWords) continue;
+      if (from >= to || word >= kWords) continue;
       double sum = shared->sum[owner][word];
       const Word* result = shared->result[from - begin] + word;
 #pragma unroll 2
-      for (Index left = to - from; left > 0; --left, result += Contacts::kWords) sum += *result;
+      for (Index left = to - from; left > 0; --left, result += Contacts::kStride) sum += *result;
       shared->sum[owner][word] = sum;
     }
   }

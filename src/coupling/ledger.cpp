@@ -13,6 +13,7 @@ void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut
     carried_out.energy += leaver.energy;
     carried_out.contact_loss += leaver.contact_loss;
     carried_out.integrator_loss += leaver.integrator_loss;
+    carried_out.losses.add(leaver.losses);
   }
 }
 

@@ -43,6 +43,7 @@ struct CarriedOut {
   std::int64_t removed = 0;
   Real energy = 0;                             // see Ledger::carried_out [J]
   Real contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
+  RubbingLosses losses{};                      // of contact_loss
 };
 
 void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out);

@@ -29,13 +29,6 @@ struct RubbingRequest {
   Real* sharpness;
 };
 
-struct EnergyOutputs {
-  Real* energy;
-  Index* contacts;
-  Real* pairs;
-  SpringEnergies* springs;  // null where particles do not rotate
-};
-
 class ContactKernels {
  public:
   virtual ~ContactKernels() = default;
@@ -77,7 +70,7 @@ class ContactKernels {
   virtual void rubbing_system(const ContactViews<PackedRows>& in, Index n,
                               const RubbingRequest& request) const = 0;
   virtual void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
-                             Real* contact_loss, Real* integrator_loss) const = 0;
+                             const RubbingBooksTo& to) const = 0;
   virtual void freeze(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
                       const FrozenLimits& to) const = 0;
   // n particles that leave, and what they leave to all others: see the items.

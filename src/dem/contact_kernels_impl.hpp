@@ -67,9 +67,7 @@ class CpuContactKernels : public ContactKernels {
                       sums, Ranks());
   }
   void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
-    for_each(
-        Serial{}, n,
-        ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out.energy, out.contacts, out.pairs, out.springs});
+    for_each(Serial{}, n, ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out});
   }
   void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const override {
     with_contact_output(request, ContactWalk<Laws, PackedRows>{in, laws_},
@@ -95,9 +93,9 @@ class CpuContactKernels : public ContactKernels {
     });
   }
   void rubbing_books(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
-                     Real* contact_loss, Real* integrator_loss) const override {
+                     const RubbingBooksTo& to) const override {
     over_rubbing_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, RubbingBooksItem<Laws, PackedRows>{walk, contact_loss, integrator_loss});
+      for_each(Serial{}, n, RubbingBooksItem<Laws, PackedRows>{walk, to});
     });
   }
   void freeze(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,

@@ -27,7 +27,8 @@ VerletViews CpuExplicitRun::views_of(std::vector<Vec4>& position, std::vector<Ve
           items_.subdomain.snap_constant(),
           store.rotates ? spin.data() : nullptr,
           store.angular_acceleration.data(),
-          store.orientation.data()};
+          store.orientation.data(),
+          {store.friction_loss.data(), store.rolling_loss.data(), store.twisting_loss.data()}};
 }
 
 // What all ranks must know of the open step.

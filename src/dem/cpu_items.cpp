@@ -17,7 +17,7 @@ CpuItems::CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKern
       surfaces(of, subdomain, side, *kernels),
       history(kernels->history(), {of.space.min, subdomain.period()}),
       hht(hht_coefficients(of.integrator.hht_alpha)) {
-  store.rotates = of.rotates();
+  static_cast<FieldsThere&>(store) = fields_there(of);
 }
 
 CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,

@@ -60,7 +60,8 @@ std::vector<Leaver> CpuParticles::outside() {
     const Real energy = energy_of_motion(views, i, model.gravity, items_.subdomain.period());
     const Real shift = verlet_energy_shift(verlet_step(model), views, i);
     leavers.push_back({id_of(store.row_key[i]), i, p, items_.subdomain.beyond_wall(p), energy,
-                       store.contact_loss[i], store.integrator_loss[i] - shift, 0, ranks.rank()});
+                       store.contact_loss[i], store.integrator_loss[i] - shift, losses_of(views, i), 0,
+                       ranks.rank()});
   }
   items_.find_loads();
   items_.kernels->leavers(items_.views(), items_.subdomain.box(), static_cast<Index>(leavers.size()),

@@ -14,10 +14,12 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   std::vector<Real> elastic(n), pairs(n);
   std::vector<Index> touching(n);
   std::vector<SpringEnergies> springs(store.rotates ? n : 0);
+  const bool attracts = items_.model.attracts();
+  std::vector<Real> cohesion(attracts ? n : 0);
   need_loads();
-  items_.kernels->energies(
-      items_.views(), n,
-      {elastic.data(), touching.data(), pairs.data(), store.rotates ? springs.data() : nullptr});
+  items_.kernels->energies(items_.views(), n,
+                           {elastic.data(), touching.data(), pairs.data(),
+                            store.rotates ? springs.data() : nullptr, attracts ? cohesion.data() : nullptr});
 
   const LedgerItem item{views_of(store),           elastic.data(), pairs.data(), items_.model.gravity,
                         items_.subdomain.period(), verlet_step};
@@ -26,9 +28,13 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   ParticleLedger out = make_particle_ledger(sums, items_.side);
   if (store.rotates) {
     Real of_rotation[kRotationTerms];
-    reproducible_sums(n, RotationItem{store.angular_velocity.data(), springs.data()}, of_rotation,
-                      items_.ranks);
+    reproducible_sums(n, RotationItem{views_of(store), springs.data()}, of_rotation, items_.ranks);
     out.rotation = make_rotation_energies(of_rotation);
+  }
+  if (attracts) {
+    Real sum[1];
+    reproducible_sums(n, CohesionItem{cohesion.data()}, sum, items_.ranks);
+    out.cohesion = sum[0];
   }
   for (Index i = 0; i < n; ++i) out.drifting += store.drifting[i];
   out.drifting = items_.ranks.sum(out.drifting);

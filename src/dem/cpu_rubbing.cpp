@@ -230,8 +230,9 @@ void CpuRubbingStep::accept() {
   ParticleStore& store = items_.store;
   const Index n = items_.layout.owned;
   find_rubs();
-  items_.kernels->rubbing_books(items_.views(), n, rubbing_start(), store.contact_loss.data(),
-                                store.integrator_loss.data());
+  items_.kernels->rubbing_books(
+      items_.views(), n, rubbing_start(),
+      {store.contact_loss.data(), store.integrator_loss.data(), store.friction_loss.data()});
   items_.history.accepted();
   items_.side.book_step();
   for_each(Serial{}, n,

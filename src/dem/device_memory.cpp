@@ -22,6 +22,7 @@ constexpr double kItemFields = 2 * bytes_in_arrays<kItemArrays>();
 constexpr double kOwnedFields = 2 * bytes_in_arrays<kOwnedArrays>();
 constexpr double kSpinFields = 2 * bytes_in_arrays<kSpins>();  // where particles rotate
 constexpr double kOwnedSpinFields = 2 * bytes_in_arrays<kOwnedSpins>();
+constexpr double kRollingFields = 2 * bytes_in_arrays<kOwnedRolling>();  // where contacts resist rolling
 constexpr double kSortArrays =
     4 * sizeof(Index) + 2 * sizeof(Index);        // keys and order twice, the library's buffers
 constexpr double kRowArrays = 4 * sizeof(Index);  // lengths of rows, and three for those of the surfaces
@@ -38,6 +39,7 @@ constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry) + sizeof(Real);  /
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);
+constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts attract
 constexpr double kCellBytes = 2 * sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
@@ -115,6 +117,8 @@ std::size_t device_memory(const Model& model) {
   double bytes = n.items * kItemFields * spare + n.particles * kOwnedFields;
   if (model.rotates())
     bytes += n.items * kSpinFields * spare + n.particles * (kOwnedSpinFields + kSpinReportArrays);
+  if (model.rolls()) bytes += n.particles * kRollingFields;
+  if (model.attracts()) bytes += n.particles * kCohesionReportArrays;
   bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays : 0);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
   bytes +=
@@ -127,7 +131,7 @@ std::size_t device_memory(const Model& model) {
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
-    if (model.rotates()) bytes += n.items * 2 * sizeof(MixedSpin) + n.particles * sizeof(Vec3f);
+    if (model.rotates()) bytes += n.items * 2 * sizeof(MixedSpin) + n.particles * sizeof(MixedSpinRest);
   }
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
            static_cast<double>(kRecordsAtOnce) * sizeof(Particle);

@@ -19,6 +19,7 @@ struct Leaver {
   bool lost;                           // beyond a side that is a wall, which no particle can leave through
   Real energy;                         // kinetic and gravitational [J]
   Real contact_loss, integrator_loss;  // booked on it so far [J]
+  RubbingLosses losses;                // of contact_loss
   Real elastic = 0;                    // of its contacts, which end with it [J]
   int rank = 0;                        // that owns it
 };

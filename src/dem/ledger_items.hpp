@@ -73,12 +73,29 @@ struct LedgerItem {
   }
 };
 
+// Where contacts attract, a sum of its own, too.
+struct CohesionItem {
+  const Real* cohesion;  // of ContactEnergyItem [J]
+  struct Term {
+    Real value[1];
+  };
+
+  SCREE_HD Term operator()(Index i) const { return {{cohesion[i]}}; }
+};
+
+// What friction and resistance to rolling and twisting took of the particle's share of its contacts.
+SCREE_HD RubbingLosses losses_of(const ParticleViews& in, Index i) {
+  const auto value = [i](const Real* losses) { return losses != nullptr ? losses[i] : 0; };
+  return {{value(in.friction_loss), value(in.rolling_loss), value(in.twisting_loss)}};
+}
+
 // Where particles rotate, sums of their own: those of other runs stay as they are.
 enum RotationTerm {
   kRotational,       // kinetic energy [J]
   kFrictionSprings,  // elastic energies [J]
   kRollingSprings,
-  kRotationTerms
+  kRubbingLosses,  // by LossKind [J]
+  kRotationTerms = kRubbingLosses + kLossKinds
 };
 
 struct RotationTerms {
@@ -86,12 +103,14 @@ struct RotationTerms {
 };
 
 struct RotationItem {
-  const Vec4* spin;               // angular velocity, moment of inertia
+  ParticleViews in;
   const SpringEnergies* springs;  // of ContactEnergyItem
 
   SCREE_HD RotationTerms operator()(Index i) const {
-    const Vec4 w = spin[i];
-    return {{rotational_energy(w.w, xyz(w)), springs[i].friction, springs[i].rolling}};
+    const Vec4 w = in.angular_velocity[i];
+    const RubbingLosses losses = losses_of(in, i);
+    return {{rotational_energy(w.w, xyz(w)), springs[i].friction, springs[i].rolling,
+             losses.of[kFrictionLoss], losses.of[kRollingLoss], losses.of[kTwistingLoss]}};
   }
 };
 

@@ -46,13 +46,19 @@ struct alignas(16) MixedSpin {
   float inertia;  // [kg m^2]
 };
 
+// What a single leaves out of the angular velocity.
+struct alignas(16) MixedSpinRest {
+  float x, y, z;   // [rad/s]
+  float friction;  // dissipated by it since the last conversion [J]
+};
+
 struct MixedViews {
   MixedPlace* place[2];  // all items; a step reads one and writes the other
   MixedMotion* motion[2];
   MixedFraction* fraction;  // owned particles
   MixedRest* rest;
-  MixedSpin* spin[2];  // all items; null where particles do not rotate
-  Vec3f* spin_rest;    // what a single leaves out of it [rad/s]
+  MixedSpin* spin[2];        // all items; null where particles do not rotate
+  MixedSpinRest* spin_rest;  // owned particles; likewise
 };
 
 // Grid of quanta for pairs up to `reach` [m] apart: eight times that far before differences wrap.
@@ -157,7 +163,8 @@ struct ToMixedItem {
       const Vec4 w = spin[i];
       const Vec3f single = in_single(xyz(w));
       out.spin[0][i] = {single.x, single.y, single.z, static_cast<float>(w.w)};
-      out.spin_rest[i] = in_single(xyz(w) - in_double(single));
+      const Vec3f left = in_single(xyz(w) - in_double(single));
+      out.spin_rest[i] = {left.x, left.y, left.z, 0};
     }
   }
 };
@@ -169,7 +176,7 @@ struct FromMixedItem {
   QuantumGrid grid;
   Vec4 *position, *velocity, *spin;  // null unless particles rotate
   Vec3* acceleration;
-  Real* contact_loss;
+  Real *contact_loss, *friction_loss;  // the second: null likewise
   const std::uint8_t* drifting;
   Vec3 gravity;
   Real h;
@@ -197,7 +204,9 @@ struct FromMixedItem {
  private:
   SCREE_HD void take_spin(Index i) const {
     const MixedSpin w = (parity == 0 ? in.spin[0] : in.spin[1])[i];
-    spin[i] = vec4(Vec3{w.x, w.y, w.z} + in_double(in.spin_rest[i]), spin[i].w);
+    const MixedSpinRest rest = in.spin_rest[i];
+    spin[i] = vec4(Vec3{w.x, w.y, w.z} + Vec3{rest.x, rest.y, rest.z}, spin[i].w);
+    friction_loss[i] += rest.friction;
   }
   // No list covers what drifts, so that it may be farther away than places tell apart; but it feels gravity
   // alone.

@@ -69,18 +69,19 @@ struct MixedRubbingItem {
   int parity;
 
   using Self = OverMixedMotion::Self;
-  SCREE_HD TotalForce weight(const Self& self) const { return {Real(self.u.mass) * gravity, 0, {}}; }
-  SCREE_HD void add_neighbors(const Self& self, TotalForce& sum) const {
+  using Total = TotalForce<kLossKindsOf<LawOf<Laws>>>;
+  SCREE_HD Total weight(const Self& self) const { return {Real(self.u.mass) * gravity, 0, {}, {}}; }
+  SCREE_HD void add_neighbors(const Self& self, Total& sum) const {
     walk.template sum_neighbors<true>(self, SingleLoadOf{}, sum);
-    sum.loss_power *= kPairShare;
+    sum.share();
   }
-  SCREE_HD void add_surfaces(const Self& self, TotalForce& sum) const {
-    walk.template surfaces<true>(self, LoadOf{}, [&](const auto& load, Index) {
-      sum += TotalForce{load.force, load.loss, load.torque_i};
+  SCREE_HD void add_surfaces(const Self& self, Total& sum) const {
+    walk.template surfaces<true>(self, TurningLoadOf{}, [&](const auto& contact, Index) {
+      sum += Total::of(contact.load, contact.losses);
     });
   }
   // Returns the square of the displacement.
-  SCREE_HD Real advance(const Self& self, const TotalForce& total) const {
+  SCREE_HD Real advance(const Self& self, const Total& total) const {
     const Index i = self.i;
     const Real h = walk.look.h;
     const QuantumGrid& grid = walk.look.at.grid;
@@ -94,19 +95,21 @@ struct MixedRubbingItem {
     state.fraction[i] = part;
     (parity == 0 ? state.motion[1] : state.motion[0])[i] = {seen.x, seen.y, seen.z, u.mass};
     state.rest[i] = {left.x, left.y, left.z, rest.loss + static_cast<float>(h * total.loss_power)};
-    turn(self, h, total.torque);
+    turn(self, h, total.torque, static_cast<float>(total.losses.of[kFrictionLoss]));
     return dot(dx, dx);
   }
 
  private:
-  SCREE_HD void turn(const Self& self, Real h, Vec3 torque) const {
+  SCREE_HD void turn(const Self& self, Real h, Vec3 torque, float friction) const {
     const Index i = self.i;
     const MixedSpin w = self.spin;
-    const Vec3 old = Vec3{w.x, w.y, w.z} + in_double(state.spin_rest[i]);
+    const MixedSpinRest rest = state.spin_rest[i];
+    const Vec3 old = Vec3{w.x, w.y, w.z} + Vec3{rest.x, rest.y, rest.z};
     const Vec3 spin = verlet_next_middle(h, old, reciprocal(w.inertia) * torque);
     const Vec3f seen = in_single(spin);
     (parity == 0 ? state.spin[1] : state.spin[0])[i] = {seen.x, seen.y, seen.z, w.inertia};
-    state.spin_rest[i] = in_single(spin - in_double(seen));
+    const Vec3f left = in_single(spin - in_double(seen));
+    state.spin_rest[i] = {left.x, left.y, left.z, rest.friction + friction};
     orientation[i] = turned_by(orientation[i], spin, h);
   }
 };

@@ -41,7 +41,12 @@
   FIELD(angular_acceleration, Vec3, "rad/s^2", "angular acceleration that the next step starts from",        \
         kState | kRotation | kOutput)                                                                        \
   FIELD(orientation, Quaternion, "1", "turn since t = 0, as a unit quaternion w, x, y, z",                   \
-        kState | kRotation | kOutput)
+        kState | kRotation | kOutput)                                                                        \
+  FIELD(friction_loss, Real, "J", "the part of contact_loss that friction took", kState | kRotation | kOutput) \
+  FIELD(rolling_loss, Real, "J", "the part of contact_loss that resistance to rolling took",                 \
+        kState | kRotation | kRolling | kOutput)                                                             \
+  FIELD(twisting_loss, Real, "J", "the part of contact_loss that resistance to twisting took",               \
+        kState | kRotation | kRolling | kOutput)
 // clang-format on
 
 namespace scree {
@@ -52,6 +57,16 @@ enum FieldParts : unsigned {
   kGhost = 4,      // a FIELD that ghosts have, too: copied when a list is built
   kOutput = 8,     // offered to snapshots (output.fields)
   kRotation = 16,  // there where particles rotate (Model::rotates), else an empty array and no state
+  kRolling = 32,   // of these, there where contacts resist rolling or twisting, too (Model::rolls)
+};
+
+// Which fields there are beside those of every run.
+struct FieldsThere {
+  bool rotates = false, rolls = false;  // those with kRotation; of these those with kRolling
+
+  bool has(unsigned parts) const {
+    return ((parts & kRotation) == 0 || rotates) && ((parts & kRolling) == 0 || rolls);
+  }
 };
 
 // Orders the entries of a neighbour list's row, by global id and then by image, whatever the local indices
@@ -94,13 +109,18 @@ enum FieldArrayKind : unsigned {
   kOwnedArrays = 8,                               // other FIELD: owned particles alone
   kSpins = 16,                                    // PACKED with kRotation
   kOwnedSpins = 32,                               // FIELD with kRotation: owned particles alone
+  kOwnedRolling = 64,                             // likewise, with kRolling
   kItemArrays = kNames | kMotion | kGhostCopies,  // all items
   kAllArrays = kItemArrays | kOwnedArrays,
-  kRotationArrays = kSpins | kOwnedSpins
+  kRotationArrays = kSpins | kOwnedSpins,
+  kOptionalArrays = kRotationArrays | kOwnedRolling
 };
 
 constexpr unsigned kind_of_field(unsigned parts) {
-  return (parts & kRotation) != 0 ? kOwnedSpins : (parts & kGhost) != 0 ? kGhostCopies : kOwnedArrays;
+  return (parts & kRolling) != 0    ? kOwnedRolling
+         : (parts & kRotation) != 0 ? kOwnedSpins
+         : (parts & kGhost) != 0    ? kGhostCopies
+                                    : kOwnedArrays;
 }
 constexpr unsigned kind_of_packed(unsigned parts) { return (parts & kRotation) != 0 ? kSpins : kMotion; }
 
@@ -118,12 +138,14 @@ constexpr SCREE_HD void for_each_array(const Visit& visit, Sets&... sets) {
   if constexpr ((kinds & kNames) != 0) visit(sets.row_key...);
 }
 
-// With those of the same items that are there where particles rotate.
+// With those of the same items that are there beside them.
 template <unsigned kinds, class Visit, class... Sets>
-void for_each_array(bool rotates, const Visit& visit, Sets&... sets) {
+void for_each_array(const FieldsThere& there, const Visit& visit, Sets&... sets) {
   constexpr unsigned kSpinsToo =
       ((kinds & kMotion) != 0 ? kSpins : 0u) | ((kinds & kOwnedArrays) != 0 ? kOwnedSpins : 0u);
-  rotates ? for_each_array<kinds | kSpinsToo>(visit, sets...) : for_each_array<kinds>(visit, sets...);
+  constexpr unsigned kRollingToo = (kinds & kOwnedArrays) != 0 ? kOwnedRolling : 0u;
+  there.rotates ? for_each_array<kinds | kSpinsToo>(visit, sets...) : for_each_array<kinds>(visit, sets...);
+  if (there.rolls) for_each_array<kRollingToo>(visit, sets...);
 }
 
 // Whether an array has any values.
@@ -186,7 +208,7 @@ SCREE_HD void put_particle(Arrays& arrays, Index i, const Particle& p) {
 template <class Arrays>
 ParticleViews views_of(Arrays& arrays) {
   ParticleViews views;
-  for_each_array<kAllArrays | kRotationArrays>([](auto*& view, auto& array) { view = array.data(); }, views,
+  for_each_array<kAllArrays | kOptionalArrays>([](auto*& view, auto& array) { view = array.data(); }, views,
                                                arrays);
   return views;
 }

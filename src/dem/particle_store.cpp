@@ -24,14 +24,14 @@ Index count_on_rank(std::size_t particles, const ParticleTotals& of_all) {
 void ParticleStore::load(std::span<const Particle> records) {
   owned = active = static_cast<Index>(records.size());
   for_each_array<kAllArrays>(
-      rotates, [&](auto& array) { array.resize(records.size()); }, *this);
+      FieldsThere(*this), [&](auto& array) { array.resize(records.size()); }, *this);
   for (Index i = 0; i < owned; ++i) put_particle(*this, i, records[static_cast<std::size_t>(i)]);
 }
 
 void ParticleStore::add(const Particle& particle) {
   const auto n = static_cast<std::size_t>(owned) + 1;
   for_each_array<kAllArrays>(
-      rotates, [&](auto& array) { array.resize(n); }, *this);
+      FieldsThere(*this), [&](auto& array) { array.resize(n); }, *this);
   put_particle(*this, owned++, particle);
 }
 
@@ -49,14 +49,14 @@ void ParticleStore::reorder(const std::vector<Index>& from) {
     for (std::size_t i = 0; i < from.size(); ++i) sorted[i] = values[static_cast<std::size_t>(from[i])];
     values.swap(sorted);
   };
-  for_each_array<kAllArrays>(rotates, permute, *this);
+  for_each_array<kAllArrays>(FieldsThere(*this), permute, *this);
   owned = static_cast<Index>(from.size());
 }
 
 void ParticleStore::resize_items(Index items) {
   const auto n = static_cast<std::size_t>(items);
   for_each_array<kItemArrays>(
-      rotates, [&](auto& array) { array.resize(n); }, *this);
+      FieldsThere(*this), [&](auto& array) { array.resize(n); }, *this);
 }
 
 std::vector<Particle> initial_records(const ParticleSet& set, const Subdomain& subdomain) {

@@ -14,11 +14,12 @@ namespace scree {
 template <class T>
 using HostArray = std::vector<T>;
 
+inline FieldsThere fields_there(const Model& model) { return {model.rotates(), model.rolls()}; }
+
 // Items: owned particles [0, owned), ghosts [owned, owned + ghosts), shapes of bodies after them. Owned
 // particles in the pair search come first; those that drift outside stand at the end of the owned. Which
 // arrays hold all items and which the owned particles, their kinds say.
-struct ParticleStore : FieldArrays<HostArray> {
-  bool rotates = false;  // Model::rotates: whether there are arrays of rotation
+struct ParticleStore : FieldArrays<HostArray>, FieldsThere {
   Index owned = 0;
   Index active = 0;  // owned particles in the pair search
 

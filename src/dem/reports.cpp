@@ -19,7 +19,11 @@ ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies)
 }
 
 RotationEnergies make_rotation_energies(const Real* sums) {
-  return {sums[kRotational], sums[kFrictionSprings], sums[kRollingSprings]};
+  const Real* losses = sums + kRubbingLosses;
+  return {sums[kRotational],
+          sums[kFrictionSprings],
+          sums[kRollingSprings],
+          {{losses[kFrictionLoss], losses[kRollingLoss], losses[kTwistingLoss]}}};
 }
 
 }  // namespace scree

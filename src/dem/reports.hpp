@@ -16,6 +16,7 @@ namespace scree {
 struct RotationEnergies {
   Real kinetic = 0;                                // of the rotation
   Real friction_springs = 0, rolling_springs = 0;  // of contact_elastic: SpringEnergies
+  RubbingLosses losses{};                          // of contact_loss
 
   friend bool operator==(const RotationEnergies&, const RotationEnergies&) = default;
 };
@@ -27,6 +28,7 @@ struct ParticleLedger {
   Vec3 momentum;                                             // [kg m/s]
   Vec3 angular_momentum;                                     // about the origin, with spins [kg m^2/s]
   RotationEnergies rotation;
+  Real cohesion = 0;          // of contact_elastic, where contacts attract: ContactEnergy [J]
   std::int64_t contacts = 0;  // touching pairs, walls and body shapes included
   std::int64_t drifting = 0;  // particles outside that drift on
 };

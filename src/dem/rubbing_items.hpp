@@ -174,20 +174,22 @@ struct RubbingContactOf {
 
 // What it adds to the energy ledger, and the history.
 struct RubbingBooks : ContactBooks {
+  Real friction;  // of what is dissipated [J]
   bool acts, lasts;
   ContactHistory history;
 };
 template <class Law>
 SCREE_HD RubbingBooks rubbing_books(const Law& law, const RubbingPath& c, const RubbingContact& at,
                                     bool resolve_events) {
-  if (!at.acts) return {{}, false, false, {}};
-  RubbingBooks out{StepBooksOf{{resolve_events}}(law, c), true, at.lasts, at.history};
+  if (!at.acts) return {{}, 0, false, false, {}};
+  RubbingBooks out{StepBooksOf{{resolve_events}}(law, c), 0, true, at.lasts, at.history};
   const StepRub& rub = at.rub;
   const Vec3 force = at.leverage0 * rub.start + at.leverage * rub.step;
   const Vec3 moment = cross(c.normal0, rub.start) + cross(c.normal1, rub.step);
   const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel));
   const Real lost = rub.losses.sum();
   out.dissipated += lost, out.integrator += (rub.stored0 - rub.stored1) - work - lost;
+  out.friction = lost;
   return out;
 }
 
@@ -345,21 +347,28 @@ struct RubbingSystemItem {
   }
 };
 
+// Where the books of an implicit step in which contacts rub go; friction: of contact [J].
+struct RubbingBooksTo {
+  Real *contact, *integrator, *friction;
+};
+
 // Books particle i's share of its contacts over an accepted step, and stores what they remember.
 template <class Laws, class Rows>
 struct RubbingBooksItem {
   RubbingWalk<Laws, Rows> walk;
-  Real *contact_loss, *integrator_loss;  // [J]
+  RubbingBooksTo to;
 
   SCREE_HD void operator()(Index i) const {
     ContactBooks sum;
+    Real friction = 0;
     const auto self = walk.self(i);
     const RubbingBooksOf of{{walk.look.start, walk.in.spin}};
     walk.template neighbors<true>(self, of, [&](const RubbingBooks& one, Index) {
-      if (one.acts) sum.add(one, kPairShare);
+      if (one.acts) sum.add(one, kPairShare), friction += kPairShare * one.friction;
     });
-    walk.template surfaces<true>(self, of, [&](const RubbingBooks& one, Index) { sum.add(one, 1); });
-    contact_loss[i] += sum.dissipated, integrator_loss[i] += sum.integrator;
+    walk.template surfaces<true>(
+        self, of, [&](const RubbingBooks& one, Index) { sum.add(one, 1), friction += one.friction; });
+    to.contact[i] += sum.dissipated, to.integrator[i] += sum.integrator, to.friction[i] += friction;
   }
 };
 

@@ -201,6 +201,7 @@ struct VerletViews {
   Vec4* spin = nullptr;  // angular velocity, moment of inertia
   Vec3* angular_acceleration = nullptr;
   Quaternion* orientation = nullptr;
+  Real* losses[kLossKinds] = {};  // parts of contact_loss by LossKind, of laws that tell these apart [J]
 };
 
 // The motion of a particle at an instant, as the next step starts from it.
@@ -254,7 +255,8 @@ struct VerletFinishItem {
 
   // Returns |a|^2, so that a force that is not finite does not pass unseen.
   SCREE_HD Real operator()(Index i) const {
-    forces(i);
+    const auto total = forces.total(i);
+    forces.store(i, total);
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * forces.force[i];
     if constexpr (LawOf<Laws>::kMoves) {
@@ -263,6 +265,7 @@ struct VerletFinishItem {
       state.velocity[i] = vec4(verlet_half_kick(state.h, xyz(v), a), v.w);
       state.spin[i] = vec4(verlet_half_kick(state.h, xyz(w), turning), w.w);
       state.contact_loss[i] += state.h * forces.loss_power[i];
+      total.losses.book(state.losses, i);
     } else {
       state.velocity[i] = vec4(verlet_velocity(state.h, xyz(v), state.acceleration[i], a), v.w);
       if (forces.loss_power[i] != 0) state.contact_loss[i] += state.h / 2 * forces.loss_power[i];
@@ -282,7 +285,8 @@ struct VerletAdvanceItem {
   SCREE_HD Real operator()(Index i) const { return advance(i, forces.total(i)); }
 
   // With the force that forces.total(i) has returned.
-  SCREE_HD Real advance(Index i, const TotalForce& total) const {
+  using Total = typename ContactForceItem<Laws, Rows, true>::Total;
+  SCREE_HD Real advance(Index i, const Total& total) const {
     const Vec4 v = forces.walk.in.velocity[i];
     const Vec3 a = reciprocal(v.w) * total.force;
     if constexpr (LawOf<Laws>::kMoves) return advance_turning(i, total, a);
@@ -296,11 +300,12 @@ struct VerletAdvanceItem {
   }
 
  private:
-  SCREE_HD Real advance_turning(Index i, const TotalForce& total, Vec3 a) const {
+  SCREE_HD Real advance_turning(Index i, const Total& total, Vec3 a) const {
     const auto& in = forces.walk.in;
     const Vec4 v = in.velocity[i], w = in.spin[i];
     const Vec3 turning = reciprocal(w.w) * total.torque;
     if (total.loss_power != 0) state.contact_loss[i] += state.h * total.loss_power;
+    total.losses.book(state.losses, i);
     return verlet_open(state, i,
                        {in.position[i], vec4(verlet_half_kick(state.h, xyz(v), a), v.w), a,
                         vec4(verlet_half_kick(state.h, xyz(w), turning), w.w), turning});

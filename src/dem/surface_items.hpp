@@ -83,11 +83,11 @@ struct SurfaceLoadItem {
     if (in.h > 0) {
       const MovingPair pair = over_step(state, surface, in.entries.particles[entry]);
       const ContactOutcome outcome = law.load(pair, old);
-      take(law, pair, outcome.load, outcome.history, entry);
+      take(law, pair, outcome, outcome.history, entry);
       remember(outcome.history, entry);
     } else {
       const InstantPair pair = at_rest(state, surface, in.entries.particles[entry]);
-      take(law, pair, law.load(pair, old).load, old, entry);
+      take(law, pair, law.load(pair, old), old, entry);
     }
   }
   SCREE_HD MovingPair over_step(PairState state, const PlacedSurface& surface, Index i) const {
@@ -105,9 +105,10 @@ struct SurfaceLoadItem {
   SCREE_HD TurningPartner particle(Index i) const {
     return {xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
   }
-  SCREE_HD void take(const Law& law, const PairState& state, const ContactLoadOf<Real, Vec3>& load,
+  SCREE_HD void take(const Law& law, const PairState& state, const ContactOutcome& outcome,
                      const ContactHistory& history, Index entry) const {
-    loads[entry].load = load, loads[entry].energy = EnergyOf{}(law, state, history);
+    loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();
+    loads[entry].energy = EnergyOf{}(law, state, history);
   }
 
   template <class History>

@@ -1,6 +1,7 @@
 // What is simulated: constant after it was built from the deck. SI units.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -140,6 +141,11 @@ struct Model {
 
   // Whether particles rotate: only contacts that rub turn them.
   bool rotates() const { return !contact.friction.empty(); }
+  // Whether contacts resist rolling or twisting.
+  bool rolls() const { return !contact.rolling.empty(); }
+  bool attracts() const {
+    return std::ranges::any_of(contact.laws, [](const KelvinVoigt& law) { return law.attracts(); });
+  }
 };
 
 }  // namespace scree

@@ -77,6 +77,11 @@ struct JkrPair {
     const Real p = root_of(d), cube = p * p * p;
     return 4 * pull_off * range / 27 * (p * cube * (cube * cube / 10 - cube + Real(1.5)) - Real(0.6));
   }
+  // What the attraction adds: energy(d) less that of the law without, at the same overlap [J].
+  SCREE_HD Real cohesion(Real d) const {
+    if (!attracts()) return 0;
+    return energy(d) - (d > 0 ? bare.energy(d) : 0);
+  }
   // 7.0922 (w^5 R*^4 / E*^2)^(1/3) [J]: impacts below the speed sqrt(2 / m* of it) stick.
   SCREE_HD Real making_loss() const {
     constexpr Real kTouch = -6.314643787085519;  // the bracket above at d = 0: -0.9 x 4^(4/3) - 0.6
@@ -153,6 +158,8 @@ struct AttractedPair {
     if (d > 0) return repulsion.energy(d) - attraction * (range / 2 + d);
     return d > -range ? -pull(d) * (range + d) / 2 : 0;
   }
+  // What the pull adds to it [J].
+  SCREE_HD T cohesion(T d) const { return d > 0 ? -attraction * (range / 2 + d) : energy(d); }
   SCREE_HD T damping(T d) const { return d > 0 ? repulsion.damping(d) : 0; }
   SCREE_HD T mean_damping(T d0, T d1) const { return repulsion.mean_damping(d0, d1); }
   SCREE_HD T cut(T d0, T pull) const { return repulsion.cut(d0, pull); }

@@ -8,6 +8,7 @@
 #include "physics/contact_motion.hpp"
 #include "physics/normal_laws.hpp"
 #include "physics/rolling_laws.hpp"
+#include "physics/rubbing_losses.hpp"
 #include "physics/tangential_laws.hpp"
 
 namespace scree {
@@ -62,13 +63,16 @@ struct SpringEnergies {
 struct ContactEnergy {
   Real sum = 0;            // of the normal force, and of the springs that it remembers
   SpringEnergies springs;  // parts of the sum
+  Real cohesion = 0;       // part of the sum: that less what it were without attraction; below zero
 };
 
 // A contact over the step that ends at the instant of its PairState.
 struct ContactOutcome {
   ContactLoadOf<Real, Vec3> load;  // at that instant; loss: of the normal law there, and of the step's others
   ContactHistory history;
-  SpringLosses friction, rolling;  // of the step [J]
+  SpringLosses friction, rolling, twisting;  // of the step [J]
+
+  SCREE_HD RubbingLosses losses() const { return {{friction.sum(), rolling.sum(), twisting.sum()}}; }
 };
 
 // The law of a contact. Without friction, rolling and neck (kMoves false) it is a function of the instant:
@@ -135,7 +139,7 @@ struct ContactLaw {
     }
     if constexpr (RollingLaw::acts) {
       const RollingContact rolls{pair.size, motion, contact, slider};
-      SpringStep step = rolling.step(rolls, turned_with(motion, old.moment));
+      RollingStep step = rolling.step(rolls, turned_with(motion, old.moment));
       if constexpr (std::is_same_v<Pair, InstantPair>)
         step.acting = rolling.at(rolls, step.spring, pair.turning);
       roll(step, motion.h, out);
@@ -146,11 +150,11 @@ struct ContactLaw {
   // Of a closed contact, with what a neck that the next step makes will lose.
   SCREE_HD ContactEnergy energy_of(const PairState& pair, const ContactHistory& history) const {
     const auto law = normal.of_pair(pair.size);
-    Real out = law.energy(pair.geometry.overlap);
+    Real out = law.energy(pair.geometry.overlap), cohesion = cohesion_of(law, pair.geometry.overlap);
     if constexpr (kNeck)
-      if (!history.touched) out += law.making_loss();
+      if (!history.touched) out += law.making_loss(), cohesion += law.making_loss();
     const SpringEnergies springs = springs_of(pair, history);
-    return {out + springs.sum(), springs};
+    return {out + springs.sum(), springs, cohesion};
   }
   SCREE_HD SpringEnergies springs_of(const PairState& pair, const ContactHistory& history) const {
     const Real d = pair.geometry.overlap;
@@ -200,10 +204,12 @@ struct ContactLaw {
     if (const Real loss = step.losses.sum(); loss != 0) out.load.loss += loss * reciprocal(motion.h);
     out.history.spring = step.spring, out.friction = step.losses;
   }
-  SCREE_HD static void roll(const SpringStep& step, Real h, ContactOutcome& out) {
+  SCREE_HD static void roll(const RollingStep& step, Real h, ContactOutcome& out) {
     out.load.torque_i -= step.acting, out.load.torque_j += step.acting;
-    out.load.loss += step.losses.sum() * reciprocal(h);
-    out.history.moment = step.spring, out.rolling = step.losses;
+    SpringLosses both = step.losses;
+    both += step.twisting;
+    out.load.loss += both.sum() * reciprocal(h);
+    out.history.moment = step.spring, out.rolling = step.losses, out.twisting = step.twisting;
   }
 };
 
@@ -214,5 +220,11 @@ inline constexpr bool kFrictionAlone = false;
 template <class Law>
 requires Law::kMoves inline constexpr bool kFrictionAlone<Law> =
     Law::Tangential::acts && !Law::Rolling::acts && !Law::kReaches;
+
+// How many of LossKind its contacts tell apart.
+template <class Law>
+inline constexpr int kLossKindsOf = 0;
+template <class Law>
+requires Law::kMoves inline constexpr int kLossKindsOf<Law> = Law::Rolling::acts ? kLossKinds : 1;
 
 }  // namespace scree

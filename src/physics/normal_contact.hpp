@@ -22,6 +22,7 @@ struct NormalContact {
 //   contact_radius(d)      of the circle of contact [m]; else sqrt(R* d)
 //   contact_stiffness(d)   for rolling [N/m], where slope(d) will not do
 //   adhesion(d)            what attraction adds to the load that limits friction [N]; else 0
+//   cohesion(d)            what attraction adds to energy(d) [J]; else 0
 
 template <class NormalLaw>
 inline constexpr bool kHasNeck = false;
@@ -46,6 +47,19 @@ SCREE_HD Real reach_of(const Pair& pair) {
 template <class NormalLaw>
 SCREE_HD Real reach_beyond_touch(const NormalLaw& law, const PairSize& size) {
   return reach_of(law.of_pair(size));
+}
+
+template <class NormalLaw>
+inline constexpr bool kMayAttract = requires(const NormalLaw& law, const PairSize& size) {
+  law.of_pair(size).cohesion(0);
+};
+
+template <class Pair>
+SCREE_HD Real cohesion_of(const Pair& pair, Real d) {
+  if constexpr (requires { pair.cohesion(d); })
+    return pair.cohesion(d);
+  else
+    return 0;
 }
 
 template <class NormalLaw>

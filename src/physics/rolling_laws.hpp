@@ -141,6 +141,11 @@ struct EitherRolling {
   }
 };
 
+// A step of what resists rolling and twisting; losses: by rolling.
+struct RollingStep : SpringStep {
+  SpringLosses twisting;
+};
+
 // Rolling and twisting laws as one, over one remembered vector.
 template <class Rolling, class Twisting = FreeRolling>
 struct RollingAndTwisting {
@@ -150,13 +155,13 @@ struct RollingAndTwisting {
   Twisting twisting{};
 
   // old: turned with the contact.
-  SCREE_HD SpringStep step(const RollingContact& c, Vec3 old) const {
+  SCREE_HD RollingStep step(const RollingContact& c, Vec3 old) const {
     const Vec3 along = dot(old, c.motion.normal1) * c.motion.normal1;
-    SpringStep out{};
-    if constexpr (Rolling::acts) out = rolling.rolling(c, old - along);
+    RollingStep out{};
+    if constexpr (Rolling::acts) static_cast<SpringStep&>(out) = rolling.rolling(c, old - along);
     if constexpr (Twisting::acts) {
       const SpringStep twist = twisting.twisting(c, along);
-      out.spring += twist.spring, out.acting += twist.acting, out.losses += twist.losses;
+      out.spring += twist.spring, out.acting += twist.acting, out.twisting = twist.losses;
     }
     return out;
   }

@@ -42,6 +42,7 @@ struct SingleLoad {
   Vec3f force;     // on i [N]
   float loss;      // [W]
   Vec3f torque_i;  // [N m]
+  float friction;  // of the loss, over the step [J]
 };
 struct SingleOutcome : SingleLoad {
   Vec3 history;  // the spring's force [N]
@@ -127,7 +128,7 @@ SCREE_HD SingleOutcome single_load(const Law& law, const SinglePair& step, Vec3 
   SingleOutcome out;
   out.force = g.along(f.force) - step.leverage * spring.acting;
   out.torque_i = step.size.radius_i * cross(step.normal, spring.acting);
-  out.loss = f.loss + spring.loss / step.h;
+  out.loss = f.loss + spring.loss / step.h, out.friction = spring.loss;
   out.history = spring.spring;
   return out;
 }

@@ -60,7 +60,7 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
   sizes.bodies.wrench.resize(bodies);
   // What contacts remember may be there or not, and so may rotation: no history is none.
-  sizes.contacts.numbers = numbers_in(checkpoint), sizes.rotates = rotates(checkpoint);
+  sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
   Checkpoint expected = pack(sizes);
   for (const std::string& name : texts) expected.texts[name] = "";
   check_group(checkpoint.path, "/reals", checkpoint.reals, expected.reals);

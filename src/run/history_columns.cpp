@@ -87,7 +87,15 @@ void energy_columns(Group energy) {
 }
 
 // Parts of what the energy columns hold.
-void rotation_columns(Group rotation) {
+void cohesion_columns(Group energy) {
+  energy.add(
+      "elastic_cohesion", "J",
+      "energy/elastic_contacts less what the same overlaps had without attraction: below zero where it "
+      "holds",
+      [](const Sample& s) { return s.particles.cohesion; });
+}
+
+void rotation_columns(Group rotation, bool rolls) {
   const auto part = [&](const char* name, const char* text, Real RotationEnergies::*value) {
     rotation.add(name, "J", text, [value](const Sample& s) { return s.particles.rotation.*value; });
   };
@@ -99,6 +107,14 @@ void rotation_columns(Group rotation) {
   part("elastic_rolling",
        "elastic energy of the springs against rolling and twisting: a part of energy/elastic_contacts",
        &RotationEnergies::rolling_springs);
+  const auto loss = [&](const char* name, const std::string& of, LossKind kind) {
+    rotation.add(name, "J", "what " + of + " dissipated since t = 0: a part of energy/dissipated_contacts",
+                 [kind](const Sample& s) { return s.losses.of[kind]; });
+  };
+  loss("loss_friction", "friction", kFrictionLoss);
+  if (!rolls) return;
+  loss("loss_rolling", "resistance to rolling", kRollingLoss);
+  loss("loss_twisting", "resistance to twisting", kTwistingLoss);
 }
 
 void momentum_columns(Group momentum) {
@@ -157,7 +173,8 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   const Output& output = model.output;
   step_columns({"step", out});
   energy_columns({"energy", out});
-  if (model.rotates()) rotation_columns({"rotation", out});
+  if (model.attracts()) cohesion_columns({"energy", out});
+  if (model.rotates()) rotation_columns({"rotation", out}, model.rolls());
   momentum_columns({"momentum", out});
   for (std::size_t k = 0; k < reactions.size(); ++k)
     reaction_columns({"reactions/" + reactions[k].joint, out}, k);

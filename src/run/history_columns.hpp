@@ -22,6 +22,7 @@ struct HistorySample {
   ParticleLedger particles;
   Ledger ledger;
   Real balance_error = 0, exchanged = 0;      // [J]
+  RubbingLosses losses{};                     // parts of ledger.dissipated_contacts [J]
   std::int64_t left = 0, bodies_outside = 0;  // particles, bodies
   std::vector<Reaction> reactions;            // of the joints and drivers that are recorded
   std::vector<ContactSum> contacts;           // per entry of Output::history_contacts

@@ -121,6 +121,8 @@ void Recorder::balance(State& state, HistorySample& sample) const {
   sample.particles = backend_.reports().ledger(verlet_step(model_));
   const Ledger& ledger = sample.ledger =
       make_ledger(sample.particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
+  sample.losses = sample.particles.rotation.losses;
+  sample.losses.add(state.carried_out.losses);
   BalanceState& balance = state.balance;
   // Not yet at the start: the first step can tell more.
   if (balance.open && link_.ranks().any(!std::isfinite(ledger.mechanical())))

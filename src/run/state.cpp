@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ranges>
 #include <span>
@@ -126,6 +127,10 @@ void visit_ledger(Visitor& visit, LedgerType& ledger) {
   visit("balance/carried_out", ledger.carried_out);
 }
 
+// By LossKind.
+constexpr std::array<const char*, kLossKinds> kCarriedLosses = {
+    "carried_out/friction_loss", "carried_out/rolling_loss", "carried_out/twisting_loss"};
+
 template <class Visitor, class StateType>
 void visit_state(Visitor& visit, StateType& state) {
   visit_clock(visit, state.clock);
@@ -152,6 +157,9 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("carried_out/energy", state.carried_out.energy);
   visit("carried_out/contact_loss", state.carried_out.contact_loss);
   visit("carried_out/integrator_loss", state.carried_out.integrator_loss);
+  if (state.there.rotates)
+    for (int kind = 0; kind < kLossKinds; ++kind)
+      visit(kCarriedLosses[kind], state.carried_out.losses.of[kind]);
   visit("balance/open", state.balance.open);
   visit("balance/start", state.balance.start);
   visit("balance/exchanged", state.balance.exchanged);
@@ -167,17 +175,17 @@ void visit_output(Visitor& visit, StateType& state) {
   visit("clock/checkpoints", state.clock.checkpoints);
   visit("output/history_rows", state.history_rows);
   visit("output/snapshots", state.snapshots);
-  if (state.rotates) visit("counts/frozen_steps", state.counts.frozen_steps);
+  if (state.there.rotates) visit("counts/frozen_steps", state.counts.frozen_steps);
 }
 
-// What a checkpoint holds of a particle: its identity and its fields, those of rotation where particles
-// rotate. visit: as for_each_field's.
+// What a checkpoint holds of a particle: its identity and the fields that are there. visit: as
+// for_each_field's.
 template <class Visit>
-void for_each_dataset(bool rotates, const Visit& visit) {
+void for_each_dataset(const FieldsThere& there, const Visit& visit) {
   visit(ParticleField{"global_id", "1", "identity, which survives sorting and migration", kState},
         &Particle::global_id);
   for_each_field([&](const ParticleField& field, auto member) {
-    if (rotates || (field.parts & kRotation) == 0) visit(field, member);
+    if (there.has(field.parts)) visit(field, member);
   });
 }
 
@@ -224,7 +232,7 @@ void unpack_field(const Checkpoint& in, const std::string& name, T Particle::*me
 std::vector<Particle> unpack_particles(const Checkpoint& in) {
   const CheckpointRows<std::int64_t>& ids = in.row_array<std::int64_t>("particles/global_id");
   std::vector<Particle> particles(static_cast<std::size_t>(ids.count));
-  for_each_dataset(rotates(in), [&](const ParticleField& field, auto member) {
+  for_each_dataset(fields_there(in), [&](const ParticleField& field, auto member) {
     unpack_field(in, dataset_name(field), member, particles);
   });
   return particles;
@@ -232,15 +240,16 @@ std::vector<Particle> unpack_particles(const Checkpoint& in) {
 
 }  // namespace
 
-bool rotates(const Checkpoint& in) {
-  return in.real_rows.contains(dataset_name({"angular_velocity", "", "", kRotation}));
+FieldsThere fields_there(const Checkpoint& in) {
+  const auto has = [&](const char* name) { return in.real_rows.contains(dataset_name({name, "", "", 0})); };
+  return {has("angular_velocity"), has("rolling_loss")};
 }
 
 Checkpoint pack(const State& state) {
   Checkpoint out;
   Writer writer(out);
   visit_state(writer, state), visit_output(writer, state);
-  for_each_dataset(state.rotates, [&](const ParticleField& field, auto member) {
+  for_each_dataset(state.there, [&](const ParticleField& field, auto member) {
     add_rows(state.particles, field, member, out);
   });
   add_contacts(state.contacts, out);
@@ -251,7 +260,7 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < state.particles.size(); ++i) {
     BitHash one;
-    for_each_dataset(state.rotates, [&](const ParticleField& field, auto member) {
+    for_each_dataset(state.there, [&](const ParticleField& field, auto member) {
       if ((field.parts & kState) != 0)
         for (const auto number : numbers_of(state.particles[i].*member)) one.add(number);
     });
@@ -268,7 +277,7 @@ State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
   ranks.together([&] {  // a file may be unreadable where one rank's rows are
     Reader reader(checkpoint);
-    state.rotates = rotates(checkpoint);
+    state.there = fields_there(checkpoint);
     visit_state(reader, state), visit_output(reader, state);
     state.particles = unpack_particles(checkpoint);
   });

@@ -27,7 +27,7 @@ struct State {
   MultibodyState bodies;
   // Of one rank, ordered by global id; they live in the backend between checkpoints.
   std::vector<Particle> particles;
-  bool rotates = false;   // whether these have fields of rotation (Model::rotates)
+  FieldsThere there;      // of these
   KeptContacts contacts;  // of these, where the law remembers something
   ShapeLosses shapes;
   CarriedOut carried_out;
@@ -36,8 +36,8 @@ struct State {
   std::int64_t history_rows = 0, snapshots = 0;
 };
 
-// Whether the checkpoint's particles have fields of rotation.
-bool rotates(const Checkpoint& in);
+// Which fields the checkpoint's particles have.
+FieldsThere fields_there(const Checkpoint& in);
 // With this rank's particles; to be used as long as the state is there, and the same.
 Checkpoint pack(const State& state);
 Checkpoint pack(const State&& state) = delete;

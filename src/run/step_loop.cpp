@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/error.hpp"
+#include "dem/particle_store.hpp"
 #include "run/signals.hpp"
 
 namespace scree {
@@ -157,7 +158,7 @@ State& StepLoop::complete_state() {
   state_.clock = clock_.state();
   state_.counts = parts_.step.counts();
   state_.particles = parts_.backend.particles().records();
-  state_.rotates = parts_.model.rotates();
+  state_.there = fields_there(parts_.model);
   state_.contacts = parts_.backend.particles().contacts();
   state_.shapes = parts_.backend.particles().shape_losses();
   return state_;

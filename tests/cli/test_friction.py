@@ -116,7 +116,7 @@ class FrictionTest(CommandLineTest):
 
     def test_check_counts_rotation_and_what_contacts_remember(self):
         rolling = RUBBING.replace("friction = 0.5\n", "friction = 0.5\nrolling_friction = 0.2\n")
-        for text, checkpoint, memory in ((SMOOTH, "1.5 kB", 920), (RUBBING, "4.2 kB", 1822), (rolling, "5.3 kB", 2556)):
+        for text, checkpoint, memory in ((SMOOTH, "1.5 kB", 960), (RUBBING, "4.2 kB", 1872), (rolling, "5.5 kB", 2616)):
             with self.subTest(memory=memory):
                 report = self.expect(DONE, "check", self.write("counted.toml", text)).stdout
                 self.assertIn(f"\ncheckpoints    one at the end, about {checkpoint} each\n", report)
@@ -128,7 +128,8 @@ class FrictionTest(CommandLineTest):
         self.run_deck(DONE, "smooth")
         rubbing, smooth = (self.history(name)[0].split(",") for name in ("rubbing", "smooth"))
         self.assertEqual([name for name in rubbing if name not in smooth],
-                         ["rotation/kinetic [J]", "rotation/elastic_friction [J]", "rotation/elastic_rolling [J]"])
+                         ["rotation/kinetic [J]", "rotation/elastic_friction [J]", "rotation/elastic_rolling [J]",
+                          "rotation/loss_friction [J]"])
         self.assertEqual([name for name in smooth if name not in rubbing], [])
 
     def test_check_says_how_contacts_rub_and_what_that_does_to_the_step(self):

@@ -32,11 +32,11 @@ inline std::string differing_fields(const std::vector<Particle>& a, const std::v
 inline bool same_bits(const Particle& a, const Particle& b) { return differing_fields(a, b).empty(); }
 
 // Fills every field with numbers that no other field has, nor a particle of another number, as far as its
-// type tells so many apart, and that decimal text or a cast would spoil; those of rotation where it rotates.
-inline void fill_fields(Particle& particle, std::int64_t number, bool rotates = true) {
+// type tells so many apart, and that decimal text or a cast would spoil; those that are there.
+inline void fill_fields(Particle& particle, std::int64_t number, const FieldsThere& there = {true, true}) {
   std::int64_t next = 100 * number;
   for_each_field([&](const ParticleField& field, auto member) {
-    if (!rotates && (field.parts & kRotation) != 0) return;
+    if (!there.has(field.parts)) return;
     auto& value = particle.*member;
     auto numbers = numbers_of(value);
     for (auto& number : numbers) {
@@ -56,7 +56,7 @@ inline std::vector<Particle> filled_records(const Model& model) {
   for (Particle& p : records) {
     const Particle start = p;
     p = {.global_id = start.global_id};
-    fill_fields(p, p.global_id, model.rotates());
+    fill_fields(p, p.global_id, fields_there(model));
     p.position = start.position, p.radius = start.radius, p.material = start.material;
   }
   return records;

@@ -166,6 +166,11 @@ TEST_CASE("mixed precision: spheres that rub leave with the velocities and spins
   const Real lost = mixed.backend->reports().ledger(1e-4).contact_loss,
              exactly = exact.backend->reports().ledger(1e-4).contact_loss;
   CHECK(near(lost, exactly, {.relative = 1e-3, .absolute = 1e-9}));
+  const Real rubbed = mixed.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss],
+             rubbed_exactly = exact.backend->reports().ledger(1e-4).rotation.losses.of[kFrictionLoss];
+  CHECK(rubbed_exactly > 0);
+  CHECK(rubbed <= lost);
+  CHECK(near(rubbed, rubbed_exactly, {.relative = 1e-3, .absolute = 1e-9}));
   std::printf(
       "%s and friction: velocities within %.1e m/s, spins within %.1e rad/s, dissipation %.9g of %.9g J\n",
       hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);

@@ -34,6 +34,7 @@ void check_ledgers(const RememberingBox& cpu, const RememberingBox& cuda) {
   CHECK(a.contact_loss == b.contact_loss);
   CHECK(a.angular_momentum == b.angular_momentum);
   CHECK(a.rotation == b.rotation);
+  CHECK(a.cohesion == b.cohesion);
 }
 
 }  // namespace
@@ -49,6 +50,7 @@ TEST_CASE("particles rub the same on both backends, and each goes on from what t
         for (RememberingBox* box : {&cpu, &cuda}) box->take_steps(50);
         check_equal(kind, cpu, cuda), check_ledgers(cpu, cuda);
       }
+      CHECK(cuda.backend->reports().ledger(kMovingStep).rotation.losses.of[kFrictionLoss] > 0);
       RememberingBox on_cpu(model, {}, make_cpu), on_cuda(model, {}, make_cuda);
       on_cpu.motion = on_cuda.motion = cpu.motion;
       on_cpu.start(cuda.state()), on_cuda.start(cpu.state());
@@ -69,6 +71,7 @@ TEST_CASE("particles rub the same on both backends in implicit steps") {
         for (RememberingBox* box : {&cpu, &cuda}) rubbing_hht_step(*box, kHhtStep, freeze_after);
         check_equal(kRubbingKinds[0], cpu, cuda);
       }
+      CHECK(cuda.backend->reports().ledger(0).rotation.losses.of[kFrictionLoss] > 0);
       RememberingBox on_cpu(model, {}, make_cpu), on_cuda(model, {}, make_cuda);
       on_cpu.start(cuda.state()), on_cuda.start(cpu.state());
       for (int step = 0; step < 10; ++step)

@@ -116,19 +116,46 @@ TEST_CASE("a column's value is that of its name") {
 TEST_CASE("runs whose particles rotate have columns of that, beside all others") {
   Model model = recorded_model();
   HistorySample sample = distinct_sample();
-  sample.particles.rotation = {61, 62, 63};
+  sample.particles.rotation = {61, 62, 63, {}};
+  sample.losses = {{64, 65, 66}};
   const std::size_t others = history_columns(model, sample.reactions).size();
   model.contact.friction.resize(1);
   std::map<std::string, Real> found;
-  const std::vector<RecordedColumn> columns = history_columns(model, sample.reactions);
-  for (const RecordedColumn& column : columns) {
-    if (column.head.group != "rotation") continue;
-    found[column.head.name] = column.value(sample);
-    CHECK((column.head.unit == "J" && !column.head.description.empty()));
-  }
-  CHECK(found ==
-        std::map<std::string, Real>{{"kinetic", 61}, {"elastic_friction", 62}, {"elastic_rolling", 63}});
-  CHECK(columns.size() == others + found.size());
+  const auto find_columns = [&] {
+    found.clear();
+    const std::vector<RecordedColumn> columns = history_columns(model, sample.reactions);
+    for (const RecordedColumn& column : columns) {
+      if (column.head.group != "rotation") continue;
+      found[column.head.name] = column.value(sample);
+      CHECK((column.head.unit == "J" && !column.head.description.empty()));
+    }
+    CHECK(columns.size() == others + found.size());
+  };
+  find_columns();
+  std::map<std::string, Real> expected{
+      {"kinetic", 61}, {"elastic_friction", 62}, {"elastic_rolling", 63}, {"loss_friction", 64}};
+  CHECK(found == expected);
+  model.contact.rolling.resize(1);
+  find_columns();
+  expected["loss_rolling"] = 65, expected["loss_twisting"] = 66;
+  CHECK(found == expected);
+}
+
+TEST_CASE("runs whose contacts attract have a column of what that holds") {
+  Model model = recorded_model();
+  HistorySample sample = distinct_sample();
+  sample.particles.cohesion = -71;
+  const auto held = [&] {
+    std::vector<Real> values;
+    for (const RecordedColumn& column : history_columns(model, sample.reactions))
+      if (column.head.group == "energy" && column.head.name == "elastic_cohesion")
+        values.push_back(column.value(sample));
+    return values;
+  };
+  model.contact.laws.resize(1);
+  CHECK(held().empty());
+  model.contact.laws[0].attraction = 1;
+  CHECK(held() == std::vector<Real>{-71});
 }
 
 }  // namespace scree

@@ -49,9 +49,9 @@ State awkward_state() {
     s.particles.emplace_back().global_id = n.integer();
     fill_fields(s.particles.back(), i);
   }
-  s.rotates = true;
+  s.there = {true, true};
   s.shapes = {n.real(), n.real()};
-  s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real()};
+  s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(), {{n.real(), n.real(), n.real()}}};
   s.balance.open = true, s.balance.start = n.real(), s.balance.exchanged = n.real();
   s.balance.last = {n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real()};
   s.history_rows = n.integer(), s.snapshots = n.integer();
@@ -119,7 +119,7 @@ TEST_CASE("the hash is of every field that changes in time, and of no other") {
 
 TEST_CASE("the state of particles that do not rotate has nothing of rotation") {
   State state = awkward_state();
-  state.rotates = false;
+  state.there = {};
   const std::uint64_t hash = state_hash(state, true);
   const Checkpoint checkpoint = pack(state);
   for_each_field([&](const ParticleField& field, auto member) {
@@ -129,8 +129,19 @@ TEST_CASE("the state of particles that do not rotate has nothing of rotation") {
     for (Particle& p : state.particles) p.*member = {};
   });
   CHECK(state_hash(state, true) == hash);
-  CHECK(!unpack(checkpoint).rotates);
+  CHECK(!unpack(checkpoint).there.rotates);
   CHECK(differing_fields(unpack(checkpoint).particles, state.particles) == "");
+}
+
+TEST_CASE("where particles rotate and nothing resists rolling, the state has nothing of that") {
+  State state = awkward_state();
+  state.there.rolls = false;
+  const Checkpoint checkpoint = pack(state);
+  CHECK(checkpoint.real_rows.contains("particles/friction_loss"));
+  CHECK(!checkpoint.real_rows.contains("particles/rolling_loss"));
+  CHECK(!checkpoint.real_rows.contains("particles/twisting_loss"));
+  const FieldsThere there = unpack(checkpoint).there;
+  CHECK((there.rotates && !there.rolls));
 }
 
 TEST_CASE("a checkpoint holds a dataset for each field, with its unit and what it means") {

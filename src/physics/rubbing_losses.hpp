@@ -1,0 +1,46 @@
+// What contacts that rub, roll and twist take out of the mechanical energy, by kind.
+#pragma once
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+
+namespace scree {
+
+// What contacts lose beside the damping of their normal force: to sliders, to their dashpots, and to springs
+// that weaken.
+enum LossKind { kFrictionLoss, kRollingLoss, kTwistingLoss, kLossKinds };
+
+// The first kinds of it, of a step or of several [J].
+template <int kKinds>
+struct LossesOf {
+  Real of[kKinds];
+
+  template <int kMore>
+  SCREE_HD void add(const LossesOf<kMore>& part) {
+    static_assert(kMore >= kKinds);
+    for (int k = 0; k < kKinds; ++k) of[k] += part.of[k];
+  }
+  SCREE_HD void scale(Real share) {
+    for (int k = 0; k < kKinds; ++k) of[k] *= share;
+  }
+  SCREE_HD void fill(Real value) {
+    for (int k = 0; k < kKinds; ++k) of[k] = value;
+  }
+  // Books what there is of particle i.
+  SCREE_HD void book(Real* const (&losses)[kLossKinds], Index i) const {
+    for (int k = 0; k < kKinds; ++k)
+      if (of[k] != 0) losses[k][i] += of[k];
+  }
+  friend bool operator==(const LossesOf&, const LossesOf&) = default;
+};
+template <>
+struct LossesOf<0> {
+  template <int kMore>
+  SCREE_HD void add(const LossesOf<kMore>&) {}
+  SCREE_HD void scale(Real) {}
+  SCREE_HD void fill(Real) {}
+  SCREE_HD void book(Real* const (&)[kLossKinds], Index) const {}
+};
+using RubbingLosses = LossesOf<kLossKinds>;
+
+}  // namespace scree
