@@ -63,10 +63,12 @@ struct ContactWalk {
       const Law& law = laws.get(self.material, plane.material);
       if constexpr (sees_history<Of, decltype(pair)>()) {
         const auto history = in.history.template read<Law>(in.history.ground, entry);
-        if (!found_closed(law, pair, history)) continue;
+        const bool closed = found_closed(law, pair, history);
+        if (!closed && !found_breaking(pair, history)) continue;
         const auto contact = of(law, pair, history);
         if constexpr (kAccepts)
-          if (lasts(contact)) in.history.template write<Law>(in.history.ground, entry, contact.history);
+          if (closed && lasts(contact))
+            in.history.template write<Law>(in.history.ground, entry, contact.history);
         visit(contact, surface);
       } else if (found_closed(law, pair, ContactHistory{})) {
         visit(of(law, pair), surface);
@@ -87,10 +89,12 @@ struct ContactWalk {
       const Law& law = walk.laws.get(owner.material, in.material[j]);
       const auto pair = walk.look.pair(in, owner, j);
       const auto history = in.history.template read<Law>(in.history.neighbors, slot);
+      [[maybe_unused]] const bool closed = found_closed(law, pair, history);
       if constexpr (kReaches<Law>)
-        if (!found_closed(law, pair, history)) return Of::Result::nothing();
+        if (!closed && !found_breaking(pair, history)) return Of::Result::nothing();
       const auto contact = of(law, pair, history);
-      if constexpr (kAccepts) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
+      if constexpr (kAccepts)
+        if (closed) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;
     }
     // It will be called for this neighbour and slot.
@@ -124,6 +128,15 @@ struct ContactWalk {
       return law.closed(pair, history);
     else
       return true;
+  }
+
+  // What a step has parted may have something to lose.
+  template <class Pair, class History>
+  SCREE_HD static bool found_breaking(const Pair&, const History& history) {
+    if constexpr (kReaches<Law> && std::is_same_v<Pair, MovingPair>)
+      return Law::breaks(history);
+    else
+      return false;
   }
 
   // Whether a contact is there at the end of the step: of one that has ended nothing is remembered.
@@ -206,10 +219,11 @@ struct ContactWalk {
       const auto pair = look.pair(in, self, at.j);
       if constexpr (sees_history<Of, Pair>()) {
         const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
-        if (!found_closed(law, pair, history)) return;
+        const bool closed = found_closed(law, pair, history);
+        if (!closed && !found_breaking(pair, history)) return;
         const auto contact = of(law, pair, history);
         if constexpr (kAccepts)
-          in.history.template write<Law>(in.history.neighbors, at.slot, contact.history);
+          if (closed) in.history.template write<Law>(in.history.neighbors, at.slot, contact.history);
         visit(contact, at.j);
       } else if (found_closed(law, pair, ContactHistory{})) {
         visit(of(law, pair), at.j);

@@ -28,7 +28,7 @@ struct SurfaceLoad {
   ContactEnergy energy;
   Vec3 arm;              // from the body's centre to where they touch [m]
   Vec3 particle_arm;     // contact_arm() of the particle
-  RubbingLosses losses;  // of laws that move
+  RubbingLosses losses{};  // of laws that move
 };
 
 // The same over an implicit step.

@@ -234,8 +234,6 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
                  "stiffness; other laws may have an attraction");
     law.adhesion_work = (table.has("surface_energy") ? 2 : 1) * table.real(key);
     law.neck = table.choice<Adhesion>("adhesion") == Adhesion::jkr;
-  } else if (table.has("adhesion")) {
-    table.fail("adhesion", "needs work_of_adhesion or surface_energy beside it");
   }
   if (table.has("attraction")) {
     if (law.effective_modulus == 0 && law.exponent != 1)
@@ -385,7 +383,7 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
   contact.skin = table.has("skin") ? table.real("skin") : standard;
   for (const KelvinVoigt& law : contact.laws)
-    contact.reach = std::max(contact.reach, longest_reach(law, largest));
+    contact.reach = std::max(contact.reach, searched_reach(law, largest));
   check_periods(deck, model, largest);
   check_friction(deck, model);
   check_attraction(table, model);

@@ -210,6 +210,12 @@ inline Real longest_reach(const KelvinVoigt& law, Real largest_radius) {
   return JkrLaw(law).of_pair({largest_radius, kInfinity, 1, 1}).reach() * (1 + Real(1e-9));
 }
 
+// How far partners are looked for: a step that breaks a neck must still see the two, for what it loses.
+inline Real searched_reach(const KelvinVoigt& law, Real largest_radius) {
+  constexpr Real kPastNeck = 1.25;
+  return (law.range > 0 ? 1 : kPastNeck) * longest_reach(law, largest_radius);
+}
+
 // A run takes the first that accepts the parameters of all its pairs; each has its own kernels
 // (cuda/contact_kernels_*.cu).
 using NormalLaws = std::tuple<LinearLaw, RatedLinearLaw, PowerLaw, HertzLaw, AttractedLaw<RatedLinearLaw>,

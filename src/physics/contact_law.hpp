@@ -113,15 +113,23 @@ struct ContactLaw {
     return closed(normal.of_pair(pair.size), pair.geometry.overlap, old);
   }
 
-  // All zero where there is no contact. Pair: a MovingPair, or an InstantPair.
+  // Whether a step that leaves no contact has broken one whose neck held springs.
+  SCREE_HD static bool breaks(const ContactHistory& old) { return kNeck && old.touched; }
+
+  // All zero where there is no contact, but for the losses of one that breaks(). Pair: a MovingPair, or an
+  // InstantPair.
   template <class Pair = MovingPair>
   SCREE_HD ContactOutcome load(const Pair& pair, const ContactHistory& old) const {
     ContactOutcome out{};
     const auto law = normal.of_pair(pair.size);
     const ContactGeometry& g = pair.geometry;
-    if (!closed(law, g.overlap, old)) return out;
-    const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
     const ContactMotion& step = pair.motion;
+    if (!closed(law, g.overlap, old)) {
+      if constexpr (std::is_same_v<Pair, MovingPair>)
+        if (breaks(old)) let_go(springs_at(step.overlap0, step.normal0, pair.size, old), step.h, out);
+      return out;
+    }
+    const ContactForce f = contact_force(law, g.overlap, g.rate(pair.velocity));
     const bool fresh = step.overlap0 < 0 && g.overlap > 0 && !old.touched;
     const ContactMotion motion = fresh ? step.over(g.overlap / (g.overlap - step.overlap0)) : step;
     const NormalContact contact = normal_contact(law, pair.size, f.force, g.overlap, motion.overlap0);
@@ -157,8 +165,11 @@ struct ContactLaw {
     return {out + springs.sum(), springs, cohesion};
   }
   SCREE_HD SpringEnergies springs_of(const PairState& pair, const ContactHistory& history) const {
-    const Real d = pair.geometry.overlap;
-    const NormalContact contact = normal_contact(normal.of_pair(pair.size), pair.size, 0, d, d);
+    return springs_at(pair.geometry.overlap, pair.geometry.normal(), pair.size, history);
+  }
+  SCREE_HD SpringEnergies springs_at(Real d, Vec3 normal_to_i, const PairSize& size,
+                                     const ContactHistory& history) const {
+    const NormalContact contact = normal_contact(normal.of_pair(size), size, 0, d, d);
     SpringEnergies out;
     Real stiffness = 0;
     if constexpr (TangentialLaw::acts) {
@@ -166,7 +177,7 @@ struct ContactLaw {
       out.friction = spring_energy(history.spring, stiffness);
     }
     if constexpr (RollingLaw::acts)
-      out.rolling = rolling.energy(pair.size, contact, stiffness, pair.geometry.normal(), history.moment);
+      out.rolling = rolling.energy(size, contact, stiffness, normal_to_i, history.moment);
     return out;
   }
 
@@ -203,6 +214,10 @@ struct ContactLaw {
     out.load.torque_i = motion.arm_i * moment, out.load.torque_j = motion.arm_j * moment;
     if (const Real loss = step.losses.sum(); loss != 0) out.load.loss += loss * reciprocal(motion.h);
     out.history.spring = step.spring, out.friction = step.losses;
+  }
+  SCREE_HD static void let_go(const SpringEnergies& held, Real h, ContactOutcome& out) {
+    out.friction.unloading = held.friction, out.rolling.unloading = held.rolling;
+    out.load.loss = held.sum() * reciprocal(h);
   }
   SCREE_HD static void roll(const RollingStep& step, Real h, ContactOutcome& out) {
     out.load.torque_i -= step.acting, out.load.torque_j += step.acting;

@@ -61,7 +61,8 @@ SCREE_HD Real dense_rubbing_frequency(Real stiffness, Real slip_stiffness, Real 
 
 // Stability limit [s] of velocity Verlet, whose damping acts on the predicted velocity v + h a, for one mode
 // of circular frequency w [1/s]: h^2 w^2 / 4 + 2 z h w = 1, where the mode's amplification is -1; as a
-// quotient, in which nothing cancels however strong the damping is. stiffness [N/m] and damping [N s/m] of the mode's contacts give its damping ratio z = C w / (2 K).
+// quotient, in which nothing cancels however strong the damping is. stiffness [N/m] and damping [N s/m] of
+// the mode's contacts give its damping ratio z = C w / (2 K).
 SCREE_HD Real verlet_step_limit(Real frequency, Real stiffness, Real damping) {
   const Real ratio = damping * frequency / (2 * stiffness);
   return 2 / frequency / (std::sqrt(1 + 4 * ratio * ratio) + 2 * ratio);

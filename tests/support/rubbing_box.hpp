@@ -108,7 +108,7 @@ inline Model sticky(Model model) {
     else
       law.attraction = kind == 0 ? 5 : 2, law.range = kind == 0 ? 0.01 : 0.02;
     model.contact.reach =
-        std::max(model.contact.reach, longest_reach(law, model.particles.totals.largest_radius));
+        std::max(model.contact.reach, searched_reach(law, model.particles.totals.largest_radius));
   }
   return model;
 }
