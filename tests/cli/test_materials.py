@@ -130,6 +130,25 @@ class MaterialsTest(CommandLineTest):
                 for part in parts:
                     self.assertIn(part, message)
 
+    def test_the_standard_moment_of_inertia_is_that_of_solid_spheres(self):
+        def with_factor(value):
+            return MIXED.replace("[output]", f"inertia_factor = {value}\n[output]")
+
+        solid = self.hash_of(MIXED, "solid")
+        self.assertEqual(solid, self.hash_of(with_factor(0.4), "given"))
+        self.assertNotEqual(solid, self.hash_of(with_factor(0.6667), "hollow"))
+        for value in (0.0, 1.1):
+            message = self.expect(BAD_INPUT, "check", self.write("bad.toml", with_factor(value))).stderr
+            self.assertRegex(message, r"bad\.toml:\d+:\d+: particles\.1\.inertia_factor = .*above 0 and at most 1")
+
+    def test_a_restart_keeps_moments_of_inertia_and_made_pairs(self):
+        hollow = MIXED.replace('material = "glass"\n[[', 'material = "glass"\ninertia_factor = 0.6\n[[')
+        self.assertNotEqual(hollow, MIXED)
+        whole = self.hash_of(hollow, "whole")
+        self.hash_of(hollow, "parts", "--set", "time.end=0.125")
+        restart = ("--restart", self.folder / "parts/checkpoint.h5")
+        self.assertEqual(whole, self.hash_of(hollow, "parts", *restart))
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
