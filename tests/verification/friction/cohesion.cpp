@@ -171,11 +171,7 @@ TEST_CASE("of a neck's energy all is cohesion but what the overlap has by Hertz'
     return d > 0 ? Real(8) / 15 * row["E_star"] * std::sqrt(R) * std::pow(d, 2.5) : 0;
   };
   GrainDeck deck{.law = fmt::format("work_of_adhesion = {}\nfriction = 0.5\n", row["w"]),
-<<<<<<< HEAD
-                 .grains = {{.position = {0, 0, R - 3 * row["d_F0"]},
-=======
                  .grains = {{.position = {0, 0, R - 2.2 * row["d_F0"]},
->>>>>>> ledger
                              .velocity = {0.1 * row["v_stick"], 0, 0},
                              .spin = {},
                              .radius = R,
