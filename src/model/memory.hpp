@@ -16,7 +16,7 @@ struct Model;
 
 // What one particle of a run takes in memory at the most, while a checkpoint is written [B]: state, scratch
 // and a list of some ten neighbours, with velocity-Verlet and with HHT (tests/performance/bytes_per_item.py).
-constexpr Real kBytesPerExplicitParticle = 920, kBytesPerImplicitParticle = 1120;
+constexpr Real kBytesPerExplicitParticle = 960, kBytesPerImplicitParticle = 1140;
 // With its rotation, but for what its contacts remember beside a list (bytes_remembered).
 Real bytes_per_particle(const Model& model);
 // The same of one coordinate or constraint of the multibody side, on rank 0: a few vectors and the sparse

@@ -25,8 +25,9 @@ namespace {
 // In files without compression, of a particle (in a snapshot without its fields), of a shape or body [B];
 // tests/performance/bytes_per_item.py.
 constexpr Real kSnapshotPoint = 42, kSnapshotShape = 120, kCheckpointParticle = 186, kCheckpointBody = 170;
-// Of one that rotates; of a contact that remembers, but for its numbers, and of the row of a particle's.
-constexpr Real kCheckpointRotation = 88, kCheckpointContact = 16, kCheckpointRow = 8;
+// Of one that rotates, and more where contacts resist rolling; of a contact that remembers, but for its
+// numbers, and of the row of a particle's.
+constexpr Real kCheckpointRotation = 96, kCheckpointRolling = 16, kCheckpointContact = 16, kCheckpointRow = 8;
 
 constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
@@ -213,6 +214,7 @@ Real checkpoint_particle(const Model& model) {
   const int numbers = history_of(model.contact);
   Real bytes = kCheckpointParticle;
   if (model.rotates()) bytes += kCheckpointRotation;
+  if (model.rolls()) bytes += kCheckpointRolling;
   if (numbers > 0) bytes += kCheckpointRow + kTouching * (kCheckpointContact + sizeof(Real) * numbers);
   return bytes;
 }

@@ -33,8 +33,7 @@ inline bool same_bits(const Particle& a, const Particle& b) { return differing_f
 
 // Fills every field with numbers that no other field has, nor a particle of another number, as far as its
 // type tells so many apart, and that decimal text or a cast would spoil; those that are there.
-inline void fill_fields(Particle& particle, std::int64_t number,
-                        const FieldsThere& there = {true, true}) {
+inline void fill_fields(Particle& particle, std::int64_t number, const FieldsThere& there = {true, true}) {
   std::int64_t next = 100 * number;
   for_each_field([&](const ParticleField& field, auto member) {
     if (!there.has(field.parts)) return;

@@ -51,8 +51,7 @@ State awkward_state() {
   }
   s.there = {true, true};
   s.shapes = {n.real(), n.real()};
-  s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(),
-                   {{n.real(), n.real(), n.real()}}};
+  s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(), {{n.real(), n.real(), n.real()}}};
   s.balance.open = true, s.balance.start = n.real(), s.balance.exchanged = n.real();
   s.balance.last = {n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real()};
   s.history_rows = n.integer(), s.snapshots = n.integer();

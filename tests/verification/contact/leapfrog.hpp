@@ -27,11 +27,11 @@ struct GrainRates {
 // What all contacts of a run have taken and given.
 struct ContactSums {
   Real normal = 0;  // losses of the normal law [J]
-  SpringLosses friction, rolling;
+  SpringLosses friction, rolling, twisting;
 
   void add(const ContactOutcome& out, Real h) {
-    normal += out.load.loss * h - out.friction.sum() - out.rolling.sum();
-    friction += out.friction, rolling += out.rolling;
+    normal += out.load.loss * h - out.friction.sum() - out.rolling.sum() - out.twisting.sum();
+    friction += out.friction, rolling += out.rolling, twisting += out.twisting;
   }
 };
 

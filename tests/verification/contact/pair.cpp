@@ -141,7 +141,8 @@ TEST_CASE("both sides of a pair keep mirrored springs to the last bit, and its b
         REQUIRE(seen.history.moment == -run.outcome.history.moment);
       } while (run.closed);
       CHECK(near(total_angular_momentum(run), turning, {.absolute = kConserved}));
-      const Real lost = run.sums.normal + run.sums.friction.sum() + run.sums.rolling.sum();
+      const Real lost =
+          run.sums.normal + run.sums.friction.sum() + run.sums.rolling.sum() + run.sums.twisting.sum();
       CHECK(run.sums.rolling.sum() > 0);
       books.add((energy - run.i.energy() - run.j.energy() - lost) / energy);
     }

@@ -138,6 +138,63 @@ TEST_CASE("a contact that is there at the start has the energy of its neck to lo
   CHECK(std::abs(run.balance_error()) < 1e-3 * row["W_stick"]);
 }
 
+// Of two spheres at rest, or of one and a wall, before any step.
+TEST_CASE("the ledger tells what a pull adds to the elastic energy, touching and beyond") {
+  constexpr Real R = 0.01, pull = 1, range = 1e-3, stiffness = 1e5;
+  for (const std::string more : {"", "friction = 0.5\n"})
+    for (const bool pair : {false, true})
+      for (const Real overlap : {2e-4, -3e-4}) {
+        CAPTURE(more, pair, overlap);
+        GrainDeck deck{.law = fmt::format("stiffness = {}\nattraction = {}\nattraction_range = {}\n",
+                                          stiffness, pull, range) +
+                              more,
+                       .grains = {},
+                       .step = 1e-5,
+                       .end = 1e-3};
+        deck.plane = !pair;
+        deck.grains.push_back({.position = {0, 0, R - (pair ? R : overlap)}, .radius = R, .mass = 0.1});
+        if (pair) deck.grains.push_back({.position = {0, 0, 2 * R - overlap}, .radius = R, .mass = 0.1});
+        SimulationRun run(model_without_spins(deck));
+        const ParticleLedger ledger = run.particle_ledger();
+        const Real beyond = std::min(overlap, Real(0)) + range, touching = std::max(overlap, Real(0));
+        CHECK(near(ledger.cohesion, -pull * (beyond * beyond / (2 * range) + touching), {.relative = 1e-9}));
+        CHECK(near(ledger.contact_elastic - ledger.cohesion, stiffness / 2 * touching * touching,
+                   {.relative = 1e-9, .absolute = 1e-15}));
+      }
+}
+
+TEST_CASE("of a neck's energy all is cohesion but what the overlap has by Hertz's law") {
+  const ReferenceTable table("contact/jkr_points.csv");
+  const auto& row = table.rows()[0];
+  const Real R = row["R_star"], step = 1e-3 * row["d_F0"] / row["v_stick"];
+  const auto hertz = [&](Real d) {
+    return d > 0 ? Real(8) / 15 * row["E_star"] * std::sqrt(R) * std::pow(d, 2.5) : 0;
+  };
+  GrainDeck deck{.law = fmt::format("work_of_adhesion = {}\nfriction = 0.5\n", row["w"]),
+                 .grains = {{.position = {0, 0, R - 2.2 * row["d_F0"]},
+                             .velocity = {0.1 * row["v_stick"], 0, 0},
+                             .spin = {},
+                             .radius = R,
+                             .mass = row["m_star"]}},
+                 .step = step,
+                 .end = 4000 * step};
+  deck.materials = hertz_materials(row["E_star"], 0);
+  SimulationRun run(deck.model());
+  Real lowest = 0, thinnest = R;
+  while (run.time() < deck.end * 0.99) {
+    for (int k = 0; k < 50; ++k) run.step();
+    const ParticleLedger ledger = run.particle_ledger();
+    const Real d = R - run.particles()[0].position.z;
+    const Real rest = ledger.contact_elastic - ledger.rotation.friction_springs -
+                      ledger.rotation.rolling_springs - ledger.cohesion;
+    CHECK(near(rest, hertz(d), {.relative = 1e-9, .absolute = 1e-9 * row["W_stick"]}));
+    CHECK(ledger.cohesion < 0);
+    lowest = std::min(lowest, ledger.cohesion), thinnest = std::min(thinnest, d);
+  }
+  CHECK(thinnest < 0);  // it is drawn out beyond touch, and holds
+  CHECK(lowest < -1.5 * row["W_stick"]);
+}
+
 TEST_CASE("DMT: spheres rebound from each other as they came, and rest where their pull is carried") {
   const ReferenceTable table("contact/dmt.csv");
   for (const auto& row : table.rows())

@@ -241,6 +241,8 @@ TEST_CASE("a disc that slides on a body's very large disc rolls in the end, whet
   CHECK(keeps(-kRadius * p.angular_velocity.z / v - 1, {.promise = 1e-7, .measured = 7e-10}));
   CHECK(keeps(run.particle_ledger().contact_loss / (kMass * kSpeed * kSpeed / 6) - 1,
               {.promise = 1e-3, .measured = 7.2e-5}));
+  const ParticleLedger ledger = run.particle_ledger();  // nothing damps normal forces
+  CHECK(near(ledger.rotation.losses.of[kFrictionLoss], ledger.contact_loss, {.relative = 1e-12}));
   CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-3, .measured = 7.4e-5}));
 }
 
@@ -258,6 +260,9 @@ TEST_CASE("a wheel that turns under a disc feels the torque of the friction, and
   CHECK(near(on_wheel[5], torque, {.relative = 1e-3}));
   CHECK(near(run.ledger().driver_work - work, -torque * kTurn * (run.time() - from), {.relative = 1e-3}));
   CHECK(near(run.balance_error(), 0, {.absolute = 1e-8 * run.exchanged()}));
+  const ParticleLedger ledger = run.particle_ledger();
+  CHECK(ledger.rotation.losses.of[kFrictionLoss] <= ledger.contact_loss);
+  CHECK(near(ledger.rotation.losses.of[kFrictionLoss], ledger.contact_loss, {.relative = 1e-2}));
 }
 
 TEST_CASE("a disc that is held by friction on a body that turns stays where it is, with its springs") {
