@@ -26,8 +26,8 @@ struct SurfaceLoad {
   bool touches;                    // else nothing below has a meaning
   ContactLoadOf<Real, Vec3> load;  // on the particle
   ContactEnergy energy;
-  Vec3 arm;              // from the body's centre to where they touch [m]
-  Vec3 particle_arm;     // contact_arm() of the particle
+  Vec3 arm;                // from the body's centre to where they touch [m]
+  Vec3 particle_arm;       // contact_arm() of the particle
   RubbingLosses losses{};  // of laws that move
 };
 
