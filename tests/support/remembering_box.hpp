@@ -51,13 +51,17 @@ struct RememberingBox {
     start(state);
     backend->particles().initial_forces();
   }
+  // To where their velocities take them in h [s], turns included.
+  void move_bodies(Real h) {
+    for (BodyMotion& body : motion)
+      body.position += h * body.velocity, body.angle += h * body.angular_velocity;
+    backend->list().place_bodies(motion);
+  }
   // A run of so many steps, each with so many looks at the bodies after it; then the particles outside leave.
   void take_steps(Index steps, Real h = kMovingStep, int looks = 0) {
     const std::unique_ptr<ExplicitRun> run = backend->start_run(h);
     while (steps > 0) {
-      for (BodyMotion& body : motion)
-        body.position += h * body.velocity, body.angle += h * body.angular_velocity;
-      backend->list().place_bodies(motion);
+      move_bodies(h);
       const Index most = motion.empty() ? steps : 1;
       const StepsTaken taken = run->take_steps(most, most < steps, timers);
       steps -= taken.closed;

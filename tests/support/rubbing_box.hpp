@@ -44,11 +44,12 @@ inline Model rubbing(Model model) {
 
 inline constexpr Real kHhtStep = 2e-4;
 
-// An implicit step, on a list of its own; its limits are frozen after so many iterations, if it needs more.
-// Then the particles outside leave.
+// An implicit step, on a list of its own, in which the bodies move on; its limits are frozen after so many
+// iterations, if it needs more. Then the particles outside leave.
 inline void rubbing_hht_step(RememberingBox& box, Real h, int freeze_after) {
   box.backend->list().build(box.model.contact.skin, box.timers);
   const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, h);
+  box.move_bodies(h);
   int iteration = 1;
   for (;; ++iteration) {
     REQUIRE(iteration < 100);

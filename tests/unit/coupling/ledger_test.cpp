@@ -9,8 +9,8 @@ namespace scree {
 
 namespace {
 
-const std::vector<Leaver> kLeavers = {{3, 0, {1, 2, 0}, false, 10, 0.5, 0.25, 2},
-                                      {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125, 0}};
+const std::vector<Leaver> kLeavers = {{3, 0, {1, 2, 0}, false, 10, 0.5, 0.25, {{0.25, 0.125, 0.0625}}, 2},
+                                      {8, 0, {1, 3, 0}, false, -4, 0.25, -0.125, {{0.125, 0, 0}}, 0}};
 
 }  // namespace
 
@@ -22,6 +22,7 @@ TEST_CASE("removed particles take their energies along, drifting ones that of th
   }
   CHECK((removed.left == 4 && removed.removed == 4));
   CHECK((removed.energy == 16 && removed.contact_loss == 1.5 && removed.integrator_loss == 0.25));
+  CHECK(removed.losses == RubbingLosses{{0.75, 0.25, 0.125}});
   CHECK((drifting.left == 4 && drifting.removed == 0));
   CHECK((drifting.energy == 4 && drifting.contact_loss == 0 && drifting.integrator_loss == 0));
 }
