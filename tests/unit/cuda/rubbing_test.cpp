@@ -73,6 +73,7 @@ TEST_CASE("particles rub the same on both backends in implicit steps") {
       }
       CHECK(cuda.backend->reports().ledger(0).rotation.losses.of[kFrictionLoss] > 0);
       RememberingBox on_cpu(model, {}, make_cpu), on_cuda(model, {}, make_cuda);
+      on_cpu.motion = on_cuda.motion = cpu.motion;
       on_cpu.start(cuda.state()), on_cuda.start(cpu.state());
       for (int step = 0; step < 10; ++step)
         for (RememberingBox* box : {&on_cpu, &on_cuda}) rubbing_hht_step(*box, kHhtStep, freeze_after);
