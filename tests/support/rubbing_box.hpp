@@ -59,6 +59,7 @@ inline void rubbing_hht_step(RememberingBox& box, Real h, int freeze_after) {
       continue;
     }
     if (norms.residual <= 1e-10) break;
+    box.backend->list().place_bodies(box.motion);  // they take no correction
     step->particle_correct();
     if (iteration == freeze_after) step->freeze_limits();
   }
