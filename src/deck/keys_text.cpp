@@ -15,8 +15,8 @@ constexpr std::size_t kWidth = 110;
 // README.md says the same; tests/cli/test_words.py compares them.
 constexpr const char* kLeftOut =
     "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies; "
-    "on bodies in explicit steps (velocity-verlet) only, which alone resist rolling and twisting, too. "
-    "Else contact forces act along the normal alone. "
+    "rolling and twisting are resisted in explicit steps (velocity-verlet) only. "
+    "Bodies touch each other and walls without friction. "
     "Attraction is explicit, and not of bodies. All that touches is a disc (2D), "
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
     "meshes. Bodies are rigid, and in 3D too they and their joints are planar: they move along x and "

@@ -8,6 +8,7 @@
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
 #include "model/mixing.hpp"
+#include "model/plausibility.hpp"
 #include "model/touching.hpp"
 #include "physics/cohesion.hpp"
 #include "physics/restitution.hpp"
@@ -54,6 +55,7 @@ KelvinVoigt stiffness_law(const DeckTable& table, const Model& model, const int 
   KelvinVoigt law{from_overlap ? stiffness_of_overlap(table, model, material) : table.real("stiffness"),
                   table.real("damping"), table.real("exponent"), table.boolean("tension")};
   const char* key = from_overlap ? "largest_overlap" : "stiffness";
+  if (law.normal_stiffness != 0) check_normal(table, key, law.normal_stiffness);
   if (law.normal_stiffness == 0 && law.normal_damping > 0)
     table.fail("damping", "must be 0 where the stiffness is 0");
   take_restitution(table, law);

@@ -49,7 +49,7 @@ struct Contact {
   std::vector<Friction> friction;          // likewise; empty: no contact rubs
   std::vector<RollingResistance> rolling;  // likewise; empty: none resists rolling
   std::vector<CombinedPair> combined;      // those of the pairs that are not the deck's
-  Real reach = 0;                          // of contacts beyond touch, at most [m]
+  Real reach = 0;                          // beyond touch, up to which partners are looked for [m]
   Real skin = 0;                           // neighbour list reaches this far past touching [m]
   bool connected_bodies_touch = false;
 

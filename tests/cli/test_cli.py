@@ -359,7 +359,7 @@ class RunTest(CommandLineTest):
             message = self.expect(BAD_INPUT, *words, launcher=limited).stderr
             self.assertRegex(message, r"error: not enough memory: building the particles takes about 135 GB, "
                                       r"[0-9.]+ GB are free \(.+\); a run of 900000000 particles and 1 body takes "
-                                      r"at least 828 GB on one rank; start more ranks on more machines")
+                                      r"at least 864 GB on one rank; start more ranks on more machines")
         self.assertFalse((self.folder / "out").exists())
 
     def test_decks_that_cannot_be_built_are_refused_at_once(self):

@@ -125,8 +125,8 @@ class FailureTest(RanksTest):
                                 env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
         self.assertEqual(result.returncode, BAD_INPUT, result.stdout + result.stderr)
         self.assertRegex(result.stderr, r"not enough memory: (running it on the CPU takes about [0-9.]+ GB, .+; )?"
-                                        r"a run of 1000000 particles takes at least 0.92 GB on 2 ranks, "
-                                        r"0.46 GB on each")
+                                        r"a run of 1000000 particles takes at least 0.96 GB on 2 ranks, "
+                                        r"0.48 GB on each")
 
     def test_check_says_what_is_per_rank(self):
         words = [MPIEXEC, "-n", "3", SCREE, "check", str(DAM[0])]

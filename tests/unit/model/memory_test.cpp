@@ -57,7 +57,7 @@ TEST_CASE("a model that fits, and one that does not") {
   CHECK(contains(error(1e18, Share()), "not enough memory: building it takes about 1e+09 GB, "));
   CHECK(contains(error(1e18, Share()),
                  " GB are free (MemAvailable of /proc/meminfo); a run of 1000000 particles "
-                 "takes at least 0.92 GB on one rank; start more ranks"));
+                 "takes at least 0.96 GB on one rank; start more ranks"));
   CHECK(
       contains(error(1e17, SixteenRanks()), "building it takes about 1.6e+09 GB for the ranks of a host, "));
 }
@@ -75,7 +75,7 @@ TEST_CASE("a deck too large for any machine is refused at once") {
                                      "spacing = [1e-9, 0]\nradius = 1e-10\nmass = 1.0\n";
                                return groups;
                              }()),
-                 "a run of 100000000000 particles takes at least 9.2e+04 GB on one rank"));
+                 "a run of 100000000000 particles takes at least 9.6e+04 GB on one rank"));
   CHECK(contains(model_error(kSmallDeck +
                              [] {
                                std::string rows;

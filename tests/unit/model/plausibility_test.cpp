@@ -136,7 +136,7 @@ TEST_CASE("numbers that cannot be computed with") {
       {"particles.d.radius=1e-310", "--set particles.d.radius=1e-310: 1e-310 is too small"},
       {"integrator.residual_tolerance=1.5", "must be a number above 0 and at most 1"},
       {"integrator.correction_tolerance=1.5", "must be a number above 0 and at most 1"},
-      {"contact.pairs.0.stiffness=1e-320", "both must be finite and above 0"},
+      {"contact.pairs.0.stiffness=1e-320", "1e-320 is too small; must be at least 2.23e-308"},
   };
   for (const auto& [override, message] : cases) {
     CAPTURE(override, model_error(all, {override}));

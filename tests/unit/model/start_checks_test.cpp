@@ -126,7 +126,7 @@ mass = 1.0
   }
   REQUIRE(worst > 0);
   const std::string message = model_error(text, {"contact.max_start_overlap=1e-6"});
-  CHECK(contains(message, fmt::format("by {:.4g} of the smaller radius", worst)));
+  CHECK(contains(message, fmt::format("by {:.6g} of the smaller radius", worst)));
 }
 
 TEST_CASE("the contact time is that of two equal discs") {
