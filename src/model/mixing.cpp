@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "model/build_parts.hpp"
+#include "physics/springs_in_series.hpp"
 
 namespace scree {
 
@@ -204,12 +205,6 @@ Real mixed(Mixing rule, Real a, Real b) {
       break;
   }
   throw std::logic_error("mixing: no rule");
-}
-
-Real in_series(Real a, Real b, Real exponent) {
-  if (a == b) return a;
-  if (exponent == 1) return 2 * a * b / (a + b);
-  return std::pow((std::pow(a, -1 / exponent) + std::pow(b, -1 / exponent)) / 2, -exponent);
 }
 
 DeckTable combined_pair(const DeckTable& contact, const std::string& name_a, const std::string& name_b) {

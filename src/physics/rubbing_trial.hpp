@@ -23,8 +23,7 @@ class RubbingTrial {
       return radius < kInfinity ? radius * radius / inertia : 0;
     };
     turning_mass_ = 1 / (share(size.radius_i, impact.inertia_i) + share(size.radius_j, impact.inertia_j));
-    at_.velocity = {impact.sliding, 0, -impact.approach};
-    at_.r = Vec3{0, 0, on_plane() ? size.radius_i : size.radius_i + size.radius_j} - gap * at_.velocity;
+    at_.r = trial_start(impact, gap), at_.velocity = {impact.sliding, 0, -impact.approach};
   }
 
   bool step(Real h) {
@@ -53,12 +52,7 @@ class RubbingTrial {
     Real scale = 0;
   };
 
-  bool on_plane() const { return impact_.size.radius_j == kInfinity; }
-  ContactGeometry geometry(Vec3 r) const {
-    const PairSize& size = impact_.size;
-    return on_plane() ? plane_pair(r, size.radius_i, {0, 0, 0}, {0, 0, 1})
-                      : sphere_pair(r, size.radius_i + size.radius_j);
-  }
+  ContactGeometry geometry(Vec3 r) const { return trial_geometry(impact_.size, r); }
 
   // The end of a step of these accelerations.
   End end_of(Real h, const Unknowns& a, Real frozen_limit) const {
@@ -91,11 +85,11 @@ class RubbingTrial {
     const PairSize& size = impact_.size;
     const Vec3 n0 = g0.normal(), n1 = g1.normal(), y{0, 1, 0};
     const TurningPartner i{(turned / (h * size.radius_i)) * y, size.radius_i, impact_.inertia_i},
-        j{{}, on_plane() ? 0 : size.radius_j, impact_.inertia_j};
+        j{{}, on_plane(size) ? 0 : size.radius_j, impact_.inertia_j};
     RubbingStep step{};
     step.step = {g0.overlap, -dot(n0, at_.velocity), g1.overlap, -dot(n1, s.velocity), h};
-    step.motion = on_plane() ? face_motion(g1, n1, travel, i, j, h) : sphere_motion(g1, travel, i, j, h);
-    step.leverage0 = on_plane() ? 1 : step.motion.leverage * g1.distance / g0.distance;
+    step.motion = on_plane(size) ? face_motion(g1, n1, travel, i, j, h) : sphere_motion(g1, travel, i, j, h);
+    step.leverage0 = on_plane(size) ? 1 : step.motion.leverage * g1.distance / g0.distance;
     const auto slip_rate = [&](Real leverage, const State& at, Vec3 n) {
       return scree::across(leverage * at.velocity - at.surface * cross(y, n), n);
     };

@@ -18,6 +18,19 @@ struct TrialImpact {
   Real approach, sliding;     // relative speeds along the normal and across it [m/s]
 };
 
+inline bool on_plane(const PairSize& size) { return size.radius_j == kInfinity; }
+// i at r from j, or over the plane z = 0.
+inline ContactGeometry trial_geometry(const PairSize& size, Vec3 r) {
+  return on_plane(size) ? plane_pair(r, size.radius_i, {0, 0, 0}, {0, 0, 1})
+                        : sphere_pair(r, size.radius_i + size.radius_j);
+}
+// Where i is so long before they meet [s].
+inline Vec3 trial_start(const TrialImpact& impact, Real gap) {
+  const PairSize& size = impact.size;
+  return Vec3{0, 0, on_plane(size) ? size.radius_i : size.radius_i + size.radius_j} -
+         gap * Vec3{impact.sliding, 0, -impact.approach};
+}
+
 // In velocity Verlet, or where the law moves in its form by half steps (dem/step_items.hpp). Every trial has
 // step(h), which says whether the contact was closed at the end of the step, and parting() and across(): the
 // relative velocity along the normal and across it.
@@ -26,10 +39,10 @@ class ExplicitTrial {
  public:
   // The surfaces meet after `gap` [s].
   ExplicitTrial(const Law& law, const TrialImpact& impact, Real gap)
-      : law_(law), impact_(impact), velocity_{impact.sliding, 0, -impact.approach} {
-    const Real radius = on_plane() ? impact.size.radius_i : impact.size.radius_i + impact.size.radius_j;
-    r_ = Vec3{0, 0, radius} - gap * velocity_;
-  }
+      : law_(law),
+        impact_(impact),
+        r_(trial_start(impact, gap)),
+        velocity_{impact.sliding, 0, -impact.approach} {}
 
   bool step(Real h) {
     if constexpr (Law::kMoves)
@@ -41,14 +54,8 @@ class ExplicitTrial {
   Real across() const { return scree::across(velocity_, normal()).x; }
 
  private:
-  bool on_plane() const { return impact_.size.radius_j == kInfinity; }
-  Vec3 normal() const { return on_plane() ? Vec3{0, 0, 1} : (1 / norm(r_)) * r_; }
-  PairState pair(Vec3 velocity) const {
-    const PairSize& size = impact_.size;
-    return {on_plane() ? plane_pair(r_, size.radius_i, {0, 0, 0}, {0, 0, 1})
-                       : sphere_pair(r_, size.radius_i + size.radius_j),
-            velocity, size};
-  }
+  Vec3 normal() const { return trial_geometry(impact_.size, r_).normal(); }
+  PairState pair(Vec3 velocity) const { return {trial_geometry(impact_.size, r_), velocity, impact_.size}; }
 
   bool step_whole(Real h) {
     r_ += verlet_displacement(h, velocity_, acceleration_);
@@ -65,10 +72,11 @@ class ExplicitTrial {
     const Vec3 travel = h * velocity_;
     r_ += travel;
     const TurningPartner i{spin_i_, impact_.size.radius_i, impact_.inertia_i},
-        j{spin_j_, on_plane() ? 0 : impact_.size.radius_j, impact_.inertia_j};
+        j{spin_j_, on_plane(impact_.size) ? 0 : impact_.size.radius_j, impact_.inertia_j};
     const PairState state = pair(velocity_);
-    const MovingPair moving{state, on_plane() ? face_motion(state.geometry, {0, 0, 1}, travel, i, j, h)
-                                              : sphere_motion(state.geometry, travel, i, j, h)};
+    const MovingPair moving{state, on_plane(impact_.size)
+                                       ? face_motion(state.geometry, {0, 0, 1}, travel, i, j, h)
+                                       : sphere_motion(state.geometry, travel, i, j, h)};
     const bool closed = law_.closed(moving, history_);
     const ContactOutcome out = law_.load(moving, history_);
     history_ = out.history;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/restitution.hpp"
+#include "physics/springs_in_series.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"

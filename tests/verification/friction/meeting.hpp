@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -95,5 +96,40 @@ inline Meeting disc_meeting(Real steps, int substeps, Real phase, Vec3 offset) {
 inline Real difference(const Particle& p, const Particle& q, Real radius) {
   return std::max(norm(p.velocity - q.velocity), radius * norm(p.angular_velocity - q.angular_velocity));
 }
+
+// A body so heavy that it goes on as it came: its centre moves and turns like a particle's. What a particle
+// does that rubs on it, against one that rubs on such a particle.
+inline constexpr const char* kHeavyLaws[] = {
+    "stiffness = 1e5\ndamping = 30.0\nfriction = 0.4\ntangential_stiffness = 8e4\n"
+    "tangential_damping_ratio = 0.2\n",
+    "stiffness = 1e5\nfriction = 5.0\ntangential_stiffness = 8e4\n"};
+struct HeavyMeeting {
+  Real apart = 0, turned = 0;                   // most of both particles, of the spin of one [m/s], [rad/s]
+  Real loss_on_body = 0, loss_on_particle = 0;  // dissipated [J]
+
+  HeavyMeeting(int dimension, const char* law, Real step, const std::string& integrator = {}) {
+    const Real z = dimension == 3 ? 0.02 : 0;
+    Meeting meeting{dimension,
+                    {.position = {0.15, 0.15, z},
+                     .velocity = {-1.5, -1, 10 * z},
+                     .spin = {200 * z, -500 * z, 30},
+                     .radius = 0.05,
+                     .mass = 1},
+                    {{0, 0, 0}, {0.3, -0.2, 0}, 15, 0.1, 1e15, 1e13},
+                    law,
+                    step,
+                    0.08};
+    if (!integrator.empty()) meeting.integrator = integrator;
+    SimulationRun on_body(meeting.with_body()), on_particle(meeting.with_particle());
+    for (int part = 1; part <= 40; ++part) {
+      for (SimulationRun* run : {&on_body, &on_particle}) run->run_until(part * meeting.end / 40);
+      const Particle p = on_body.particles().at(0), q = on_particle.particles().at(0);
+      apart = std::max(apart, difference(p, q, meeting.grain.radius));
+      turned = std::max(turned, norm(q.angular_velocity - meeting.grain.spin));
+    }
+    loss_on_body = on_body.particle_ledger().contact_loss;
+    loss_on_particle = on_particle.particle_ledger().contact_loss;
+  }
+};
 
 }  // namespace scree
