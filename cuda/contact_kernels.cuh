@@ -24,44 +24,33 @@ namespace scree {
 using DeviceViews = ContactViews<SlicedRows>;
 using PrunedViews = ContactViews<PrunedRows<0>>;
 
-// The same for a kernel that evaluates so many entries of a row at once, with the rows that the control
-// names.
+// The same with other rows.
+template <class Rows, class Views>
+__device__ ContactViews<Rows> with_rows(const Views& in, const Rows& rows) {
+  return {in.position, in.velocity, in.material, rows,     in.surface_offsets,
+          in.surfaces, in.planes,   in.ground,   in.loads, in.steps,
+          in.history,  in.spin,     in.reach};
+}
+
+// For a kernel that evaluates so many entries of a row at once, with the rows that the control names.
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {
   const PrunedRows<0>& r = in.rows;
-  return {in.position,
-          in.velocity,
-          in.material,
-          {r.rows, r.counts, r.neighbors, use, margin, r.places},
-          in.surface_offsets,
-          in.surfaces,
-          in.planes,
-          in.ground,
-          in.loads,
-          in.steps,
-          in.history,
-          in.spin,
-          in.reach};
+  return with_rows(in, PrunedRows<kAtOnce>{r.rows, r.counts, r.neighbors, use, margin, r.places});
 }
 
-// The same for a warp that shares out the contacts of its rows.
+// For a warp that shares out the contacts of its rows.
 template <class Word, int kWords>
 __device__ ContactViews<WarpRows<Word, kWords>> warp_views(const PrunedViews& in, RowUse use, Real margin,
                                                            WarpContacts<Word, kWords>* shared, bool idle) {
   const PrunedRows<0>& r = in.rows;
-  return {in.position,
-          in.velocity,
-          in.material,
-          {{r.rows, r.counts, r.neighbors, use, margin, r.places}, shared, idle},
-          in.surface_offsets,
-          in.surfaces,
-          in.planes,
-          in.ground,
-          in.loads,
-          in.steps,
-          in.history,
-          in.spin,
-          in.reach};
+  return with_rows(
+      in, WarpRows<Word, kWords>{{r.rows, r.counts, r.neighbors, use, margin, r.places}, shared, idle});
+}
+template <class Word, int kWords>
+__device__ ContactViews<WarpRows<Word, kWords>> warp_views(const DeviceViews& in,
+                                                           WarpContacts<Word, kWords>* shared, bool idle) {
+  return with_rows(in, WarpRows<Word, kWords>{{in.rows, nullptr, nullptr, RowUse::all, 0}, shared, idle});
 }
 
 // Force, Newton matrix and residual of the particles [first, end).

@@ -59,15 +59,24 @@ __global__ void __launch_bounds__(kSystemThreads)
 }
 
 // Forces, torques and entries of the Newton matrix; what else a particle has in the solve, items find that
-// read the entries. The walk needs the registers by itself.
+// read the entries. The walk needs the registers by itself. r.first: a multiple of kSlice.
 template <class Laws>
 __global__ void __launch_bounds__(kSystemThreads)
     rubbing_kernel(const __grid_constant__ DeviceRubbingRequest r, const Laws laws) {
-  const Index i = r.first + thread_index();
-  if (i >= r.end) return;
+  constexpr int kWords = sizeof(RubbingSums) / sizeof(double);
+  __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
+  const Index i = r.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  if (first >= r.end) return;
+  const bool idle = i >= r.end;
   const RubbingRequest& of = r.of;
-  RubbingSystemItem<Laws, SlicedRows>{
-      {r.in, laws, {of.start}}, of.gravity, of.weights, of.forces, of.torques, of.matrix, of.sharpness}(i);
+  const auto views = warp_views(r.in, &contacts[threadIdx.x / kSlice], idle);
+  const RubbingSystemItem<Laws, WarpRows<double, kWords>> item{
+      {views, laws, {of.start}}, of.gravity, of.weights, of.forces, of.torques, of.matrix, of.sharpness};
+  auto self = item.walk.self(idle ? r.end - 1 : i);
+  auto total = item.weight(self);
+  self.i = i;
+  item.add_neighbors(self, total);
+  if (!idle) item.finish(self, total);
 }
 
 inline constexpr int kSurfaceThreads = 64;

@@ -2,6 +2,8 @@
 // must not wait for those with many.
 #pragma once
 
+#include <type_traits>
+
 #include "device_list.cuh"
 
 namespace scree {
@@ -12,8 +14,9 @@ template <class Word, int kWords>
 struct WarpContacts {
   static constexpr int kRoom = 12;            // entries of a row that are shared out at a time
   static constexpr int kStride = kWords | 1;  // odd: lanes that store their results meet other banks
-  Index neighbor[kRoom][kSlice];
-  RowPlace place[kRoom][kSlice];
+  // Of a lane one after the other, and lanes an odd number of banks apart.
+  Index neighbor[kSlice][kRoom | 1];
+  RowPlace place[kSlice][kRoom + (kRoom % 4 == 0 ? 2 : 0)];
   Word result[kSlice][kStride];
   double sum[kSlice][kStride];
 };
@@ -29,48 +32,68 @@ struct WarpRows {
   Contacts* shared;  // of the warp
   bool idle;         // the lane has no row
 
+  // Of the whole rows.
+  __device__ std::int64_t first(Index i) const { return rows.rows.first(i); }
+  __device__ static constexpr int stride() { return SlicedRows::stride(); }
+
   // Adds evaluate(i, j, slot), a structure of kWords Words, of the entries j of row i of which test(j) holds
-  // to sum, a structure of as many doubles. It is called once for each, by any lane. test: as in PrunedRows.
+  // to sum, a structure of as many doubles. It is called once for each, by any lane; one that asks for it
+  // gets the number of the entry among these, too. Returns how many they are. test: as in PrunedRows; one
+  // without near() is for whole rows.
   template <class Test, class Evaluate, class Sum>
-  __device__ void sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
+  __device__ Index sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
     static_assert(sizeof(Sum) == kWords * sizeof(double));
     const Index lane = lane_of_warp();
     reinterpret_cast<Sum&>(shared->sum[lane]) = sum;
     const std::int64_t slice = rows.rows.slice_start[i / kSlice], start = slice + lane;
-    const bool whole = rows.use != RowUse::pruned;
+    constexpr bool kPrunes = requires { test.near(Index{}, Real{}); };
+    const RowUse use = kPrunes ? rows.use : RowUse::all;
+    const bool whole = use != RowUse::pruned;
     const Index* const row = (whole ? rows.rows.neighbors : rows.neighbors) + start;
     const Index count = idle ? 0 : (whole ? rows.rows.counts : rows.counts)[i];
-    Index next = 0, kept = 0;
+    Index next = 0, kept = 0, earlier = 0;
     do {
       Index found = 0;
-      // Loads that do not wait for each other.
-      constexpr int kAtOnce = 4;
-      for (; next < count && found + kAtOnce <= Contacts::kRoom; next += kAtOnce) {
+      // A few entries at once, and those after them under way: loads that do not wait for each other.
+      constexpr Index kAtOnce = 4;
+      struct Entries {
         Index j[kAtOnce];
         RowPlace place[kAtOnce];
-        bool touches[kAtOnce];
-        for (int k = 0; k < kAtOnce; ++k) {
-          const bool is_entry = next + k < count;
-          j[k] = is_entry ? row[(next + k) * kSlice] : i;
-          place[k] =
-              whole || !is_entry ? static_cast<RowPlace>(next + k) : rows.places[start + (next + k) * kSlice];
+      };
+      const auto entries = [&](Index first) {
+        Entries at;
+        for (Index k = 0; k < kAtOnce; ++k) {
+          const bool is_entry = first + k < count;
+          at.j[k] = is_entry ? row[(first + k) * kSlice] : i;
+          at.place[k] = whole || !is_entry ? static_cast<RowPlace>(first + k)
+                                           : rows.places[start + (first + k) * kSlice];
         }
-        for (int k = 0; k < kAtOnce; ++k) touches[k] = test(j[k]) & (next + k < count);
-        if (rows.use == RowUse::prune)
-          for (int k = 0; k < kAtOnce && next + k < count; ++k)
-            if (test.near(j[k], rows.margin)) keep(start + kept++ * kSlice, j[k], next + k);
-        for (int k = 0; k < kAtOnce; ++k) {
+        return at;
+      };
+      Entries at = entries(next);
+      for (; next < count && found + kAtOnce <= Contacts::kRoom; next += kAtOnce) {
+        const Entries ahead = entries(next + kAtOnce);
+        bool touches[kAtOnce];
+        for (Index k = 0; k < kAtOnce; ++k) touches[k] = test(at.j[k]) & (next + k < count);
+        if constexpr (kPrunes)
+          if (use == RowUse::prune)
+            for (Index k = 0; k < kAtOnce && next + k < count; ++k)
+              if (test.near(at.j[k], rows.margin)) keep(start + kept++ * kSlice, at.j[k], next + k);
+        for (Index k = 0; k < kAtOnce; ++k) {
           if (!touches[k]) continue;
-          shared->neighbor[found][lane] = j[k];
-          evaluate.prepare(j[k], start + kSlice * place[k]);
-          shared->place[found][lane] = place[k];
+          shared->neighbor[lane][found] = at.j[k];
+          evaluate.prepare(start + kSlice * at.place[k]);
+          shared->place[lane][found] = at.place[k];
           ++found;
         }
+        at = ahead;
       }
-      share(found, i - lane, slice, evaluate);
+      share({found, earlier}, i - lane, slice, evaluate);
+      earlier += found;
     } while (__any_sync(~0u, next < count));
-    if (rows.use == RowUse::prune && !idle) rows.counts[i] = kept;
+    if (use == RowUse::prune && !idle) rows.counts[i] = kept;
     sum = reinterpret_cast<const Sum&>(shared->sum[lane]);
+    return earlier;
   }
 
  private:
@@ -85,16 +108,21 @@ struct WarpRows {
     rows.places[slot] = static_cast<RowPlace>(place), rows.neighbors[slot] = j;
   }
 
-  // found: entries of the lane; first: the warp's first row.
+  // Entries that a lane has found now, and before.
+  struct Found {
+    Index now, earlier;
+  };
+
+  // first: the warp's first row.
   template <class Evaluate>
-  __device__ void share(Index found, Index first, std::int64_t slice, const Evaluate& evaluate) const {
+  __device__ void share(Found found, Index first, std::int64_t slice, const Evaluate& evaluate) const {
     const Index lane = lane_of_warp();
-    Index after = found;  // entries of all lanes up to this one
+    Index after = found.now;  // entries of all lanes up to this one
     for (int step = 1; step < kSlice; step *= 2) {
       const Index other = __shfl_up_sync(~0u, after, step);
       if (lane >= step) after += other;
     }
-    const Index all = __shfl_sync(~0u, after, kSlice - 1), before = after - found;
+    const Index all = __shfl_sync(~0u, after, kSlice - 1), before = after - found.now;
     __syncwarp();
 #pragma unroll 1
     for (Index begin = 0; begin < all; begin += kSlice) {
@@ -103,10 +131,17 @@ struct WarpRows {
       for (int step = kSlice / 2; step > 0; step /= 2)
         if (__shfl_sync(~0u, before, owner + step) <= turn) owner += step;
       const Index k = turn - __shfl_sync(~0u, before, owner);
-      if (turn < all)
-        put(shared->result[lane],
-            evaluate(first + owner, shared->neighbor[k][owner],
-                     slice + owner + kSlice * static_cast<std::int64_t>(shared->place[k][owner])));
+      const auto slot = [&] {
+        return slice + owner + kSlice * static_cast<std::int64_t>(shared->place[owner][k]);
+      };
+      if constexpr (std::is_invocable_v<const Evaluate&, Index, Index, std::int64_t, Index>) {
+        const Index number = k + __shfl_sync(~0u, found.earlier, owner);
+        if (turn < all)
+          put(shared->result[lane], evaluate(first + owner, shared->neighbor[owner][k], slot(), number));
+      } else {
+        if (turn < all)
+          put(shared->result[lane], evaluate(first + owner, shared->neighbor[owner][k], slot()));
+      }
       __syncwarp();
       const int first_owner = __shfl_sync(~0u, owner, 0),
                 owners = __shfl_sync(~0u, owner, min(all - begin, kSlice) - 1) - first_owner + 1;

@@ -41,6 +41,19 @@ struct ContactWalk {
       neighbors<kAccepts>(self, of, [&](const typename Of::Result& contact, Index) { sum += contact; });
     }
   }
+  // The contact of items i and j at a slot of i's row, by `of` that sees what it remembers.
+  template <class Of>
+  SCREE_HD auto contact_at(const Of& of, Index i, Index j, std::int64_t slot) const {
+    const Self owner = self(i);
+    auto pair = look.pair(in, owner, j);
+    if constexpr (requires { look.at_slot(pair, slot); }) look.at_slot(pair, slot);
+    return of(laws.get(owner.material, in.material[j]), pair,
+              in.history.template read<Law>(in.history.neighbors, slot));
+  }
+  // What the contact at a slot remembers will be read soon.
+  SCREE_HD void prepare(std::int64_t slot) const {
+    fetch_ahead(in.history.neighbors + slot * records_of(Law::kHistory));
+  }
   // Of the neighbours those of which only(j) holds.
   template <class Only, class Of, class Visit>
   SCREE_HD void neighbors_if(const Self& self, const Only& only, const Of& of, const Visit& visit) const {
@@ -87,8 +100,8 @@ struct ContactWalk {
       const auto& in = walk.in;
       const Self owner = walk.look.self(in, i);
       const Law& law = walk.laws.get(owner.material, in.material[j]);
-      const auto pair = walk.look.pair(in, owner, j);
       const auto history = in.history.template read<Law>(in.history.neighbors, slot);
+      const auto pair = walk.look.pair(in, owner, j);
       [[maybe_unused]] const bool closed = found_closed(law, pair, history);
       if constexpr (kReaches<Law>)
         if (!closed && !found_breaking(pair, history)) return Of::Result::nothing();
@@ -97,10 +110,7 @@ struct ContactWalk {
         if (closed) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;
     }
-    // It will be called for this neighbour and slot.
-    SCREE_HD void prepare(Index j, std::int64_t slot) const {
-      fetch_ahead(walk.in.history.neighbors + slot * records_of(Law::kHistory));
-    }
+    SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
   };
 
   // What of the row may have a contact.

@@ -237,6 +237,10 @@ struct alignas(16) RubbingEntry {
   float grip;        // along the direction, of the overlap [kg]
   float unused[2];
 
+  // What was found for an entry turned out to be no contact.
+  static constexpr Index kNone = -2;
+  SCREE_HD bool is_contact() const { return neighbor != kNone; }
+
   // Force on i, and its torque over the radius, by how the partners move against each other and both turn.
   SCREE_HD Twist pull(Vec3 apart, Vec3 turning, bool with_grip) const {
     const Vec3 n{nx, ny, nz}, t{tx, ty, tz};
@@ -262,8 +266,8 @@ struct alignas(16) RubbingEntry {
   }
 };
 
-// Entries of contacts with neighbours stand at the list's slots, packed to the front of a row; those with
-// surfaces at their entries, likewise.
+// Entries of contacts with neighbours stand at the list's slots, packed to the front of a row, with some that
+// are none among them; those with surfaces at their entries, likewise, contacts all of them.
 struct RubbingMatrix {
   Index *count, *surface_count;
   RubbingEntry *entries, *surface_entries;
@@ -279,6 +283,35 @@ struct StepTorques {
   Vec3 *start, *step, *end;  // about the centre [N m]
 };
 
+// What contacts add to the forces on one of their particles; moments over its radius.
+struct RubbingSums {
+  Vec3 step_force, end_force;            // [N]
+  Vec3 start_turn, step_turn, end_turn;  // [N]
+  Real magnitude = 0;                    // [N]
+
+  SCREE_HD static RubbingSums of(const RubbingContact& c) {
+    const Vec3 n = c.normal.normal;
+    return {c.normal.step.force * n - c.leverage * c.rub.step,
+            c.normal.end_force * n - c.leverage * c.rub.end,
+            cross(c.normal0, c.rub.start),
+            cross(n, c.rub.step),
+            cross(n, c.rub.end),
+            std::abs(c.normal.step.force) + norm(c.rub.step)};
+  }
+  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  SCREE_HD static RubbingSums nothing() {
+    constexpr Real z = -0.0;
+    constexpr Vec3 zero{z, z, z};
+    return {zero, zero, zero, zero, zero, z};
+  }
+  SCREE_HD RubbingSums& operator+=(const RubbingSums& part) {
+    step_force += part.step_force, end_force += part.end_force;
+    start_turn += part.start_turn, step_turn += part.step_turn, end_turn += part.end_turn;
+    magnitude += part.magnitude;
+    return *this;
+  }
+};
+
 // Force, torque and Newton matrix row of particle i.
 template <class Laws, class Rows>
 struct RubbingSystemItem {
@@ -288,47 +321,87 @@ struct RubbingSystemItem {
   StepForces out;
   StepTorques torques;
   RubbingMatrix matrix;
-  Real* sharpness;  // largest 2 K h^2 / m of its contacts
+  // Largest 2 K h^2 / m of the contacts that item i has evaluated, with shared rows those of other particles:
+  // what counts is the largest of all.
+  Real* sharpness;
+
+  using Self = typename RubbingWalk<Laws, Rows>::Self;
+  struct Total {
+    RubbingSums sums;
+    Real sharpest = 0;
+    Index entries = 0;  // in the row of the matrix
+  };
 
   SCREE_HD void operator()(Index i) const {
-    const StepStart& start = walk.look.start.step;
-    const Real mass = walk.in.velocity[i].w, radius = walk.in.position[i].w;
-    const Vec3 weight = mass * gravity;
-    Vec3 step_force = weight, end_force = weight, start_turn, step_turn, end_turn;
-    Real magnitude = norm(weight), sharpest = 0;
-    const auto add = [&](const RubbingContact& c) {
-      const Vec3 n = c.normal.normal;
-      step_force += c.normal.step.force * n - c.leverage * c.rub.step;
-      end_force += c.normal.end_force * n - c.leverage * c.rub.end;
-      start_turn += cross(c.normal0, c.rub.start);
-      step_turn += cross(n, c.rub.step), end_turn += cross(n, c.rub.end);
-      magnitude += std::abs(c.normal.step.force) + norm(c.rub.step);
-      const Real sharp = 2 * c.normal.step.stiffness * start.h * start.h / mass;
-      sharpest = sharp > sharpest ? sharp : sharpest;
-    };
-    const auto self = walk.self(i);
-    const RubbingContactOf of{walk.look.start, walk.in.spin};
-    std::int64_t slot = walk.in.rows.first(i);
-    Index entries = 0, surfaces = 0;
-    walk.neighbors(self, of, [&](const RubbingContact& c, Index j) {
-      if (!c.acts) return;
-      add(c);
-      matrix.entries[slot] = entry_of(c, j);
-      ++entries, slot += Rows::stride();
-    });
-    walk.surfaces(self, of, [&](const RubbingContact& c, Index surface) {
-      add(c);
+    const Self self = walk.self(i);
+    Total total = weight(self);
+    add_neighbors(self, total);
+    finish(self, total);
+  }
+
+  // Its parts, in this order.
+  SCREE_HD Total weight(const Self& self) const {
+    const Vec3 force = walk.in.velocity[self.i].w * gravity;
+    return {{force, force, {}, {}, {}, norm(force)}};
+  }
+  SCREE_HD_CALLER
+  SCREE_HD void add_neighbors(const Self& self, Total& total) const {
+    if constexpr (kShared<Rows>) {
+      total.entries = walk.in.rows.sum_contacts(self.i, walk.look.test(walk.in, self),
+                                                SharedContact{*this, total.sharpest}, total.sums);
+    } else {
+      walk.neighbors(self, contact_of(), [&](const RubbingContact& c, Index j) {
+        total.sums += take(c, self.i, j, total.entries++, total.sharpest);
+      });
+    }
+  }
+  SCREE_HD void finish(const Self& self, Total& total) const {
+    const Index i = self.i;
+    RubbingSums& sums = total.sums;
+    Index surfaces = 0;
+    walk.surfaces(self, contact_of(), [&](const RubbingContact& c, Index surface) {
+      sums += RubbingSums::of(c), sharpen(c, i, total.sharpest);
       const Index on_body = surface < walk.in.ground ? RubbingPath::kWall : surface - walk.in.ground;
       matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = entry_of(c, on_body);
     });
-    matrix.count[i] = entries, matrix.surface_count[i] = surfaces;
-    out.step_force[i] = step_force, out.end_force[i] = end_force, out.magnitude[i] = magnitude;
-    torques.start[i] = radius * start_turn, torques.step[i] = radius * step_turn;
-    torques.end[i] = radius * end_turn;
-    sharpness[i] = sharpest;
+    const Real radius = walk.in.position[i].w;
+    matrix.count[i] = total.entries, matrix.surface_count[i] = surfaces;
+    out.step_force[i] = sums.step_force, out.end_force[i] = sums.end_force;
+    out.magnitude[i] = sums.magnitude;
+    torques.start[i] = radius * sums.start_turn, torques.step[i] = radius * sums.step_turn;
+    torques.end[i] = radius * sums.end_turn;
+    sharpness[i] = total.sharpest;
   }
 
  private:
+  // Evaluates contacts of any row; k: counts those of the row.
+  struct SharedContact {
+    const RubbingSystemItem& item;
+    Real& sharpest;
+
+    SCREE_HD RubbingSums operator()(Index i, Index j, std::int64_t slot, Index k) const {
+      return item.take(item.walk.contact_at(item.contact_of(), i, j, slot), i, j, k, sharpest);
+    }
+    SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
+  };
+
+  SCREE_HD RubbingContactOf contact_of() const { return {walk.look.start, walk.in.spin}; }
+  // The k-th contact found in row i becomes an entry of the matrix. Returns what it adds.
+  SCREE_HD RubbingSums take(const RubbingContact& c, Index i, Index j, Index k, Real& sharpest) const {
+    RubbingEntry& entry =
+        matrix.entries[walk.in.rows.first(i) + static_cast<std::int64_t>(k) * Rows::stride()];
+    if (!c.acts) {
+      entry.neighbor = RubbingEntry::kNone;
+      return RubbingSums::nothing();
+    }
+    entry = entry_of(c, j), sharpen(c, i, sharpest);
+    return RubbingSums::of(c);
+  }
+  SCREE_HD void sharpen(const RubbingContact& c, Index i, Real& sharpest) const {
+    const Real h = walk.look.start.step.h;
+    const Real sharp = 2 * c.normal.step.stiffness * h * h / walk.in.velocity[i].w;
+    sharpest = sharp > sharpest ? sharp : sharpest;
+  }
   SCREE_HD RubbingEntry entry_of(const RubbingContact& c, Index j) const {
     const auto single = [](Real x) { return static_cast<float>(x); };
     const Vec3 n = c.normal.normal, t = c.rub.direction;

@@ -59,7 +59,7 @@ struct RubbingResidualItem {
     Block6 block;
     std::int64_t slot = rows.first(i);
     for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride())
-      matrix.entries[slot].add_to(block);
+      if (const RubbingEntry entry = matrix.entries[slot]; entry.is_contact()) entry.add_to(block);
     for (Index k = 0; k < matrix.surface_count[i]; ++k)
       matrix.surface_entries[first_surface + k].add_to(block);
     stiffening[i] = largest_row(block, masses.move, masses.turn);
@@ -133,7 +133,8 @@ struct SubtractRubbingItem {
     std::int64_t slot = rows.first(i);
     for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride()) {
       const RubbingEntry entry = matrix.entries[slot];
-      sum += entry.pull(u - xyz(move[entry.neighbor]), w + xyz(turn[entry.neighbor]), with_grip);
+      if (entry.is_contact())
+        sum += entry.pull(u - xyz(move[entry.neighbor]), w + xyz(turn[entry.neighbor]), with_grip);
     }
     for (Index k = 0; k < matrix.surface_count[i]; ++k)
       sum += matrix.surface_entries[surface_offsets[i] + k].pull(u, w, with_grip);
