@@ -91,7 +91,7 @@ class Multibody {
 
   int coordinates() const;
   int constraints() const;
-  // e.g. "petsc 3.18.5, preonly + lu (klu)"
+  // e.g. "petsc 3.18.5, preonly + lu (klu_refactor)"
   std::string solver_description() const;
 
  private:

@@ -10,6 +10,9 @@
 
 #include "base/error.hpp"
 #include "mbs/petsc_session.hpp"
+#if SCREE_REFACTORS
+#include "mbs/petsc_klu.hpp"
+#endif
 
 namespace scree {
 
@@ -19,8 +22,11 @@ constexpr const char* kPrefix = "mbs_";
 constexpr int kOwnWords = 5;  // of PetscSession before the user's
 
 // Factor packages in the order of their measured speed on chains of bodies.
-constexpr std::array<const char*, 5> kPackages = {MATSOLVERKLU, MATSOLVERSUPERLU, MATSOLVERUMFPACK,
-                                                  MATSOLVERMUMPS, MATSOLVERPETSC};
+constexpr std::array kPackages = {
+#if SCREE_REFACTORS
+    kKluRefactor,
+#endif
+    MATSOLVERKLU, MATSOLVERSUPERLU, MATSOLVERUMFPACK, MATSOLVERMUMPS, MATSOLVERPETSC};
 
 // The first message of PETSc's current error; its handler reports the innermost function first.
 std::string& petsc_message() {
@@ -161,6 +167,9 @@ void PetscSolver::Impl::choose_package() {
 }
 
 void PetscSolver::Impl::create() {
+#if SCREE_REFACTORS
+  check(register_klu_refactor());
+#endif
   const PetscInt n = pattern.rows();
   values.assign(pattern.column.size(), 0);
   rhs.assign(static_cast<std::size_t>(n), 0);
@@ -222,6 +231,7 @@ std::string PetscSolver::description() const {
     check(PCFactorGetMatSolverType(impl_->preconditioner, &package));
   }
   if (package != nullptr) text += fmt::format(" ({})", package);
+  if (SCREE_REFACTORS == 0) text += ", built without KLU: every matrix is factored anew";
   return text;
 }
 

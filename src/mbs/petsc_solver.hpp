@@ -11,7 +11,8 @@
 namespace scree {
 
 // KSP preonly + LU, overruled by PETSc options with the prefix mbs_. The factor package is the first one that
-// this PETSc has of: KLU, SuperLU, UMFPACK, MUMPS, PETSc's own. The symbolic factorization is done once.
+// there is of: KLU with kept pivots (petsc_klu.hpp), PETSc's KLU, SuperLU, UMFPACK, MUMPS, PETSc's own LU.
+// The symbolic factorization is done once.
 class PetscSolver {
  public:
   // Needs a PetscSession. Throws InputError on an mbs_ option that PETSc refuses.
@@ -29,7 +30,7 @@ class PetscSolver {
   // of PETSc.
   bool solve(bool refactor);
 
-  // e.g. "petsc 3.18.5, preonly + lu (klu)"
+  // e.g. "petsc 3.18.5, preonly + lu (klu_refactor)"
   std::string description() const;
 
  private:

@@ -274,7 +274,7 @@ TEST_CASE("PETSc's options: words that are none, unused ones, packages") {
   Multibody default_solver(paper_net());
   const MultibodyState expected = default_solver.initial_state(std::vector<BodyWrench>(20));
   CHECK(contains(default_solver.solver_description(), "preonly + lu ("));
-  for (const std::string package : {"klu", "superlu", "umfpack", "mumps", "petsc"}) {
+  for (const std::string package : {"klu_refactor", "klu", "superlu", "umfpack", "mumps", "petsc"}) {
     set(package.c_str());
     const std::string text = message_of<InputError>([&] {
       MultibodyRun run(paper_net());

@@ -1,0 +1,139 @@
+#include "mbs/klu_factors.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace scree {
+
+namespace {
+
+// Quotients are rounded: as near as this to a limit klu_factor decides.
+constexpr double kMargin = 1e-12;
+
+// Column k of L in one of KLU's blocks, without its diagonal of ones: row indices, then values from the next
+// multiple of eight bytes (klu_internal.h).
+struct Column {
+  std::span<const int> row;
+  const double* value;
+};
+
+Column column_of_l(const klu_numeric& numeric, int block, int k) {
+  const auto* start = static_cast<const double*>(numeric.LUbx[block]) + numeric.Lip[k];
+  const auto length = static_cast<std::size_t>(numeric.Llen[k]);
+  const std::size_t units = (length * sizeof(int) + sizeof(double) - 1) / sizeof(double);
+  return {{reinterpret_cast<const int*>(start), length}, start + units};
+}
+
+// visit(block, first column of the block, column) for the columns that have pivots to choose.
+template <class Visit>
+void for_each_column(const klu_symbolic& symbolic, const Visit& visit) {
+  for (int block = 0; block < symbolic.nblocks; ++block) {
+    const int first = symbolic.R[block], end = symbolic.R[block + 1];
+    if (end - first == 1) continue;
+    for (int k = first; k < end; ++k) visit(block, first, k);
+  }
+}
+
+}  // namespace
+
+bool KluFactors::analyze(const SparsePattern& pattern) {
+  pattern_ = pattern;
+  numeric_.reset();
+  symbolic_.reset(klu_analyze(pattern_.rows(), pattern_.row_start.data(), pattern_.column.data(), &common_));
+  return symbolic_ != nullptr;
+}
+
+// KLU wants columns and gets rows: what it factors is the transpose.
+KluFactors::Result KluFactors::factor(std::span<const Real> values) {
+  auto* array = const_cast<double*>(values.data());  // it is only read
+  if (numeric_ != nullptr && refactor(array)) return Result::refactored;
+  return factor_anew(array);
+}
+
+KluFactors::Result KluFactors::factor_anew(double* values) {
+  numeric_.reset();
+  numeric_.reset(
+      klu_factor(pattern_.row_start.data(), pattern_.column.data(), values, symbolic_.get(), &common_));
+  if (numeric_ == nullptr) {
+    return common_.status == KLU_OUT_OF_MEMORY ? Result::out_of_memory : Result::singular;
+  }
+  remember_pivots();
+  return Result::factored;
+}
+
+bool KluFactors::refactor(double* values) {
+  return klu_refactor(pattern_.row_start.data(), pattern_.column.data(), values, symbolic_.get(),
+                      numeric_.get(), &common_) != 0 &&
+         common_.status == KLU_OK && pivots_stay();
+}
+
+// A quotient has the absolute value 1 exactly where its entry is as large as the pivot.
+void KluFactors::remember_pivots() {
+  find_diagonals();
+  ties_.clear();
+  std::size_t entry = 0;
+  for_each_column(*symbolic_, [&](int block, int, int k) {
+    const Column column = column_of_l(*numeric_, block, k);
+    for (std::size_t i = 0; i < column.row.size(); ++i, ++entry) {
+      if (std::abs(column.value[i]) == 1) ties_.push_back(entry);
+    }
+  });
+}
+
+// The row that counts as a column's diagonal is at first its own; where another is the pivot, the diagonal
+// row takes that one's place (klu_kernel.c).
+void KluFactors::find_diagonals() {
+  const auto n = static_cast<std::size_t>(symbolic_->n);
+  std::vector<int> place(n), row(n), column(n);
+  for (std::size_t k = 0; k < n; ++k) place[static_cast<std::size_t>(symbolic_->P[k])] = static_cast<int>(k);
+  std::iota(row.begin(), row.end(), 0);        // row[k]: the diagonal of column k
+  std::iota(column.begin(), column.end(), 0);  // its inverse
+  diagonal_.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const int diagonal = row[k];
+    const int pivot = place[static_cast<std::size_t>(numeric_->Pnum[k])];
+    diagonal_[k] = diagonal;
+    const int other = column[static_cast<std::size_t>(pivot)];
+    row[static_cast<std::size_t>(other)] = diagonal;
+    column[static_cast<std::size_t>(diagonal)] = other;
+    row[k] = pivot;
+    column[static_cast<std::size_t>(pivot)] = static_cast<int>(k);
+  }
+  // From rows to their places among the pivots; column is now the inverse of the pivots' order.
+  for (int& diagonal : diagonal_) diagonal = column[static_cast<std::size_t>(diagonal)];
+}
+
+// klu_factor takes the diagonal if it is at least tol times the largest entry of its column, else the first
+// of the largest entries in an order that is the same for the same pivots before. Of entries that were as
+// large as the pivot when it was chosen, it is the first; of others that are so now, nothing is known.
+bool KluFactors::pivots_stay() const {
+  const double least = common_.tol * (1 - kMargin), most = (1 - kMargin) / common_.tol;
+  bool stay = true;
+  std::size_t entry = 0, tie = 0;
+  for_each_column(*symbolic_, [&](int block, int first, int k) {
+    const Column column = column_of_l(*numeric_, block, k);
+    const int diagonal = diagonal_[static_cast<std::size_t>(k)];
+    for (std::size_t i = 0; i < column.row.size(); ++i, ++entry) {
+      const double size = std::abs(column.value[i]);
+      const bool was_tie = tie < ties_.size() && ties_[tie] == entry;
+      tie += was_tie;
+      if (diagonal == k) {
+        stay = stay && size <= most;
+      } else {
+        stay = stay && (size < 1 || (size == 1 && was_tie)) &&
+               (column.row[i] + first != diagonal || size <= least);
+      }
+    }
+  });
+  return stay;
+}
+
+bool KluFactors::solve(std::span<Real> vector) {
+  return klu_tsolve(symbolic_.get(), numeric_.get(), pattern_.rows(), 1, vector.data(), &common_) != 0;
+}
+
+bool KluFactors::solve_transposed(std::span<Real> vector) {
+  return klu_solve(symbolic_.get(), numeric_.get(), pattern_.rows(), 1, vector.data(), &common_) != 0;
+}
+
+}  // namespace scree

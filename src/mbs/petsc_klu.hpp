@@ -1,0 +1,15 @@
+// KLU with kept pivots as a factor package of PETSc, beside PETSc's own interface to KLU, which always
+// factors anew.
+#pragma once
+
+#include <petscmat.h>
+
+namespace scree {
+
+inline constexpr const char* kKluRefactor = "klu_refactor";
+
+// Makes the package known to PETSc, for LU of sequential matrices. It takes the options of PETSc's own
+// interface (prefix_mat_klu_pivot_tol, _use_btf, _ordering, _row_scale), with the same defaults.
+PetscErrorCode register_klu_refactor();
+
+}  // namespace scree

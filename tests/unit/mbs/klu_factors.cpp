@@ -1,0 +1,148 @@
+#if SCREE_REFACTORS
+#include "mbs/klu_factors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "support/bits.hpp"
+#include "support/catch.hpp"
+
+using namespace scree;
+using Result = KluFactors::Result;
+
+namespace {
+
+// Matrices [A, B^T; B, 0] of a chain whose links turn by an angle each: coordinates (x, y, angle) of every
+// link, two rows for every joint.
+SparsePattern chain_pattern(int links) {
+  SparsePattern pattern;
+  std::vector<std::vector<int>> columns(static_cast<std::size_t>(5 * links));
+  for (int link = 0; link < links; ++link) {
+    for (int k = 0; k < 3; ++k) columns[static_cast<std::size_t>(3 * link + k)].push_back(3 * link + k);
+    for (int axis = 0; axis < 2; ++axis) {
+      const int row = 3 * links + 2 * link + axis;
+      columns[static_cast<std::size_t>(row)].push_back(row);
+      for (int side = link == 0 ? 1 : 0; side < 2; ++side) {
+        const int first = 3 * (link - 1 + side);
+        for (const int column : {first + axis, first + 2}) {
+          columns[static_cast<std::size_t>(row)].push_back(column);
+          columns[static_cast<std::size_t>(column)].push_back(row);
+        }
+      }
+    }
+  }
+  pattern.row_start.push_back(0);
+  for (std::vector<int>& row : columns) {
+    std::sort(row.begin(), row.end());
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.row_start.push_back(static_cast<int>(pattern.column.size()));
+  }
+  return pattern;
+}
+
+// angle: [links]; all links have the mass 1, the inertia and half length given.
+std::vector<Real> chain_values(const SparsePattern& pattern, const std::vector<Real>& angle, Real inertia,
+                               Real half_length) {
+  const int links = static_cast<int>(angle.size());
+  const auto entry = [&](int row, int column) -> Real {
+    if (row > column) std::swap(row, column);
+    if (row == column) return row >= 3 * links ? 0 : row % 3 == 2 ? inertia : 1;
+    const int joint = (column - 3 * links) / 2, axis = (column - 3 * links) % 2, link = row / 3;
+    const Real sign = link == joint ? 1 : -1;
+    if (row % 3 != 2) return sign;
+    const Real turned = angle[static_cast<std::size_t>(link)];
+    return half_length * (axis == 0 ? std::sin(turned) : -std::cos(turned));
+  };
+  std::vector<Real> values;
+  for (int row = 0; row < pattern.rows(); ++row) {
+    const auto at = [&](int i) {
+      return static_cast<std::size_t>(pattern.row_start[static_cast<std::size_t>(i)]);
+    };
+    for (std::size_t i = at(row); i < at(row + 1); ++i) values.push_back(entry(row, pattern.column[i]));
+  }
+  return values;
+}
+
+std::vector<Real> solution(KluFactors& factors, int rows) {
+  std::vector<Real> vector(static_cast<std::size_t>(rows));
+  for (std::size_t i = 0; i < vector.size(); ++i) vector[i] = std::cos(static_cast<Real>(i));
+  REQUIRE(factors.solve(vector));
+  return vector;
+}
+
+std::vector<Real> solution_anew(const SparsePattern& pattern, const std::vector<Real>& values,
+                                Real tolerance) {
+  KluFactors factors;
+  factors.options().tol = tolerance;
+  REQUIRE(factors.analyze(pattern));
+  REQUIRE(factors.factor(values) == Result::factored);
+  return solution(factors, pattern.rows());
+}
+
+}  // namespace
+
+TEST_CASE("kept pivots give the bits of pivots chosen anew, and are given up where KLU would choose others") {
+  constexpr int kLinks = 30;
+  const SparsePattern pattern = chain_pattern(kLinks);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<Real> turn(-1, 1);
+  for (const Real tolerance : {1e-3, 0.1, 1.0}) {
+    KluFactors factors;
+    factors.options().tol = tolerance;
+    REQUIRE(factors.analyze(pattern));
+    std::vector<Real> angle(kLinks, 0.3);
+    int kept = 0, chosen = 0;
+    for (int i = 0; i < 300; ++i) {
+      // Small turns mostly; now and then other lengths and inertias, whose pivots are others.
+      for (Real& a : angle) a += (i % 10 == 0 ? 1 : 0.01) * turn(random);
+      const Real scale = i % 50 < 25 ? 1 : 1e3;
+      const std::vector<Real> values = chain_values(pattern, angle, 1e-3 * scale, 0.5 * std::sqrt(scale));
+      const Result result = factors.factor(values);
+      REQUIRE((result == Result::factored || result == Result::refactored));
+      (result == Result::refactored ? kept : chosen)++;
+      REQUIRE(same_bits(solution(factors, pattern.rows()), solution_anew(pattern, values, tolerance)));
+    }
+    INFO("tolerance " << tolerance << ": " << kept << " kept, " << chosen << " chosen");
+    CHECK(kept > 0);
+    CHECK(chosen > 1);
+    if (tolerance < 0.01) CHECK(kept > 200);
+  }
+}
+
+TEST_CASE("a matrix that cannot be factored leaves no trace in the next one's factors") {
+  const SparsePattern pattern = chain_pattern(3);
+  const std::vector<Real> sound = chain_values(pattern, {0.1, 0.2, 0.3}, 1e-3, 0.05);
+  const std::vector<Real> zero(sound.size(), 0);
+  std::vector<Real> broken = sound;
+  broken[4] = std::numeric_limits<Real>::quiet_NaN();
+  const std::vector<Real> expected = solution_anew(pattern, sound, 1e-3);
+  KluFactors factors;
+  REQUIRE(factors.analyze(pattern));
+  CHECK(factors.factor(zero) == Result::singular);
+  CHECK(factors.factor(sound) == Result::factored);
+  CHECK(factors.factor(sound) == Result::refactored);
+  CHECK(factors.factor(broken) == Result::factored);  // its solution is not finite
+  const std::vector<Real> undefined = solution(factors, pattern.rows());
+  CHECK(std::any_of(undefined.begin(), undefined.end(), [](Real x) { return !std::isfinite(x); }));
+  CHECK(factors.factor(sound) == Result::factored);
+  CHECK(same_bits(solution(factors, pattern.rows()), expected));
+  CHECK(factors.factor(zero) == Result::singular);
+  CHECK(factors.factor(sound) == Result::factored);
+  CHECK(same_bits(solution(factors, pattern.rows()), expected));
+}
+
+TEST_CASE("the transpose is solved with the same factors") {
+  const SparsePattern pattern = {{0, 2, 3}, {0, 1, 1}};  // [2, 4; 0, 8]
+  KluFactors factors;
+  REQUIRE(factors.analyze(pattern));
+  REQUIRE(factors.factor(std::vector<Real>{2, 4, 8}) == Result::factored);
+  std::vector<Real> vector = {10, 8};
+  REQUIRE(factors.solve(vector));
+  CHECK(vector == std::vector<Real>{3, 1});
+  vector = {2, 12};
+  REQUIRE(factors.solve_transposed(vector));
+  CHECK(vector == std::vector<Real>{1, 1});
+}
+#endif
