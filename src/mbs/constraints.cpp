@@ -16,13 +16,13 @@ class CoincidenceConstraint final : public Constraint {
   explicit CoincidenceConstraint(const PointPair& pair) : pair_(pair), index_(point_coordinates(pair)) {}
 
   int rows() const override { return 2; }
-  void value(const PlanarMotion& motion, Real, Real* c) const override {
-    const Vec2 gap = pair_geometry(pair_, motion).gap;
+  void value(const BodyPoses& poses, Real, Real* c) const override {
+    const Vec2 gap = pair_geometry(pair_, poses).gap;
     c[0] = gap.x;
     c[1] = gap.y;
   }
-  void jacobian(const PlanarMotion& motion, int row, SparseTerm& out) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
+  void jacobian(const BodyPoses& poses, int row, SparseTerm& out) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
     const Vec2 turn1 = perp(g.arm[0]), turn2 = perp(g.arm[1]);
     out.add(row, index_[0], -1);
     out.add(row, index_[2], -turn1.x);
@@ -33,20 +33,20 @@ class CoincidenceConstraint final : public Constraint {
     out.add(row + 1, index_[4], 1);
     out.add(row + 1, index_[5], turn2.y);
   }
-  void hessian(const PlanarMotion& motion, const Real* lambda, SparseTerm& out) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
+  void hessian(const BodyPoses& poses, const Real* lambda, SparseTerm& out) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
     const Vec2 force{lambda[0], lambda[1]};
     out.add(index_[2], index_[2], dot(force, g.arm[0]));
     out.add(index_[5], index_[5], -dot(force, g.arm[1]));
   }
   void velocity_rhs(Real, Real* rhs) const override { rhs[0] = rhs[1] = 0; }
-  void acceleration_rhs(const PlanarMotion& motion, Real, Real* rhs) const override {
-    const Vec2 second = pair_geometry(pair_, motion).gap_second;
+  void acceleration_rhs(const BodyPoses& poses, Real, Real* rhs) const override {
+    const Vec2 second = pair_geometry(pair_, poses).gap_second;
     rhs[0] = -second.x;
     rhs[1] = -second.y;
   }
-  void add_reaction(const PlanarMotion&, const Real* lambda, Vec2& force, Real&) const override {
-    force = force - Vec2{lambda[0], lambda[1]};
+  void add_reaction(const BodyPoses&, const Real* lambda, Vec3& force, Vec3&) const override {
+    force.x -= lambda[0], force.y -= lambda[1];
   }
   Real power(Real, const Real*) const override { return 0; }
 
@@ -61,18 +61,18 @@ class PrescribedConstraint : public Constraint {
  public:
   explicit PrescribedConstraint(ScalarFunction function) : function_(std::move(function)) {}
 
-  void value(const PlanarMotion& motion, Real t, Real* c) const override {
-    *c = coordinate(motion) - function_(t).value;
+  void value(const BodyPoses& poses, Real t, Real* c) const override {
+    *c = coordinate(poses) - function_(t).value;
   }
   void velocity_rhs(Real t, Real* rhs) const override { *rhs = function_(t).rate; }
-  void acceleration_rhs(const PlanarMotion& motion, Real t, Real* rhs) const override {
-    *rhs = function_(t).acceleration - coordinate_second(motion);
+  void acceleration_rhs(const BodyPoses& poses, Real t, Real* rhs) const override {
+    *rhs = function_(t).acceleration - coordinate_second(poses);
   }
   Real power(Real t, const Real* lambda) const override { return -*lambda * function_(t).rate; }
 
  private:
-  virtual Real coordinate(const PlanarMotion& motion) const = 0;         // g
-  virtual Real coordinate_second(const PlanarMotion& motion) const = 0;  // g'' without accelerations
+  virtual Real coordinate(const BodyPoses& poses) const = 0;         // g
+  virtual Real coordinate_second(const BodyPoses& poses) const = 0;  // g'' without accelerations
 
   ScalarFunction function_;
 };
@@ -82,24 +82,26 @@ class PrescribedConstraint : public Constraint {
 // C_q = [0, -1, 0, 1],  g'' without accelerations = 0,  (C_q^T lambda)_q = 0
 class AngleConstraint final : public PrescribedConstraint {
  public:
-  AngleConstraint(const int (&body)[2], ScalarFunction angle)
-      : PrescribedConstraint(std::move(angle)), body_{body[0], body[1]}, index_(pair_coordinates(body)) {}
+  AngleConstraint(const PointPair& pair, ScalarFunction angle)
+      : PrescribedConstraint(std::move(angle)),
+        body_{pair.body[0], pair.body[1]},
+        index_(pair_coordinates(pair)) {}
 
   bool is_angle() const override { return true; }
-  void jacobian(const PlanarMotion&, int row, SparseTerm& out) const override {
+  void jacobian(const BodyPoses&, int row, SparseTerm& out) const override {
     out.add(row, index_[2], -1);
     out.add(row, index_[5], 1);
   }
-  void hessian(const PlanarMotion&, const Real*, SparseTerm&) const override {}
-  void add_reaction(const PlanarMotion&, const Real* lambda, Vec2&, Real& torque) const override {
-    torque -= *lambda;
+  void hessian(const BodyPoses&, const Real*, SparseTerm&) const override {}
+  void add_reaction(const BodyPoses&, const Real* lambda, Vec3&, Vec3& torque) const override {
+    torque.z -= *lambda;
   }
 
  private:
-  Real coordinate(const PlanarMotion& motion) const override {
-    return motion[body_[1]].angle - motion[body_[0]].angle;
+  Real coordinate(const BodyPoses& poses) const override {
+    return poses.planar[body_[1]].angle - poses.planar[body_[0]].angle;
   }
-  Real coordinate_second(const PlanarMotion&) const override { return 0; }
+  Real coordinate_second(const BodyPoses&) const override { return 0; }
 
   int body_[2];
   PairCoordinates index_;
@@ -119,13 +121,13 @@ class AxisConstraint final : public PrescribedConstraint {
       : PrescribedConstraint(std::move(displacement)),
         pair_(pair),
         axis_(axis),
-        index_(pair_coordinates(pair.body)) {
+        index_(pair_coordinates(pair)) {
     index_[5] = point_coordinates(pair)[5];
   }
 
-  void jacobian(const PlanarMotion& motion, int row, SparseTerm& out) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
-    const Vec2 u = direction(motion);
+  void jacobian(const BodyPoses& poses, int row, SparseTerm& out) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
+    const Vec2 u = direction(poses);
     out.add(row, index_[0], -u.x);
     out.add(row, index_[1], -u.y);
     out.add(row, index_[2], dot(perp(u), g.gap) - dot(u, perp(g.arm[0])));
@@ -133,9 +135,9 @@ class AxisConstraint final : public PrescribedConstraint {
     out.add(row, index_[4], u.y);
     out.add(row, index_[5], dot(u, perp(g.arm[1])));
   }
-  void hessian(const PlanarMotion& motion, const Real* lambda, SparseTerm& out) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
-    const Vec2 u = direction(motion), p = *lambda * perp(u);
+  void hessian(const BodyPoses& poses, const Real* lambda, SparseTerm& out) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
+    const Vec2 u = direction(poses), p = *lambda * perp(u);
     const auto add_both = [&](int row, int column, Real value) {
       out.add(row, column, value);
       out.add(column, row, value);
@@ -148,19 +150,20 @@ class AxisConstraint final : public PrescribedConstraint {
     out.add(index_[2], index_[2], *lambda * (dot(u, g.arm[0]) - dot(u, g.gap)) - 2 * dot(p, perp(g.arm[0])));
     out.add(index_[5], index_[5], -*lambda * dot(u, g.arm[1]));
   }
-  void add_reaction(const PlanarMotion& motion, const Real* lambda, Vec2& force, Real&) const override {
-    force = force - *lambda * direction(motion);
+  void add_reaction(const BodyPoses& poses, const Real* lambda, Vec3& force, Vec3&) const override {
+    const Vec2 along = *lambda * direction(poses);
+    force.x -= along.x, force.y -= along.y;
   }
 
  private:
-  Vec2 direction(const PlanarMotion& motion) const { return motion[pair_.body[0]].turn(axis_); }
-  Real coordinate(const PlanarMotion& motion) const override {
-    return dot(direction(motion), pair_geometry(pair_, motion).gap);
+  Vec2 direction(const BodyPoses& poses) const { return poses.planar[pair_.body[0]].turn(axis_); }
+  Real coordinate(const BodyPoses& poses) const override {
+    return dot(direction(poses), pair_geometry(pair_, poses).gap);
   }
-  Real coordinate_second(const PlanarMotion& motion) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
-    const Vec2 u = direction(motion);
-    const Real w = motion[pair_.body[0]].spin;
+  Real coordinate_second(const BodyPoses& poses) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
+    const Vec2 u = direction(poses);
+    const Real w = poses.planar[pair_.body[0]].spin;
     return dot(u, g.gap_second) + 2 * w * dot(perp(u), g.gap_rate) - w * w * dot(u, g.gap);
   }
 
@@ -181,13 +184,13 @@ class LengthConstraint final : public PrescribedConstraint {
   LengthConstraint(const PointPair& pair, ScalarFunction length)
       : PrescribedConstraint(std::move(length)), pair_(pair), index_(point_coordinates(pair)) {}
 
-  void jacobian(const PlanarMotion& motion, int row, SparseTerm& out) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
+  void jacobian(const BodyPoses& poses, int row, SparseTerm& out) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
     const std::array<Real, 6> gradient = gap_gradient(g, (1 / norm(g.gap)) * g.gap);
     for (std::size_t k = 0; k < 6; ++k) out.add(row, index_[k], gradient[k]);
   }
-  void hessian(const PlanarMotion& motion, const Real* lambda, SparseTerm& out) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
+  void hessian(const BodyPoses& poses, const Real* lambda, SparseTerm& out) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
     const Real length = norm(g.gap);
     const Vec2 e = (1 / length) * g.gap;
     const std::array<Real, 6> across = gap_gradient(g, perp(e));
@@ -199,17 +202,16 @@ class LengthConstraint final : public PrescribedConstraint {
     out.add(index_[2], index_[2], *lambda * dot(e, g.arm[0]));
     out.add(index_[5], index_[5], -*lambda * dot(e, g.arm[1]));
   }
-  void add_reaction(const PlanarMotion& motion, const Real* lambda, Vec2& force, Real&) const override {
-    const Vec2 gap = pair_geometry(pair_, motion).gap;
-    force = force - (*lambda / norm(gap)) * gap;
+  void add_reaction(const BodyPoses& poses, const Real* lambda, Vec3& force, Vec3&) const override {
+    const Vec2 gap = pair_geometry(pair_, poses).gap;
+    const Vec2 along = (*lambda / norm(gap)) * gap;
+    force.x -= along.x, force.y -= along.y;
   }
 
  private:
-  Real coordinate(const PlanarMotion& motion) const override {
-    return norm(pair_geometry(pair_, motion).gap);
-  }
-  Real coordinate_second(const PlanarMotion& motion) const override {
-    const PairGeometry g = pair_geometry(pair_, motion);
+  Real coordinate(const BodyPoses& poses) const override { return norm(pair_geometry(pair_, poses).gap); }
+  Real coordinate_second(const BodyPoses& poses) const override {
+    const PairGeometry g = pair_geometry(pair_, poses);
     const Real length = norm(g.gap);
     const Vec2 e = (1 / length) * g.gap;
     const Real across = dot(perp(e), g.gap_rate);
@@ -226,8 +228,8 @@ std::unique_ptr<Constraint> coincidence_constraint(const PointPair& pair) {
   return std::make_unique<CoincidenceConstraint>(pair);
 }
 
-std::unique_ptr<Constraint> angle_constraint(const int (&body)[2], ScalarFunction angle) {
-  return std::make_unique<AngleConstraint>(body, std::move(angle));
+std::unique_ptr<Constraint> angle_constraint(const PointPair& pair, ScalarFunction angle) {
+  return std::make_unique<AngleConstraint>(pair, std::move(angle));
 }
 
 std::unique_ptr<Constraint> axis_constraint(const PointPair& pair, Vec2 axis, ScalarFunction displacement) {

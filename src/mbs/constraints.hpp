@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "mbs/planar_motion.hpp"
+#include "mbs/body_poses.hpp"
 #include "mbs/scalar_function.hpp"
 #include "mbs/sparse_term.hpp"
-#include "model/bodies.hpp"
 
 namespace scree {
 
@@ -23,18 +22,17 @@ class Constraint {
   virtual bool is_angle() const { return false; }
 
   // C; c: [rows].
-  virtual void value(const PlanarMotion& motion, Real t, Real* c) const = 0;
+  virtual void value(const BodyPoses& poses, Real t, Real* c) const = 0;
   // C_q, its first row being `row` of Phi_q.
-  virtual void jacobian(const PlanarMotion& motion, int row, SparseTerm& out) const = 0;
+  virtual void jacobian(const BodyPoses& poses, int row, SparseTerm& out) const = 0;
   // (C_q^T lambda)_q.
-  virtual void hessian(const PlanarMotion& motion, const Real* lambda, SparseTerm& out) const = 0;
+  virtual void hessian(const BodyPoses& poses, const Real* lambda, SparseTerm& out) const = 0;
   // C_q q' = velocity_rhs, C_q q'' = acceleration_rhs; rhs: [rows].
   virtual void velocity_rhs(Real t, Real* rhs) const = 0;
-  virtual void acceleration_rhs(const PlanarMotion& motion, Real t, Real* rhs) const = 0;
+  virtual void acceleration_rhs(const BodyPoses& poses, Real t, Real* rhs) const = 0;
   // Adds the force [N] on body 2 at its joint point, and the torque about that point [N m]: the reaction's
   // generalized force is -C_q^T lambda.
-  virtual void add_reaction(const PlanarMotion& motion, const Real* lambda, Vec2& force,
-                            Real& torque) const = 0;
+  virtual void add_reaction(const BodyPoses& poses, const Real* lambda, Vec3& force, Vec3& torque) const = 0;
   // Power that the prescribed motion feeds in [W]: -lambda C_q q' = -lambda f'.
   virtual Real power(Real t, const Real* lambda) const = 0;
 };
@@ -42,7 +40,7 @@ class Constraint {
 // The points coincide: C = d. Two rows.
 std::unique_ptr<Constraint> coincidence_constraint(const PointPair& pair);
 // C = theta_2 - theta_1 - f(t).
-std::unique_ptr<Constraint> angle_constraint(const int (&body)[2], ScalarFunction angle);
+std::unique_ptr<Constraint> angle_constraint(const PointPair& pair, ScalarFunction angle);
 // C = u.d - f(t), u = A_1 axis; axis: unit vector in the frame of body 1.
 std::unique_ptr<Constraint> axis_constraint(const PointPair& pair, Vec2 axis, ScalarFunction displacement);
 // C = |d| - f(t).

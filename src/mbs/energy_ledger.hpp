@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mbs/multibody.hpp"
-#include "mbs/planar_system.hpp"
+#include "mbs/rigid_body_system.hpp"
 
 namespace scree {
 
@@ -14,8 +14,8 @@ namespace scree {
 //   energy
 // kinetic + gravitational + elastic + dissipated + integrator_loss - driver_work - (work of the contact
 // wrenches) then stays constant up to O(h^2).
-void book_step(PlanarSystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end);
+void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end);
 
-MultibodyEnergies stored_energies(const PlanarSystem& system, const MultibodyState& state, Real t);
+MultibodyEnergies stored_energies(const RigidBodySystem& system, const MultibodyState& state, Real t);
 
 }  // namespace scree

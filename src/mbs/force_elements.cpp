@@ -24,9 +24,9 @@ void add_at(std::vector<Real>& force, int index, Real value) {
 //   diag: e.a_1 at theta_1, -e.a_2 at theta_2
 class SpringDamperElement final : public ForceElement {
  public:
-  SpringDamperElement(const SpringDamper& element, Real end)
+  SpringDamperElement(const SpringDamper& element, const BodyLayout& layout, Real end)
       : name_(element.name),
-        pair_{{element.body[0], element.body[1]}, {planar(element.point[0]), planar(element.point[1])}},
+        pair_(point_pair(layout, element.body, element.point)),
         index_(point_coordinates(pair_)),
         stiffness_(element.stiffness),
         damping_(element.damping),
@@ -39,8 +39,8 @@ class SpringDamperElement final : public ForceElement {
     }
   }
 
-  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) override {
-    line_ = line_at(motion, t);
+  Real add_force(const BodyPoses& poses, Real t, Real length, std::vector<Real>& force) override {
+    line_ = line_at(poses, t);
     const std::array<Real, 6> gradient = gap_gradient(line_.geometry, line_.direction);
     for (const std::size_t k : active_) {
       force[static_cast<std::size_t>(index_[k])] -= line_.tension * gradient[k];
@@ -48,7 +48,7 @@ class SpringDamperElement final : public ForceElement {
     return std::abs(line_.tension) * length;
   }
 
-  void add_derivatives(const PlanarMotion& motion, Real, SparseTerm& stiffness,
+  void add_derivatives(const BodyPoses& poses, Real, SparseTerm& stiffness,
                        SparseTerm& damping) const override {
     const Line& line = line_;
     const PairGeometry& g = line.geometry;
@@ -60,8 +60,8 @@ class SpringDamperElement final : public ForceElement {
     for (std::size_t k = 0; k < 6; ++k) {
       tension_gradient[k] = stiffness_ * along[k] + damping_ * turning * across[k];
     }
-    tension_gradient[2] += damping_ * bend1 * motion[pair_.body[0]].spin;
-    tension_gradient[5] += damping_ * bend2 * motion[pair_.body[1]].spin;
+    tension_gradient[2] += damping_ * bend1 * poses.planar[pair_.body[0]].spin;
+    tension_gradient[5] += damping_ * bend2 * poses.planar[pair_.body[1]].spin;
     std::array<Real, 6> sideways, damped;
     for (std::size_t k = 0; k < 6; ++k) {
       sideways[k] = line.tension / line.length * across[k];
@@ -77,14 +77,14 @@ class SpringDamperElement final : public ForceElement {
     stiffness.add(index_[5], index_[5], line.tension * bend2);
   }
 
-  void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const override {
-    const Line line = line_at(motion, t);
+  void add_powers(const BodyPoses& poses, Real t, Powers& powers) const override {
+    const Line line = line_at(poses, t);
     powers.dissipated += damping_ * line.rate * line.rate;
     powers.applied -= actuator_(t).value * line.rate;
   }
 
-  Real elastic_energy(const PlanarMotion& motion) const override {
-    const Real stretch = norm(pair_geometry(pair_, motion).gap) - free_length_;
+  Real elastic_energy(const BodyPoses& poses) const override {
+    const Real stretch = norm(pair_geometry(pair_, poses).gap) - free_length_;
     return stiffness_ / 2 * stretch * stretch;
   }
   Real elastic_scale(Real length) const override { return stiffness_ * length * length; }
@@ -96,9 +96,9 @@ class SpringDamperElement final : public ForceElement {
     Vec2 direction;
   };
 
-  Line line_at(const PlanarMotion& motion, Real t) const {
+  Line line_at(const BodyPoses& poses, Real t) const {
     Line line;
-    line.geometry = pair_geometry(pair_, motion);
+    line.geometry = pair_geometry(pair_, poses);
     line.length = norm(line.geometry.gap);
     if (line.length == 0) {
       throw SimulationError(
@@ -124,16 +124,18 @@ class SpringDamperElement final : public ForceElement {
 // -Q_q = k J J^T, -Q_q' = c J J^T, J = theta_q = (-1, 1)
 class TorsionalElement final : public ForceElement {
  public:
-  explicit TorsionalElement(const TorsionalSpringDamper& element)
-      : element_(element), index_{pair_coordinates(element.body)[2], pair_coordinates(element.body)[5]} {}
+  TorsionalElement(const TorsionalSpringDamper& element, const BodyLayout& layout) : element_(element) {
+    const PairCoordinates index = pair_coordinates(point_pair(layout, element.body, {{}, {}}));
+    index_[0] = index[2], index_[1] = index[5];
+  }
 
-  Real add_force(const PlanarMotion& motion, Real, Real, std::vector<Real>& force) override {
-    const Real torque = element_.stiffness * twist(motion) + element_.damping * rate(motion);
+  Real add_force(const BodyPoses& poses, Real, Real, std::vector<Real>& force) override {
+    const Real torque = element_.stiffness * twist(poses) + element_.damping * rate(poses);
     add_at(force, index_[0], torque);
     add_at(force, index_[1], -torque);
     return std::abs(torque);
   }
-  void add_derivatives(const PlanarMotion&, Real, SparseTerm& stiffness, SparseTerm& damping) const override {
+  void add_derivatives(const BodyPoses&, Real, SparseTerm& stiffness, SparseTerm& damping) const override {
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) {
         const Real sign = i == j ? 1 : -1;
@@ -142,20 +144,20 @@ class TorsionalElement final : public ForceElement {
       }
     }
   }
-  void add_powers(const PlanarMotion& motion, Real, Powers& powers) const override {
-    powers.dissipated += element_.damping * rate(motion) * rate(motion);
+  void add_powers(const BodyPoses& poses, Real, Powers& powers) const override {
+    powers.dissipated += element_.damping * rate(poses) * rate(poses);
   }
-  Real elastic_energy(const PlanarMotion& motion) const override {
-    return element_.stiffness / 2 * twist(motion) * twist(motion);
+  Real elastic_energy(const BodyPoses& poses) const override {
+    return element_.stiffness / 2 * twist(poses) * twist(poses);
   }
   Real elastic_scale(Real) const override { return element_.stiffness; }
 
  private:
-  Real twist(const PlanarMotion& motion) const {
-    return motion[element_.body[1]].angle - motion[element_.body[0]].angle - element_.free_angle;
+  Real twist(const BodyPoses& poses) const {
+    return poses.planar[element_.body[1]].angle - poses.planar[element_.body[0]].angle - element_.free_angle;
   }
-  Real rate(const PlanarMotion& motion) const {
-    return motion[element_.body[1]].spin - motion[element_.body[0]].spin;
+  Real rate(const BodyPoses& poses) const {
+    return poses.planar[element_.body[1]].spin - poses.planar[element_.body[0]].spin;
   }
 
   TorsionalSpringDamper element_;
@@ -166,51 +168,51 @@ class TorsionalElement final : public ForceElement {
 // -Q_q: global F: a.F at (theta, theta); following F: -perp(F) at (x, theta), (y, theta).  -Q_q' = 0
 class AppliedForceElement final : public ForceElement {
  public:
-  AppliedForceElement(const AppliedForce& element, Real end)
+  AppliedForceElement(const AppliedForce& element, const BodyLayout& layout, Real end)
       : body_(element.body),
+        column_(layout.column(element.body)),
         point_(planar(element.point)),
         follows_body_(element.follows_body),
         fx_(element.fx, owner(element), end),
         fy_(element.fy, owner(element), end),
         torque_(element.torque, owner(element), end) {}
 
-  Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) override {
-    const Vec2 f = force_at(motion, t);
-    const Real moment = moment_at(motion, t);
-    add_at(force, 3 * body_, f.x);
-    add_at(force, 3 * body_ + 1, f.y);
-    add_at(force, 3 * body_ + 2, moment);
+  Real add_force(const BodyPoses& poses, Real t, Real length, std::vector<Real>& force) override {
+    const Vec2 f = force_at(poses, t);
+    const Real moment = moment_at(poses, t);
+    add_at(force, column_, f.x);
+    add_at(force, column_ + 1, f.y);
+    add_at(force, column_ + 2, moment);
     return std::max(norm(f) * length, std::abs(moment));
   }
-  void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
-                       SparseTerm&) const override {
-    const int angle = 3 * body_ + 2;
-    const Vec2 f = force_at(motion, t);
+  void add_derivatives(const BodyPoses& poses, Real t, SparseTerm& stiffness, SparseTerm&) const override {
+    const int angle = column_ + 2;
+    const Vec2 f = force_at(poses, t);
     if (follows_body_) {
-      stiffness.add(3 * body_, angle, f.y);
-      stiffness.add(3 * body_ + 1, angle, -f.x);
+      stiffness.add(column_, angle, f.y);
+      stiffness.add(column_ + 1, angle, -f.x);
     } else {
-      stiffness.add(angle, angle, dot(motion[body_].turn(point_), f));
+      stiffness.add(angle, angle, dot(poses.planar[body_].turn(point_), f));
     }
   }
-  void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const override {
-    powers.applied +=
-        dot(force_at(motion, t), motion[body_].velocity) + moment_at(motion, t) * motion[body_].spin;
+  void add_powers(const BodyPoses& poses, Real t, Powers& powers) const override {
+    powers.applied += dot(force_at(poses, t), poses.planar[body_].velocity) +
+                      moment_at(poses, t) * poses.planar[body_].spin;
   }
 
  private:
   static std::string owner(const AppliedForce& element) {
     return fmt::format("applied force '{}'", element.name);
   }
-  Vec2 force_at(const PlanarMotion& motion, Real t) const {
+  Vec2 force_at(const BodyPoses& poses, Real t) const {
     const Vec2 f{fx_(t).value, fy_(t).value};
-    return follows_body_ ? motion[body_].turn(f) : f;
+    return follows_body_ ? poses.planar[body_].turn(f) : f;
   }
-  Real moment_at(const PlanarMotion& motion, Real t) const {
-    return torque_(t).value + dot(perp(motion[body_].turn(point_)), force_at(motion, t));
+  Real moment_at(const BodyPoses& poses, Real t) const {
+    return torque_(t).value + dot(perp(poses.planar[body_].turn(point_)), force_at(poses, t));
   }
 
-  int body_;
+  int body_, column_;
   Vec2 point_;
   bool follows_body_;
   ScalarFunction fx_, fy_, torque_;
@@ -218,16 +220,19 @@ class AppliedForceElement final : public ForceElement {
 
 }  // namespace
 
-std::unique_ptr<ForceElement> make_force_element(const SpringDamper& element, Real end) {
-  return std::make_unique<SpringDamperElement>(element, end);
+std::unique_ptr<ForceElement> make_force_element(const SpringDamper& element, const BodyLayout& layout,
+                                                 Real end) {
+  return std::make_unique<SpringDamperElement>(element, layout, end);
 }
 
-std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& element) {
-  return std::make_unique<TorsionalElement>(element);
+std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& element,
+                                                 const BodyLayout& layout) {
+  return std::make_unique<TorsionalElement>(element, layout);
 }
 
-std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, Real end) {
-  return std::make_unique<AppliedForceElement>(element, end);
+std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, const BodyLayout& layout,
+                                                 Real end) {
+  return std::make_unique<AppliedForceElement>(element, layout, end);
 }
 
 }  // namespace scree

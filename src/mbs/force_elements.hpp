@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mbs/planar_motion.hpp"
+#include "mbs/body_poses.hpp"
 #include "mbs/sparse_term.hpp"
 #include "model/bodies.hpp"
 
@@ -22,20 +22,23 @@ class ForceElement {
   virtual ~ForceElement() = default;
 
   // Adds to Q [coordinates]. Returns the size of what it added [J]: a force times `length` [m], or a torque.
-  virtual Real add_force(const PlanarMotion& motion, Real t, Real length, std::vector<Real>& force) = 0;
-  // Adds -Q_q and -Q_q' [coordinates, coordinates]. motion and t: those of the last add_force().
-  virtual void add_derivatives(const PlanarMotion& motion, Real t, SparseTerm& stiffness,
+  virtual Real add_force(const BodyPoses& poses, Real t, Real length, std::vector<Real>& force) = 0;
+  // Adds -Q_q and -Q_v [coordinates, coordinates]. poses and t: those of the last add_force().
+  virtual void add_derivatives(const BodyPoses& poses, Real t, SparseTerm& stiffness,
                                SparseTerm& damping) const = 0;
-  virtual void add_powers(const PlanarMotion& motion, Real t, Powers& powers) const = 0;
-  virtual Real elastic_energy(const PlanarMotion&) const { return 0; }  // [J]
+  virtual void add_powers(const BodyPoses& poses, Real t, Powers& powers) const = 0;
+  virtual Real elastic_energy(const BodyPoses&) const { return 0; }  // [J]
   // Elastic energy of a displacement by `length`, or by 1 rad, times two [J].
   virtual Real elastic_scale(Real) const { return 0; }
 };
 
 // Throw InputError naming the element: a table of its time functions is refused (see ScalarFunction; end: of
 // the simulated time [s]). Evaluating a spring-damper whose points coincide throws SimulationError naming it.
-std::unique_ptr<ForceElement> make_force_element(const SpringDamper& element, Real end);
-std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& element);
-std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, Real end);
+std::unique_ptr<ForceElement> make_force_element(const SpringDamper& element, const BodyLayout& layout,
+                                                 Real end);
+std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& element,
+                                                 const BodyLayout& layout);
+std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, const BodyLayout& layout,
+                                                 Real end);
 
 }  // namespace scree

@@ -11,12 +11,11 @@ std::size_t count(int n) { return static_cast<std::size_t>(n); }
 // Evaluates everything once so that the terms know their patterns; the values do not matter.
 KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, SystemTerms& terms,
                          SystemDerivatives& derivatives) {
-  const std::vector<Real> acceleration(count(system.coordinates()), 0),
-      multipliers(count(system.constraints()), 0);
+  const std::vector<Real> still(count(system.coordinates()), 0), multipliers(count(system.constraints()), 0);
   terms.applied_force.assign(count(system.coordinates()), 0);
   terms.constraint.assign(count(system.constraints()), 0);
   system.evaluate(at, terms);
-  system.differentiate(at, acceleration, multipliers, derivatives);
+  system.differentiate(at, {still, still, multipliers}, derivatives);
   return KktMatrix(terms, derivatives, system.coordinates(), system.constraints());
 }
 
@@ -39,6 +38,7 @@ void HhtMethod::predict(const MultibodyState& state, Real t, Real h) {
   start_acceleration_ = state.acceleration;
   start_force_ = state.force;
   position_.resize(state.position.size());
+  displacement_.resize(state.velocity.size());
   velocity_.resize(state.velocity.size());
   acceleration_ = state.acceleration;
   multipliers_ = state.multipliers;
@@ -47,11 +47,12 @@ void HhtMethod::predict(const MultibodyState& state, Real t, Real h) {
 
 void HhtMethod::update_motion() {
   const HhtCoefficients& c = coefficients_;
-  for (std::size_t i = 0; i < position_.size(); ++i) {
+  for (std::size_t i = 0; i < velocity_.size(); ++i) {
     const Real v = start_velocity_[i], a0 = start_acceleration_[i], a1 = acceleration_[i];
-    position_[i] = start_position_[i] + newmark_displacement(c, step_, v, a0, a1);
+    displacement_[i] = newmark_displacement(c, step_, v, a0, a1);
     velocity_[i] = newmark_velocity(c, step_, v, a0, a1);
   }
+  system_.displace(start_position_, displacement_, position_);
 }
 
 void HhtMethod::evaluate_residual() {
@@ -72,16 +73,19 @@ void HhtMethod::evaluate_residual() {
 }
 
 void HhtMethod::newton_matrix(std::span<Real> values) {
-  system_.differentiate({end_time(), position_, velocity_}, acceleration_, multipliers_, derivatives_);
+  system_.differentiate({end_time(), position_, velocity_}, {displacement_, acceleration_, multipliers_},
+                        derivatives_);
   const Real scale = hht_inertia_weight(coefficients_);
   const KktWeights weights{scale, position_gain(), newmark_velocity_gain(coefficients_, step_),
-                           position_gain() * scale};
+                           position_gain() * scale, scale};
   kkt_.assemble(terms_, derivatives_, weights, values);
 }
 
 void HhtMethod::apply_correction(std::span<const Real> delta) {
   const std::size_t n = acceleration_.size();
-  for (std::size_t i = 0; i < n; ++i) acceleration_[i] -= delta[i];
+  change_.assign(delta.begin(), delta.begin() + static_cast<std::ptrdiff_t>(n));
+  system_.pull_back(displacement_, change_);
+  for (std::size_t i = 0; i < n; ++i) acceleration_[i] -= change_[i];
   for (std::size_t j = 0; j < multipliers_.size(); ++j) multipliers_[j] -= delta[n + j];
   update_motion();
 }

@@ -13,9 +13,10 @@
 
 namespace scree {
 
-// One step from t_n to t_{n+1} = t_n + h. The unknowns are q''_{n+1} and lambda_{n+1}; q and q' follow by
-// Newmark. Of second order where M is constant, as for planar bodies; where M depends on q, for alpha = 0
-// only, because Eq. 16 takes M at t_{n+1} but q'' at t_{n+1} + alpha h.
+// One step from t_n to t_{n+1} = t_n + h. The unknowns are a_{n+1} and lambda_{n+1}; the displacement u of
+// the step and v follow by Newmark, q_{n+1} = displace(q_n, u). Of second order where M is constant, as that
+// of rigid bodies is in their own frames; where M depends on q, for alpha = 0 only, because Eq. 16 takes M at
+// t_{n+1} but a at t_{n+1} + alpha h.
 class HhtMethod {
  public:
   // position, velocity: any instant at which the system can be evaluated; it gives the matrix its pattern.
@@ -25,41 +26,43 @@ class HhtMethod {
   const SparsePattern& pattern() const { return kkt_.pattern(); }
   const HhtCoefficients& coefficients() const { return coefficients_; }
 
-  // Opens a step: q''_{n+1} = q''_n, lambda_{n+1} = lambda_n.
+  // Opens a step: a_{n+1} = a_n, lambda_{n+1} = lambda_n.
   void predict(const MultibodyState& state, Real t, Real h);
 
   // At the current iterate: e1 (Eq. 16) in the first `coordinates` places, e2 (Eq. 17) in the other ones.
-  //   e1 = M q'' / (1 + alpha) + (Phi_q^T lambda - Q)_{n+1} - alpha / (1 + alpha) (Phi_q^T lambda - Q)_n
+  //   e1 = M a / (1 + alpha) + (Phi_q^T lambda - Q)_{n+1} - alpha / (1 + alpha) (Phi_q^T lambda - Q)_n
   //   e2 = Phi / (beta h^2)
   void evaluate_residual();
   const std::vector<Real>& residual() const { return residual_; }
-  // Eqs. 14, 15 at the iterate of the last evaluate_residual(). values: [entries of pattern()].
-  //   A = M / (1 + alpha) - h gamma Q_q' + beta h^2 ((M q'')_q / (1 + alpha) + (Phi_q^T lambda - Q)_q)
+  // Eqs. 14, 15 at the iterate of the last evaluate_residual(). values: [entries of pattern()]. The unknown
+  // is the change of the pose over beta h^2, so that Phi_q and its transpose stand as they are:
+  //   A = (M / (1 + alpha) - h gamma Q_v) T^-1 + beta h^2 ((M a)_q / (1 + alpha) + (Phi_q^T lambda - Q)_q)
   void newton_matrix(std::span<Real> values);
-  // Subtracts `delta`, the Newton matrix' solution for residual(), from (q'', lambda) and updates q, q'.
+  // Subtracts `delta`, the Newton matrix' solution for residual(), from (a, lambda), T^-1 times in a, and
+  // updates q, v.
   void apply_correction(std::span<const Real> delta);
 
   // Evaluates the forces at the current iterate and writes the end of the step into `state`.
   void close(MultibodyState& state);
 
-  // Acceleration-level system at the state's q, q' and at time t:
-  //   [M, Phi_q^T; Phi_q, 0] (q'', lambda) = (Q, acceleration_rhs).
+  // Acceleration-level system at the state's q, v and at time t:
+  //   [M, Phi_q^T; Phi_q, 0] (a, lambda) = (Q, acceleration_rhs).
   void acceleration_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
-  // Sets q'', lambda from its solution, and the forces that go with them.
+  // Sets a, lambda from its solution, and the forces that go with them.
   void set_acceleration(std::span<const Real> solution, MultibodyState& state) const;
 
-  // Velocity-level system at the state's q, q' and at time t:
-  //   [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, velocity_rhs - Phi_q q').
-  // q' + d satisfies the constraints, and no smaller d in the norm of M does.
+  // Velocity-level system at the state's q, v and at time t:
+  //   [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, velocity_rhs - Phi_q v).
+  // v + d satisfies the constraints, and no smaller d in the norm of M does.
   void velocity_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
 
-  // Phi_q q' - velocity_rhs, the rate of Phi, of a state at time t. The Jacobian is that of the last
+  // Phi_q v - velocity_rhs, the rate of Phi, of a state at time t. The Jacobian is that of the last
   // evaluation, which was at this state.
   std::vector<Real> constraint_rate(const MultibodyState& state, Real t) const;
 
   // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
   // change dQ changes the reactions too,
-  //   [M, Phi_q^T; Phi_q, 0] (d, d_lambda) = (dQ, 0),  q'' += (1 + alpha) d,  lambda += d_lambda.
+  //   [M, Phi_q^T; Phi_q, 0] (d, d_lambda) = (dQ, 0),  a += (1 + alpha) d,  lambda += d_lambda.
   // Returns false, with nothing to solve, where the forces are the same.
   bool change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs);
   void apply_change(std::span<const Real> solution, MultibodyState& state) const;
@@ -71,12 +74,13 @@ class HhtMethod {
 
   // Of the current iterate.
   const std::vector<Real>& position() const { return position_; }
+  const std::vector<Real>& displacement() const { return displacement_; }
   const std::vector<Real>& velocity() const { return velocity_; }
   const std::vector<Real>& acceleration() const { return acceleration_; }
   const std::vector<Real>& multipliers() const { return multipliers_; }
   // Of the last evaluate_residual().
   const SystemTerms& terms() const { return terms_; }
-  const std::vector<Real>& inertia_force() const { return inertia_force_; }        // M q''
+  const std::vector<Real>& inertia_force() const { return inertia_force_; }        // M a
   const std::vector<Real>& constraint_force() const { return constraint_force_; }  // Phi_q^T lambda
   // Of the step's start.
   const std::vector<Real>& start_acceleration() const { return start_acceleration_; }
@@ -92,7 +96,8 @@ class HhtMethod {
   KktMatrix kkt_;
   Real time_ = 0, step_ = 0;
   std::vector<Real> start_position_, start_velocity_, start_acceleration_, start_force_;
-  std::vector<Real> position_, velocity_, acceleration_, multipliers_;
+  std::vector<Real> displacement_, position_, velocity_, acceleration_, multipliers_;
+  std::vector<Real> change_;  // of the acceleration
   std::vector<Real> inertia_force_, constraint_force_, residual_;
 };
 

@@ -38,8 +38,8 @@ void scatter(const SparseTerm& term, const std::vector<int>& slots, Real weight,
 KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates,
                      int constraints) {
   Columns columns(static_cast<std::size_t>(coordinates + constraints));
-  for (const SparseTerm* term :
-       {&terms.mass, &derivatives.stiffness, &derivatives.damping, &derivatives.inertia_stiffness}) {
+  for (const SparseTerm* term : {&terms.mass, &derivatives.stiffness, &derivatives.damping,
+                                 &derivatives.inertia_stiffness, &derivatives.tangent_inertia}) {
     mark(*term, columns);
   }
   const SparseTerm& jacobian = terms.constraint_jacobian;
@@ -57,6 +57,7 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
   stiffness_ = slots_of(derivatives.stiffness, 0, false);
   damping_ = slots_of(derivatives.damping, 0, false);
   inertia_stiffness_ = slots_of(derivatives.inertia_stiffness, 0, false);
+  tangent_inertia_ = slots_of(derivatives.tangent_inertia, 0, false);
   jacobian_ = slots_of(jacobian, coordinates, false);
   jacobian_transposed_ = slots_of(jacobian, coordinates, true);
 }
@@ -80,6 +81,7 @@ void KktMatrix::assemble(const SystemTerms& terms, const SystemDerivatives& deri
   scatter(derivatives.stiffness, stiffness_, weights.stiffness, values);
   scatter(derivatives.damping, damping_, weights.damping, values);
   scatter(derivatives.inertia_stiffness, inertia_stiffness_, weights.inertia_stiffness, values);
+  scatter(derivatives.tangent_inertia, tangent_inertia_, weights.tangent, values);
   scatter(terms.constraint_jacobian, jacobian_, 1, values);
   scatter(terms.constraint_jacobian, jacobian_transposed_, 1, values);
 }

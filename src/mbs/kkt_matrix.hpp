@@ -17,9 +17,10 @@ struct SparsePattern {
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
 };
 
-// A = mass M + stiffness (Phi_q^T lambda - Q)_q + damping (-Q_q') + inertia_stiffness (M q'')_q.
+// A = mass M T^-1 + stiffness (Phi_q^T lambda - Q)_q + damping (-Q_v T^-1) + inertia_stiffness (M a)_q, T = 1
+// at the acceleration level.
 struct KktWeights {
-  Real mass = 1, stiffness = 0, damping = 0, inertia_stiffness = 0;
+  Real mass = 1, stiffness = 0, damping = 0, inertia_stiffness = 0, tangent = 0;
 };
 
 class KktMatrix {
@@ -36,7 +37,8 @@ class KktMatrix {
   std::vector<int> slots_of(const SparseTerm& term, int row_offset, bool transposed) const;
 
   SparsePattern pattern_;
-  std::vector<int> mass_, stiffness_, damping_, inertia_stiffness_, jacobian_, jacobian_transposed_;
+  std::vector<int> mass_, stiffness_, damping_, inertia_stiffness_, tangent_inertia_, jacobian_,
+      jacobian_transposed_;
 };
 
 }  // namespace scree

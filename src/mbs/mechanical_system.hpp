@@ -1,5 +1,9 @@
-// What the HHT method knows of a constrained mechanical system: M(q) q'' + Phi_q^T lambda = Q(q', q, t),
-// Phi(q, t) = 0 (Jung, Jun, Sohn 2013, Eqs. 4-8).
+// What the HHT method knows of a constrained mechanical system: M(q) a + Phi_q^T lambda = Q(v, q, t), Phi(q,
+// t) = 0 (Jung, Jun, Sohn 2013, Eqs. 4-8). The positions q need not have the velocities v as their rates, nor
+// as many components: a step leads from q to displace(q, u), with the displacement u = h v + ... made of
+// velocities. For rotations u is a rotation vector (Bruls, Cardona, Arnold, Mech. Mach. Theory 48, 2012),
+// T(u) the change of the orientation per change of u; else T = 1. A subscript q is the derivative by a change
+// of the pose, which has the velocities' components.
 #pragma once
 
 #include <string>
@@ -10,11 +14,18 @@
 
 namespace scree {
 
-// Generalized coordinates and their rates at one instant.
+// Positions and velocities at one instant.
 struct SystemInstant {
   Real time = 0;                      // t [s]
-  const std::vector<Real>& position;  // q
-  const std::vector<Real>& velocity;  // q'
+  const std::vector<Real>& position;  // q [positions]
+  const std::vector<Real>& velocity;  // v [coordinates]
+};
+
+// What Newton's matrix depends on besides; all but lambda [coordinates].
+struct SystemIterate {
+  const std::vector<Real>& displacement;  // u, from the step's start
+  const std::vector<Real>& acceleration;  // a
+  const std::vector<Real>& multipliers;   // lambda [constraints]
 };
 
 // What the residual needs.
@@ -31,24 +42,31 @@ struct SystemTerms {
 // What Newton's matrix needs besides; all [coordinates, coordinates].
 struct SystemDerivatives {
   SparseTerm stiffness;          // (Phi_q^T lambda - Q)_q
-  SparseTerm damping;            // -Q_q'
-  SparseTerm inertia_stiffness;  // (M q'')_q
+  SparseTerm damping;            // -Q_v T^-1
+  SparseTerm inertia_stiffness;  // (M a)_q
+  SparseTerm tangent_inertia;    // M (T^-1 - 1)
 };
 
 class MechanicalSystem {
  public:
   virtual ~MechanicalSystem() = default;
 
+  virtual int positions() const = 0;
   virtual int coordinates() const = 0;
   virtual int constraints() const = 0;
 
   // terms: always the same ones; what is constant is written there once.
   virtual void evaluate(const SystemInstant& at, SystemTerms& terms) = 0;
   // At the instant of the last evaluate().
-  virtual void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration,
-                             const std::vector<Real>& multipliers, SystemDerivatives& derivatives) = 0;
-  // Phi_q q' = velocity_rhs = -Phi_t and Phi_q q'' = acceleration_rhs = -(Phi_q q')_q q' - 2 Phi_qt q' -
-  // Phi_tt, each [constraints], at the instant of the last evaluate().
+  virtual void differentiate(const SystemInstant& at, const SystemIterate& iterate,
+                             SystemDerivatives& derivatives) = 0;
+  // position = start moved by the displacement; both [positions].
+  virtual void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
+                        std::vector<Real>& position) const = 0;
+  // From a change of the pose at the end of `displacement` to that of the displacement: change = T^-1 change.
+  virtual void pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const = 0;
+  // Phi_q v = velocity_rhs = -Phi_t and Phi_q a = acceleration_rhs = -(Phi_q v)_q v - 2 Phi_qt v - Phi_tt,
+  // each [constraints], at the instant of the last evaluate().
   virtual void velocity_rhs(const SystemInstant& at, std::vector<Real>& rhs) const = 0;
   virtual void acceleration_rhs(const SystemInstant& at, std::vector<Real>& rhs) const = 0;
 

@@ -10,8 +10,8 @@
 #include "mbs/energy_ledger.hpp"
 #include "mbs/hht_method.hpp"
 #include "mbs/newton_solver.hpp"
-#include "mbs/planar_system.hpp"
 #include "mbs/reaction_watch.hpp"
+#include "mbs/rigid_body_system.hpp"
 #include "mbs/start_checks.hpp"
 #include "mbs/start_velocities.hpp"
 #include "physics/time_stepping.hpp"
@@ -27,23 +27,13 @@ constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
 // The bodies' error, over the tolerance, from which they decide on the step's length.
 constexpr Real kGoverns = 0.3;
 
-MultibodyState start_of(const Model& model) {
+MultibodyState checked_start(const Model& model, RigidBodySystem& system) {
   MultibodyState state;
-  for (const Body& body : model.bodies) {
-    state.position.insert(state.position.end(), {body.position.x, body.position.y, body.angle});
-    state.velocity.insert(state.velocity.end(), {body.velocity.x, body.velocity.y, body.angular_velocity});
-  }
-  return state;
-}
-
-MultibodyState checked_start(const Model& model, PlanarSystem& system) {
-  MultibodyState state = start_of(model);
+  state.position.resize(static_cast<std::size_t>(system.positions()));
+  state.velocity.resize(static_cast<std::size_t>(system.coordinates()));
+  for (const auto& kind : system.kinds()) kind->start(state.position, state.velocity);
   check_start(model, system, state.position, state.velocity);
   return state;
-}
-
-BodyMotion body_motion(const Real* q, const Real* v, Real z) {
-  return {{q[0], q[1], z}, {v[0], v[1], 0}, q[2], v[2]};
 }
 
 }  // namespace
@@ -57,7 +47,6 @@ struct Multibody::Impl {
         watch(system.coordinate_scale(), system.constraint_scale()),
         time_control(model.time),
         motion(model.bodies.size()) {
-    for (const Body& body : model.bodies) plane.push_back(body.position.z);
     settle_velocities(model);
   }
 
@@ -67,19 +56,16 @@ struct Multibody::Impl {
   [[noreturn]] void fail_for_oscillation() const;
 
   void update_motion() {
-    for (std::size_t b = 0; b < motion.size(); ++b) {
-      motion[b] = body_motion(&method.position()[3 * b], &method.velocity()[3 * b], plane[b]);
-    }
+    for (const auto& kind : system.kinds()) kind->motion(method.position(), method.velocity(), motion);
   }
 
-  PlanarSystem system;
-  MultibodyState start;  // q of the model, and its q' or those nearest to them that are consistent
+  RigidBodySystem system;
+  MultibodyState start;  // q of the model, and its v or those nearest to them that are consistent
   std::string start_change;
   HhtMethod method;
   NewtonSolver newton;
   ReactionWatch watch;
   TimeControl time_control;
-  std::vector<Real> plane;  // z of each body [m]
   std::vector<BodyMotion> motion;
   MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;       // of the open step's start [s]
@@ -131,18 +117,11 @@ IterationNorms Multibody::correct(const ContactWrenches& contacts) {
 }
 
 Real Multibody::error() const {
-  const HhtMethod& method = impl_->method;
-  const std::vector<Real>&a0 = method.start_acceleration(), &a1 = method.acceleration();
-  const Real length = impl_->system.length_scale();
   Real largest = 0;
-  for (std::size_t i = 0; i < a0.size(); i += 3) {
-    const Vec3 shift0{a0[i], a0[i + 1], 0}, shift1{a1[i], a1[i + 1], 0}, turn0{0, 0, a0[i + 2]},
-        turn1{0, 0, a1[i + 2]};
-    for (const Real error : {hht_position_error(method.coefficients(), method.step(), shift0, shift1, length),
-                             hht_position_error(method.coefficients(), method.step(), turn0, turn1, 1)}) {
-      if (std::isnan(error)) return error;  // no step passes as exact because a comparison was false
-      largest = std::max(largest, error);
-    }
+  for (const auto& kind : impl_->system.kinds()) {
+    const Real error = kind->error(impl_->method, impl_->system.length_scale());
+    if (std::isnan(error)) return error;
+    largest = std::max(largest, error);
   }
   return largest;
 }
@@ -202,15 +181,7 @@ std::vector<BodyMotion> Multibody::motion(const MultibodyState& state, Real tau)
 
 void Multibody::motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const {
   out.resize(impl_->motion.size());
-  for (std::size_t b = 0; b < out.size(); ++b) {
-    Real q[3], v[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Real rate = state.velocity[3 * b + k], acceleration = state.acceleration[3 * b + k];
-      q[k] = state.position[3 * b + k] + tau * rate + tau * tau / 2 * acceleration;
-      v[k] = rate + tau * acceleration;
-    }
-    out[b] = body_motion(q, v, impl_->plane[b]);
-  }
+  for (const auto& kind : impl_->system.kinds()) kind->motion_after(state, tau, out);
 }
 
 MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const {
@@ -221,8 +192,7 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
   const auto groups = impl_->system.reactions({t, state.position, state.velocity}, state.multipliers);
   std::vector<Reaction> reactions;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    reactions.push_back(
-        {impl_->system.groups()[i].name, {groups[i].force.x, groups[i].force.y, 0}, groups[i].torque});
+    reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque});
   }
   return reactions;
 }

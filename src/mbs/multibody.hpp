@@ -13,9 +13,9 @@ namespace scree {
 
 // All that changes in time on the multibody side; a checkpoint stores exactly this.
 struct MultibodyState {
-  std::vector<Real> position;      // generalized coordinates q [m, m, rad per planar body]
-  std::vector<Real> velocity;      // q'
-  std::vector<Real> acceleration;  // q''
+  std::vector<Real> position;      // q: x, y [m] and angle [rad] of a planar body
+  std::vector<Real> velocity;      // v: q'
+  std::vector<Real> acceleration;  // a: v', with hht_alpha < 0 at t + hht_alpha h
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
@@ -38,8 +38,8 @@ struct MultibodyEnergies {
 // Reaction of a joint or driver on body[1], at body[1]'s joint point, global frame.
 struct Reaction {
   std::string joint;
-  Vec3 force;       // [N]
-  Real torque = 0;  // about that point [N m]
+  Vec3 force;   // [N]
+  Vec3 torque;  // about that point [N m]
 };
 
 class Multibody {
@@ -49,15 +49,15 @@ class Multibody {
   explicit Multibody(const Model& model);
   ~Multibody();
 
-  // Consistent start: q of the model and its q', changed where the model says so; q'' and lambda from the
+  // Consistent start: q of the model and its v, changed where the model says so; a and lambda from the
   // acceleration-level system with these wrenches.
   MultibodyState initial_state(const std::vector<BodyWrench>& wrench);
 
-  // For a state of another model, to go on from with this one: q'' and lambda as in initial_state, at its
+  // For a state of another model, to go on from with this one: a and lambda as in initial_state, at its
   // time t [s]. Throws InputError where a joint or driver does not hold there.
   void solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench);
 
-  // Opens a step from `state` at time t of length h: Newmark prediction with q''_{n+1} = q''_n.
+  // Opens a step from `state` at time t of length h: Newmark prediction with a_{n+1} = a_n.
   void predict(const MultibodyState& state, Real t, Real h);
   // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError
   // naming the joint or body on a singular matrix or a non-finite residual.
@@ -78,7 +78,7 @@ class Multibody {
 
   // One entry per body, at the current iterate of the open step.
   const std::vector<BodyMotion>& motion() const;
-  // The same for a state; for an instant tau [s] after it along q + tau q' + tau^2/2 q''.
+  // The same for a state; for an instant tau [s] after it under its accelerations.
   std::vector<BodyMotion> motion(const MultibodyState& state, Real tau = 0) const;
   void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 

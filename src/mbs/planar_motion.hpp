@@ -9,7 +9,7 @@
 
 #include "base/rotation.hpp"
 #include "base/types.hpp"
-#include "model/bodies.hpp"
+#include "model/body_layout.hpp"
 
 namespace scree {
 
@@ -35,21 +35,18 @@ struct PlanarPose {
   Vec2 turn(Vec2 s) const { return planar(rotation.turn({s.x, s.y, 0})); }
 };
 
-// Poses of all bodies at one instant; index kGround is the ground.
+// Poses of the planar bodies at one instant; index kGround is the ground.
 class PlanarMotion {
  public:
-  explicit PlanarMotion(int bodies) : poses_(static_cast<std::size_t>(bodies) + 1) {}
-  // position, velocity: (x, y, angle) and rates, body by body.
-  void set(const std::vector<Real>& position, const std::vector<Real>& velocity) {
-    for (std::size_t i = 0; i + 1 < poses_.size(); ++i) {
-      const Real *q = &position[3 * i], *v = &velocity[3 * i];
-      PlanarPose& pose = poses_[i + 1];
-      pose.position = {q[0], q[1]}, pose.velocity = {v[0], v[1]}, pose.spin = v[2];
-      // Many instants in a row are the same one, and the angle of many bodies stays.
-      const Real angle = q[2];
-      if (std::bit_cast<std::uint64_t>(angle) == std::bit_cast<std::uint64_t>(pose.angle)) continue;
-      pose.angle = angle, pose.rotation = Rotation(angle);
-    }
+  explicit PlanarMotion(const BodyLayout& layout) : poses_(static_cast<std::size_t>(layout.bodies()) + 1) {}
+  // position, velocity: (x, y, angle) of one body, and rates.
+  void set(int body, const Real* q, const Real* v) {
+    PlanarPose& pose = poses_[static_cast<std::size_t>(body + 1)];
+    pose.position = {q[0], q[1]}, pose.velocity = {v[0], v[1]}, pose.spin = v[2];
+    // Many instants in a row are the same one, and the angle of many bodies stays.
+    const Real angle = q[2];
+    if (std::bit_cast<std::uint64_t>(angle) == std::bit_cast<std::uint64_t>(pose.angle)) return;
+    pose.angle = angle, pose.rotation = Rotation(angle);
   }
   const PlanarPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }
 
@@ -60,8 +57,16 @@ class PlanarMotion {
 // Two bodies and a point fixed to each.
 struct PointPair {
   int body[2] = {kGround, kGround};
-  Vec2 point[2];  // s_i, in the body frames [m]
+  Vec2 point[2];             // s_i, in the body frames [m]
+  int column[2] = {-1, -1};  // first of each body, -1: of the ground
 };
+
+inline PointPair point_pair(const BodyLayout& layout, const int (&body)[2], const Vec3 (&point)[2]) {
+  PointPair pair{{body[0], body[1]}, {planar(point[0]), planar(point[1])}};
+  for (int i = 0; i < 2; ++i)
+    if (body[i] != kGround) pair.column[i] = layout.column(body[i]);
+  return pair;
+}
 
 // The pair at one instant: a_i = A_i s_i, d = P_2 - P_1 with P_i = r_i + a_i, and its rate.
 struct PairGeometry {
@@ -91,18 +96,18 @@ inline std::array<Real, 6> gap_gradient(const PairGeometry& g, Vec2 w) {
 // coordinates. -1: not a coordinate, because the body is the ground or because nothing can depend on it.
 using PairCoordinates = std::array<int, 6>;
 
-inline PairCoordinates pair_coordinates(const int (&body)[2]) {
+inline PairCoordinates pair_coordinates(const PointPair& pair) {
   PairCoordinates index;
   for (int k = 0; k < 6; ++k) {
-    const int b = body[k / 3];
-    index[static_cast<std::size_t>(k)] = b == kGround ? -1 : 3 * b + k % 3;
+    const int first = pair.column[k / 3];
+    index[static_cast<std::size_t>(k)] = first < 0 ? -1 : first + k % 3;
   }
   return index;
 }
 
 // Leaves out the angle of a body whose point is its centre: that point does not move with it.
 inline PairCoordinates point_coordinates(const PointPair& pair) {
-  PairCoordinates index = pair_coordinates(pair.body);
+  PairCoordinates index = pair_coordinates(pair);
   for (int i = 0; i < 2; ++i) {
     if (pair.point[i].x == 0 && pair.point[i].y == 0) index[static_cast<std::size_t>(3 * i + 2)] = -1;
   }

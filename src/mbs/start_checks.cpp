@@ -35,7 +35,7 @@ std::string list_names(const std::vector<std::string>& names) {
 
 // Of a group's gap [m, rad], or its rate with per = "/s": what is wrong with the length of its length rows or
 // of its angle rows, or nothing.
-std::string row_trouble(const PlanarSystem& system, const ConstraintGroup& group,
+std::string row_trouble(const RigidBodySystem& system, const ConstraintGroup& group,
                         const std::vector<Real>& gap, Real limit, const char* what, const char* per) {
   for (const bool angle : {false, true}) {
     Real square = 0, scale = 1;
@@ -52,7 +52,7 @@ std::string row_trouble(const PlanarSystem& system, const ConstraintGroup& group
   return "";
 }
 
-SystemTerms terms_at(PlanarSystem& system, const std::vector<Real>& position,
+SystemTerms terms_at(RigidBodySystem& system, const std::vector<Real>& position,
                      const std::vector<Real>& velocity, Real t) {
   SystemTerms terms;
   terms.applied_force.assign(at(system.coordinates()), 0);
@@ -62,7 +62,7 @@ SystemTerms terms_at(PlanarSystem& system, const std::vector<Real>& position,
 }
 
 // gap: per row of Phi [m, rad].
-void check_gaps(const PlanarSystem& system, const std::vector<Real>& gap, Real limit, Real t) {
+void check_gaps(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit, Real t) {
   const std::string what =
       fmt::format("its two sides do not meet at t = {:.9g}{}, they miss by", t, t > 0 ? " s" : "");
   for (const ConstraintGroup& group : system.groups()) {
@@ -72,7 +72,7 @@ void check_gaps(const PlanarSystem& system, const std::vector<Real>& gap, Real l
 }
 
 // Whether a joint's points meet at t = 0 the model's rule says; of angles and drivers the rows of Phi.
-void check_start_gaps(const Model& model, const PlanarSystem& system, std::vector<Real> gap) {
+void check_start_gaps(const Model& model, const RigidBodySystem& system, std::vector<Real> gap) {
   for (const Joint& joint : model.joints)
     if (const JointGap ends = joint_gap(model, joint); !ends.meets())
       throw InputError(fmt::format(
@@ -85,11 +85,10 @@ void check_start_gaps(const Model& model, const PlanarSystem& system, std::vecto
 }
 
 // The direction of a spring-damper or a distance is not defined where its points coincide.
-void check_directions(const Model& model, const PlanarMotion& motion) {
+void check_directions(const Model& model, const RigidBodySystem& system, const BodyPoses& poses) {
   const auto check = [&](const int(&body)[2], const Vec3(&point)[2], const char* kind,
                          const std::string& name) {
-    const PointPair pair{{body[0], body[1]}, {planar(point[0]), planar(point[1])}};
-    if (norm(pair_geometry(pair, motion).gap) > 0) return;
+    if (norm(pair_geometry(point_pair(system.layout(), body, point), poses).gap) > 0) return;
     throw InputError(
         fmt::format("{} '{}': its two points coincide at t = 0, so it has no direction", kind, name));
   };
@@ -101,7 +100,7 @@ void check_directions(const Model& model, const PlanarMotion& motion) {
   }
 }
 
-void check_redundancy(const PlanarSystem& system, const SparseTerm& jacobian) {
+void check_redundancy(const RigidBodySystem& system, const SparseTerm& jacobian) {
   std::vector<MatrixEntry> transposed;
   for (std::size_t i = 0; i < jacobian.size(); ++i) {
     const Real scale = system.coordinate_scale()[at(jacobian.column(i))];
@@ -118,17 +117,15 @@ void check_redundancy(const PlanarSystem& system, const SparseTerm& jacobian) {
 
 }  // namespace
 
-void check_start(const Model& model, PlanarSystem& system, const std::vector<Real>& position,
+void check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
                  const std::vector<Real>& velocity) {
-  PlanarMotion motion(static_cast<int>(model.bodies.size()));
-  motion.set(position, velocity);
-  check_directions(model, motion);
+  check_directions(model, system, system.poses_at({0, position, velocity}));
   const SystemTerms terms = terms_at(system, position, velocity, 0);
   check_start_gaps(model, system, terms.constraint);
   check_redundancy(system, terms.constraint_jacobian);
 }
 
-std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>& gap_rate,
+std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity) {
   Real fastest = 0;
   for (std::size_t i = 0; i < velocity.size(); ++i) {
@@ -142,7 +139,7 @@ std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>
   return "";
 }
 
-void check_joints_hold(PlanarSystem& system, const std::vector<Real>& position,
+void check_joints_hold(RigidBodySystem& system, const std::vector<Real>& position,
                        const std::vector<Real>& velocity, Real t) {
   check_gaps(system, terms_at(system, position, velocity, t).constraint, kKeptGap, t);
 }

@@ -7,7 +7,7 @@
 
 #include "base/types.hpp"
 #include "mbs/kkt_matrix.hpp"
-#include "mbs/planar_system.hpp"
+#include "mbs/rigid_body_system.hpp"
 
 namespace scree {
 
@@ -15,17 +15,17 @@ namespace scree {
 // up to 1e-10 rad are taken as round-off. position, velocity: [coordinates]. Throws InputError naming the
 // joint or driver, its gap and what is allowed, or the joints and drivers that are redundant together, or the
 // element whose two points coincide.
-void check_start(const Model& model, PlanarSystem& system, const std::vector<Real>& position,
+void check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
                  const std::vector<Real>& velocity);
 
 // The joint or driver that the start velocities contradict, and by how much; empty where they contradict
 // none. gap_rate: Phi_q q' + Phi_t at the start; up to 1e-8 of the largest velocity plus one length scale (1
 // rad) per second is taken as round-off.
-std::string velocity_trouble(const PlanarSystem& system, const std::vector<Real>& gap_rate,
+std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity);
 // The same of the positions alone at a later time t [s], where they are as exact as steps keep them: gaps up
 // to 1e-6 of the length scale (1e-6 rad).
-void check_joints_hold(PlanarSystem& system, const std::vector<Real>& position,
+void check_joints_hold(RigidBodySystem& system, const std::vector<Real>& position,
                        const std::vector<Real>& velocity, Real t);
 
 // For messages: why a saddle-point matrix could not be solved, with the joints, drivers and bodies that take

@@ -20,7 +20,7 @@ std::string all_digits(Real value) {
 }
 
 // Largest of the velocities, over the scales of their coordinates, plus 1 [1/s].
-Real velocity_scale(const PlanarSystem& system, const std::vector<Real>& velocity) {
+Real velocity_scale(const RigidBodySystem& system, const std::vector<Real>& velocity) {
   Real fastest = 0;
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     fastest = std::max(fastest, std::abs(velocity[i]) / system.coordinate_scale()[i]);
@@ -30,7 +30,7 @@ Real velocity_scale(const PlanarSystem& system, const std::vector<Real>& velocit
 
 }  // namespace
 
-std::string keys_to_set(const PlanarSystem& system, const std::vector<Real>& from,
+std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& from,
                         const std::vector<Real>& to, int dimension) {
   const Real scale = velocity_scale(system, to);
   const auto limit = [&](std::size_t i, Real share) { return share * scale * system.coordinate_scale()[i]; };
@@ -43,7 +43,8 @@ std::string keys_to_set(const PlanarSystem& system, const std::vector<Real>& fro
   std::size_t shown = 0, more = 0;
   for (std::size_t b = 0; b < system.bodies().size(); ++b) {
     const Body& body = system.bodies()[b];
-    const std::size_t x = 3 * b, y = x + 1, angle = x + 2;
+    const std::size_t x = static_cast<std::size_t>(system.layout().column(static_cast<int>(b))), y = x + 1,
+                      angle = x + 2;
     const bool moves = changed(x) || changed(y), turns = changed(angle);
     if (body.in_row || !(moves || turns)) continue;
     if (++shown > kBodiesShown) {
@@ -59,7 +60,7 @@ std::string keys_to_set(const PlanarSystem& system, const std::vector<Real>& fro
   return text;
 }
 
-std::string largest_change(const PlanarSystem& system, const std::vector<Real>& from,
+std::string largest_change(const RigidBodySystem& system, const std::vector<Real>& from,
                            const std::vector<Real>& to) {
   std::size_t largest = 0;
   const auto size = [&](std::size_t i) { return std::abs(to[i] - from[i]) / system.coordinate_scale()[i]; };

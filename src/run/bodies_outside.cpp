@@ -1,5 +1,6 @@
 #include "run/bodies_outside.hpp"
 
+#include "model/body_layout.hpp"
 #include "model/space_box.hpp"
 
 namespace scree {
@@ -7,9 +8,12 @@ namespace scree {
 BodiesOutside bodies_outside(const Model& model, const MultibodyState& state) {
   const Box space = open_box(model.space);
   BodiesOutside outside;
-  for (std::size_t b = 0; 3 * b < state.position.size(); ++b) {
-    const Vec3 centre{state.position[3 * b], state.position[3 * b + 1], model.bodies[b].position.z};
-    if (!space.inside(centre) && ++outside.count == 1) outside.first = b;
+  const BodyLayout layout(model.bodies);
+  if (state.position.empty()) return outside;
+  for (int b = 0; b < layout.bodies(); ++b) {
+    const Real* q = &state.position[static_cast<std::size_t>(layout.position(b))];
+    const Vec3 centre{q[0], q[1], model.bodies[static_cast<std::size_t>(b)].position.z};
+    if (!space.inside(centre) && ++outside.count == 1) outside.first = static_cast<std::size_t>(b);
   }
   return outside;
 }

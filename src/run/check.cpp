@@ -13,6 +13,7 @@
 #include "dem/device.hpp"
 #include "dem/kept_contacts.hpp"
 #include "dem/output_fields.hpp"
+#include "model/body_layout.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
@@ -91,7 +92,7 @@ std::string multibody_lines(const Model& model) {
   if (model.bodies.empty()) return "bodies         none\n";
   std::int64_t shapes = 0, bare = 0;
   for (const Body& body : model.bodies) shapes += std::ssize(body.shapes), bare += body.shapes.empty();
-  const int coordinates = 3 * static_cast<int>(model.bodies.size()), constraints = constraint_count(model);
+  const int coordinates = BodyLayout(model.bodies).columns(), constraints = constraint_count(model);
   const std::int64_t elements = std::ssize(model.spring_dampers) +
                                 std::ssize(model.torsional_spring_dampers) + std::ssize(model.applied_forces);
   std::string lines =
@@ -245,7 +246,7 @@ std::string memory_line(const Model& model, int ranks) {
   const Real per_particle = bytes_per_particle(model) + bytes_remembered(history_of(model.contact));
   const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
-      kBytesPerUnknown * (3 * static_cast<Real>(model.bodies.size()) + constraint_count(model));
+      kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));
   const std::string most = ranks == 1 ? ""
                                       : fmt::format(" on all ranks together, {} on rank 0",
                                                     megabytes(particles / ranks + unknowns));

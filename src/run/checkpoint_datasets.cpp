@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "model/body_layout.hpp"
 #include "model/connections.hpp"
 #include "run/contact_rows.hpp"
 #include "run/state.hpp"
@@ -54,9 +55,11 @@ void check_row_group(const std::string& path, const std::string& group,
 void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
   State sizes;
   const std::size_t bodies = model.bodies.size();
-  for (std::vector<Real>* values : {&sizes.bodies.position, &sizes.bodies.velocity,
-                                    &sizes.bodies.acceleration, &sizes.bodies.force, &sizes.bodies.applied})
-    values->resize(3 * bodies);
+  const BodyLayout layout(model.bodies);
+  sizes.bodies.position.resize(static_cast<std::size_t>(layout.positions()));
+  for (std::vector<Real>* values :
+       {&sizes.bodies.velocity, &sizes.bodies.acceleration, &sizes.bodies.force, &sizes.bodies.applied})
+    values->resize(static_cast<std::size_t>(layout.columns()));
   sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
   sizes.bodies.wrench.resize(bodies);
   // What contacts remember may be there or not, and so may rotation: no history is none.

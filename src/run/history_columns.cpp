@@ -131,7 +131,7 @@ void reaction_columns(Group joint, std::size_t k) {
   joint.add("fx", "N", text, [k](const Sample& s) { return s.reactions[k].force.x; });
   joint.add("fy", "N", text, [k](const Sample& s) { return s.reactions[k].force.y; });
   joint.add("torque", "N m", "reaction torque on the joint's second body",
-            [k](const Sample& s) { return s.reactions[k].torque; });
+            [k](const Sample& s) { return s.reactions[k].torque.z; });
 }
 
 std::string torque_text(const ContactTarget& target) {

@@ -1,5 +1,5 @@
 // The model's number of constraint equations, which checkpoints are compared with, is that of the system.
-#include "mbs/planar_system.hpp"
+#include "mbs/rigid_body_system.hpp"
 #include "model/connections.hpp"
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
@@ -16,7 +16,7 @@ TEST_CASE("constraints are counted as the system has them, driven or not") {
       model.joints.push_back(ground_pin("joint", 0, {}, {}));
       model.joints[0].kind = kind.value, model.joints[0].distance = 1;
       if (driven) model.drivers.push_back({"driver", 0, {}});
-      CHECK(constraint_count(model) == PlanarSystem(model).constraints());
+      CHECK(constraint_count(model) == RigidBodySystem(model).constraints());
     }
 }
 

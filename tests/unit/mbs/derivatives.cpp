@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mbs/hht_method.hpp"
-#include "mbs/planar_system.hpp"
+#include "mbs/rigid_body_system.hpp"
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
 #include "support/near.hpp"
@@ -142,7 +142,7 @@ struct Probe {
   }
 
   Model model;
-  PlanarSystem system;
+  RigidBodySystem system;
   SystemTerms terms;
   SystemDerivatives derivatives;
   std::vector<Real> multipliers;
@@ -157,9 +157,9 @@ TEST_CASE("stiffness and damping are the derivatives of the forces") {
     Probe probe(model);
     const int n = probe.system.coordinates();
     probe.evaluate(probe.position, probe.velocity);
-    const std::vector<Real> acceleration(static_cast<std::size_t>(n), 0);
+    const std::vector<Real> still(static_cast<std::size_t>(n), 0);
     const SystemInstant at{kTime, probe.position, probe.velocity};
-    probe.system.differentiate(at, acceleration, probe.multipliers, probe.derivatives);
+    probe.system.differentiate(at, {still, still, probe.multipliers}, probe.derivatives);
     check_equal(dense(probe.derivatives.stiffness, n, n),
                 differences([&](const auto& q) { return probe.force(q, probe.velocity); }, probe.position));
     check_equal(dense(probe.derivatives.damping, n, n),

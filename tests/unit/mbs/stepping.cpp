@@ -17,6 +17,7 @@ constexpr Real kRoundOff = 8 * kUlp;  // of a force on 1 kg, in three Newton ite
 // A free particle in polar coordinates (r, phi): the mass matrix diag(m, m r^2) depends on the position.
 class PolarParticle final : public MechanicalSystem {
  public:
+  int positions() const override { return 2; }
   int coordinates() const override { return 2; }
   int constraints() const override { return 0; }
   void evaluate(const SystemInstant& at, SystemTerms& terms) override {
@@ -28,7 +29,12 @@ class PolarParticle final : public MechanicalSystem {
     terms.mass.add(1, 1, kMass * r * r);
     terms.constraint_jacobian.begin();
   }
-  void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration, const std::vector<Real>&,
+  void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
+                std::vector<Real>& position) const override {
+    for (std::size_t i = 0; i < 2; ++i) position[i] = start[i] + displacement[i];
+  }
+  void pull_back(const std::vector<Real>&, std::vector<Real>&) const override {}
+  void differentiate(const SystemInstant& at, const SystemIterate& iterate,
                      SystemDerivatives& derivatives) override {
     const Real r = at.position[0], rate = at.velocity[0], spin = at.velocity[1];
     derivatives.stiffness.begin();
@@ -39,7 +45,7 @@ class PolarParticle final : public MechanicalSystem {
     derivatives.damping.add(1, 0, 2 * kMass * r * spin);
     derivatives.damping.add(1, 1, 2 * kMass * r * rate);
     derivatives.inertia_stiffness.begin();
-    derivatives.inertia_stiffness.add(1, 0, 2 * kMass * r * acceleration[1]);
+    derivatives.inertia_stiffness.add(1, 0, 2 * kMass * r * iterate.acceleration[1]);
   }
   void velocity_rhs(const SystemInstant&, std::vector<Real>&) const override {}
   void acceleration_rhs(const SystemInstant&, std::vector<Real>&) const override {}

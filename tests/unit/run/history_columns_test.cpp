@@ -32,7 +32,7 @@ HistorySample distinct_sample() {
   s.ledger.driver_work = 18, s.ledger.carried_out = 19;
   s.balance_error = 21, s.exchanged = 22;
   s.particles.momentum = {23, 24, 25}, s.particles.angular_momentum = {26, 27, 28};
-  s.reactions = {{"pin", {29, 30, 0}, 31}};
+  s.reactions = {{"pin", {29, 30, 0}, {0, 0, 31}}};
   s.contacts = {{{32, 33, 34}, {35, 36, 37}, 38}, {{39, 40, 41}, {42, 43, 44}, 45}};
   s.bodies = {{}, {{46, 47, 48}, {49, 51, 52}, 53, 54}};
   s.traced = {{8, {55, 56, 57}, {58, 59, 60}}};

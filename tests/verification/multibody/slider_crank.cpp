@@ -102,7 +102,7 @@ Errors largest_errors(Real h) {
     // HHT's accelerations stand for t + alpha h, the start's for t = 0: the multipliers begin with a
     // disturbance of first order, which the method damps within a hundred steps.
     if (run.time < 0.2) continue;
-    const Real torque = run.multibody.reactions(run.state, run.time).back().torque;
+    const Real torque = run.multibody.reactions(run.state, run.time).back().torque.z;
     errors.torque = std::max(errors.torque, std::abs(torque - driver_torque(run.time)));
   }
   return errors;

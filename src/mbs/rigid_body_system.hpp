@@ -1,7 +1,6 @@
-// Planar rigid bodies with joints, drivers, force elements and contact wrenches as a MechanicalSystem.
+// Rigid bodies with joints, drivers, force elements and contact wrenches as a MechanicalSystem.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,8 +8,9 @@
 #include "mbs/constraints.hpp"
 #include "mbs/force_elements.hpp"
 #include "mbs/mechanical_system.hpp"
-#include "mbs/planar_motion.hpp"
+#include "mbs/rigid_bodies.hpp"
 #include "model/body_exchange.hpp"
+#include "model/body_layout.hpp"
 #include "model/model.hpp"
 
 namespace scree {
@@ -23,18 +23,21 @@ struct ConstraintGroup {
   int first_row = 0, end_row = 0;  // of Phi
 };
 
-// Coordinates: x, y [m] and angle [rad] of every body, in the model's order. Rows of Phi: joints, then
-// drivers.
-class PlanarSystem final : public MechanicalSystem {
+// Positions and columns of the bodies stand as in the model's BodyLayout. Rows of Phi: joints, then drivers.
+class RigidBodySystem final : public MechanicalSystem {
  public:
   // Throws InputError naming the joint, driver or element that is refused.
-  explicit PlanarSystem(const Model& model);
+  explicit RigidBodySystem(const Model& model);
 
-  int coordinates() const override { return 3 * static_cast<int>(bodies_.size()); }
+  int positions() const override { return layout_.positions(); }
+  int coordinates() const override { return layout_.columns(); }
   int constraints() const override { return static_cast<int>(constraint_scale_.size()); }
   void evaluate(const SystemInstant& at, SystemTerms& terms) override;
-  void differentiate(const SystemInstant& at, const std::vector<Real>& acceleration,
-                     const std::vector<Real>& multipliers, SystemDerivatives& derivatives) override;
+  void differentiate(const SystemInstant& at, const SystemIterate& iterate,
+                     SystemDerivatives& derivatives) override;
+  void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
+                std::vector<Real>& position) const override;
+  void pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const override;
   void velocity_rhs(const SystemInstant& at, std::vector<Real>& rhs) const override;
   void acceleration_rhs(const SystemInstant& at, std::vector<Real>& rhs) const override;
   const std::vector<Real>& coordinate_scale() const override { return coordinate_scale_; }
@@ -50,7 +53,8 @@ class PlanarSystem final : public MechanicalSystem {
   bool has_forces_of(const std::vector<BodyWrench>& wrench) const;
 
   const std::vector<Body>& bodies() const { return bodies_; }
-  Vec3 gravity() const { return gravity_; }  // [m/s^2]
+  const BodyLayout& layout() const { return layout_; }
+  const std::vector<std::unique_ptr<RigidBodies>>& kinds() const { return kinds_; }
   // Characteristic length L [m]: the largest radius of a body's shape; without shapes the largest distance of
   // a joint or force element from the centre of its body; without these 1 m.
   Real length_scale() const { return length_scale_; }
@@ -59,39 +63,30 @@ class PlanarSystem final : public MechanicalSystem {
   bool is_angle(int row) const { return is_angle_[static_cast<std::size_t>(row)]; }
 
   // At any instant, from scratch.
+  BodyPoses poses_at(const SystemInstant& at) const;
   Powers powers(const SystemInstant& at, const std::vector<Real>& multipliers);
   Real elastic_energy(const SystemInstant& at) const;
   // Force [N] on body 2 of the group at its joint point and torque about that point [N m].
   struct GroupReaction {
-    Vec2 force;
-    Real torque = 0;
+    Vec3 force, torque;
   };
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
 
  private:
-  // Planar part of the contact's WrenchStiffness on one body, (x, y, angle) row by row.
-  struct ContactBlock {
-    std::array<Real, 9> stiffness{}, damping{};
-  };
-
-  void add_joint(const Joint& joint, bool driven);
-  void add_driver(const Driver& driver, const Joint& joint, Real end);
+  void add_constraints(const Model& model);
+  void add_elements(const Model& model);
   void add_group(const std::string& title, const std::string& name,
                  std::vector<std::unique_ptr<Constraint>> parts);
-  void add_mass(SparseTerm& mass) const;
-  void add_contact(SystemTerms& terms) const;
-  void add_contact_blocks(SystemDerivatives& derivatives) const;
 
   std::vector<Body> bodies_;
-  Vec3 gravity_;
+  BodyLayout layout_;
+  std::vector<std::unique_ptr<RigidBodies>> kinds_;
   Real length_scale_ = 1;
   Real constant_force_scale_ = 0;  // of the weights and of stiffness; see SystemTerms::force_scale [J]
   std::vector<Real> weight_;       // generalized forces of gravity
-  PlanarMotion motion_;            // of the last evaluate()
-  PlanarMotion scratch_;
+  BodyPoses poses_;                // of the last evaluate()
+  BodyPoses scratch_;
   std::vector<BodyWrench> wrench_;
-  std::vector<ContactBlock> contact_;  // per body; zero where nothing touches
-  std::vector<int> touched_;           // bodies with another contact_
   std::vector<std::unique_ptr<Constraint>> constraints_;
   std::vector<int> first_row_;  // of every constraint object
   std::vector<bool> is_angle_;  // of every row

@@ -1,0 +1,18 @@
+// Where all bodies are and how they move at one instant, in the form that joints and force elements read.
+#pragma once
+
+#include "mbs/planar_motion.hpp"
+
+namespace scree {
+
+struct BodyPoses {
+  explicit BodyPoses(const BodyLayout& layout) : planar(layout) {}
+
+  PlanarMotion planar;
+};
+
+inline PairGeometry pair_geometry(const PointPair& pair, const BodyPoses& poses) {
+  return pair_geometry(pair, poses.planar);
+}
+
+}  // namespace scree

@@ -1,0 +1,42 @@
+// What joints and drivers are made of, in the plane and in space.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mbs/constraints.hpp"
+#include "mbs/scalar_function.hpp"
+#include "model/body_layout.hpp"
+
+namespace scree {
+
+// Rows between the two bodies of one joint, in the order in which they are asked for. A joint has a point and
+// an axis on either body, that of the first body leading. What holds by itself in the plane has no row there.
+class JointParts {
+ public:
+  virtual ~JointParts() = default;
+
+  virtual void points_meet() = 0;
+  // The second body's point stays on the first one's axis.
+  virtual void point_on_axis() = 0;
+  // No relative rotation.
+  virtual void same_orientation() = 0;
+
+  // The joint's coordinate is f: the angle of the second body less that of the first [rad], the displacement
+  // of the second point along the axis, the distance of the two points [m].
+  virtual void angle(ScalarFunction f) = 0;
+  virtual void displacement(ScalarFunction f) = 0;
+  virtual void length(ScalarFunction f) = 0;
+
+  std::vector<std::unique_ptr<Constraint>> take() { return std::move(rows_); }
+
+ protected:
+  void add(std::unique_ptr<Constraint> row) { rows_.push_back(std::move(row)); }
+
+ private:
+  std::vector<std::unique_ptr<Constraint>> rows_;
+};
+
+std::unique_ptr<JointParts> planar_parts(const Joint& joint, const BodyLayout& layout);
+
+}  // namespace scree

@@ -1,0 +1,15 @@
+// Every joint, once: which rows it is made of, and which coordinate it leaves that a driver can prescribe.
+#pragma once
+
+#include "mbs/joint_parts.hpp"
+#include "mbs/scalar_function.hpp"
+#include "model/bodies.hpp"
+
+namespace scree {
+
+// driven: a driver prescribes the joint's coordinate. Throws InputError naming a joint that is refused.
+void add_joint(const Joint& joint, bool driven, JointParts& parts);
+// title: of the driver, for messages. Throws InputError for a joint without a coordinate.
+void add_driver(const std::string& title, const Joint& joint, ScalarFunction motion, JointParts& parts);
+
+}  // namespace scree

@@ -1,0 +1,63 @@
+// What of a system depends on how the pose of a body is written: the bodies of one kind.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mbs/body_poses.hpp"
+#include "mbs/hht_method.hpp"
+#include "mbs/mechanical_system.hpp"
+#include "mbs/multibody.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// Positions of size 1 carry round-off of 1e-16; a force of stiffness times 1e-6 of the length scale stays far
+// above it, and a residual of 1e-8 of that force moves a body by 1e-14 of the length scale.
+inline constexpr Real kElasticFloor = 1e-6;
+
+// Vectors of positions, velocities and forces are those of the whole system; each kind reads and writes its
+// bodies' places of the layout. Vectors over bodies are in the model's order.
+class RigidBodies {
+ public:
+  virtual ~RigidBodies() = default;
+
+  // At t = 0; position: [positions], velocity: [columns].
+  virtual void start(std::vector<Real>& position, std::vector<Real>& velocity) const = 0;
+  virtual void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
+                         BodyPoses& poses) const = 0;
+  // As of MechanicalSystem.
+  virtual void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
+                        std::vector<Real>& position) const = 0;
+  virtual void pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const = 0;
+
+  // length: of the system [m].
+  virtual void set_scale(Real length, std::vector<Real>& coordinate_scale) const = 0;
+  virtual void add_mass(SparseTerm& mass) const = 0;
+  virtual void set_weight(std::vector<Real>& force) const = 0;
+  // Largest weight times the length [J].
+  virtual Real weight_scale(Real length) const = 0;
+
+  virtual void set_contact_stiffness(const std::vector<WrenchStiffness>& touched) = 0;
+  // Adds the contacts' forces; returns the size of the largest [J].
+  virtual Real add_contact(const std::vector<BodyWrench>& wrench, Real length,
+                           std::vector<Real>& force) const = 0;
+  virtual void add_contact_derivatives(SystemDerivatives& derivatives) const = 0;
+
+  // Scaled local error of the positions of an open step.
+  virtual Real error(const HhtMethod& step, Real length) const = 0;
+  virtual void add_integrator_loss(const MultibodyState& start, const MultibodyState& end,
+                                   Real& loss) const = 0;
+  virtual void add_energies(const MultibodyState& state, MultibodyEnergies& energies) const = 0;
+
+  virtual void motion(const std::vector<Real>& position, const std::vector<Real>& velocity,
+                      std::vector<BodyMotion>& out) const = 0;
+  // tau [s] after the state, under its accelerations.
+  virtual void motion_after(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const = 0;
+};
+
+std::unique_ptr<RigidBodies> planar_bodies(const Model& model, const BodyLayout& layout);
+
+}  // namespace scree

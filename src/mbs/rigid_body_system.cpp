@@ -1,0 +1,212 @@
+#include "mbs/rigid_body_system.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "mbs/joints.hpp"
+#include "model/connections.hpp"
+
+namespace scree {
+
+namespace {
+
+Real characteristic_length(const Model& model) {
+  Real radius = 0, reach = 0;
+  for (const Body& body : model.bodies) {
+    for (const Shape& shape : body.shapes) radius = std::max(radius, shape.radius);
+  }
+  const auto add_point = [&](int body, Vec3 point) {
+    if (body != kGround) reach = std::max(reach, norm(planar(point)));
+  };
+  for (int i = 0; i < 2; ++i) {
+    for (const Joint& joint : model.joints) add_point(joint.body[i], joint.point[i]);
+    for (const SpringDamper& element : model.spring_dampers) add_point(element.body[i], element.point[i]);
+  }
+  for (const AppliedForce& element : model.applied_forces) add_point(element.body, element.point);
+  return radius > 0 ? radius : reach > 0 ? reach : 1;
+}
+
+}  // namespace
+
+RigidBodySystem::RigidBodySystem(const Model& model)
+    : bodies_(model.bodies),
+      layout_(model.bodies),
+      length_scale_(characteristic_length(model)),
+      weight_(static_cast<std::size_t>(layout_.columns()), 0),
+      poses_(layout_),
+      scratch_(layout_),
+      wrench_(model.bodies.size()),
+      coordinate_scale_(static_cast<std::size_t>(layout_.columns()), 1) {
+  kinds_.push_back(planar_bodies(model, layout_));
+  for (const auto& kind : kinds_) {
+    kind->set_scale(length_scale_, coordinate_scale_);
+    kind->set_weight(weight_);
+    constant_force_scale_ = std::max(constant_force_scale_, kind->weight_scale(length_scale_));
+  }
+  add_constraints(model);
+  add_elements(model);
+}
+
+void RigidBodySystem::add_constraints(const Model& model) {
+  const std::vector<bool> driven = driven_joints(model);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    const std::unique_ptr<JointParts> parts = planar_parts(joint, layout_);
+    add_joint(joint, driven[i], *parts);
+    add_group(fmt::format("joint '{}'", joint.name), joint.name, parts->take());
+  }
+  for (const Driver& driver : model.drivers) {
+    const Joint& joint = model.joints[static_cast<std::size_t>(driver.joint)];
+    const std::string title = fmt::format("driver '{}'", driver.name);
+    const std::unique_ptr<JointParts> parts = planar_parts(joint, layout_);
+    add_driver(title, joint, ScalarFunction(driver.motion, title, model.time.end), *parts);
+    add_group(title, driver.name, parts->take());
+  }
+}
+
+void RigidBodySystem::add_elements(const Model& model) {
+  const Real end = model.time.end;
+  for (const SpringDamper& e : model.spring_dampers) elements_.push_back(make_force_element(e, layout_, end));
+  for (const TorsionalSpringDamper& e : model.torsional_spring_dampers)
+    elements_.push_back(make_force_element(e, layout_));
+  for (const AppliedForce& e : model.applied_forces) elements_.push_back(make_force_element(e, layout_, end));
+  for (const auto& element : elements_) {
+    constant_force_scale_ =
+        std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
+  }
+}
+
+void RigidBodySystem::add_group(const std::string& title, const std::string& name,
+                                std::vector<std::unique_ptr<Constraint>> parts) {
+  ConstraintGroup group{title, name, static_cast<int>(constraints_.size()), 0, constraints(), 0};
+  for (std::unique_ptr<Constraint>& part : parts) {
+    first_row_.push_back(constraints());
+    for (int row = 0; row < part->rows(); ++row) {
+      is_angle_.push_back(part->is_angle());
+      constraint_scale_.push_back(part->is_angle() ? 1 : length_scale_);
+      group_.push_back(static_cast<int>(groups_.size()));
+    }
+    constraints_.push_back(std::move(part));
+  }
+  group.end = static_cast<int>(constraints_.size());
+  group.end_row = constraints();
+  groups_.push_back(std::move(group));
+}
+
+void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
+  for (const auto& kind : kinds_) kind->set_poses(at.position, at.velocity, poses_);
+  if (terms.mass.size() == 0) {  // it is constant
+    terms.mass.begin();
+    for (const auto& kind : kinds_) kind->add_mass(terms.mass);
+  }
+  terms.applied_force = weight_;
+  terms.force_scale = constant_force_scale_;
+  for (const auto& element : elements_) {
+    const Real size = element->add_force(poses_, at.time, length_scale_, terms.applied_force);
+    terms.force_scale = std::max(terms.force_scale, size);
+  }
+  for (const auto& kind : kinds_)
+    terms.force_scale =
+        std::max(terms.force_scale, kind->add_contact(wrench_, length_scale_, terms.applied_force));
+  terms.constraint_jacobian.begin();
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->value(poses_, at.time, &terms.constraint[static_cast<std::size_t>(first_row_[i])]);
+    constraints_[i]->jacobian(poses_, first_row_[i], terms.constraint_jacobian);
+  }
+}
+
+void RigidBodySystem::set_contacts(const ContactWrenches& contacts) {
+  wrench_ = contacts.wrench;
+  for (const auto& kind : kinds_) kind->set_contact_stiffness(contacts.stiffness);
+}
+
+bool RigidBodySystem::has_forces_of(const std::vector<BodyWrench>& wrench) const {
+  return std::equal(
+      wrench_.begin(), wrench_.end(), wrench.begin(), wrench.end(),
+      [](const BodyWrench& a, const BodyWrench& b) { return a.force == b.force && a.torque == b.torque; });
+}
+
+void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate& iterate,
+                                    SystemDerivatives& derivatives) {
+  derivatives.stiffness.begin();
+  derivatives.damping.begin();
+  for (const auto& element : elements_) {
+    element->add_derivatives(poses_, at.time, derivatives.stiffness, derivatives.damping);
+  }
+  for (const auto& kind : kinds_) kind->add_contact_derivatives(derivatives);
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->hessian(poses_, &iterate.multipliers[static_cast<std::size_t>(first_row_[i])],
+                             derivatives.stiffness);
+  }
+}
+
+void RigidBodySystem::displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
+                               std::vector<Real>& position) const {
+  for (const auto& kind : kinds_) kind->displace(start, displacement, position);
+}
+
+void RigidBodySystem::pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const {
+  for (const auto& kind : kinds_) kind->pull_back(displacement, change);
+}
+
+BodyPoses RigidBodySystem::poses_at(const SystemInstant& at) const {
+  BodyPoses poses(layout_);
+  for (const auto& kind : kinds_) kind->set_poses(at.position, at.velocity, poses);
+  return poses;
+}
+
+void RigidBodySystem::velocity_rhs(const SystemInstant& at, std::vector<Real>& rhs) const {
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->velocity_rhs(at.time, &rhs[static_cast<std::size_t>(first_row_[i])]);
+  }
+}
+
+void RigidBodySystem::acceleration_rhs(const SystemInstant& at, std::vector<Real>& rhs) const {
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    constraints_[i]->acceleration_rhs(poses_, at.time, &rhs[static_cast<std::size_t>(first_row_[i])]);
+  }
+}
+
+std::string RigidBodySystem::coordinate_name(int coordinate) const {
+  const std::size_t body = static_cast<std::size_t>(layout_.body_of_column(coordinate));
+  return fmt::format("body '{}' (id {})", bodies_[body].name, body);
+}
+
+std::string RigidBodySystem::constraint_name(int constraint) const {
+  return groups_[static_cast<std::size_t>(group_[static_cast<std::size_t>(constraint)])].title;
+}
+
+Powers RigidBodySystem::powers(const SystemInstant& at, const std::vector<Real>& multipliers) {
+  for (const auto& kind : kinds_) kind->set_poses(at.position, at.velocity, scratch_);
+  Powers powers;
+  for (const auto& element : elements_) element->add_powers(scratch_, at.time, powers);
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    powers.drivers += constraints_[i]->power(at.time, &multipliers[static_cast<std::size_t>(first_row_[i])]);
+  }
+  return powers;
+}
+
+Real RigidBodySystem::elastic_energy(const SystemInstant& at) const {
+  const BodyPoses poses = poses_at(at);
+  Real energy = 0;
+  for (const auto& element : elements_) energy += element->elastic_energy(poses);
+  return energy;
+}
+
+std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(
+    const SystemInstant& at, const std::vector<Real>& multipliers) const {
+  const BodyPoses poses = poses_at(at);
+  std::vector<GroupReaction> reactions(groups_.size());
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    for (int i = groups_[k].first; i < groups_[k].end; ++i) {
+      const Real* lambda = &multipliers[static_cast<std::size_t>(first_row_[static_cast<std::size_t>(i)])];
+      constraints_[static_cast<std::size_t>(i)]->add_reaction(poses, lambda, reactions[k].force,
+                                                              reactions[k].torque);
+    }
+  }
+  return reactions;
+}
+
+}  // namespace scree
