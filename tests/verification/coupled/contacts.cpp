@@ -132,7 +132,7 @@ TEST_CASE("bodies at rest carry what lies on them, and press on walls with both 
     const Reaction& post = reactions[1];
     CHECK(keeps(norm(post.force + table.force - Vec3{0, 3.0 * kGravity, 0}),
                 {.promise = kAtRest, .measured = 2e-14}));
-    CHECK(keeps(post.torque + table.torque.z, {.promise = kAtRest, .measured = 1e-15}));
+    CHECK(keeps(post.torque.z + table.torque.z, {.promise = kAtRest, .measured = 1e-15}));
   }
 }
 
