@@ -17,7 +17,8 @@ struct CudaRubbingArrays {
   DeviceArray<Vec3> start_torque, step_torque, end_torque;
   DeviceArray<Real> sharpness;
   DeviceArray<Index> surface_count;
-  DeviceArray<RubbingEntry> entries, surface_entries;
+  RubbingEntryArrays<DeviceArray> entries;
+  DeviceArray<RubbingEntry> surface_entries;
   DeviceArray<ScaledMass> mass;
   DeviceArray<Block6f> inverse_block;
   DeviceArray<Twist> residual, correction;

@@ -118,7 +118,7 @@ RubbingStart CudaRubbingStep::rubbing_start() {
 }
 
 RubbingMatrix CudaRubbingStep::matrix() {
-  return {arrays_.matrix_count.data(), rubbing_.surface_count.data(), rubbing_.entries.data(),
+  return {arrays_.matrix_count.data(), rubbing_.surface_count.data(), rubbing_.entries.views(),
           rubbing_.surface_entries.data()};
 }
 

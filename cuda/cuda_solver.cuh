@@ -36,9 +36,11 @@ __global__ void decide_kernel(SolverControl* c) {
   if (!c->stop) decide(c);
 }
 
-// For the particles [first, end).
+// For the particles [first, end). Registers are rationed for three blocks of the most threads that launches
+// may have: it lives from many threads that wait.
 template <class Item>
-__global__ void solver_kernel(Index first, Index end, const __grid_constant__ Item item, SolverControl* c) {
+__global__ void __launch_bounds__(256, 3)
+    solver_kernel(Index first, Index end, const __grid_constant__ Item item, SolverControl* c) {
   if (c->stop) return;
   const Index i = first + thread_index();
   block_max(i < end ? item(i) : 0, &c->largest);

@@ -46,7 +46,7 @@ void CpuRubbingStep::find_rubs() {
 }
 
 RubbingMatrix CpuRubbingStep::matrix() {
-  return {arrays_.matrix_count.data(), rubbing_.surface_count.data(), rubbing_.entries.data(),
+  return {arrays_.matrix_count.data(), rubbing_.surface_count.data(), rubbing_.entries.views(),
           rubbing_.surface_entries.data()};
 }
 

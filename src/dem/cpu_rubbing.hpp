@@ -18,7 +18,8 @@ struct CpuRubbingArrays {
   std::vector<Vec3> start_torque, step_torque, end_torque;
   std::vector<Real> sharpness;
   std::vector<Index> surface_count;
-  std::vector<RubbingEntry> entries, surface_entries;
+  RubbingEntryArrays<std::vector> entries;
+  std::vector<RubbingEntry> surface_entries;
   std::vector<ScaledMass> mass;
   std::vector<Block6f> inverse_block;
   std::vector<Twist> residual;

@@ -35,7 +35,9 @@ constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * size
 constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
 constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
-constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry) + sizeof(Real);  // the last: frozen limits
+constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry::Normal) + sizeof(RubbingEntry::Slide) +
+                                         sizeof(RubbingEntry::Shear) +
+                                         sizeof(Real);  // the last: frozen limits
 constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * sizeof(GlobalId) +
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);

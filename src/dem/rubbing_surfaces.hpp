@@ -116,9 +116,9 @@ struct RubbingShiftItem {
     const Real scale = 1 / weights.stiffness;
     for (Index k = 0; k < matrix.surface_count[i]; ++k) {
       const RubbingEntry& entry = matrix.surface_entries[surface_offsets[i] + k];
-      if (entry.neighbor == RubbingPath::kWall) continue;
+      if (entry.normal.neighbor == RubbingPath::kWall) continue;
       residual[i] -=
-          entry.pull(-scale * moves.move[entry.neighbor], scale * moves.turn[entry.neighbor], with_grip);
+          entry.pull(-scale * moves.move[entry.normal.neighbor], scale * moves.turn[entry.normal.neighbor], with_grip);
     }
   }
 };

@@ -57,9 +57,7 @@ struct RubbingResidualItem {
     const ScaledMass masses{weight * m, weight * inertia / (radius * radius)};
     mass[i] = masses;
     Block6 block;
-    std::int64_t slot = rows.first(i);
-    for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride())
-      if (const RubbingEntry entry = matrix.entries[slot]; entry.is_contact()) entry.add_to(block);
+    matrix.for_each_entry(rows, i, [&](const RubbingEntry& entry) { entry.add_to(block); });
     for (Index k = 0; k < matrix.surface_count[i]; ++k)
       matrix.surface_entries[first_surface + k].add_to(block);
     stiffening[i] = largest_row(block, masses.move, masses.turn);
@@ -130,12 +128,10 @@ struct SubtractRubbingItem {
   SCREE_HD void operator()(Index i) const {
     const Vec3 u = xyz(move[i]), w = xyz(turn[i]);
     Twist sum{mass[i].move * u, mass[i].turn * w};
-    std::int64_t slot = rows.first(i);
-    for (Index left = matrix.count[i]; left > 0; --left, slot += Rows::stride()) {
-      const RubbingEntry entry = matrix.entries[slot];
-      if (entry.is_contact())
-        sum += entry.pull(u - xyz(move[entry.neighbor]), w + xyz(turn[entry.neighbor]), with_grip);
-    }
+    matrix.for_each_entry(rows, i, [&](const RubbingEntry& entry) {
+      const Index j = entry.normal.neighbor;
+      sum += entry.pull(u - xyz(move[j]), w + xyz(turn[j]), with_grip);
+    });
     for (Index k = 0; k < matrix.surface_count[i]; ++k)
       sum += matrix.surface_entries[surface_offsets[i] + k].pull(u, w, with_grip);
     residual[i] -= sum;

@@ -20,8 +20,9 @@ Real dot(Twist a, Twist b) { return scree::dot(a.move, b.move) + scree::dot(a.tu
 // One that sticks, or slides; the same seen from j has the opposite normal and direction.
 RubbingEntry entry_of(Vec3 n, Vec3 t, Real along, Real across) {
   const auto single = [](Real x) { return static_cast<float>(x); };
-  return {single(n.x), single(n.y),   single(n.z),    1, single(t.x), single(t.y),
-          single(t.z), single(along), single(across), 0, {}};
+  return {{single(n.x), single(n.y), single(n.z), 1},
+          {single(t.x), single(t.y), single(t.z), single(along)},
+          {single(across), 0}};
 }
 
 struct RandomEntry {
