@@ -97,8 +97,10 @@ struct ContactWalk {
         if (closed) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;
     }
+    // What of a row may have a contact.
+    SCREE_HD auto test(const Self& of_row) const { return walk.reaching(walk.look.test(walk.in, of_row)); }
     // It will be called for this neighbour and slot.
-    SCREE_HD void prepare(Index j, std::int64_t slot) const {
+    SCREE_HD void prepare(Index, std::int64_t slot) const {
       fetch_ahead(walk.in.history.neighbors + slot * records_of(Law::kHistory));
     }
   };
