@@ -24,14 +24,6 @@ namespace scree {
 using DeviceViews = ContactViews<SlicedRows>;
 using PrunedViews = ContactViews<PrunedRows<0>>;
 
-// The same with other rows.
-template <class Rows, class Views>
-__device__ ContactViews<Rows> with_rows(const Views& in, const Rows& rows) {
-  return {in.position, in.velocity, in.material, rows,     in.surface_offsets,
-          in.surfaces, in.planes,   in.ground,   in.loads, in.steps,
-          in.history,  in.spin,     in.reach};
-}
-
 // For a kernel that evaluates so many entries of a row at once, with the rows that the control names.
 template <int kAtOnce>
 __device__ ContactViews<PrunedRows<kAtOnce>> views_for(const PrunedViews& in, RowUse use, Real margin) {

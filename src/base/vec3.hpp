@@ -15,6 +15,8 @@ struct Vec3 {
 SCREE_HD Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 SCREE_HD Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 SCREE_HD Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
+// -a, in which nothing is -0: what two partners of a contact find each for itself is both times +0.
+SCREE_HD Vec3 opposite(Vec3 a) { return {0 - a.x, 0 - a.y, 0 - a.z}; }
 SCREE_HD Vec3 operator*(Real s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
 SCREE_HD Vec3& operator+=(Vec3& a, Vec3 b) { return a = a + b; }
 SCREE_HD Vec3& operator-=(Vec3& a, Vec3 b) { return a = a - b; }

@@ -47,8 +47,9 @@ struct TotalForce {
     force += part.force, loss_power += part.loss_power, torque += part.torque, losses.add(part.losses);
     return *this;
   }
-  // Of a contact; losses: by all kinds.
-  SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const RubbingLosses& losses) {
+  // Of a contact; losses: by these kinds at least.
+  template <int kMore>
+  SCREE_HD static TotalForce of(const ContactLoadOf<Real, Vec3>& load, const LossesOf<kMore>& losses) {
     TotalForce out{load.force, load.loss, load.torque_i, {}};
     out.losses.add(losses);
     return out;

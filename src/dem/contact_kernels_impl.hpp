@@ -2,11 +2,14 @@
 #pragma once
 
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "base/for_each.hpp"
 #include "base/reproducible_sum.hpp"
 #include "dem/contact_kernels.hpp"
+#include "dem/paired_rows.hpp"
 
 namespace scree {
 
@@ -22,20 +25,21 @@ class CpuContactKernels : public ContactKernels {
         Serial{}, n,
         ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
   }
-  Real verlet_finish(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, const VerletViews& state,
-                     Vec3* force) const override {
-    return max_over(Serial{}, n,
-                    VerletFinishItem<Laws, PackedRows>{{explicit_walk(in, laws_, state.h), gravity, force,
-                                                        state.loss_power, state.angular_acceleration},
-                                                       state});
+  Real verlet_finish(const ContactViews<PackedRows>& in, const PairList& pairs, Vec3 gravity, Index n,
+                     const VerletViews& state, Vec3* force) override {
+    return max_over(
+        Serial{}, n,
+        VerletFinishItem<Laws, StepRows>{{explicit_walk(over_step(in, pairs), laws_, state.h), gravity, force,
+                                          state.loss_power, state.angular_acceleration},
+                                         state});
   }
-  // What a contact takes is one text over many small functions: where it is not one function in the program,
-  // a step with friction takes twice as long.
-  [[gnu::flatten]] Real verlet_advance(const ContactViews<PackedRows>& in, Vec3 gravity, Index n,
-                                       const VerletViews& state) const override {
+  // One function, so that what is summed stays in registers.
+  [[gnu::flatten]] Real verlet_advance(const ContactViews<PackedRows>& in, const PairList& pairs,
+                                       Vec3 gravity, Index n, const VerletViews& state) override {
     return max_over(Serial{}, n,
-                    VerletAdvanceItem<Laws, PackedRows>{
-                        {explicit_walk(in, laws_, state.h), gravity, nullptr, nullptr, nullptr}, state});
+                    VerletAdvanceItem<Laws, StepRows>{{explicit_walk(over_step(in, pairs), laws_, state.h),
+                                                       gravity, nullptr, nullptr, nullptr},
+                                                      state});
   }
   void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
               const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
@@ -127,7 +131,21 @@ class CpuContactKernels : public ContactKernels {
     throw std::logic_error("CpuContactKernels: the law has no implicit steps with friction");
   }
 
+  // A contact that is a function of the instant takes less than to keep what it does.
+  static constexpr bool kPaired = LawOf<Laws>::kMoves;
+  using StepRows = std::conditional_t<kPaired, PairedRows<Laws>, PackedRows>;
+  // Of an explicit step.
+  ContactViews<StepRows> over_step(const ContactViews<PackedRows>& in, const PairList& pairs) {
+    if constexpr (kPaired) {
+      sweep_.begin(pairs);
+      return paired_views(in, sweep_);
+    } else {
+      return in;
+    }
+  }
+
   Laws laws_;
+  std::conditional_t<kPaired, PairSweep<Laws>, std::monostate> sweep_;
 };
 
 // With the table that the kernels of several laws refer to.

@@ -28,12 +28,10 @@ struct AtInstant {
   }
   template <class Rows>
   SCREE_HD PairState pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
-    return pair(self, in.position[j], in.velocity[j]);
+    return pair(self.p, self.u, in.position[j], in.velocity[j]);
   }
-  SCREE_HD static PairState pair(const Self& self, Vec4 q, Vec4 w) {
-    return {sphere_pair(xyz(self.p) - xyz(q), self.p.w + q.w),
-            xyz(self.u) - xyz(w),
-            {self.p.w, q.w, self.u.w, w.w}};
+  SCREE_HD static PairState pair(Vec4 p, Vec4 u, Vec4 q, Vec4 w) {
+    return {sphere_pair(xyz(p) - xyz(q), p.w + q.w), xyz(u) - xyz(w), {p.w, q.w, u.w, w.w}};
   }
   template <class Rows>
   SCREE_HD PairState wall(const ContactViews<Rows>&, const Self& self, const WallPlane& plane) const {
@@ -66,9 +64,13 @@ struct OverMotion {
   template <class Rows>
   SCREE_HD MovingPair pair(const ContactViews<Rows>& in, const Self& self, Index j) const {
     const Vec4 q = in.position[j], w = in.velocity[j];
-    const PairState state = AtInstant::pair({self.i, self.material, self.p, self.u}, q, w);
-    return {state, sphere_motion(state.geometry, h * state.velocity, partner(self.p, self.spin),
-                                 partner(q, in.spin[j]), h)};
+    const PairState state = AtInstant::pair(self.p, self.u, q, w);
+    return {state, motion(state, partner(self.p, self.spin), partner(q, in.spin[j]))};
+  }
+  SCREE_HD static TurningPartner partner(Vec4 p, Vec4 spin) { return {xyz(spin), p.w, spin.w}; }
+  SCREE_HD ContactMotion motion(const PairState& state, const TurningPartner& i,
+                                const TurningPartner& j) const {
+    return sphere_motion(state.geometry, h * state.velocity, i, j, h);
   }
   template <class Rows>
   SCREE_HD MovingPair wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
@@ -77,9 +79,6 @@ struct OverMotion {
             face_motion(state.geometry, plane.normal, h * state.velocity, partner(self.p, self.spin), {}, h)};
   }
   SCREE_HD static bool closed(const PairState& pair) { return pair.geometry.overlap > 0; }
-
- private:
-  SCREE_HD static TurningPartner partner(Vec4 p, Vec4 spin) { return {xyz(spin), p.w, spin.w}; }
 };
 
 // The same at an instant alone; the pair is an InstantPair.

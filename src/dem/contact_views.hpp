@@ -86,6 +86,14 @@ struct ContactViews {
   Real reach = 0;              // Contact::reach [m]
 };
 
+// The same with other rows.
+template <class Rows, class From>
+SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& rows) {
+  return {in.position, in.velocity, in.material, rows,     in.surface_offsets,
+          in.surfaces, in.planes,   in.ground,   in.loads, in.steps,
+          in.history,  in.spin,     in.reach};
+}
+
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
   const Vec3 r = xyz(p) - xyz(q);
   const Real reach = p.w + q.w;

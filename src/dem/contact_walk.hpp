@@ -110,6 +110,8 @@ struct ContactWalk {
         if (closed) in.history.template write<Law>(in.history.neighbors, slot, contact.history);
       return contact;
     }
+    // What of a row may have a contact.
+    SCREE_HD auto test(const Self& of_row) const { return walk.reaching(walk.look.test(walk.in, of_row)); }
     SCREE_HD void prepare(std::int64_t slot) const { walk.prepare(slot); }
   };
 

@@ -75,7 +75,7 @@ void CpuExplicitRun::advance() {
   items_.find_loads(h_);
   items_.side.book_losses(h_);
   step_bound_ = std::sqrt(items_.kernels->verlet_advance(
-      items_.views(), items_.model.gravity, items_.layout.owned,
+      items_.views(), items_.listed_pairs(), items_.model.gravity, items_.layout.owned,
       views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin)));
   items_.history.accepted(), items_.side.close_step();
   std::swap(items_.store.position, items_.spare_position);
@@ -88,7 +88,7 @@ void CpuExplicitRun::finish() {
   items_.side.book_losses(h_);
   std::vector<Vec3>& force = items_.store.force;
   const Real squared = items_.kernels->verlet_finish(
-      items_.views(), items_.model.gravity, items_.layout.owned,
+      items_.views(), items_.listed_pairs(), items_.model.gravity, items_.layout.owned,
       views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin), force.data());
   items_.history.accepted(), items_.side.close_step();
   if (!std::isfinite(items_.ranks.max(squared))) items_.report_not_finite(force);

@@ -9,6 +9,7 @@
 #include "dem/cpu_history.hpp"
 #include "dem/cpu_surfaces.hpp"
 #include "dem/neighbor_list.hpp"
+#include "dem/pair_list.hpp"
 #include "dem/particle_store.hpp"
 #include "dem/surface_side.hpp"
 #include "model/model.hpp"
@@ -41,6 +42,11 @@ struct CpuItems {
                         {store.position.data(), store.velocity.data(), store.angular_velocity.data(),
                          h > 0 ? at : at.only_read(), h});
   }
+  // Of the list as it is, where particles rotate; matched when they are first asked for.
+  const PairList& listed_pairs() {
+    if (store.rotates && !pairs.is_current) pairs.match(list, store);
+    return pairs;
+  }
   // For `history`, while there is a list.
   CpuHistory::Listed listed() const { return {store, list, side.placed(), side.surfaces().ground()}; }
   void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }
@@ -62,6 +68,7 @@ struct CpuItems {
   ParticleStore store;
   Halo halo;
   NeighborList list;
+  PairList pairs;  // of the list, where explicit steps have asked for them
   ItemLayout layout;
   // Explicit steps write here while neighbours are read. After a run: the velocities that the law saw last.
   std::vector<Vec4> spare_position, spare_velocity, spare_spin;

@@ -30,10 +30,12 @@ SCREE_HD auto& number_of(Record* records, int k) {
                   : records[1].w;
 }
 
-// Asks a GPU's memory for a record that will be read soon.
-SCREE_HD void fetch_ahead([[maybe_unused]] const Vec4* record) {
+// Asks the memory for a record that will be read soon.
+SCREE_HD void fetch_ahead(const Vec4* record) {
 #ifdef __CUDA_ARCH__
   asm volatile("prefetch.global.L2 [%0];" ::"l"(record));
+#else
+  __builtin_prefetch(record, 1);
 #endif
 }
 

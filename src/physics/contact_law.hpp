@@ -39,6 +39,9 @@ struct ContactLoadOf {
   Vector force;               // on i, and its opposite on j [N]
   T loss;                     // power that the law takes out of the mechanical energy [W]
   Vector torque_i, torque_j;  // about the centres [N m]
+
+  // What it does to the partners by the other's name.
+  SCREE_HD ContactLoadOf exchanged() const { return {opposite(force), loss, torque_j, torque_i}; }
 };
 
 // What a contact remembers from step to step; what its law does not use stays zero.
@@ -46,6 +49,9 @@ struct ContactHistory {
   Vec3 spring;           // force of the tangential spring [N]; odd under exchange of the partners
   Vec3 moment;           // of the springs of rolling and twisting [N m]; odd
   bool touched = false;  // the surfaces have met: a law with a neck may hold them beyond touch
+
+  // What the other partner remembers.
+  SCREE_HD ContactHistory mirrored() const { return {opposite(spring), opposite(moment), touched}; }
 };
 
 // Elastic energy of the springs that contacts remember [J].
@@ -179,6 +185,14 @@ struct ContactLaw {
     if constexpr (RollingLaw::acts)
       out.rolling = rolling.energy(size, contact, stiffness, normal_to_i, history.moment);
     return out;
+  }
+
+  // Whether the mirror image of what one partner remembers is what the other finds, to the signs of zeros. A
+  // limit of zero leaves of a spring zeros with the signs of what it would have been; those of one in a
+  // plane, across it, have none on either side.
+  SCREE_HD static bool is_mirrored(const ContactHistory& history) {
+    const auto some = [](Vec3 a) { return a.x != 0 || a.y != 0 || a.z != 0; };
+    return (!TangentialLaw::acts || some(history.spring)) && (!RollingLaw::acts || some(history.moment));
   }
 
   // The kHistory numbers of a contact: number(k) reads the k-th, store(k, value) writes it.

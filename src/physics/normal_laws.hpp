@@ -65,7 +65,10 @@ struct LinearLawOf {
     return p.exponent == 1 && p.effective_modulus == 0 && p.damping_ratio == 0 && !p.attracts();
   }
 
-  SCREE_HD LinearLawOf of_pair(const PairSizeOf<T>&) const { return *this; }
+  // By its numbers: gcc takes a copy of the whole for one access to memory, of which no vector is made.
+  SCREE_HD LinearLawOf of_pair(const PairSizeOf<T>&) const {
+    return {normal_stiffness, normal_damping, tension};
+  }
   template <class S>
   SCREE_HD LinearLawOf<S> as() const {
     return {static_cast<S>(normal_stiffness), static_cast<S>(normal_damping), tension};

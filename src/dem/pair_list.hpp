@@ -1,0 +1,32 @@
+// The pairs of a neighbour list, each once.
+#pragma once
+
+#include <vector>
+
+#include "base/types.hpp"
+#include "dem/neighbor_list.hpp"
+#include "dem/particle_store.hpp"
+
+namespace scree {
+
+// An item in the row of an owned particle; with another owned one in the row of that which comes first.
+struct ListedPair {
+  Index j;
+  Index slot;    // in the particle's row
+  Index mirror;  // in the row of j; a ghost has none
+
+  static constexpr Index kNone = -1;
+  bool has_mirror() const { return mirror != kNone; }
+};
+
+struct PairList {
+  bool is_current = false;     // whether it is of the list as it is
+  std::vector<Index> offsets;  // [owned + 1], into the pairs
+  std::vector<ListedPair> pairs;
+  std::size_t slots = 0;  // of the list
+
+  Index rows() const { return static_cast<Index>(offsets.size()) - 1; }
+  void match(const NeighborList& list, const ParticleStore& store);
+};
+
+}  // namespace scree
