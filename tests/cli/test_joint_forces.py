@@ -70,6 +70,14 @@ class JointForcesTest(CommandLineTest):
         self.press(DONE, "part", "--set", "time.end=1.2", "--restart", self.folder / "part/checkpoint_end.h5")
         self.assertEqual(self.record("part")["state_hash"], self.record("whole")["state_hash"])
 
+    def test_a_motors_function_may_change_after_the_restart(self):
+        """As of a driver: what the motor did until then is the same."""
+        later = "motors.0.rate={ kind = 'table', times = [0.0, 0.8, 1.0, 3.0], values = [-30.0, -30.0, %s, -20.0] }"
+        self.press(DONE, "part", "--set", "time.end=0.7", "--set", later % -30.0)
+        restart = ("--set", "time.end=1.2", "--restart", self.folder / "part/checkpoint_end.h5")
+        self.press(DONE, "other", *restart, "--set", later % -10.0)
+        self.assertIn("motors.motor", self.press(BAD_INPUT, "other2", *restart).stderr)
+
     def test_a_restart_may_change_a_stop_but_not_the_motors(self):
         self.press(DONE, "part", "--set", "time.end=0.7")
         restart = ("--restart", self.folder / "part/checkpoint_end.h5", "--allow-changes")
