@@ -100,6 +100,26 @@ inline constexpr auto kWords<JointKind> = std::to_array<Word<JointKind>>({{"revo
                                                                           {"fixed", JointKind::fixed},
                                                                           {"distance", JointKind::distance}});
 
+// What makes the effort of a motor.
+enum class MotorKind {
+  effort,  // a function of time
+  line,    // falls in a straight line with the joint's rate
+  speed    // a controller that wants a rate
+};
+template <>
+inline constexpr auto kWords<MotorKind> = std::to_array<Word<MotorKind>>({{"effort", MotorKind::effort},
+                                                                          {"line", MotorKind::line},
+                                                                          {"speed", MotorKind::speed}});
+
+enum class CouplerKind { gear, belt, rack_and_pinion, differential, sum };
+template <>
+inline constexpr auto kWords<CouplerKind> =
+    std::to_array<Word<CouplerKind>>({{"gear", CouplerKind::gear},
+                                      {"belt", CouplerKind::belt},
+                                      {"rack-and-pinion", CouplerKind::rack_and_pinion},
+                                      {"differential", CouplerKind::differential},
+                                      {"sum", CouplerKind::sum}});
+
 enum class TimeFunctionKind { constant, ramp, sine, step, table };
 template <>
 inline constexpr auto kWords<TimeFunctionKind> =

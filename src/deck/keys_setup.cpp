@@ -27,13 +27,24 @@ const TableKeys& deck_keys() {
                "driver contradicts them, and told which keys to set to what. Consistent: changed so that "
                "they agree with all joints and drivers, by as little as possible in the kinetic energy of "
                "the change."),
-       table("time", time_keys()).required(), table("integrator", integrator_keys()),
-       table("contact", contact_keys()), table("output", output_keys()), table("parallel", parallel_keys()),
-       tables("materials", material_keys()), tables("walls", wall_keys()), tables("bodies", body_keys()),
-       tables("joints", joint_keys()), tables("drivers", driver_keys()),
+       table("time", time_keys()).required(),
+       table("integrator", integrator_keys()),
+       table("contact", contact_keys()),
+       table("output", output_keys()),
+       table("parallel", parallel_keys()),
+       tables("materials", material_keys()),
+       tables("walls", wall_keys()),
+       tables("bodies", body_keys()),
+       tables("joints", joint_keys()),
+       tables("drivers", driver_keys()),
        tables("spring_dampers", spring_damper_keys()),
        tables("torsional_spring_dampers", torsional_spring_damper_keys()),
-       tables("applied_forces", applied_force_keys()), tables("particles", particle_keys())},
+       tables("applied_forces", applied_force_keys()),
+       tables("motors", motor_keys()),
+       tables("joint_springs", joint_spring_keys()),
+       tables("joint_limits", joint_limit_keys()),
+       tables("couplers", coupler_keys()),
+       tables("particles", particle_keys())},
       ""};
   return keys;
 }
@@ -348,7 +359,14 @@ const TableKeys& output_keys() {
        integer("history_reactions")
            .at_least(0)
            .otherwise("100")
-           .about("Joints and drivers whose reactions are recorded: the first so many of the deck."),
+           .about(
+               "Joints, drivers and couplers whose reactions are recorded: the first so many of the deck."),
+       integer("history_efforts")
+           .at_least(0)
+           .otherwise("100")
+           .about("Motors, springs and limits on joints whose coordinate, rate, effort and power are "
+                  "recorded: the "
+                  "first so many of the deck, in this order."),
        integers("history_particles")
            .at_least(0)
            .otherwise("[]")

@@ -20,8 +20,9 @@ constexpr const char* kLeftOut =
     "Attraction is explicit, and not of bodies. All that touches is a disc (2D), "
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
     "meshes. Bodies are rigid, and in 3D too they and their joints are planar: they move along x and "
-    "y and turn about z, and forces along z do nothing to them. Joints have no play, no stops and no "
-    "friction. All particles are there at the start: none flow in, bond or break. There is no fluid "
+    "y and turn about z, and forces along z do nothing to them. Joints have motors, springs and "
+    "stops, but no play and no friction. All particles are there at the start: none flow in, bond or break. "
+    "There is no fluid "
     "and no heat.";
 
 // Appends the words of `text` in lines of kWidth, each line indented.

@@ -8,8 +8,9 @@ void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Rea
   const Real driver_work = h / 2 * (p0.drivers + p1.drivers);
   Real loss = driver_work;
   for (const auto& kind : system.kinds()) kind->add_integrator_loss(start, end, loss);
-  end.dissipated = start.dissipated + h / 2 * (p0.dissipated + p1.dissipated);
-  end.driver_work = start.driver_work + driver_work + h / 2 * (p0.applied + p1.applied);
+  const JointWork joints = system.joint_forces().work();
+  end.dissipated = start.dissipated + h / 2 * (p0.dissipated + p1.dissipated) + joints.dissipated;
+  end.driver_work = start.driver_work + driver_work + h / 2 * (p0.applied + p1.applied) + joints.applied;
   end.integrator_loss = start.integrator_loss + loss;
 }
 

@@ -10,6 +10,8 @@ namespace scree {
 // t + h) adds to the start's. With P the power at either end [W]:
 //   dissipated  += h/2 (P_0 + P_1) of the dampers
 //   driver_work += h/2 (P_0 + P_1) of prescribed motions, actuators and applied forces
+// and of efforts on joints (T_0 + T_1)/2 (c_1 - c_0), of motors to driver_work, of the others to `dissipated`
+// what their elastic energy does not take up;
 //   integrator_loss += 1/2 (Q_0 + Q_1).(q_1 - q_0) + work of the prescribed motions - change of kinetic
 //   energy
 // kinetic + gravitational + elastic + dissipated + integrator_loss - driver_work - (work of the contact

@@ -47,10 +47,16 @@ struct Multibody::Impl {
         watch(system.coordinate_scale(), system.constraint_scale()),
         time_control(model.time),
         motion(model.bodies.size()) {
+    start.memory.assign(system.joint_forces().memory().size(), 0);
     settle_velocities(model);
   }
 
   void settle_velocities(const Model& model);
+  void open_step(const MultibodyState& state, Real t, Real h) {
+    const SystemInstant at{t, state.position, state.velocity};
+    if (!system.joint_forces().empty())
+      system.joint_forces().open_step(system.poses_at(at), at, h, state.memory);
+  }
   void watch_reactions(const MultibodyState& state, Real error);
   std::string oscillation(Real share) const;
   [[noreturn]] void fail_for_oscillation() const;
@@ -92,18 +98,21 @@ Multibody::~Multibody() = default;
 MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   MultibodyState state = impl_->start;
   impl_->system.set_contacts({wrench, {}});
+  impl_->open_step(state, 0, 0);
   impl_->newton.solve_acceleration(state, 0);
   return state;
 }
 
 void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench) {
   impl_->system.set_contacts({wrench, {}});
+  impl_->open_step(state, t, 0);
   check_joints_hold(impl_->system, state.position, state.velocity, t);
   impl_->newton.solve_acceleration(state, t);
 }
 
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
   impl_->time = t;
+  impl_->open_step(state, t, h);
   impl_->method.predict(state, t, h);
   impl_->newton.begin_step();
   impl_->update_motion();
@@ -131,7 +140,9 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.method.close(impl.end);
   impl.watch_reactions(state, error());
   book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
-  if (!impl.system.has_forces_of(end_wrench)) {
+  impl.end.memory = impl.system.joint_forces().memory();
+  const bool efforts_differ = impl.system.joint_forces().end_step();
+  if (efforts_differ || !impl.system.has_forces_of(end_wrench)) {
     impl.system.set_forces(end_wrench);
     impl.newton.change_end_forces(impl.end);
   }
@@ -195,6 +206,20 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
     reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque});
   }
   return reactions;
+}
+
+std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& state, Real t) const {
+  const JointForces& forces = impl_->system.joint_forces();
+  if (forces.empty()) return {};
+  const SystemInstant at{t, state.position, state.velocity};
+  const auto samples = forces.samples(impl_->system.poses_at(at), at, state.memory);
+  std::vector<JointEffortSample> out;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const CoordinateInstant& c = samples[i].at;
+    out.push_back({forces.all()[i].name(), forces.all()[i].is_angle(), c.value, c.rate, samples[i].effort,
+                   samples[i].effort * c.rate});
+  }
+  return out;
 }
 
 int Multibody::coordinates() const { return impl_->system.coordinates(); }

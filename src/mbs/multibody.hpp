@@ -20,6 +20,7 @@ struct MultibodyState {
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
   std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body
+  std::vector<Real> memory;        // of the motors that have one, in their order (mbs/joint_laws.hpp)
   Real dissipated = 0;             // in force elements since t = 0 [J]
   Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
   Real driver_work = 0;            // done by drivers, actuators and applied forces since t = 0 [J]
@@ -40,6 +41,14 @@ struct Reaction {
   std::string joint;
   Vec3 force;   // [N]
   Vec3 torque;  // about that point [N m]
+};
+
+// A motor, spring or limit on a joint at one instant.
+struct JointEffortSample {
+  std::string name;
+  bool is_angle = false;
+  Real coordinate = 0, rate = 0;  // [rad] or [m], per s
+  Real effort = 0, power = 0;     // [N m] or [N]; [W], above 0 where it is fed in
 };
 
 class Multibody {
@@ -84,6 +93,8 @@ class Multibody {
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
+  // Of motors, springs and limits on joints, in this order.
+  std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
 
   // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular
   // velocity of body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.

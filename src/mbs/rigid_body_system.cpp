@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mbs/coupler.hpp"
 #include "mbs/joints.hpp"
 #include "model/connections.hpp"
 
@@ -38,6 +39,7 @@ RigidBodySystem::RigidBodySystem(const Model& model)
       poses_(layout_),
       scratch_(layout_),
       wrench_(model.bodies.size()),
+      joint_forces_(model, layout_),
       coordinate_scale_(static_cast<std::size_t>(layout_.columns()), 1) {
   kinds_.push_back(planar_bodies(model, layout_));
   for (const auto& kind : kinds_) {
@@ -64,6 +66,11 @@ void RigidBodySystem::add_constraints(const Model& model) {
     add_driver(title, joint, ScalarFunction(driver.motion, title, model.time.end), *parts);
     add_group(title, driver.name, parts->take());
   }
+  for (const Coupler& coupler : model.couplers) {
+    std::vector<std::unique_ptr<Constraint>> rows;
+    rows.push_back(make_coupler(coupler, model, layout_, start_poses()));
+    add_group(fmt::format("coupler '{}'", coupler.name), coupler.name, std::move(rows));
+  }
 }
 
 void RigidBodySystem::add_elements(const Model& model) {
@@ -76,6 +83,8 @@ void RigidBodySystem::add_elements(const Model& model) {
     constant_force_scale_ =
         std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
   }
+  constant_force_scale_ =
+      std::max(constant_force_scale_, kElasticFloor * joint_forces_.elastic_scale(length_scale_));
 }
 
 void RigidBodySystem::add_group(const std::string& title, const std::string& name,
@@ -107,6 +116,8 @@ void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
     const Real size = element->add_force(poses_, at.time, length_scale_, terms.applied_force);
     terms.force_scale = std::max(terms.force_scale, size);
   }
+  terms.force_scale =
+      std::max(terms.force_scale, joint_forces_.add_force(poses_, at, length_scale_, terms.applied_force));
   for (const auto& kind : kinds_)
     terms.force_scale =
         std::max(terms.force_scale, kind->add_contact(wrench_, length_scale_, terms.applied_force));
@@ -135,6 +146,7 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
   for (const auto& element : elements_) {
     element->add_derivatives(poses_, at.time, derivatives.stiffness, derivatives.damping);
   }
+  joint_forces_.add_derivatives(poses_, at, derivatives);
   for (const auto& kind : kinds_) kind->add_contact_derivatives(derivatives);
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->hessian(poses_, &iterate.multipliers[static_cast<std::size_t>(first_row_[i])],
@@ -149,6 +161,13 @@ void RigidBodySystem::displace(const std::vector<Real>& start, const std::vector
 
 void RigidBodySystem::pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const {
   for (const auto& kind : kinds_) kind->pull_back(displacement, change);
+}
+
+BodyPoses RigidBodySystem::start_poses() const {
+  std::vector<Real> position(static_cast<std::size_t>(positions())),
+      velocity(static_cast<std::size_t>(coordinates()));
+  for (const auto& kind : kinds_) kind->start(position, velocity);
+  return poses_at({0, position, velocity});
 }
 
 BodyPoses RigidBodySystem::poses_at(const SystemInstant& at) const {
@@ -192,7 +211,7 @@ Real RigidBodySystem::elastic_energy(const SystemInstant& at) const {
   const BodyPoses poses = poses_at(at);
   Real energy = 0;
   for (const auto& element : elements_) energy += element->elastic_energy(poses);
-  return energy;
+  return energy + joint_forces_.elastic_energy(poses, at.time);
 }
 
 std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(

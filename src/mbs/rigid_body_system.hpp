@@ -7,6 +7,7 @@
 
 #include "mbs/constraints.hpp"
 #include "mbs/force_elements.hpp"
+#include "mbs/joint_forces.hpp"
 #include "mbs/mechanical_system.hpp"
 #include "mbs/rigid_bodies.hpp"
 #include "model/body_exchange.hpp"
@@ -23,7 +24,8 @@ struct ConstraintGroup {
   int first_row = 0, end_row = 0;  // of Phi
 };
 
-// Positions and columns of the bodies stand as in the model's BodyLayout. Rows of Phi: joints, then drivers.
+// Positions and columns of the bodies stand as in the model's BodyLayout. Rows of Phi: joints, then drivers,
+// then couplers.
 class RigidBodySystem final : public MechanicalSystem {
  public:
   // Throws InputError naming the joint, driver or element that is refused.
@@ -52,6 +54,9 @@ class RigidBodySystem final : public MechanicalSystem {
   // The wrenches set last have the same forces and torques.
   bool has_forces_of(const std::vector<BodyWrench>& wrench) const;
 
+  JointForces& joint_forces() { return joint_forces_; }
+  const JointForces& joint_forces() const { return joint_forces_; }
+
   const std::vector<Body>& bodies() const { return bodies_; }
   const BodyLayout& layout() const { return layout_; }
   const std::vector<std::unique_ptr<RigidBodies>>& kinds() const { return kinds_; }
@@ -73,6 +78,7 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
 
  private:
+  BodyPoses start_poses() const;
   void add_constraints(const Model& model);
   void add_elements(const Model& model);
   void add_group(const std::string& title, const std::string& name,
@@ -93,6 +99,7 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<int> group_;      // of every row
   std::vector<ConstraintGroup> groups_;
   std::vector<std::unique_ptr<ForceElement>> elements_;
+  JointForces joint_forces_;
   std::vector<Real> coordinate_scale_, constraint_scale_;
 };
 

@@ -12,12 +12,28 @@ namespace scree {
 ScalarFunction::ScalarFunction(const TimeFunction& function, const std::string& owner, Real end)
     : function_(function), rates_(function.times.size(), 0), second_derivatives_(function.times.size(), 0) {
   if (function.kind != TimeFunction::Kind::table) return;
-  check_table(owner, end);
-  if (function.interpolation == Interpolation::linear) return;
-  function.interpolation == Interpolation::monotone ? find_monotone() : find_spline();
+  check_points(owner);
+  check_cover(owner, end);
+  find_rates();
 }
 
-void ScalarFunction::check_table(const std::string& owner, Real end) const {
+ScalarFunction::ScalarFunction(const Curve& curve, const std::string& owner)
+    : rates_(curve.at.size(), 0), second_derivatives_(curve.at.size(), 0) {
+  if (curve.at.empty()) return;
+  function_.kind = TimeFunction::Kind::table;
+  function_.times = curve.at;
+  function_.values = curve.values;
+  function_.interpolation = curve.interpolation;
+  check_points(owner);
+  find_rates();
+}
+
+void ScalarFunction::find_rates() {
+  if (function_.interpolation == Interpolation::linear) return;
+  function_.interpolation == Interpolation::monotone ? find_monotone() : find_spline();
+}
+
+void ScalarFunction::check_points(const std::string& owner) const {
   const std::vector<Real>& times = function_.times;
   if (times.size() < 2 || times.size() != function_.values.size()) {
     throw InputError(
@@ -31,6 +47,10 @@ void ScalarFunction::check_table(const std::string& owner, Real end) const {
                                    times[i - 1]));
     }
   }
+}
+
+void ScalarFunction::check_cover(const std::string& owner, Real end) const {
+  const std::vector<Real>& times = function_.times;
   if (times.front() > 0 || times.back() < end) {
     throw InputError(
         fmt::format("{}: the table covers {} s to {} s; it must cover the whole run, 0 s to {} s", owner,

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/bodies.hpp"
+#include "model/joint_forces.hpp"
 #include "physics/time_function.hpp"
 
 namespace scree {
@@ -15,6 +15,9 @@ class ScalarFunction {
   // InputError naming the owner where a table has fewer than two points, unequal columns, times that do not
   // increase, or does not cover [0, end].
   ScalarFunction(const TimeFunction& function, const std::string& owner, Real end);
+  // A curve over something else than time. Throws InputError on its points as above; it need not cover
+  // anything.
+  ScalarFunction(const Curve& curve, const std::string& owner);
   // The constant `value`.
   explicit ScalarFunction(Real value) { function_.value = value; }
 
@@ -28,7 +31,9 @@ class ScalarFunction {
   }
 
  private:
-  void check_table(const std::string& owner, Real end) const;
+  void check_points(const std::string& owner) const;
+  void check_cover(const std::string& owner, Real end) const;
+  void find_rates();
   void find_spline();
   void find_monotone();
   Real slope(std::size_t segment) const;

@@ -96,6 +96,14 @@ void check_single(const DeckTable& table, const std::string& key) {
   if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
 }
 
+Real start_coordinate(const Model& model, const Joint& joint) {
+  if (joint.kind == JointKind::revolute)
+    return start_angle(model, joint.body[1]) - start_angle(model, joint.body[0]);
+  const Vec3 apart = to_global_point(model, joint.body[1], joint.point[1]) -
+                     to_global_point(model, joint.body[0], joint.point[0]);
+  return dot(apart, to_global_direction(model, joint.body[0], joint.axis));
+}
+
 JointGap joint_gap(const Model& model, const Joint& joint) {
   const Vec3 a = to_global_point(model, joint.body[0], joint.point[0]),
              b = to_global_point(model, joint.body[1], joint.point[1]);
@@ -118,7 +126,7 @@ std::vector<bool> driven_joints(const Model& model) {
 
 int constraint_count(const Model& model) {
   const std::vector<bool> driven = driven_joints(model);
-  int count = static_cast<int>(model.drivers.size());
+  int count = static_cast<int>(model.drivers.size() + model.couplers.size());
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     switch (model.joints[j].kind) {
       case JointKind::fixed:
@@ -134,6 +142,10 @@ int constraint_count(const Model& model) {
     }
   }
   return count;
+}
+
+int memory_count(const Model& model) {
+  return static_cast<int>(std::ranges::count(model.motors, MotorKind::speed, &Motor::kind));
 }
 
 std::vector<std::pair<int, int>> connected_bodies(const Model& model) {

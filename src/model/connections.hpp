@@ -35,6 +35,9 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
 // Refuses `key` together with chain or each: one global point cannot hold for several elements.
 void check_single(const DeckTable& table, const std::string& key);
 
+// The coordinate of a revolute or translational joint at t = 0 [rad or m].
+Real start_coordinate(const Model& model, const Joint& joint);
+
 // Whether the two sides of a joint meet at t = 0.
 struct JointGap {
   Vec3 end[2];   // the joint's point on either body [m]
@@ -47,8 +50,10 @@ JointGap joint_gap(const Model& model, const Joint& joint);
 
 // Per joint, whether a driver prescribes it.
 std::vector<bool> driven_joints(const Model& model);
-// Of joints and drivers: the number of the multibody side's constraint equations.
+// Of joints, drivers and couplers: the number of the multibody side's constraint equations.
 int constraint_count(const Model& model);
+// How many numbers motors remember.
+int memory_count(const Model& model);
 // Pairs of bodies, smaller index first, that a joint or a force element connects; sorted, each once.
 std::vector<std::pair<int, int>> connected_bodies(const Model& model);
 

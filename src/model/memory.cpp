@@ -52,14 +52,17 @@ ModelSize bodies_and_links(const DeckTable& deck) {
       size.links += table.has(row) ? rows[table.text(row)] : 1;
     }
   }
-  size.links += std::ssize(deck.tables("drivers")) + std::ssize(deck.tables("applied_forces"));
+  for (const char* key : {"drivers", "applied_forces", "motors", "joint_springs", "joint_limits", "couplers"})
+    size.links += std::ssize(deck.tables(key));
   return size;
 }
 
 ModelSize size_of(const Model& model) {
   return {model.particles.totals.count, std::ssize(model.bodies),
           std::ssize(model.joints) + std::ssize(model.drivers) + std::ssize(model.spring_dampers) +
-              std::ssize(model.torsional_spring_dampers) + std::ssize(model.applied_forces)};
+              std::ssize(model.torsional_spring_dampers) + std::ssize(model.applied_forces) +
+              std::ssize(model.motors) + std::ssize(model.joint_springs) + std::ssize(model.joint_limits) +
+              std::ssize(model.couplers)};
 }
 
 Real bytes_to_build_bodies(const ModelSize& size, int rank) {

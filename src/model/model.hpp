@@ -11,6 +11,7 @@
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
 #include "model/bodies.hpp"
+#include "model/joint_forces.hpp"
 #include "model/particles.hpp"
 #include "physics/normal_laws.hpp"
 #include "physics/rolling_laws.hpp"
@@ -102,6 +103,7 @@ struct Output {
   bool history_csv = false;
   int compression = 0;                   // of particles in snapshots and checkpoints: 0, or deflate's level
   std::int64_t history_reactions = 100;  // joints and drivers, the first so many
+  std::int64_t history_efforts = 100;    // motors, springs and limits on joints, the first so many
   std::vector<std::string> fields;       // of particles in snapshots: names in dem/output_fields.hpp
   std::vector<int> history_bodies;       // indices into Model::bodies
   std::vector<GlobalId> history_particles;  // global ids
@@ -133,6 +135,10 @@ struct Model {
   std::vector<SpringDamper> spring_dampers;
   std::vector<TorsionalSpringDamper> torsional_spring_dampers;
   std::vector<AppliedForce> applied_forces;
+  std::vector<Motor> motors;
+  std::vector<JointSpring> joint_springs;
+  std::vector<JointLimit> joint_limits;
+  std::vector<Coupler> couplers;
   TimeControl time;
   Integrator integrator;
   Output output;

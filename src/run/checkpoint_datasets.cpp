@@ -61,6 +61,7 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
        {&sizes.bodies.velocity, &sizes.bodies.acceleration, &sizes.bodies.force, &sizes.bodies.applied})
     values->resize(static_cast<std::size_t>(layout.columns()));
   sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
+  sizes.bodies.memory.resize(static_cast<std::size_t>(memory_count(model)));
   sizes.bodies.wrench.resize(bodies);
   // What contacts remember may be there or not, and so may rotation: no history is none.
   sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);

@@ -134,6 +134,17 @@ void reaction_columns(Group joint, std::size_t k) {
             [k](const Sample& s) { return s.reactions[k].torque.z; });
 }
 
+// k: number of the effort.
+void effort_columns(Group effort, bool is_angle, std::size_t k) {
+  effort.add("coordinate", is_angle ? "rad" : "m", "coordinate of the joint",
+             [k](const Sample& s) { return s.efforts[k].coordinate; });
+  effort.add("rate", is_angle ? "rad/s" : "m/s", "its rate",
+             [k](const Sample& s) { return s.efforts[k].rate; });
+  effort.add("effort", is_angle ? "N m" : "N", "effort that pushes the coordinate up",
+             [k](const Sample& s) { return s.efforts[k].effort; });
+  effort.add("power", "W", "effort times rate", [k](const Sample& s) { return s.efforts[k].power; });
+}
+
 std::string torque_text(const ContactTarget& target) {
   if (target.wall >= 0) return "torque of these forces about the wall's point";
   return target.row ? "torque of these forces about the origin"
@@ -168,7 +179,8 @@ void particle_columns(Group particle, std::size_t k) {
 
 }  // namespace
 
-std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions) {
+std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions,
+                                            const std::vector<JointEffortSample>& efforts) {
   std::vector<RecordedColumn> out;
   const Output& output = model.output;
   step_columns({"step", out});
@@ -178,6 +190,8 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   momentum_columns({"momentum", out});
   for (std::size_t k = 0; k < reactions.size(); ++k)
     reaction_columns({"reactions/" + reactions[k].joint, out}, k);
+  for (std::size_t k = 0; k < efforts.size(); ++k)
+    effort_columns({"efforts/" + efforts[k].name, out}, efforts[k].is_angle, k);
   for (std::size_t k = 0; k < output.history_contacts.size(); ++k)
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
   for (const int body : output.history_bodies) {

@@ -22,6 +22,14 @@ std::vector<Reaction> reactions_of(const Model& model, const BodyLink& link, con
   return reactions;
 }
 
+std::vector<JointEffortSample> efforts_of(const Model& model, const BodyLink& link, const State& state) {
+  if (link.multibody() == nullptr || model.output.history_efforts == 0) return {};
+  std::vector<JointEffortSample> efforts = link.multibody()->joint_efforts(state.bodies, state.clock.time);
+  const auto wanted = static_cast<std::size_t>(model.output.history_efforts);
+  if (efforts.size() > wanted) efforts.resize(wanted);
+  return efforts;
+}
+
 // Where the particles are that the deck wants traced: NaN of those that were removed. Complete on rank 0.
 std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Backend& backend) {
   const std::vector<GlobalId>& wanted = model.output.history_particles;
@@ -67,7 +75,7 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
                    const State& state)
     : model_(model), backend_(backend), link_(link) {
   link.ranks().on_root([&] {
-    columns_ = history_columns(model, reactions_of(model, link, state));
+    columns_ = history_columns(model, reactions_of(model, link, state), efforts_of(model, link, state));
     std::vector<HistoryColumn> heads;
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
@@ -100,6 +108,7 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   sample.left = state.carried_out.left;
   sample.bodies_outside = bodies_outside(model_, state.bodies).count;
   sample.reactions = reactions_of(model_, link_, state);
+  sample.efforts = efforts_of(model_, link_, state);
   sample.contacts = target_contacts(model_, link_, state, backend_);
   if (link_.multibody() != nullptr && !model_.output.history_bodies.empty())
     sample.bodies = link_.multibody()->motion(state.bodies);

@@ -40,6 +40,8 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "bodies",
                                                "joints",
                                                "drivers",
+                                               "motors",
+                                               "couplers",
                                                "particles",
                                                "space.dimension",
                                                "bodies.*.count",
@@ -48,6 +50,9 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "joints.*.chain",
                                                "joints.*.each",
                                                "drivers.*.joint",
+                                               "motors.*.type",
+                                               "couplers.*.type",
+                                               "couplers.*.joints",
                                                "particles.*.kind",
                                                "particles.*.count",
                                                "particles.*.positions",
@@ -71,6 +76,7 @@ class SameFunctions {
     compare(before, after, "drivers", {"motion"}, build_motion);
     compare(before, after, "spring_dampers", {"actuator"}, build_force);
     compare(before, after, "applied_forces", {"fx", "fy", "torque"}, build_force);
+    compare(before, after, "motors", {"effort", "command", "rate"}, build_force);
   }
   bool hold(const DeckDifference& difference) const {
     return std::any_of(keys_.begin(), keys_.end(),
@@ -86,7 +92,8 @@ class SameFunctions {
                                      [&](const DeckTable& table) { return table.path() == now.path(); });
       if (then == old.end()) continue;
       for (const char* name : names)
-        if (ScalarFunction(build(then->table(name)), name, 0)
+        if (then->has(name) && now.has(name) &&
+            ScalarFunction(build(then->table(name)), name, 0)
                 .same_until(ScalarFunction(build(now.table(name)), name, 0), t_))
           keys_.push_back(now.path() + "." + name);
     }

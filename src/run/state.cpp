@@ -26,6 +26,10 @@ class Writer {
   void operator()(const char* name, const std::int64_t& value) { out_.integers[name] = {value}; }
   void operator()(const char* name, const bool& value) { out_.integers[name] = {value ? 1 : 0}; }
   void operator()(const char* name, const std::vector<Real>& values) { out_.reals[name] = values; }
+  // What most runs have none of: nothing is written there.
+  void if_any(const char* name, const std::vector<Real>& values) {
+    if (!values.empty()) (*this)(name, values);
+  }
   void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
     std::vector<Real>& values = out_.reals[name];
     for (const BodyWrench& w : wrenches)
@@ -43,6 +47,9 @@ class Reader {
   void operator()(const char* name, std::int64_t& value) { value = single(name, in_.integer_array(name)); }
   void operator()(const char* name, bool& value) { value = single(name, in_.integer_array(name)) != 0; }
   void operator()(const char* name, std::vector<Real>& values) { values = in_.real_array(name); }
+  void if_any(const char* name, std::vector<Real>& values) {
+    if (in_.reals.count(name) > 0) (*this)(name, values);
+  }
   void operator()(const char* name, std::vector<BodyWrench>& wrenches) {
     const std::vector<Real>& values = in_.real_array(name);
     wrenches.resize(values.size() / 6);
@@ -70,6 +77,7 @@ class Hasher {
   void operator()(const char*, const std::vector<Real>& values) {
     for (const Real value : values) hash_.add(value);
   }
+  void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
   void operator()(const char*, const std::vector<BodyWrench>& wrenches) {
     for (const BodyWrench& w : wrenches) hash_.add(w.force), hash_.add(w.torque);
   }
@@ -88,6 +96,7 @@ class FiniteCheck {
   void operator()(const char* name, const std::vector<Real>& values) {
     for (const Real value : values) check(name, value);
   }
+  void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
   void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
     for (const BodyWrench& w : wrenches)
       if (!is_finite(w.force) || !is_finite(w.torque)) check(name, std::nan(""));
@@ -145,6 +154,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("bodies/multipliers", state.bodies.multipliers);
   visit("bodies/force", state.bodies.force);
   visit("bodies/applied", state.bodies.applied);
+  visit.if_any("bodies/memory", state.bodies.memory);
   visit("bodies/wrench", state.bodies.wrench);
   visit("bodies/dissipated", state.bodies.dissipated);
   visit("bodies/integrator_loss", state.bodies.integrator_loss);

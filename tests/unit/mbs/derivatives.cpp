@@ -51,6 +51,29 @@ TimeFunction sine() {
   return function;
 }
 
+// Motors, a spring and limits on the joint of a model, which have rates and curvatures where the probe is.
+void add_efforts(Model& model) {
+  Motor line;
+  line.kind = MotorKind::line;
+  line.stall_effort = 3, line.free_rate = 2, line.command = sine();
+  Motor speed;
+  speed.kind = MotorKind::speed;
+  speed.gain = 2, speed.integral_gain = 5, speed.rate = sine();
+  model.motors = {line, speed};
+  Curve elastic{{-3, -1, 0, 1, 3}, {-2, -1, 0.5, 1, 4}, Interpolation::natural};
+  Curve dissipative{{-9, -1, 0, 2, 9}, {-3, -1, 0, 1, 5}, Interpolation::monotone};
+  model.joint_springs = {{"spring", 0, 7, 3, 0.2, elastic, dissipative}};
+  model.joint_limits = {{"lower", 0, 5, 6, 11, 0, 1.5}, {"upper", 0, -6, -5, 13, 0, 1}};
+}
+
+Model coupled_bodies() {
+  Model model = two_bodies();
+  model.joints.push_back(joint_between(JointKind::revolute, kGround, 0));
+  model.joints.push_back(joint_between(JointKind::translational, 0, 1));
+  model.couplers.push_back({"rack", {0, 1}, {-0.3, 1}});
+  return model;
+}
+
 // Models with one joint, driver or force element each.
 std::vector<std::pair<std::string, Model>> samples() {
   std::vector<std::pair<std::string, Model>> all;
@@ -64,6 +87,10 @@ std::vector<std::pair<std::string, Model>> samples() {
       if (kind == JointKind::fixed) continue;
       model.drivers.push_back({"driver", 0, sine()});
       all.emplace_back("driver " + std::to_string(static_cast<int>(kind)) + ends, model);
+      if (kind == JointKind::distance) continue;
+      model.drivers.clear();
+      add_efforts(model);
+      all.emplace_back("efforts on joint " + std::to_string(static_cast<int>(kind)) + ends, model);
     }
     Model spring = two_bodies();
     SpringDamper element{"spring", {first, second}, {{0.31, -0.17, 0}, {-0.23, 0.12, 0}}, 70, 9, 0.4, sine()};
@@ -82,6 +109,7 @@ std::vector<std::pair<std::string, Model>> samples() {
     force.applied_forces[0].fy.value = -1.3;
     all.emplace_back(follows ? "following force" : "force", force);
   }
+  all.emplace_back("coupler", coupled_bodies());
   return all;
 }
 

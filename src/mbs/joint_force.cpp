@@ -1,0 +1,98 @@
+#include "mbs/joint_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+// A coordinate carries round-off of 1e-16 of its size, and so does the effort; this stays far above.
+constexpr Real kRoundingShare = 1e-6;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+JointForce::JointForce(std::string name, std::unique_ptr<Constraint> coordinate,
+                       std::unique_ptr<JointLaw> law)
+    : name_(std::move(name)), coordinate_(std::move(coordinate)), law_(std::move(law)) {}
+
+CoordinateInstant JointForce::coordinate_at(const BodyPoses& poses, const SystemInstant& at,
+                                            SparseTerm& gradient) const {
+  CoordinateInstant instant{at.time, 0, 0};
+  coordinate_->value(poses, at.time, &instant.value);
+  gradient.begin();
+  coordinate_->jacobian(poses, 0, gradient);
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    instant.rate += gradient.value(i) * at.velocity[scree::at(gradient.column(i))];
+  return instant;
+}
+
+void JointForce::open_step(const BodyPoses& poses, const SystemInstant& at, Real h, Real memory) {
+  step_ = {coordinate_at(poses, at, gradient_), memory, h};
+  start_effort_ = law_->effort(step_.start, memory).effort;
+  in_step_ = h > 0;
+}
+
+Real JointForce::add_force(const BodyPoses& poses, const SystemInstant& at, Real length,
+                           std::vector<Real>& force) {
+  last_ = coordinate_at(poses, at, gradient_);
+  effort_ = in_step_ ? law_->step_effort(step_, last_) : law_->effort(last_, memory());
+  for (std::size_t i = 0; i < gradient_.size(); ++i)
+    force[scree::at(gradient_.column(i))] += effort_.effort * gradient_.value(i);
+  const Real rounded = kRoundingShare * std::abs(effort_.by_value * last_.value);
+  return std::max(effort_.size, rounded) * (is_angle() ? 1 : length);
+}
+
+// The first time: all coordinates of the gradient and of H.
+void JointForce::find_coordinates() {
+  for (std::size_t i = 0; i < gradient_.size(); ++i) coordinates_.push_back(gradient_.column(i));
+  for (std::size_t i = 0; i < hessian_.size(); ++i) coordinates_.push_back(hessian_.column(i));
+  std::sort(coordinates_.begin(), coordinates_.end());
+  coordinates_.erase(std::unique(coordinates_.begin(), coordinates_.end()), coordinates_.end());
+}
+
+void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at, SparseTerm& stiffness,
+                                 SparseTerm& damping) {
+  const Real one = 1;
+  hessian_.begin();
+  coordinate_->hessian(poses, &one, hessian_);
+  if (coordinates_.empty()) find_coordinates();
+  const auto place = [&](int coordinate) {
+    return scree::at(static_cast<int>(std::lower_bound(coordinates_.begin(), coordinates_.end(), coordinate) -
+                                      coordinates_.begin()));
+  };
+  along_.assign(coordinates_.size(), 0), turning_.assign(coordinates_.size(), 0);
+  for (std::size_t i = 0; i < gradient_.size(); ++i) along_[place(gradient_.column(i))] += gradient_.value(i);
+  for (std::size_t i = 0; i < hessian_.size(); ++i) {
+    turning_[place(hessian_.column(i))] += hessian_.value(i) * at.velocity[scree::at(hessian_.row(i))];
+    stiffness.add(hessian_.row(i), hessian_.column(i), -effort_.effort * hessian_.value(i));
+  }
+  stiffness.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
+    return -along_[i] * (effort_.by_value * along_[j] + effort_.by_rate * turning_[j]);
+  });
+  damping.add_block(coordinates_,
+                    [&](std::size_t i, std::size_t j) { return -effort_.by_rate * along_[i] * along_[j]; });
+}
+
+JointWork JointForce::work() const {
+  const Real done = (start_effort_ + effort_.effort) / 2 * (last_.value - step_.start.value);
+  if (law_->drives()) return {0, done};
+  return {-done - (law_->energy(last_.value) - law_->energy(step_.start.value)), 0};
+}
+
+Real JointForce::elastic_energy(const BodyPoses& poses, Real t) const {
+  Real c = 0;
+  coordinate_->value(poses, t, &c);
+  return law_->energy(c);
+}
+
+JointForce::Sample JointForce::sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const {
+  SparseTerm gradient;
+  const CoordinateInstant instant = coordinate_at(poses, at, gradient);
+  return {instant, law_->effort(instant, memory).effort};
+}
+
+}  // namespace scree

@@ -1,0 +1,79 @@
+// A law of effort on the coordinate of a joint, as a generalized force.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mbs/constraints.hpp"
+#include "mbs/joint_laws.hpp"
+#include "mbs/mechanical_system.hpp"
+
+namespace scree {
+
+// What one step did: to the stored energy of the law's own, and to the rest [J].
+struct JointWork {
+  Real dissipated = 0, applied = 0;
+};
+
+// With c the coordinate, g = c_q and H = c_qq:
+//   Q     = T(c, c', t) g,  c' = g.v
+//   -Q_q  = -(T_c g g^T + T_c' g (H^T v)^T + T H)
+//   -Q_v  = -T_c' g g^T
+class JointForce {
+ public:
+  // coordinate: a constraint of one row with f = 0, whose C is c.
+  JointForce(std::string name, std::unique_ptr<Constraint> coordinate, std::unique_ptr<JointLaw> law);
+
+  const std::string& name() const { return name_; }
+  bool is_angle() const { return coordinate_->is_angle(); }
+  bool remembers() const { return law_->remembers(); }
+  bool resolves_events() const { return law_->resolves_events(); }
+
+  // The instant from which a step of length h begins, and what the law remembers there; h = 0: forces at
+  // instants alone, until the next step.
+  void open_step(const BodyPoses& poses, const SystemInstant& at, Real h, Real memory);
+  // As they are at the instant of an evaluation, no longer for the step.
+  void end_step() { in_step_ = false; }
+
+  // Adds to Q [coordinates]. Returns the size of what it added [J]: a force times `length` [m], or a torque.
+  Real add_force(const BodyPoses& poses, const SystemInstant& at, Real length, std::vector<Real>& force);
+  // Adds -Q_q and -Q_q' [coordinates, coordinates], at the instant of the last add_force().
+  void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SparseTerm& stiffness,
+                       SparseTerm& damping);
+  // From the opening of the step to the last add_force(), trapezoidal over the coordinate.
+  JointWork work() const;
+  // To remember at the end of the step, which is the instant of the last add_force().
+  Real memory() const { return law_->memory_after(step_, last_); }
+
+  Real elastic_energy(const BodyPoses& poses, Real t) const;
+  Real elastic_scale(Real length) const { return law_->stiffness() * (is_angle() ? 1 : length * length); }
+  // At any instant; memory: as the state's there.
+  struct Sample {
+    CoordinateInstant at;
+    Real effort = 0;
+  };
+  Sample sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const;
+
+ private:
+  CoordinateInstant coordinate_at(const BodyPoses& poses, const SystemInstant& at,
+                                  SparseTerm& gradient) const;
+  void find_coordinates();
+
+  std::string name_;
+  std::unique_ptr<Constraint> coordinate_;
+  std::unique_ptr<JointLaw> law_;
+  LawStep step_;
+  Real start_effort_ = 0;
+  bool in_step_ = false;
+  // Of the last add_force().
+  CoordinateInstant last_;
+  JointEffort effort_;
+  SparseTerm gradient_;
+  // Of add_derivatives(): the coordinates that c depends on, and g and H^T v there.
+  std::vector<int> coordinates_;
+  std::vector<Real> along_, turning_;
+  SparseTerm hessian_;
+};
+
+}  // namespace scree

@@ -1,0 +1,89 @@
+#include "mbs/joint_forces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "mbs/joint_coordinate.hpp"
+
+namespace scree {
+
+JointForces::JointForces(const Model& model, const BodyLayout& layout) {
+  const auto add = [&](const char* kind, const auto& element, std::unique_ptr<JointLaw> law) {
+    const Joint& joint = model.joints[static_cast<std::size_t>(element.joint)];
+    const std::string title = fmt::format("{} '{}'", kind, element.name);
+    forces_.emplace_back(element.name, joint_coordinate(title, joint, layout), std::move(law));
+  };
+  for (const Motor& e : model.motors) add("motor", e, make_joint_law(e, model.time.end));
+  for (const JointSpring& e : model.joint_springs) add("joint spring", e, make_joint_law(e));
+  for (const JointLimit& e : model.joint_limits)
+    add("joint limit", e, make_joint_law(e, model.integrator.resolve_events));
+}
+
+void JointForces::open_step(const BodyPoses& poses, const SystemInstant& at, Real h,
+                            const std::vector<Real>& memory) {
+  auto next = memory.begin();
+  for (JointForce& force : forces_) force.open_step(poses, at, h, force.remembers() ? *next++ : 0);
+}
+
+bool JointForces::end_step() {
+  bool differs = false;
+  for (JointForce& force : forces_) {
+    force.end_step();
+    differs = differs || force.resolves_events() || force.remembers();
+  }
+  return differs;
+}
+
+Real JointForces::add_force(const BodyPoses& poses, const SystemInstant& at, Real length,
+                            std::vector<Real>& force) {
+  Real largest = 0;
+  for (JointForce& one : forces_) largest = std::max(largest, one.add_force(poses, at, length, force));
+  return largest;
+}
+
+void JointForces::add_derivatives(const BodyPoses& poses, const SystemInstant& at,
+                                  SystemDerivatives& derivatives) {
+  for (JointForce& force : forces_)
+    force.add_derivatives(poses, at, derivatives.stiffness, derivatives.damping);
+}
+
+Real JointForces::elastic_energy(const BodyPoses& poses, Real t) const {
+  Real energy = 0;
+  for (const JointForce& force : forces_) energy += force.elastic_energy(poses, t);
+  return energy;
+}
+
+Real JointForces::elastic_scale(Real length) const {
+  Real largest = 0;
+  for (const JointForce& force : forces_) largest = std::max(largest, force.elastic_scale(length));
+  return largest;
+}
+
+JointWork JointForces::work() const {
+  JointWork sum;
+  for (const JointForce& force : forces_) {
+    const JointWork one = force.work();
+    sum.dissipated += one.dissipated, sum.applied += one.applied;
+  }
+  return sum;
+}
+
+std::vector<Real> JointForces::memory() const {
+  std::vector<Real> memory;
+  for (const JointForce& force : forces_)
+    if (force.remembers()) memory.push_back(force.memory());
+  return memory;
+}
+
+std::vector<JointForce::Sample> JointForces::samples(const BodyPoses& poses, const SystemInstant& at,
+                                                     const std::vector<Real>& memory) const {
+  std::vector<JointForce::Sample> samples;
+  auto next = memory.begin();
+  for (const JointForce& force : forces_)
+    samples.push_back(force.sample(poses, at, force.remembers() ? *next++ : 0));
+  return samples;
+}
+
+}  // namespace scree

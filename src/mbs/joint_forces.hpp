@@ -1,0 +1,42 @@
+// All motors, springs and limits on the joints of a model.
+#pragma once
+
+#include <vector>
+
+#include "mbs/joint_force.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// In the model's order: motors, springs, limits. `memory` is what they remember, one number for each that
+// does.
+class JointForces {
+ public:
+  // Throws InputError naming an element that is refused.
+  JointForces(const Model& model, const BodyLayout& layout);
+
+  bool empty() const { return forces_.empty(); }
+  // Opens a step of length h at this instant; with h = 0 efforts are those of instants until the next step.
+  void open_step(const BodyPoses& poses, const SystemInstant& at, Real h, const std::vector<Real>& memory);
+  // From here on as at instants. Returns whether an effort may differ from what it was for the step.
+  bool end_step();
+
+  // As ForceElement's; add_force returns the size of the largest one [J].
+  Real add_force(const BodyPoses& poses, const SystemInstant& at, Real length, std::vector<Real>& force);
+  void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SystemDerivatives& derivatives);
+  Real elastic_energy(const BodyPoses& poses, Real t) const;  // [J]
+  Real elastic_scale(Real length) const;                      // the largest one
+
+  // From the opening of the step to the last add_force(), and what is remembered there.
+  JointWork work() const;
+  std::vector<Real> memory() const;
+  // At any instant.
+  std::vector<JointForce::Sample> samples(const BodyPoses& poses, const SystemInstant& at,
+                                          const std::vector<Real>& memory) const;
+  const std::vector<JointForce>& all() const { return forces_; }
+
+ private:
+  std::vector<JointForce> forces_;
+};
+
+}  // namespace scree

@@ -1,0 +1,63 @@
+// Laws of efforts on one joint coordinate: motors, springs, limits. They know neither joints nor bodies.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/types.hpp"
+#include "model/joint_forces.hpp"
+
+namespace scree {
+
+// A joint coordinate c at one instant.
+struct CoordinateInstant {
+  Real time = 0;             // t [s]
+  Real value = 0, rate = 0;  // c, c' [rad or m, per s]
+};
+
+// An effort T, which pushes c up where it is above 0, and its derivatives.
+struct JointEffort {
+  Real effort = 0;                 // T [N m or N]
+  Real by_value = 0, by_rate = 0;  // T_c, T_c'
+  Real size = 0;                   // its largest single contribution, as they may cancel
+};
+
+// A step from `start`, with what the law remembered there.
+struct LawStep {
+  CoordinateInstant start;
+  Real memory = 0;
+  Real h = 0;  // [s]
+};
+
+class JointLaw {
+ public:
+  virtual ~JointLaw() = default;
+
+  // At one instant. memory: one number of the state, in the laws that remember.
+  virtual JointEffort effort(const CoordinateInstant& at, Real memory) const = 0;
+  // At the end of a step, for the trapezoidal rule.
+  virtual JointEffort step_effort(const LawStep& step, const CoordinateInstant& end) const {
+    return effort(end, step.memory);
+  }
+  // Whether step_effort differs from effort at the same instant.
+  virtual bool resolves_events() const { return false; }
+
+  virtual bool remembers() const { return false; }
+  // What is remembered at the end of an accepted step.
+  virtual Real memory_after(const LawStep& step, const CoordinateInstant&) const { return step.memory; }
+
+  // Whether its work is fed in; else it is stored, and dissipated.
+  virtual bool drives() const { return false; }
+  virtual Real energy(Real) const { return 0; }  // stored at c [J]
+  // Largest stiffness -T_c that goes without saying [N m/rad or N/m].
+  virtual Real stiffness() const { return 0; }
+};
+
+// Throw InputError naming the element where a table of a time function is refused (end: of the simulated time
+// [s]).
+std::unique_ptr<JointLaw> make_joint_law(const Motor& motor, Real end);
+std::unique_ptr<JointLaw> make_joint_law(const JointSpring& spring);
+// resolve_events: as Integrator's.
+std::unique_ptr<JointLaw> make_joint_law(const JointLimit& limit, bool resolve_events);
+
+}  // namespace scree

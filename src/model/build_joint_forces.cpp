@@ -1,0 +1,182 @@
+// Motors, springs and limits on joints, and couplers.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/build_parts.hpp"
+#include "model/connections.hpp"
+
+namespace scree {
+
+namespace {
+
+const Joint& joint_at(const Model& model, int joint) { return model.joints[static_cast<std::size_t>(joint)]; }
+
+int moving_joint(const DeckTable& table, const Model& model, const ModelNames& names, const std::string& name,
+                 const std::string& key) {
+  const int joint = find_name(names.joints, name, table, key, "joint");
+  const JointKind kind = joint_at(model, joint).kind;
+  if (kind != JointKind::revolute && kind != JointKind::translational)
+    table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be revolute or translational", name,
+                                word_of(kind)));
+  return joint;
+}
+
+int moving_joint(const DeckTable& table, const Model& model, const ModelNames& names) {
+  return moving_joint(table, model, names, table.text("joint"), "joint");
+}
+
+Motor build_motor(const DeckTable& table, const Model& model, const ModelNames& names) {
+  Motor motor;
+  motor.name = table.text("name");
+  motor.joint = moving_joint(table, model, names);
+  motor.kind = table.choice<MotorKind>("type");
+  if (table.has("limit")) motor.limit = table.real("limit");
+  switch (motor.kind) {
+    case MotorKind::effort:
+      motor.effort = build_force(table.table("effort"));
+      break;
+    case MotorKind::line:
+      motor.stall_effort = table.real("stall_effort");
+      motor.free_rate = table.real("free_rate");
+      motor.command = build_force(table.table("command"));
+      break;
+    case MotorKind::speed:
+      motor.rate = build_force(table.table("rate"));
+      motor.gain = table.real("gain");
+      motor.integral_gain = table.real("integral_gain");
+      break;
+  }
+  return motor;
+}
+
+Curve build_curve(const DeckTable& table, const std::string& at, const std::string& values) {
+  Curve curve;
+  if (!table.has(at) && !table.has(values)) return curve;
+  for (const std::string& key : {at, values})
+    if (!table.has(key))
+      table.fail(key, fmt::format("{} and {} belong together: one is missing", at, values));
+  curve.at = table.reals(at), curve.values = table.reals(values);
+  curve.interpolation = table.choice<Interpolation>("interpolation");
+  if (curve.interpolation == Interpolation::clamped)
+    table.fail("interpolation", "allowed for a spring on a joint: linear, natural, monotone");
+  if (curve.at.size() < 2) table.fail(at, "must have two entries at least");
+  if (curve.at.size() != curve.values.size())
+    table.fail(values, fmt::format("must have {} entries, as {}", curve.at.size(), at));
+  for (std::size_t i = 1; i < curve.at.size(); ++i)
+    if (!(curve.at[i] > curve.at[i - 1]))
+      table.fail(at, fmt::format("must increase; entry {} is {} after {}", i, curve.at[i], curve.at[i - 1]));
+  return curve;
+}
+
+JointSpring build_spring(const DeckTable& table, const Model& model, const ModelNames& names) {
+  JointSpring spring;
+  spring.name = table.text("name");
+  spring.joint = moving_joint(table, model, names);
+  spring.stiffness = table.real("stiffness");
+  spring.damping = table.real("damping");
+  spring.free =
+      table.has("free") ? table.real("free") : start_coordinate(model, joint_at(model, spring.joint));
+  spring.elastic = build_curve(table, "coordinates", "elastic_efforts");
+  spring.dissipative = build_curve(table, "rates", "damping_efforts");
+  return spring;
+}
+
+JointLimit build_limit(const DeckTable& table, const Model& model, const ModelNames& names) {
+  JointLimit limit;
+  limit.name = table.text("name");
+  limit.joint = moving_joint(table, model, names);
+  if (!table.has("lower") && !table.has("upper")) table.fail("name", "a limit needs lower, upper or both");
+  if (table.has("lower")) limit.lower = table.real("lower");
+  if (table.has("upper")) limit.upper = table.real("upper");
+  if (!(limit.lower < limit.upper)) table.fail("upper", fmt::format("must be above lower = {}", limit.lower));
+  limit.stiffness = table.real("stiffness");
+  limit.damping = table.real("damping");
+  limit.exponent = table.real("exponent");
+  return limit;
+}
+
+void check_joints(const DeckTable& table, const Model& model, const Coupler& coupler,
+                  const std::vector<JointKind>& kinds) {
+  if (coupler.joints.size() != kinds.size())
+    table.fail("joints", fmt::format("must have {} entries for this type", kinds.size()));
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    if (joint_at(model, coupler.joints[k]).kind != kinds[k])
+      table.fail("joints",
+                 fmt::format("joint \"{}\" must be {} here", joint_at(model, coupler.joints[k]).name,
+                             kinds[k] == JointKind::revolute ? "revolute" : "translational"));
+}
+
+Real ratio_of(const DeckTable& table) {
+  const std::vector<Real>& radii = table.reals("radii");
+  for (const Real radius : radii)
+    if (!(radius > 0)) table.fail("radii", "must be above 0");
+  return radii[1] / radii[0];
+}
+
+std::vector<Real> coefficients_of(const DeckTable& table, const Model& model, const Coupler& coupler) {
+  constexpr JointKind turns = JointKind::revolute, slides = JointKind::translational;
+  switch (table.choice<CouplerKind>("type")) {
+    case CouplerKind::gear:
+      check_joints(table, model, coupler, {turns, turns});
+      return {1, table.boolean("internal") ? -ratio_of(table) : ratio_of(table)};
+    case CouplerKind::belt:
+      check_joints(table, model, coupler, {turns, turns});
+      return {1, -ratio_of(table)};
+    case CouplerKind::rack_and_pinion:
+      check_joints(table, model, coupler, {turns, slides});
+      if (table.real("radius") == 0) table.fail("radius", "must not be 0");
+      return {-table.real("radius"), 1};
+    case CouplerKind::differential:
+      check_joints(table, model, coupler, {turns, turns, turns});
+      return {1, 1, -2};
+    case CouplerKind::sum:
+      break;
+  }
+  const std::vector<Real>& coefficients = table.reals("coefficients");
+  if (coupler.joints.size() < 2 || coupler.joints.size() > 3)
+    table.fail("joints", "must have 2 or 3 entries");
+  if (coefficients.size() != coupler.joints.size())
+    table.fail("coefficients", fmt::format("must have {} entries, as joints", coupler.joints.size()));
+  for (const Real coefficient : coefficients)
+    if (coefficient == 0) table.fail("coefficients", "must not be 0");
+  return coefficients;
+}
+
+Coupler build_coupler(const DeckTable& table, const Model& model, const ModelNames& names) {
+  Coupler coupler;
+  coupler.name = table.text("name");
+  for (const std::string& name : table.texts("joints"))
+    add_once(coupler.joints, moving_joint(table, model, names, name, "joints"), table, "joints",
+             fmt::format("\"{}\"", name));
+  coupler.coefficients = coefficients_of(table, model, coupler);
+  return coupler;
+}
+
+}  // namespace
+
+void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names) {
+  NameMap efforts, reactions = names.joints;  // as they stand side by side in the history
+  const auto add_to = [](NameMap& taken, const DeckTable& table) {
+    add_name(taken, table.text("name"), 0, table);
+  };
+  for (const DeckTable& table : deck.tables("motors")) {
+    add_to(efforts, table);
+    model.motors.push_back(build_motor(table, model, names));
+  }
+  for (const DeckTable& table : deck.tables("joint_springs")) {
+    add_to(efforts, table);
+    model.joint_springs.push_back(build_spring(table, model, names));
+  }
+  for (const DeckTable& table : deck.tables("joint_limits")) {
+    add_to(efforts, table);
+    model.joint_limits.push_back(build_limit(table, model, names));
+  }
+  for (const Driver& driver : model.drivers) reactions.emplace(driver.name, 0);
+  for (const DeckTable& table : deck.tables("couplers")) {
+    add_to(reactions, table);
+    model.couplers.push_back(build_coupler(table, model, names));
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,59 @@
+// Motors, springs and limits on the coordinates of joints, and couplers between these coordinates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deck/choices.hpp"
+#include "model/bodies.hpp"
+
+namespace scree {
+
+// The coordinate c of a joint is what a driver could prescribe: of a revolute joint the angle of body[1]
+// minus that of body[0] [rad], of a translational joint the displacement along its axis [m]. An effort [N m,
+// N] above 0 pushes c up.
+
+// A function of c or of its rate by its points; past them it goes on with its rate there. Empty: 0.
+struct Curve {
+  std::vector<Real> at, values;
+  Interpolation interpolation = Interpolation::linear;
+};
+
+struct Motor {
+  std::string name;
+  int joint = 0;
+  MotorKind kind = MotorKind::effort;
+  Real limit = kInfinity;  // of the effort, either way
+  TimeFunction effort;     // effort: as it is
+  // line: command (stall_effort) (1 - rate / (command free_rate)) = stall_effort (command - rate / free_rate)
+  Real stall_effort = 0, free_rate = 0;  // [N m, N], [rad/s, m/s]
+  TimeFunction command;                  // of the full voltage or throttle [-]
+  // speed: gain e + integral_gain (integral of e), e = rate - c'
+  TimeFunction rate;                 // wanted [rad/s, m/s]
+  Real gain = 0, integral_gain = 0;  // [N m s/rad, N s/m], [N m/rad, N/m]
+};
+
+// Effort -(k (c - free) + d c' + F(c) + G(c')).
+struct JointSpring {
+  std::string name;
+  int joint = 0;
+  Real stiffness = 0, damping = 0, free = 0;  // k, d, free
+  Curve elastic, dissipative;                 // F, G
+};
+
+// Beyond lower or upper a contact's law pushes back: K d^n + C d', d being how far c is beyond.
+struct JointLimit {
+  std::string name;
+  int joint = 0;
+  Real lower = -kInfinity, upper = kInfinity;
+  Real stiffness = 0, damping = 0, exponent = 1;  // K, C, n
+};
+
+// sum of coefficient[k] c[k] = its value at t = 0.
+struct Coupler {
+  std::string name;
+  std::vector<int> joints;
+  std::vector<Real> coefficients;
+};
+
+}  // namespace scree
