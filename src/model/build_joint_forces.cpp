@@ -175,12 +175,8 @@ void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& n
   NameMap efforts, reactions = names.joints;  // as they stand side by side in the history
   for (const DeckTable& table : deck.tables("motors"))
     add_elements(table, model, names, efforts, model.motors, build_motor);
-  for (const DeckTable& table : deck.tables("joint_springs")) {
-    const std::size_t before = model.joint_springs.size();
+  for (const DeckTable& table : deck.tables("joint_springs"))
     add_elements(table, model, names, efforts, model.joint_springs, build_spring);
-    for (std::size_t i = before; i < model.joint_springs.size() && !table.has("free"); ++i)
-      model.joint_springs[i].free = start_coordinate(model, joint_at(model, model.joint_springs[i].joint));
-  }
   for (const DeckTable& table : deck.tables("joint_limits"))
     add_elements(table, model, names, efforts, model.joint_limits, build_limit);
   for (const Driver& driver : model.drivers) reactions.emplace(driver.name, 0);
