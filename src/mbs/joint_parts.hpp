@@ -22,6 +22,15 @@ class JointParts {
   // No relative rotation.
   virtual void same_orientation() = 0;
 
+  // In space alone. The second body's point stays in the plane across the first one's axis; the axes of
+  // either body, and the arms of universal joints: x of the first marker, y of the second.
+  virtual void point_on_plane() = 0;
+  virtual void axes_parallel() = 0;
+  virtual void axes_perpendicular() = 0;
+  virtual void arms_perpendicular() = 0;
+  // w_1 about z_1 equals w_2 about z_2.
+  virtual void equal_spins() = 0;
+
   // The joint's coordinate is f: the angle of the second body less that of the first [rad], the displacement
   // of the second point along the axis, the distance of the two points [m].
   virtual void angle(ScalarFunction f) = 0;
@@ -38,5 +47,6 @@ class JointParts {
 };
 
 std::unique_ptr<JointParts> planar_parts(const Joint& joint, const BodyLayout& layout);
+std::unique_ptr<JointParts> spatial_parts(const Joint& joint, const BodyLayout& layout);
 
 }  // namespace scree

@@ -10,13 +10,11 @@
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
 #include "support/near.hpp"
+#include "unit/mbs/differences.hpp"
 
 using namespace scree;
 
 namespace {
-
-// Round-off of central differences of half width 1e-6, of terms of up to 100, and what they cut off.
-constexpr Real kDifferences = 3e-8;
 
 constexpr Real kTime = 0.3;
 
@@ -78,47 +76,11 @@ std::vector<std::pair<std::string, Model>> samples() {
   }
   for (const bool follows : {false, true}) {
     Model force = two_bodies();
-    force.applied_forces.push_back({"push", 1, {0.2, -0.3, 0}, sine(), sine(), sine(), follows});
+    force.applied_forces.push_back({"push", 1, {0.2, -0.3, 0}, sine(), sine(), sine(), follows, {}, {}, {}});
     force.applied_forces[0].fy.value = -1.3;
     all.emplace_back(follows ? "following force" : "force", force);
   }
   return all;
-}
-
-using Matrix = std::vector<std::vector<Real>>;
-
-Matrix dense(const SparseTerm& term, int rows, int columns) {
-  Matrix matrix(static_cast<std::size_t>(rows), std::vector<Real>(static_cast<std::size_t>(columns), 0));
-  for (std::size_t i = 0; i < term.size(); ++i) {
-    matrix[static_cast<std::size_t>(term.row(i))][static_cast<std::size_t>(term.column(i))] += term.value(i);
-  }
-  return matrix;
-}
-
-// d f / d x by central differences of half width `step`.
-Matrix differences(const std::function<std::vector<Real>(const std::vector<Real>&)>& f, std::vector<Real> x,
-                   Real step = 1e-6) {
-  Matrix matrix(f(x).size(), std::vector<Real>(x.size()));
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    const Real centre = x[j];
-    x[j] = centre + step;
-    const std::vector<Real> after = f(x);
-    x[j] = centre - step;
-    const std::vector<Real> before = f(x);
-    x[j] = centre;
-    for (std::size_t i = 0; i < after.size(); ++i) matrix[i][j] = (after[i] - before[i]) / (2 * step);
-  }
-  return matrix;
-}
-
-void check_equal(const Matrix& a, const Matrix& b) {
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < a[i].size(); ++j) {
-      CAPTURE(i, j);
-      CHECK(near(a[i][j], b[i][j], {.relative = kDifferences, .absolute = kDifferences}));
-    }
-  }
 }
 
 // A system at an instant that satisfies nothing in particular: the derivatives hold everywhere.
