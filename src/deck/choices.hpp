@@ -87,18 +87,46 @@ inline constexpr auto kWords<Mixing> = std::to_array<Word<Mixing>>({{"none", Mix
 // ---- bodies
 // --------------------------------------------------------------------------------------------------
 
-enum class JointKind {
-  revolute,       // the two points coincide
-  translational,  // body 2's point stays on body 1's axis, no relative rotation
-  fixed,          // the two points coincide, no relative rotation
-  distance        // the two points keep their distance
+enum class BodyKind {
+  planar,  // moves in a plane z = const, turns about z
+  spatial
 };
 template <>
-inline constexpr auto kWords<JointKind> = std::to_array<Word<JointKind>>({{"revolute", JointKind::revolute},
-                                                                          {"translational",
-                                                                           JointKind::translational},
-                                                                          {"fixed", JointKind::fixed},
-                                                                          {"distance", JointKind::distance}});
+inline constexpr auto kWords<BodyKind> = std::to_array<Word<BodyKind>>({{"planar", BodyKind::planar},
+                                                                        {"spatial", BodyKind::spatial}});
+
+enum class JointKind {
+  revolute,           // the two points coincide, in space the axes are parallel too
+  translational,      // body 2's point stays on body 1's axis, no relative rotation
+  fixed,              // the two points coincide, no relative rotation
+  distance,           // the two points keep their distance
+  spherical,          // the two points coincide
+  cylindrical,        // body 2's point stays on body 1's axis, the axes are parallel
+  universal,          // the two points coincide, an arm of either body perpendicular to that of the other one
+  constant_velocity,  // the two points coincide, equal rates of rotation about two axes
+  planar,             // body 2's point stays in body 1's plane, the normals are parallel
+  point_on_line,      // body 2's point stays on body 1's axis
+  point_on_plane,     // body 2's point stays in body 1's plane
+  parallel,           // the axes are parallel
+  perpendicular,      // the axes are perpendicular
+  orientation         // no relative rotation
+};
+template <>
+inline constexpr auto kWords<JointKind> =
+    std::to_array<Word<JointKind>>({{"revolute", JointKind::revolute},
+                                    {"translational", JointKind::translational},
+                                    {"fixed", JointKind::fixed},
+                                    {"distance", JointKind::distance},
+                                    {"spherical", JointKind::spherical},
+                                    {"cylindrical", JointKind::cylindrical},
+                                    {"universal", JointKind::universal},
+                                    {"constant-velocity", JointKind::constant_velocity},
+                                    {"planar", JointKind::planar},
+                                    {"point-on-line", JointKind::point_on_line},
+                                    {"point-on-plane", JointKind::point_on_plane},
+                                    {"parallel", JointKind::parallel},
+                                    {"perpendicular", JointKind::perpendicular},
+                                    {"orientation", JointKind::orientation}});
 
 // What makes the effort of a motor.
 enum class MotorKind {

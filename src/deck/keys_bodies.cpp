@@ -43,33 +43,92 @@ const TableKeys& body_keys() {
        vector("offset", "m").otherwise("zero").about("Centre in the body's frame."),
        text("material").left_out("the only material").about("Material.")},
       ""};
+  static constexpr auto planar = {BodyKind::planar}, spatial = {BodyKind::spatial};
   static const TableKeys keys{
-      "Rigid bodies that move in the x-y plane, one or a row of equal ones.",
+      "Rigid bodies, one or a row of equal ones.",
       {name_key().required().about("Name; the bodies of a row are NAME.0, NAME.1, ..."),
+       choice<BodyKind>("kind")
+           .otherwise_choice(BodyKind::planar)
+           .about("Planar: moves in the x-y plane, or one parallel to it, and turns about z. Spatial: with "
+                  "space.dimension = 3, moves and turns in any direction."),
        integer("count").within(1, 10000000).left_out("a single body").about("Number of bodies of a row."),
        vector("spacing", "m").otherwise("zero").about("From each body of a row to the next."),
        real("mass", "kg").above(0).required().about("Mass."),
        real("inertia", "kg m^2")
+           .only_for(planar)
            .above(0)
            .required()
            .about("Moment of inertia about the centre of mass, z axis."),
+       reals("inertia_tensor", "kg m^2")
+           .only_for(spatial)
+           .entries(6)
+           .required()
+           .about("Jxx, Jyy, Jzz, Jxy, Jxz, Jyz about the centre of mass along the axes of the body's frame, "
+                  "whose "
+                  "origin it is. The last three are entries of the tensor: Jxy = - sum of m x y."),
        vector("position", "m").required().about("Centre of mass at t = 0; of a row, the first body's."),
-       real("angle", "rad").otherwise("0.0").about("Angle of the body's frame at t = 0."),
+       real("angle", "rad").only_for(planar).otherwise("0.0").about("Angle of the body's frame at t = 0."),
+       reals("quaternion", "")
+           .only_for(spatial)
+           .entries(4)
+           .left_out("rotation_axis and rotation_angle are given, or [1, 0, 0, 0]")
+           .about("Orientation of the body's frame at t = 0, scalar first, from the body's components of a "
+                  "vector to "
+                  "the global ones; of length 1 to 1e-6."),
+       vector("rotation_axis", "")
+           .only_for(spatial)
+           .left_out("quaternion is given, or no rotation")
+           .about("The same as a rotation from the global frame about this axis, of any length but 0."),
+       real("rotation_angle", "rad")
+           .only_for(spatial)
+           .left_out("no rotation_axis is given")
+           .about("The angle of this rotation, right-handed."),
        vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0."),
-       real("angular_velocity", "rad/s").otherwise("0.0").about("Angular velocity at t = 0."),
+       real("angular_velocity", "rad/s")
+           .only_for(planar)
+           .otherwise("0.0")
+           .about("Angular velocity at t = 0."),
+       vector("body_angular_velocity", "rad/s")
+           .only_for(spatial)
+           .left_out("global_angular_velocity is given, or zero")
+           .about("Angular velocity at t = 0 along the axes of the body's frame."),
+       vector("global_angular_velocity", "rad/s")
+           .only_for(spatial)
+           .left_out("body_angular_velocity is given, or zero")
+           .about("The same along the global axes."),
        tables("shapes", shapes)},
-      ""};
+      "kind"};
   return keys;
 }
 
 const TableKeys& joint_keys() {
-  static constexpr auto pointed = {JointKind::revolute, JointKind::translational, JointKind::fixed};
+  using Kind = JointKind;
+  static constexpr auto pointed = {
+      Kind::revolute,  Kind::translational,     Kind::fixed,  Kind::spherical,     Kind::cylindrical,
+      Kind::universal, Kind::constant_velocity, Kind::planar, Kind::point_on_line, Kind::point_on_plane};
+  static constexpr auto with_axis = {
+      Kind::revolute, Kind::translational, Kind::cylindrical,    Kind::universal, Kind::constant_velocity,
+      Kind::planar,   Kind::point_on_line, Kind::point_on_plane, Kind::parallel,  Kind::perpendicular};
+  static constexpr auto with_two = {Kind::universal, Kind::constant_velocity, Kind::perpendicular};
   static const TableKeys keys = with_connection(
       "Joints between two bodies, or a body and the ground.",
       {choice<JointKind>("type").required().about(
            "Revolute: the two points coincide. Translational: the second body's point stays on the first "
            "body's axis, no relative rotation. Fixed: no relative motion. Distance: the two points keep "
-           "their distance."),
+           "their distance. Between spatial bodies a revolute joint keeps the axes parallel too, and there "
+           "are: "
+           "Spherical: the two points coincide. Cylindrical: the second body's point stays on the first "
+           "body's axis, "
+           "the axes stay parallel. Universal: the points coincide, an arm of the first body (axis) stays "
+           "perpendicular to one of the second (second_axis). Constant-velocity: the points coincide, the "
+           "bodies turn "
+           "equally fast about axis and second_axis. Planar: the second body's point stays in the plane "
+           "through the "
+           "first one's point across the axis, the normals stay parallel. Point-on-line, point-on-plane: the "
+           "same of "
+           "the point alone. Parallel, perpendicular: the axes are; the bodies move freely. Orientation: no "
+           "relative "
+           "rotation."),
        vector("point", "m")
            .only_for(pointed)
            .left_out("the body's centre (with the ground), or midway between the two centres")
@@ -81,9 +140,17 @@ const TableKeys& joint_keys() {
            .about("The two end points at t = 0 in the global frame."),
        local_points(),
        vector("axis", "")
-           .only_for({JointKind::translational})
-           .left_out("[1, 0] or [1, 0, 0]")
+           .only_for(with_axis)
+           .left_out("[1, 0] or [1, 0, 0] of translational joints of planar bodies; others need it, but "
+                     "revolute joints "
+                     "of planar bodies, which have none")
            .about("Direction of the axis at t = 0 in the global frame, of any length but 0."),
+       vector("second_axis", "")
+           .only_for(with_two)
+           .required_for(with_two)
+           .about("The second body's axis or arm at t = 0, likewise; perpendicular to axis but for "
+                  "constant-velocity "
+                  "joints."),
        real("distance", "m")
            .only_for({JointKind::distance})
            .above(0)
@@ -149,10 +216,18 @@ const TableKeys& applied_force_keys() {
            .about("Point of action in the body's frame, in place of point."),
        quantity("fx", "N", time_function_keys()).otherwise("0.0").about("Force along x."),
        quantity("fy", "N", time_function_keys()).otherwise("0.0").about("Force along y."),
+       quantity("fz", "N", time_function_keys()).otherwise("0.0").about("Force along z, on spatial bodies."),
        quantity("torque", "N m", time_function_keys()).otherwise("0.0").about("Torque about z."),
+       quantity("torque_x", "N m", time_function_keys())
+           .otherwise("0.0")
+           .about("Torque about x, on spatial bodies."),
+       quantity("torque_y", "N m", time_function_keys())
+           .otherwise("0.0")
+           .about("Torque about y, on spatial bodies."),
        boolean("follows_body")
            .otherwise("false")
-           .about("Whether the force's direction turns with the body.")},
+           .about("Whether the force's direction turns with the body, with spatial bodies that of the torque "
+                  "too.")},
       ""};
   return keys;
 }

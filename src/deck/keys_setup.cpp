@@ -105,7 +105,12 @@ const TableKeys& time_keys() {
 const TableKeys& integrator_keys() {
   static const TableKeys keys{
       "Time integration and its Newton-like iteration.",
-      {real("hht_alpha", "")
+      {boolean("corrected_start")
+           .otherwise("true")
+           .about("Of spatial bodies: the first step starts from accelerations and velocities that the "
+                  "method itself "
+                  "would have, so that reactions are of second order from the start."),
+       real("hht_alpha", "")
            .within(-1.0 / 3, 0)
            .otherwise("-0.05")
            .about("HHT's numerical damping of bodies and particles. With adaptive steps it costs impacts no "

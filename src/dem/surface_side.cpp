@@ -45,19 +45,11 @@ Real SurfaceSide::place() {
     step_[s] = point - placed_[s].point;
     squared = std::max(squared, dot(step_[s], step_[s]));
     const Vec3 turned = placed_[s].turn;
-    placed_[s] = {surface.kind,
-                  surface.material,
-                  surface.radius,
-                  point,
-                  surface.normal,
-                  arm,
-                  body.velocity,
-                  {0, 0, body.angular_velocity},
-                  {},
-                  {}};
+    placed_[s] = {surface.kind, surface.material, surface.radius,    point, surface.normal,
+                  arm,          body.velocity,    global_spin(body), {},    {}};
     if (!model_.rotates()) continue;
     placed_[s].travel = with_body - point_with(step_start_, s);
-    placed_[s].turn = {0, 0, body.angle - step_start_[surface.carrier].angle};
+    placed_[s].turn = turn_between(step_start_[surface.carrier], body);
     step_turn_[s] = surface.radius * (placed_[s].turn - turned);
   }
   return std::sqrt(squared);

@@ -2,13 +2,15 @@
 #pragma once
 
 #include "mbs/planar_motion.hpp"
+#include "mbs/spatial_motion.hpp"
 
 namespace scree {
 
 struct BodyPoses {
-  explicit BodyPoses(const BodyLayout& layout) : planar(layout) {}
+  explicit BodyPoses(const BodyLayout& layout) : planar(layout), spatial(layout) {}
 
   PlanarMotion planar;
+  SpatialMotion spatial;
 };
 
 inline PairGeometry pair_geometry(const PointPair& pair, const BodyPoses& poses) {

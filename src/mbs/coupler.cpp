@@ -86,7 +86,7 @@ std::unique_ptr<Constraint> make_coupler(const Coupler& coupler, const Model& mo
   std::vector<Term> terms;
   for (std::size_t k = 0; k < coupler.joints.size(); ++k) {
     const Joint& joint = model.joints[static_cast<std::size_t>(coupler.joints[k])];
-    terms.push_back({joint_coordinate(title, joint, layout), coupler.coefficients[k]});
+    terms.push_back({joint_coordinate(title, joint, model, layout), coupler.coefficients[k]});
   }
   return std::make_unique<CouplerConstraint>(std::move(terms), start);
 }

@@ -41,4 +41,10 @@ std::unique_ptr<ForceElement> make_force_element(const TorsionalSpringDamper& el
 std::unique_ptr<ForceElement> make_force_element(const AppliedForce& element, const BodyLayout& layout,
                                                  Real end);
 
+// The same between spatial bodies, or such a body and the ground.
+std::unique_ptr<ForceElement> make_spatial_element(const SpringDamper& element, const BodyLayout& layout,
+                                                   Real end);
+std::unique_ptr<ForceElement> make_spatial_element(const AppliedForce& element, const BodyLayout& layout,
+                                                   Real end);
+
 }  // namespace scree

@@ -121,6 +121,16 @@ void HhtMethod::velocity_system(const MultibodyState& state, Real t, std::span<R
   for (std::size_t j = 0; j < rate.size(); ++j) rhs[state.velocity.size() + j] = -rate[j];
 }
 
+void HhtMethod::constraint_system(const MultibodyState& state, Real t, const std::vector<Real>& motion,
+                                  std::span<Real> values, std::span<Real> rhs) {
+  system_.evaluate({t, state.position, state.velocity}, terms_);
+  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  std::vector<Real> rate(terms_.constraint.size(), 0);
+  terms_.constraint_jacobian.multiply(1, motion, rate);
+  std::fill(rhs.begin(), rhs.end(), 0);
+  std::copy(rate.begin(), rate.end(), rhs.begin() + system_.coordinates());
+}
+
 std::vector<Real> HhtMethod::constraint_rate(const MultibodyState& state, Real t) const {
   std::vector<Real> rate(count(system_.constraints()));
   system_.velocity_rhs({t, state.position, state.velocity}, rate);

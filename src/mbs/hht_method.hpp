@@ -56,6 +56,10 @@ class HhtMethod {
   // v + d satisfies the constraints, and no smaller d in the norm of M does.
   void velocity_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
 
+  // [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, Phi_q motion) at the state and time t.
+  void constraint_system(const MultibodyState& state, Real t, const std::vector<Real>& motion,
+                         std::span<Real> values, std::span<Real> rhs);
+
   // Phi_q v - velocity_rhs, the rate of Phi, of a state at time t. The Jacobian is that of the last
   // evaluation, which was at this state.
   std::vector<Real> constraint_rate(const MultibodyState& state, Real t) const;

@@ -54,27 +54,42 @@ void JointForce::find_coordinates() {
   coordinates_.erase(std::unique(coordinates_.begin(), coordinates_.end()), coordinates_.end());
 }
 
+std::size_t JointForce::place(int coordinate) const {
+  return scree::at(static_cast<int>(std::lower_bound(coordinates_.begin(), coordinates_.end(), coordinate) -
+                                    coordinates_.begin()));
+}
+
+// What is of a rotation in space stands in all of its three columns, or in none.
+void JointForce::pull_back(const BodyPoses& poses) {
+  displaced_ = along_;
+  for (const RotationColumns& turn : rotations_) {
+    const std::size_t k = place(turn.first);
+    if (k == coordinates_.size() || coordinates_[k] != turn.first) continue;
+    const Vec3 g =
+        transposed_times(poses.spatial[turn.body].inverse_tangent, {along_[k], along_[k + 1], along_[k + 2]});
+    displaced_[k] = g.x, displaced_[k + 1] = g.y, displaced_[k + 2] = g.z;
+  }
+}
+
 void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at, SparseTerm& stiffness,
                                  SparseTerm& damping) {
   const Real one = 1;
   hessian_.begin();
   coordinate_->hessian(poses, &one, hessian_);
   if (coordinates_.empty()) find_coordinates();
-  const auto place = [&](int coordinate) {
-    return scree::at(static_cast<int>(std::lower_bound(coordinates_.begin(), coordinates_.end(), coordinate) -
-                                      coordinates_.begin()));
-  };
   along_.assign(coordinates_.size(), 0), turning_.assign(coordinates_.size(), 0);
   for (std::size_t i = 0; i < gradient_.size(); ++i) along_[place(gradient_.column(i))] += gradient_.value(i);
   for (std::size_t i = 0; i < hessian_.size(); ++i) {
     turning_[place(hessian_.column(i))] += hessian_.value(i) * at.velocity[scree::at(hessian_.row(i))];
     stiffness.add(hessian_.row(i), hessian_.column(i), -effort_.effort * hessian_.value(i));
   }
+  pull_back(poses);
   stiffness.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
     return -along_[i] * (effort_.by_value * along_[j] + effort_.by_rate * turning_[j]);
   });
-  damping.add_block(coordinates_,
-                    [&](std::size_t i, std::size_t j) { return -effort_.by_rate * along_[i] * along_[j]; });
+  damping.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
+    return -effort_.by_rate * along_[i] * displaced_[j];
+  });
 }
 
 JointWork JointForce::work() const {

@@ -19,11 +19,14 @@ struct JointWork {
 // With c the coordinate, g = c_q and H = c_qq:
 //   Q     = T(c, c', t) g,  c' = g.v
 //   -Q_q  = -(T_c g g^T + T_c' g (H^T v)^T + T H)
-//   -Q_v  = -T_c' g g^T
+//   -Q_v T^-1 = -T_c' g (T^-T g)^T, T^-1 as of MechanicalSystem
 class JointForce {
  public:
   // coordinate: a constraint of one row with f = 0, whose C is c.
   JointForce(std::string name, std::unique_ptr<Constraint> coordinate, std::unique_ptr<JointLaw> law);
+
+  // A body of the joint whose rotation has three columns, from this one on.
+  void turns_in_space(int body, int column) { rotations_.push_back({body, column}); }
 
   const std::string& name() const { return name_; }
   bool is_angle() const { return coordinate_->is_angle(); }
@@ -38,7 +41,7 @@ class JointForce {
 
   // Adds to Q [coordinates]. Returns the size of what it added [J]: a force times `length` [m], or a torque.
   Real add_force(const BodyPoses& poses, const SystemInstant& at, Real length, std::vector<Real>& force);
-  // Adds -Q_q and -Q_q' [coordinates, coordinates], at the instant of the last add_force().
+  // Adds -Q_q and -Q_v T^-1 [coordinates, coordinates], at the instant of the last add_force().
   void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SparseTerm& stiffness,
                        SparseTerm& damping);
   // From the opening of the step to the last add_force(), trapezoidal over the coordinate.
@@ -59,10 +62,17 @@ class JointForce {
   CoordinateInstant coordinate_at(const BodyPoses& poses, const SystemInstant& at,
                                   SparseTerm& gradient) const;
   void find_coordinates();
+  std::size_t place(int coordinate) const;
+  void pull_back(const BodyPoses& poses);
+
+  struct RotationColumns {
+    int body, first;
+  };
 
   std::string name_;
   std::unique_ptr<Constraint> coordinate_;
   std::unique_ptr<JointLaw> law_;
+  std::vector<RotationColumns> rotations_;  // in space
   LawStep step_;
   Real start_effort_ = 0;
   bool in_step_ = false;
@@ -70,9 +80,9 @@ class JointForce {
   CoordinateInstant last_;
   JointEffort effort_;
   SparseTerm gradient_;
-  // Of add_derivatives(): the coordinates that c depends on, and g and H^T v there.
+  // Of add_derivatives(): the coordinates that c depends on, and g, H^T v and T^-T g there.
   std::vector<int> coordinates_;
-  std::vector<Real> along_, turning_;
+  std::vector<Real> along_, turning_, displaced_;
   SparseTerm hessian_;
 };
 

@@ -14,10 +14,14 @@ JointForces::JointForces(const Model& model, const BodyLayout& layout, const Bod
   const auto add = [&](const char* kind, const auto& element, const auto& make_law) {
     const Joint& joint = model.joints[static_cast<std::size_t>(element.joint)];
     const std::string title = fmt::format("{} '{}'", kind, element.name);
-    std::unique_ptr<Constraint> coordinate = joint_coordinate(title, joint, layout);
+    std::unique_ptr<Constraint> coordinate = joint_coordinate(title, joint, model, layout);
     Real c = 0;
     coordinate->value(start, 0, &c);
     forces_.emplace_back(element.name, std::move(coordinate), make_law(c));
+    for (const int body : joint.body) {
+      if (body != kGround && model.bodies[static_cast<std::size_t>(body)].kind == BodyKind::spatial)
+        forces_.back().turns_in_space(body, layout.column(body) + 3);
+    }
   };
   for (const Motor& e : model.motors)
     add("motor", e, [&](Real) { return make_joint_law(e, model.time.end); });

@@ -7,6 +7,7 @@
 #include "mbs/constraints.hpp"
 #include "mbs/scalar_function.hpp"
 #include "model/body_layout.hpp"
+#include "model/model.hpp"
 
 namespace scree {
 
@@ -21,6 +22,15 @@ class JointParts {
   virtual void point_on_axis() = 0;
   // No relative rotation.
   virtual void same_orientation() = 0;
+
+  // In space alone. The second body's point stays in the plane across the first one's axis; the axes of
+  // either body, and the arms of universal joints: x of the first marker, y of the second.
+  virtual void point_on_plane() = 0;
+  virtual void axes_parallel() = 0;
+  virtual void axes_perpendicular() = 0;
+  virtual void arms_perpendicular() = 0;
+  // w_1 about z_1 equals w_2 about z_2.
+  virtual void equal_spins() = 0;
 
   // The joint's coordinate is f: the angle of the second body less that of the first [rad], the displacement
   // of the second point along the axis, the distance of the two points [m].
@@ -37,6 +47,9 @@ class JointParts {
   std::vector<std::unique_ptr<Constraint>> rows_;
 };
 
+// By the kind of the joint's bodies.
+std::unique_ptr<JointParts> joint_parts(const Model& model, const Joint& joint, const BodyLayout& layout);
 std::unique_ptr<JointParts> planar_parts(const Joint& joint, const BodyLayout& layout);
+std::unique_ptr<JointParts> spatial_parts(const Joint& joint, const BodyLayout& layout);
 
 }  // namespace scree

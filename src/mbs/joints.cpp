@@ -12,6 +12,7 @@ void add_joint(const Joint& joint, bool driven, JointParts& parts) {
   switch (joint.kind) {
     case JointKind::revolute:
       parts.points_meet();
+      parts.axes_parallel();
       break;
     case JointKind::fixed:
       parts.points_meet();
@@ -29,6 +30,40 @@ void add_joint(const Joint& joint, bool driven, JointParts& parts) {
       // A driver's row replaces the joint's.
       if (!driven) parts.length(ScalarFunction(joint.distance));
       break;
+    case JointKind::spherical:
+      parts.points_meet();
+      break;
+    case JointKind::cylindrical:
+      parts.point_on_axis();
+      parts.axes_parallel();
+      break;
+    case JointKind::universal:
+      parts.points_meet();
+      parts.arms_perpendicular();
+      break;
+    case JointKind::constant_velocity:
+      parts.points_meet();
+      parts.equal_spins();
+      break;
+    case JointKind::planar:
+      parts.point_on_plane();
+      parts.axes_parallel();
+      break;
+    case JointKind::point_on_line:
+      parts.point_on_axis();
+      break;
+    case JointKind::point_on_plane:
+      parts.point_on_plane();
+      break;
+    case JointKind::parallel:
+      parts.axes_parallel();
+      break;
+    case JointKind::perpendicular:
+      parts.axes_perpendicular();
+      break;
+    case JointKind::orientation:
+      parts.same_orientation();
+      break;
   }
 }
 
@@ -43,11 +78,11 @@ void add_driver(const std::string& title, const Joint& joint, ScalarFunction mot
     case JointKind::distance:
       parts.length(std::move(motion));
       break;
-    case JointKind::fixed:
+    default:
       throw InputError(
-          fmt::format("{}: joint '{}' is fixed and has nothing to drive; allowed are revolute, "
+          fmt::format("{}: joint '{}' is {} and has nothing to drive; allowed are revolute, "
                       "translational and distance joints",
-                      title, joint.name));
+                      title, joint.name, word_of(joint.kind)));
   }
 }
 

@@ -14,6 +14,7 @@
 #include "mbs/rigid_body_system.hpp"
 #include "mbs/start_checks.hpp"
 #include "mbs/start_velocities.hpp"
+#include "model/connections.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {
@@ -46,6 +47,7 @@ struct Multibody::Impl {
         newton(system, method),
         watch(system.coordinate_scale(), system.constraint_scale()),
         time_control(model.time),
+        corrects_start(model.integrator.corrected_start && has_spatial_bodies(model)),
         motion(model.bodies.size()) {
     start.memory.assign(system.joint_forces().memory().size(), 0);
     settle_velocities(model);
@@ -56,6 +58,12 @@ struct Multibody::Impl {
     const SystemInstant at{t, state.position, state.velocity};
     if (!system.joint_forces().empty())
       system.joint_forces().open_step(system.poses_at(at), at, h, state.memory);
+  }
+  MultibodyState state_after(const MultibodyState& state, Real tau) const;
+  MultibodyState corrected_start(const MultibodyState& state, Real h);
+  void predict(const MultibodyState& state, Real t, Real h) {
+    open_step(state, t, h);
+    method.predict(state, t, h);
   }
   void watch_reactions(const MultibodyState& state, Real error);
   std::string oscillation(Real share) const;
@@ -72,6 +80,7 @@ struct Multibody::Impl {
   NewtonSolver newton;
   ReactionWatch watch;
   TimeControl time_control;
+  bool corrects_start;
   std::vector<BodyMotion> motion;
   MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;       // of the open step's start [s]
@@ -90,6 +99,43 @@ void Multibody::Impl::settle_velocities(const Model& model) {
   const std::string keys = keys_to_set(system, given, start.velocity, model.space.dimension);
   throw InputError(fmt::format("{}; set {}{}velocities = \"consistent\" at the top of the deck", trouble,
                                keys, keys.empty() ? "" : ", or "));
+}
+
+// With alpha < 0 the accelerations stand for t + alpha h, and the position's local error h^3 c, which the
+// constraints take back in their directions at each step, holds the velocities off them by h^2 c. A start
+// from the true ones is a jump that the reactions see as a disturbance of first order; removed by
+//   a_0 = a(0) + alpha h a'(0),   v_0 = v(0) - h^2 d,   [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, Phi_q c)
+//   c = (1/12 + alpha^2/4) a'(0) - (0; w x w'/12 per spatial body)
+MultibodyState Multibody::Impl::corrected_start(const MultibodyState& state, Real h) {
+  const HhtCoefficients& coefficients = method.coefficients();
+  const Real tau = h / 100;  // of the difference that stands for a'
+  MultibodyState before = state_after(state, -tau), after = state_after(state, tau);
+  newton.solve_acceleration(before, -tau);
+  newton.solve_acceleration(after, tau);
+  MultibodyState corrected = state;
+  std::vector<Real> c(state.velocity.size());
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const Real change = (after.acceleration[i] - before.acceleration[i]) / (2 * tau);
+    corrected.acceleration[i] += coefficients.hht_alpha * h * change;
+    c[i] = coefficients.error_constant * change;
+  }
+  for (const auto& kind : system.kinds()) kind->subtract_commutator(state, c);
+  if (system.constraints() == 0) return corrected;
+  const std::vector<Real> d = newton.constrained_part(state, c);
+  for (std::size_t i = 0; i < d.size(); ++i) corrected.velocity[i] -= h * h * d[i];
+  return corrected;
+}
+
+// Along the velocities and accelerations, tau [s] later.
+MultibodyState Multibody::Impl::state_after(const MultibodyState& state, Real tau) const {
+  MultibodyState moved = state;
+  std::vector<Real> displacement(state.velocity.size());
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    displacement[i] = tau * state.velocity[i] + tau * tau / 2 * state.acceleration[i];
+    moved.velocity[i] += tau * state.acceleration[i];
+  }
+  system.displace(state.position, displacement, moved.position);
+  return moved;
 }
 
 Multibody::Multibody(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
@@ -112,8 +158,12 @@ void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vec
 
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
   impl_->time = t;
-  impl_->open_step(state, t, h);
-  impl_->method.predict(state, t, h);
+  if (t == 0 && impl_->corrects_start) {
+    impl_->open_step(state, t, 0);  // the correction is of accelerations at instants
+    impl_->predict(impl_->corrected_start(state, h), t, h);
+  } else {
+    impl_->predict(state, t, h);
+  }
   impl_->newton.begin_step();
   impl_->update_motion();
 }
@@ -203,7 +253,8 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
   const auto groups = impl_->system.reactions({t, state.position, state.velocity}, state.multipliers);
   std::vector<Reaction> reactions;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque});
+    reactions.push_back(
+        {impl_->system.groups()[i].name, groups[i].force, groups[i].torque, impl_->system.groups()[i].kind});
   }
   return reactions;
 }

@@ -13,8 +13,9 @@ namespace scree {
 
 // All that changes in time on the multibody side; a checkpoint stores exactly this.
 struct MultibodyState {
-  std::vector<Real> position;      // q: x, y [m] and angle [rad] of a planar body
-  std::vector<Real> velocity;      // v: q'
+  std::vector<Real>
+      position;  // q: x, y [m], angle [rad] of a planar body; x, y, z, quaternion of a spatial one
+  std::vector<Real> velocity;      // v: q'; of a spatial body the angular velocity in its frame last [rad/s]
   std::vector<Real> acceleration;  // a: v', with hht_alpha < 0 at t + hht_alpha h
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
@@ -41,6 +42,7 @@ struct Reaction {
   std::string joint;
   Vec3 force;   // [N]
   Vec3 torque;  // about that point [N m]
+  BodyKind kind = BodyKind::planar;
 };
 
 // A motor, spring or limit on a joint at one instant.

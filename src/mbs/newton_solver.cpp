@@ -95,6 +95,14 @@ void NewtonSolver::solve_velocity(MultibodyState& state, Real t) {
   for (std::size_t i = 0; i < state.velocity.size(); ++i) state.velocity[i] += change[i];
 }
 
+std::vector<Real> NewtonSolver::constrained_part(const MultibodyState& state,
+                                                 const std::vector<Real>& motion) {
+  method_.constraint_system(state, 0, motion, acceleration_matrix_, acceleration_solver_.rhs());
+  solve_acceleration_level();
+  const auto solution = acceleration_solver_.solution().begin();
+  return {solution, solution + static_cast<std::ptrdiff_t>(motion.size())};
+}
+
 void NewtonSolver::change_end_forces(MultibodyState& state) {
   if (!method_.change_system(state, acceleration_matrix_, acceleration_solver_.rhs())) return;
   solve_acceleration_level();

@@ -26,6 +26,11 @@ class NewtonSolver {
   // iterate() does.
   void solve_velocity(MultibodyState& state, Real t);
 
+  // The part of a motion that the constraints at the state take away, the least in the norm of M: d of
+  // [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, Phi_q motion). At t = 0. Throws SimulationError as
+  // iterate() does.
+  std::vector<Real> constrained_part(const MultibodyState& state, const std::vector<Real>& motion);
+
   // Applied forces at the end of a closed step, as the system now has them, where they differ from the
   // step's. Throws SimulationError as iterate() does.
   void change_end_forces(MultibodyState& state);

@@ -26,55 +26,62 @@ std::array<Real, 9> planar_block(const std::array<Real, 21>& packed) {
 }
 
 BodyMotion body_motion(const Real* q, const Real* v, Real z) {
-  return {{q[0], q[1], z}, {v[0], v[1], 0}, q[2], v[2]};
+  BodyMotion motion;
+  motion.position = {q[0], q[1], z}, motion.velocity = {v[0], v[1], 0};
+  motion.angle = q[2], motion.angular_velocity = v[2];
+  return motion;
 }
 
 class PlanarBodies final : public RigidBodies {
  public:
   PlanarBodies(const Model& model, const BodyLayout& layout)
       : gravity_(model.gravity), contact_(model.bodies.size()) {
-    for (int b = 0; b < layout.bodies(); ++b)
-      bodies_.push_back({model.bodies[static_cast<std::size_t>(b)], b, layout.position(b), layout.column(b)});
+    for (int b = 0; b < layout.bodies(); ++b) {
+      const Body& body = model.bodies[static_cast<std::size_t>(b)];
+      if (body.kind == BodyKind::planar) bodies_.push_back({body, {b, layout.position(b), layout.column(b)}});
+    }
   }
 
   void start(std::vector<Real>& position, std::vector<Real>& velocity) const override {
     for (const Placed& b : bodies_) {
-      Real *q = b.in(position), *v = b.of(velocity);
+      Real *q = b.at.in(position), *v = b.at.of(velocity);
       q[0] = b.body.position.x, q[1] = b.body.position.y, q[2] = b.body.angle;
       v[0] = b.body.velocity.x, v[1] = b.body.velocity.y, v[2] = b.body.angular_velocity;
     }
   }
   void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                  BodyPoses& poses) const override {
-    for (const Placed& b : bodies_) poses.planar.set(b.index, b.in(position), b.of(velocity));
+    for (const Placed& b : bodies_) poses.planar.set(b.at.body, b.at.in(position), b.at.of(velocity));
   }
   void displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
                 std::vector<Real>& position) const override {
     for (const Placed& b : bodies_) {
-      const Real *from = b.in(start), *u = b.of(displacement);
-      Real* to = b.in(position);
+      const Real *from = b.at.in(start), *u = b.at.of(displacement);
+      Real* to = b.at.in(position);
       for (int k = 0; k < 3; ++k) to[k] = from[k] + u[k];
     }
   }
   void pull_back(const std::vector<Real>&, std::vector<Real>&) const override {}
 
+  void set_tangents(const std::vector<Real>&, BodyPoses&) const override {}
+
   void set_scale(Real length, std::vector<Real>& coordinate_scale) const override {
     for (const Placed& b : bodies_) {
-      Real* scale = b.of(coordinate_scale);
+      Real* scale = b.at.of(coordinate_scale);
       scale[0] = scale[1] = length, scale[2] = 1;
     }
   }
   void add_mass(SparseTerm& mass) const override {
     for (const Placed& b : bodies_) {
-      mass.add(b.column, b.column, b.body.mass);
-      mass.add(b.column + 1, b.column + 1, b.body.mass);
-      mass.add(b.column + 2, b.column + 2, b.body.inertia);
+      mass.add(b.at.column, b.at.column, b.body.mass);
+      mass.add(b.at.column + 1, b.at.column + 1, b.body.mass);
+      mass.add(b.at.column + 2, b.at.column + 2, b.body.inertia);
     }
   }
   void set_weight(std::vector<Real>& force) const override {
     for (const Placed& b : bodies_) {
-      b.of(force)[0] = b.body.mass * gravity_.x;
-      b.of(force)[1] = b.body.mass * gravity_.y;
+      b.at.of(force)[0] = b.body.mass * gravity_.x;
+      b.at.of(force)[1] = b.body.mass * gravity_.y;
     }
   }
   Real weight_scale(Real length) const override {
@@ -84,6 +91,9 @@ class PlanarBodies final : public RigidBodies {
     return largest;
   }
 
+  Real add_inertial_force(const BodyPoses&, std::vector<Real>&) const override { return 0; }
+  void add_inertial_derivatives(const BodyPoses&, SystemDerivatives&) const override {}
+
   void set_contact_stiffness(const std::vector<WrenchStiffness>& touched) override {
     for (const int body : touched_) contact_[static_cast<std::size_t>(body)] = {};
     touched_.clear();
@@ -92,26 +102,27 @@ class PlanarBodies final : public RigidBodies {
       touched_.push_back(one.body);
     }
   }
-  Real add_contact(const std::vector<BodyWrench>& wrench, Real length,
+  Real add_contact(const BodyPoses&, const std::vector<BodyWrench>& wrench, Real length,
                    std::vector<Real>& force) const override {
     Real largest = 0;
     for (const Placed& b : bodies_) {
-      const BodyWrench& w = wrench[static_cast<std::size_t>(b.index)];
-      Real* f = b.of(force);
+      const BodyWrench& w = wrench[static_cast<std::size_t>(b.at.body)];
+      Real* f = b.at.of(force);
       f[0] += w.force.x;
       f[1] += w.force.y;
       f[2] += w.torque.z;
-      const std::array<Real, 9>& block = contact_[static_cast<std::size_t>(b.index)].stiffness;
+      const std::array<Real, 9>& block = contact_[static_cast<std::size_t>(b.at.body)].stiffness;
       const Real stiffness = std::max(block[0], block[4]);
       largest = std::max(largest, length * std::max(norm(w.force), kElasticFloor * stiffness * length));
     }
     return largest;
   }
-  void add_contact_derivatives(SystemDerivatives& derivatives) const override {
+  void add_contact_derivatives(const BodyPoses&, const std::vector<BodyWrench>&,
+                               SystemDerivatives& derivatives) const override {
     for (const Placed& b : bodies_) {
       if (b.body.shapes.empty()) continue;
-      const int coordinate[3] = {b.column, b.column + 1, b.column + 2};
-      const ContactBlock& block = contact_[static_cast<std::size_t>(b.index)];
+      const int coordinate[3] = {b.at.column, b.at.column + 1, b.at.column + 2};
+      const ContactBlock& block = contact_[static_cast<std::size_t>(b.at.body)];
       derivatives.stiffness.add_block(
           coordinate, [&](std::size_t i, std::size_t j) { return block.stiffness[3 * i + j]; });
       derivatives.damping.add_block(coordinate,
@@ -119,10 +130,11 @@ class PlanarBodies final : public RigidBodies {
     }
   }
 
+  void subtract_commutator(const MultibodyState&, std::vector<Real>&) const override {}
   Real error(const HhtMethod& step, Real length) const override {
     Real largest = 0;
     for (const Placed& b : bodies_) {
-      const Real *a0 = b.of(step.start_acceleration()), *a1 = b.of(step.acceleration());
+      const Real *a0 = b.at.of(step.start_acceleration()), *a1 = b.at.of(step.acceleration());
       const Vec3 shift0{a0[0], a0[1], 0}, shift1{a1[0], a1[1], 0}, turn0{0, 0, a0[2]}, turn1{0, 0, a1[2]};
       for (const Real error : {hht_position_error(step.coefficients(), step.step(), shift0, shift1, length),
                                hht_position_error(step.coefficients(), step.step(), turn0, turn1, 1)}) {
@@ -135,52 +147,44 @@ class PlanarBodies final : public RigidBodies {
   void add_integrator_loss(const MultibodyState& start, const MultibodyState& end,
                            Real& loss) const override {
     for (const Placed& b : bodies_) {
-      const Real *q0 = b.in(start.position), *q1 = b.in(end.position);
-      const Real *v0 = b.of(start.velocity), *v1 = b.of(end.velocity), *f0 = b.of(start.applied),
-                 *f1 = b.of(end.applied);
+      const Real *q0 = b.at.in(start.position), *q1 = b.at.in(end.position);
+      const Real *v0 = b.at.of(start.velocity), *v1 = b.at.of(end.velocity), *f0 = b.at.of(start.applied),
+                 *f1 = b.at.of(end.applied);
       loss += integrator_loss(b.body.mass, shift(q1) - shift(q0), shift(v0), shift(v1), shift(f0), shift(f1));
       loss += integrator_loss(b.body.inertia, turn(q1) - turn(q0), turn(v0), turn(v1), turn(f0), turn(f1));
     }
   }
   void add_energies(const MultibodyState& state, MultibodyEnergies& energies) const override {
     for (const Placed& b : bodies_) {
-      const Real* v = b.of(state.velocity);
+      const Real* v = b.at.of(state.velocity);
       energies.kinetic += kinetic_energy(b.body.mass, shift(v)) + kinetic_energy(b.body.inertia, turn(v));
-      energies.gravitational += gravitational_energy(b.body.mass, gravity_, shift(b.in(state.position)));
+      energies.gravitational += gravitational_energy(b.body.mass, gravity_, shift(b.at.in(state.position)));
     }
   }
 
   void motion(const std::vector<Real>& position, const std::vector<Real>& velocity,
               std::vector<BodyMotion>& out) const override {
     for (const Placed& b : bodies_)
-      out[static_cast<std::size_t>(b.index)] = body_motion(b.in(position), b.of(velocity), b.body.position.z);
+      out[static_cast<std::size_t>(b.at.body)] =
+          body_motion(b.at.in(position), b.at.of(velocity), b.body.position.z);
   }
   void motion_after(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const override {
     for (const Placed& b : bodies_) {
-      const Real *q0 = b.in(state.position), *v0 = b.of(state.velocity), *a0 = b.of(state.acceleration);
+      const Real *q0 = b.at.in(state.position), *v0 = b.at.of(state.velocity),
+                 *a0 = b.at.of(state.acceleration);
       Real q[3], v[3];
       for (std::size_t k = 0; k < 3; ++k) {
         q[k] = q0[k] + tau * v0[k] + tau * tau / 2 * a0[k];
         v[k] = v0[k] + tau * a0[k];
       }
-      out[static_cast<std::size_t>(b.index)] = body_motion(q, v, b.body.position.z);
+      out[static_cast<std::size_t>(b.at.body)] = body_motion(q, v, b.body.position.z);
     }
   }
 
  private:
   struct Placed {
     Body body;
-    int index = 0;                 // in the model
-    int position = 0, column = 0;  // first of its own
-
-    Real* in(std::vector<Real>& positions) const { return &positions[static_cast<std::size_t>(position)]; }
-    const Real* in(const std::vector<Real>& positions) const {
-      return &positions[static_cast<std::size_t>(position)];
-    }
-    Real* of(std::vector<Real>& columns) const { return &columns[static_cast<std::size_t>(column)]; }
-    const Real* of(const std::vector<Real>& columns) const {
-      return &columns[static_cast<std::size_t>(column)];
-    }
+    BodyPlace at;
   };
   // (x, y, angle) row by row, of what touches a body.
   struct ContactBlock {

@@ -18,6 +18,21 @@ namespace scree {
 // above it, and a residual of 1e-8 of that force moves a body by 1e-14 of the length scale.
 inline constexpr Real kElasticFloor = 1e-6;
 
+// Where a body stands in the model and in the vectors of the system.
+struct BodyPlace {
+  int body = 0;
+  int position = 0, column = 0;  // first of its own
+
+  Real* in(std::vector<Real>& positions) const { return &positions[static_cast<std::size_t>(position)]; }
+  const Real* in(const std::vector<Real>& positions) const {
+    return &positions[static_cast<std::size_t>(position)];
+  }
+  Real* of(std::vector<Real>& columns) const { return &columns[static_cast<std::size_t>(column)]; }
+  const Real* of(const std::vector<Real>& columns) const {
+    return &columns[static_cast<std::size_t>(column)];
+  }
+};
+
 // Vectors of positions, velocities and forces are those of the whole system; each kind reads and writes its
 // bodies' places of the layout. Vectors over bodies are in the model's order.
 class RigidBodies {
@@ -33,6 +48,9 @@ class RigidBodies {
                         std::vector<Real>& position) const = 0;
   virtual void pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const = 0;
 
+  // T^-1 at the end of a displacement, for what follows with these poses.
+  virtual void set_tangents(const std::vector<Real>& displacement, BodyPoses& poses) const = 0;
+
   // length: of the system [m].
   virtual void set_scale(Real length, std::vector<Real>& coordinate_scale) const = 0;
   virtual void add_mass(SparseTerm& mass) const = 0;
@@ -40,12 +58,20 @@ class RigidBodies {
   // Largest weight times the length [J].
   virtual Real weight_scale(Real length) const = 0;
 
+  // Forces that stand for what M a leaves out; returns the size of the largest [J]. Derivatives: -Q_v T^-1
+  // and M (T^-1 - 1).
+  virtual Real add_inertial_force(const BodyPoses& poses, std::vector<Real>& force) const = 0;
+  virtual void add_inertial_derivatives(const BodyPoses& poses, SystemDerivatives& derivatives) const = 0;
+
   virtual void set_contact_stiffness(const std::vector<WrenchStiffness>& touched) = 0;
   // Adds the contacts' forces; returns the size of the largest [J].
-  virtual Real add_contact(const std::vector<BodyWrench>& wrench, Real length,
+  virtual Real add_contact(const BodyPoses& poses, const std::vector<BodyWrench>& wrench, Real length,
                            std::vector<Real>& force) const = 0;
-  virtual void add_contact_derivatives(SystemDerivatives& derivatives) const = 0;
+  virtual void add_contact_derivatives(const BodyPoses& poses, const std::vector<BodyWrench>& wrench,
+                                       SystemDerivatives& derivatives) const = 0;
 
+  // Subtracts w x w' / 12 of each body that turns in space from `rate` [columns], [rad/s^3].
+  virtual void subtract_commutator(const MultibodyState& state, std::vector<Real>& rate) const = 0;
   // Scaled local error of the positions of an open step.
   virtual Real error(const HhtMethod& step, Real length) const = 0;
   virtual void add_integrator_loss(const MultibodyState& start, const MultibodyState& end,
@@ -59,5 +85,6 @@ class RigidBodies {
 };
 
 std::unique_ptr<RigidBodies> planar_bodies(const Model& model, const BodyLayout& layout);
+std::unique_ptr<RigidBodies> spatial_bodies(const Model& model, const BodyLayout& layout);
 
 }  // namespace scree

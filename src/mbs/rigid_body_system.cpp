@@ -19,7 +19,9 @@ Real characteristic_length(const Model& model) {
     for (const Shape& shape : body.shapes) radius = std::max(radius, shape.radius);
   }
   const auto add_point = [&](int body, Vec3 point) {
-    if (body != kGround) reach = std::max(reach, norm(planar(point)));
+    if (body == kGround) return;
+    const bool spatial = model.bodies[static_cast<std::size_t>(body)].kind == BodyKind::spatial;
+    reach = std::max(reach, spatial ? norm(point) : norm(planar(point)));
   };
   for (int i = 0; i < 2; ++i) {
     for (const Joint& joint : model.joints) add_point(joint.body[i], joint.point[i]);
@@ -41,6 +43,7 @@ RigidBodySystem::RigidBodySystem(const Model& model)
       wrench_(model.bodies.size()),
       coordinate_scale_(static_cast<std::size_t>(layout_.columns()), 1) {
   kinds_.push_back(planar_bodies(model, layout_));
+  kinds_.push_back(spatial_bodies(model, layout_));
   for (const auto& kind : kinds_) {
     kind->set_scale(length_scale_, coordinate_scale_);
     kind->set_weight(weight_);
@@ -54,30 +57,36 @@ void RigidBodySystem::add_constraints(const Model& model) {
   const std::vector<bool> driven = driven_joints(model);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    const std::unique_ptr<JointParts> parts = planar_parts(joint, layout_);
+    const std::unique_ptr<JointParts> parts = joint_parts(model, joint, layout_);
     add_joint(joint, driven[i], *parts);
-    add_group(fmt::format("joint '{}'", joint.name), joint.name, parts->take());
+    add_group(fmt::format("joint '{}'", joint.name), joint.name, parts->take(), between(model, joint.body));
   }
   for (const Driver& driver : model.drivers) {
     const Joint& joint = model.joints[static_cast<std::size_t>(driver.joint)];
     const std::string title = fmt::format("driver '{}'", driver.name);
-    const std::unique_ptr<JointParts> parts = planar_parts(joint, layout_);
+    const std::unique_ptr<JointParts> parts = joint_parts(model, joint, layout_);
     add_driver(title, joint, ScalarFunction(driver.motion, title, model.time.end), *parts);
-    add_group(title, driver.name, parts->take());
+    add_group(title, driver.name, parts->take(), between(model, joint.body));
   }
   for (const Coupler& coupler : model.couplers) {
     std::vector<std::unique_ptr<Constraint>> rows;
     rows.push_back(make_coupler(coupler, model, layout_, start_poses()));
-    add_group(fmt::format("coupler '{}'", coupler.name), coupler.name, std::move(rows));
+    add_group(fmt::format("coupler '{}'", coupler.name), coupler.name, std::move(rows),
+              between(model, model.joints[static_cast<std::size_t>(coupler.joints.front())].body));
   }
 }
 
 void RigidBodySystem::add_elements(const Model& model) {
   const Real end = model.time.end;
-  for (const SpringDamper& e : model.spring_dampers) elements_.push_back(make_force_element(e, layout_, end));
+  for (const SpringDamper& e : model.spring_dampers)
+    elements_.push_back(between(model, e.body) == BodyKind::spatial ? make_spatial_element(e, layout_, end)
+                                                                    : make_force_element(e, layout_, end));
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers)
     elements_.push_back(make_force_element(e, layout_));
-  for (const AppliedForce& e : model.applied_forces) elements_.push_back(make_force_element(e, layout_, end));
+  for (const AppliedForce& e : model.applied_forces)
+    elements_.push_back(model.bodies[static_cast<std::size_t>(e.body)].kind == BodyKind::spatial
+                            ? make_spatial_element(e, layout_, end)
+                            : make_force_element(e, layout_, end));
   for (const auto& element : elements_) {
     constant_force_scale_ =
         std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
@@ -88,8 +97,8 @@ void RigidBodySystem::add_elements(const Model& model) {
 }
 
 void RigidBodySystem::add_group(const std::string& title, const std::string& name,
-                                std::vector<std::unique_ptr<Constraint>> parts) {
-  ConstraintGroup group{title, name, static_cast<int>(constraints_.size()), 0, constraints(), 0};
+                                std::vector<std::unique_ptr<Constraint>> parts, BodyKind kind) {
+  ConstraintGroup group{title, name, kind, static_cast<int>(constraints_.size()), 0, constraints(), 0};
   for (std::unique_ptr<Constraint>& part : parts) {
     first_row_.push_back(constraints());
     for (int row = 0; row < part->rows(); ++row) {
@@ -119,8 +128,8 @@ void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
   terms.force_scale =
       std::max(terms.force_scale, joint_forces_.add_force(poses_, at, length_scale_, terms.applied_force));
   for (const auto& kind : kinds_)
-    terms.force_scale =
-        std::max(terms.force_scale, kind->add_contact(wrench_, length_scale_, terms.applied_force));
+    terms.force_scale = std::max({terms.force_scale, kind->add_inertial_force(poses_, terms.applied_force),
+                                  kind->add_contact(poses_, wrench_, length_scale_, terms.applied_force)});
   terms.constraint_jacobian.begin();
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->value(poses_, at.time, &terms.constraint[static_cast<std::size_t>(first_row_[i])]);
@@ -143,11 +152,16 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
                                     SystemDerivatives& derivatives) {
   derivatives.stiffness.begin();
   derivatives.damping.begin();
+  derivatives.tangent_inertia.begin();
+  for (const auto& kind : kinds_) kind->set_tangents(iterate.displacement, poses_);
   for (const auto& element : elements_) {
     element->add_derivatives(poses_, at.time, derivatives.stiffness, derivatives.damping);
   }
   joint_forces_.add_derivatives(poses_, at, derivatives);
-  for (const auto& kind : kinds_) kind->add_contact_derivatives(derivatives);
+  for (const auto& kind : kinds_) {
+    kind->add_inertial_derivatives(poses_, derivatives);
+    kind->add_contact_derivatives(poses_, wrench_, derivatives);
+  }
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->hessian(poses_, &iterate.multipliers[static_cast<std::size_t>(first_row_[i])],
                              derivatives.stiffness);

@@ -18,8 +18,9 @@ namespace scree {
 
 // A joint or a driver and its rows of Phi.
 struct ConstraintGroup {
-  std::string title;               // "joint 'pin'", "driver 'crank'"
-  std::string name;                // "pin"
+  std::string title;  // "joint 'pin'", "driver 'crank'"
+  std::string name;   // "pin"
+  BodyKind kind = BodyKind::planar;
   int first = 0, end = 0;          // of the system's constraint objects
   int first_row = 0, end_row = 0;  // of Phi
 };
@@ -82,7 +83,7 @@ class RigidBodySystem final : public MechanicalSystem {
   void add_constraints(const Model& model);
   void add_elements(const Model& model);
   void add_group(const std::string& title, const std::string& name,
-                 std::vector<std::unique_ptr<Constraint>> parts);
+                 std::vector<std::unique_ptr<Constraint>> parts, BodyKind kind);
 
   std::vector<Body> bodies_;
   BodyLayout layout_;

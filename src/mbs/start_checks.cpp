@@ -88,7 +88,11 @@ void check_start_gaps(const Model& model, const RigidBodySystem& system, std::ve
 void check_directions(const Model& model, const RigidBodySystem& system, const BodyPoses& poses) {
   const auto check = [&](const int(&body)[2], const Vec3(&point)[2], const char* kind,
                          const std::string& name) {
-    if (norm(pair_geometry(point_pair(system.layout(), body, point), poses).gap) > 0) return;
+    const Vec3 apart = to_global_point(model, body[1], point[1]) - to_global_point(model, body[0], point[0]);
+    if (between(model, body) == BodyKind::spatial
+            ? norm(apart) > 0
+            : norm(pair_geometry(point_pair(system.layout(), body, point), poses).gap) > 0)
+      return;
     throw InputError(
         fmt::format("{} '{}': its two points coincide at t = 0, so it has no direction", kind, name));
   };

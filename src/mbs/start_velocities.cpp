@@ -43,18 +43,24 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
   std::size_t shown = 0, more = 0;
   for (std::size_t b = 0; b < system.bodies().size(); ++b) {
     const Body& body = system.bodies()[b];
-    const std::size_t x = static_cast<std::size_t>(system.layout().column(static_cast<int>(b))), y = x + 1,
-                      angle = x + 2;
-    const bool moves = changed(x) || changed(y), turns = changed(angle);
+    const bool spatial = body.kind == BodyKind::spatial;
+    const std::size_t x = static_cast<std::size_t>(system.layout().column(static_cast<int>(b))),
+                      turn = x + (spatial ? 3 : 2);
+    const bool moves = changed(x) || changed(x + 1) || (spatial && changed(x + 2));
+    const bool turns = changed(turn) || (spatial && (changed(turn + 1) || changed(turn + 2)));
     if (body.in_row || !(moves || turns)) continue;
     if (++shown > kBodiesShown) {
       ++more;
       continue;
     }
+    const std::string third = dimension == 2 ? "" : spatial ? ", " + number(x + 2) : ", 0.0";
     if (moves)
-      add(fmt::format("bodies.{}.velocity = [{}, {}{}]", body.name, number(x), number(y),
-                      dimension == 2 ? "" : ", 0.0"));
-    if (turns) add(fmt::format("bodies.{}.angular_velocity = {}", body.name, number(angle)));
+      add(fmt::format("bodies.{}.velocity = [{}, {}{}]", body.name, number(x), number(x + 1), third));
+    if (turns && spatial)
+      add(fmt::format("bodies.{}.body_angular_velocity = [{}, {}, {}]", body.name, number(turn),
+                      number(turn + 1), number(turn + 2)));
+    else if (turns)
+      add(fmt::format("bodies.{}.angular_velocity = {}", body.name, number(turn)));
   }
   if (more > 0) text += fmt::format(" and the same for {} more", more);
   return text;
@@ -68,11 +74,15 @@ std::string largest_change(const RigidBodySystem& system, const std::vector<Real
     if (size(i) > size(largest)) largest = i;
   }
   if (to.empty() || size(largest) == 0) return "";
-  constexpr const char* kComponents[] = {"x component of the velocity", "y component of the velocity",
-                                         "angular velocity"};
-  return fmt::format("{} of {} from {} to {} {}", kComponents[largest % 3],
-                     system.coordinate_name(static_cast<int>(largest)), all_digits(from[largest]),
-                     all_digits(to[largest]), largest % 3 == 2 ? "rad/s" : "m/s");
+  const int column = static_cast<int>(largest), body = system.layout().body_of_column(column);
+  const std::size_t within = static_cast<std::size_t>(column - system.layout().column(body));
+  const bool spatial = system.bodies()[static_cast<std::size_t>(body)].kind == BodyKind::spatial;
+  const bool turns = within >= (spatial ? 3 : 2);
+  const std::string what = turns && !spatial ? "angular velocity"
+                                             : fmt::format("{} component of the {}velocity",
+                                                           "xyz"[within % 3], turns ? "angular " : "");
+  return fmt::format("{} of {} from {} to {} {}", what, system.coordinate_name(column),
+                     all_digits(from[largest]), all_digits(to[largest]), turns ? "rad/s" : "m/s");
 }
 
 }  // namespace scree

@@ -1,4 +1,4 @@
-// The multibody side of the model: planar rigid bodies, joints, drivers and force elements.
+// The multibody side of the model: rigid bodies, joints, drivers and force elements.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
+#include "physics/orientation.hpp"
 
 namespace scree {
 
@@ -20,17 +21,22 @@ struct Shape {
   int material = 0;
 };
 
-// Moves in its plane z = position.z; turns about z.
+// Planar: moves in its plane z = position.z, turns about z.
 struct Body {
   std::string name;
   bool in_row = false;        // one of a row, whose bodies share their keys
   Real mass = 0;              // [kg]
-  Real inertia = 0;           // about the centre of mass, z axis [kg m^2]
+  Real inertia = 0;           // about the centre of mass, z axis; spatial: the least principal one [kg m^2]
   Vec3 position;              // of the centre of mass at t = 0 [m]
   Real angle = 0;             // [rad]
   Vec3 velocity;              // [m/s]
   Real angular_velocity = 0;  // [rad/s]
   std::vector<Shape> shapes;
+  BodyKind kind = BodyKind::planar;
+  // Of a spatial body, in place of inertia, angle and angular_velocity.
+  Sym3 inertia_tensor;     // J about the centre of mass, in the body's frame [kg m^2]
+  Quaternion orientation;  // of the body's frame at t = 0
+  Vec3 spin;               // angular velocity in the body's frame [rad/s]
 };
 
 // Between body[0] and body[1]; either may be the ground. Points and axis are in the body frames.
@@ -42,6 +48,9 @@ struct Joint {
   Vec3 axis{1, 0, 0};     // translational: unit vector in the frame of body[0]
   Real distance = 0;      // distance joint [m]
   Real angle_offset = 0;  // fixed, translational: angle of body[1] minus angle of body[0] at t = 0 [rad]
+  // Between spatial bodies, in place of axis and angle_offset: orientation of the joint's frame in each
+  // body's, its axis along z; universal: the first body's arm along x, the second one's along y.
+  Quaternion marker[2];
 };
 
 // A scalar function of time with two continuous derivatives where a driver needs them.
@@ -89,13 +98,15 @@ struct TorsionalSpringDamper {
   Real free_angle = 0;  // [rad]
 };
 
-// Force at a point of a body, and a torque. The direction is global, or turns with the body.
+// Force at a point of a body, and a torque. The direction is global, or turns with the body: of a spatial
+// body that of the torque too.
 struct AppliedForce {
   std::string name;
   int body = 0;
   Vec3 point;                   // in the body frame [m]
   TimeFunction fx, fy, torque;  // [N], [N], [N m]
   bool follows_body = false;
+  TimeFunction fz, torque_x, torque_y;  // of spatial bodies; torque is that about z
 };
 
 }  // namespace scree

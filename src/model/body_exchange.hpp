@@ -7,15 +7,21 @@
 #include "base/rotation.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "deck/choices.hpp"
+#include "physics/spatial_rotation.hpp"
 
 namespace scree {
 
-// Motion of one body at one instant, global frame.
+// Motion of one body at one instant, global frame. angle, angular_velocity: of a planar body; orientation,
+// spin: of a spatial one.
 struct BodyMotion {
   Vec3 position;              // of the centre of mass [m]
   Vec3 velocity;              // [m/s]
   Real angle = 0;             // about z [rad]
   Real angular_velocity = 0;  // about z [rad/s]
+  BodyKind kind = BodyKind::planar;
+  Quaternion orientation;
+  Vec3 spin;  // angular velocity in the body's frame [rad/s]
 };
 
 // Position [m] and velocity [m/s] of a point fixed to a body.
@@ -25,12 +31,33 @@ struct PointMotion {
 
 // An offset in the body's frame, in the global one [m].
 inline Vec3 body_arm(const BodyMotion& body, Vec3 offset) {
+  if (body.kind == BodyKind::spatial) return rotation_matrix(body.orientation) * offset;
   if (offset.x == 0 && offset.y == 0) return offset;  // most shapes
   return Rotation(body.angle).turn(offset);
 }
 
+// Of the body's frame, of either kind.
+inline Quaternion orientation(const BodyMotion& body) {
+  return body.kind == BodyKind::spatial ? body.orientation : exponential({0, 0, body.angle});
+}
+
+// Angular velocity in the global frame [rad/s].
+inline Vec3 global_spin(const BodyMotion& body) {
+  if (body.kind == BodyKind::spatial) return rotation_matrix(body.orientation) * body.spin;
+  return {0, 0, body.angular_velocity};
+}
+
+// Rotation from one instant to a later one, less than half a turn in space, in the global frame [rad].
+inline Vec3 turn_between(const BodyMotion& before, const BodyMotion& after) {
+  if (after.kind == BodyKind::planar) return {0, 0, after.angle - before.angle};
+  return rotation_matrix(before.orientation) *
+         rotation_vector(conjugate(before.orientation) * after.orientation);
+}
+
 inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
   const Vec3 arm = body_arm(body, offset);
+  if (body.kind == BodyKind::spatial)
+    return {body.position + arm, body.velocity + cross(global_spin(body), arm)};
   return {body.position + arm, body.velocity + turning_velocity(body.angular_velocity, arm)};
 }
 

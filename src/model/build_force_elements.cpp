@@ -17,7 +17,9 @@ void build_spring_dampers(const DeckTable& table, Model& model, const ModelNames
     find_end_points(table, model, connection, element.point);
     const Vec3 ends = to_global_point(model, element.body[1], element.point[1]) -
                       to_global_point(model, element.body[0], element.point[0]);
-    const Real length = std::hypot(ends.x, ends.y);
+    check_same_kind(table, model, connection);
+    const bool spatial = between(model, element.body) == BodyKind::spatial;
+    const Real length = spatial ? norm(ends) : std::hypot(ends.x, ends.y);
     if (length == 0) table.fail("name", "the two points of a spring-damper must not coincide at t = 0");
     element.stiffness = table.real("stiffness");
     element.damping = table.real("damping");
@@ -33,6 +35,10 @@ void build_torsional(const DeckTable& table, Model& model, const ModelNames& nam
     TorsionalSpringDamper element;
     element.name = connection.name;
     for (int side = 0; side < 2; ++side) element.body[side] = connection.body[side];
+    if (between(model, element.body) == BodyKind::spatial)
+      table.fail("name",
+                 "torsional springs are between planar bodies, or one and the ground; these are spatial");
+    check_same_kind(table, model, connection);
     element.stiffness = table.real("stiffness");
     element.damping = table.real("damping");
     element.free_angle = table.has("free_angle")
@@ -41,6 +47,8 @@ void build_torsional(const DeckTable& table, Model& model, const ModelNames& nam
     model.torsional_spring_dampers.push_back(element);
   }
 }
+
+bool acts(const TimeFunction& f) { return f.kind != TimeFunctionKind::constant || f.value != 0; }
 
 AppliedForce build_applied_force(const DeckTable& table, const Model& model, const ModelNames& names) {
   AppliedForce force;
@@ -53,6 +61,13 @@ AppliedForce build_applied_force(const DeckTable& table, const Model& model, con
   force.fx = build_force(table.table("fx"));
   force.fy = build_force(table.table("fy"));
   force.torque = build_force(table.table("torque"));
+  force.fz = build_force(table.table("fz"));
+  force.torque_x = build_force(table.table("torque_x"));
+  force.torque_y = build_force(table.table("torque_y"));
+  if (model.bodies[static_cast<std::size_t>(force.body)].kind == BodyKind::planar)
+    for (const char* key : {"fz", "torque_x", "torque_y"})
+      if (acts(build_force(table.table(key))))
+        table.fail(key, "must be 0: the body is planar; give it kind = \"spatial\"");
   force.follows_body = table.boolean("follows_body");
   return force;
 }

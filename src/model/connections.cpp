@@ -6,10 +6,18 @@
 #include <cmath>
 
 #include "base/rotation.hpp"
+#include "physics/spatial_rotation.hpp"
 
 namespace scree {
 
 namespace {
+
+// The body if it is spatial, else null.
+const Body* spatial_body(const Model& model, int body) {
+  if (body == kGround) return nullptr;
+  const Body& b = model.bodies[static_cast<std::size_t>(body)];
+  return b.kind == BodyKind::spatial ? &b : nullptr;
+}
 
 Connection named_pair(const DeckTable& table, const ModelNames& names) {
   Connection connection{table.text("name"), {}};
@@ -49,6 +57,11 @@ std::vector<Connection> find_connections(const DeckTable& table, const ModelName
   return connections;
 }
 
+BodyKind between(const Model& model, const int (&body)[2]) {
+  const int one = body[1] == kGround ? body[0] : body[1];
+  return one == kGround ? BodyKind::planar : model.bodies[static_cast<std::size_t>(one)].kind;
+}
+
 Vec3 start_position(const Model& model, int body) {
   return body == kGround ? Vec3{} : model.bodies[static_cast<std::size_t>(body)].position;
 }
@@ -66,10 +79,13 @@ Vec3 to_global_point(const Model& model, int body, Vec3 local) {
 }
 
 Vec3 to_body_direction(const Model& model, int body, Vec3 global) {
+  if (const Body* spatial = spatial_body(model, body))
+    return transposed_times(rotation_matrix(spatial->orientation), global);
   return Rotation(-start_angle(model, body)).turn(global);
 }
 
 Vec3 to_global_direction(const Model& model, int body, Vec3 local) {
+  if (const Body* spatial = spatial_body(model, body)) return rotation_matrix(spatial->orientation) * local;
   return Rotation(start_angle(model, body)).turn(local);
 }
 
@@ -92,22 +108,59 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
   }
 }
 
+void check_same_kind(const DeckTable& table, const Model& model, const Connection& connection) {
+  if (connection.body[0] == kGround || connection.body[1] == kGround) return;
+  const auto spatial = [&](int side) { return spatial_body(model, connection.body[side]) != nullptr; };
+  if (spatial(0) == spatial(1)) return;
+  table.fail(table.has("bodies") ? "bodies" : "name",
+             "connects a planar and a spatial body; both must be of one kind (bodies.kind)");
+}
+
 void check_single(const DeckTable& table, const std::string& key) {
   if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
 }
+
+namespace {
+
+// How far apart the two points of a joint of spatial bodies are from where it wants them.
+Real spatial_gap(const Model& model, const Joint& joint, Vec3 apart) {
+  const Vec3 axis =
+      to_global_direction(model, joint.body[0], rotation_matrix(joint.marker[0]) * Vec3{0, 0, 1});
+  const Real along = dot(apart, axis);
+  switch (joint.kind) {
+    case JointKind::translational:
+    case JointKind::cylindrical:
+    case JointKind::point_on_line:
+      return norm(apart - along * axis);
+    case JointKind::planar:
+    case JointKind::point_on_plane:
+      return std::abs(along);
+    case JointKind::parallel:
+    case JointKind::perpendicular:
+    case JointKind::orientation:
+      return 0;
+    case JointKind::distance:
+      return std::abs(norm(apart) - joint.distance);
+    default:
+      return norm(apart);
+  }
+}
+
+}  // namespace
 
 JointGap joint_gap(const Model& model, const Joint& joint) {
   const Vec3 a = to_global_point(model, joint.body[0], joint.point[0]),
              b = to_global_point(model, joint.body[1], joint.point[1]);
   Vec3 apart = b - a;
+  const Real allowed = 1e-9 * (1 + norm(a) + norm(b));
+  if (between(model, joint.body) == BodyKind::spatial)
+    return {{a, b}, spatial_gap(model, joint, apart), allowed};
   if (joint.kind == JointKind::translational) {
     const Vec3 axis = to_global_direction(model, joint.body[0], joint.axis);
     apart = apart - dot(apart, axis) * axis;
   }
   const Real length = std::hypot(apart.x, apart.y);
-  return {{a, b},
-          joint.kind == JointKind::distance ? std::abs(length - joint.distance) : length,
-          1e-9 * (1 + norm(a) + norm(b))};
+  return {{a, b}, joint.kind == JointKind::distance ? std::abs(length - joint.distance) : length, allowed};
 }
 
 std::vector<bool> driven_joints(const Model& model) {
@@ -116,17 +169,43 @@ std::vector<bool> driven_joints(const Model& model) {
   return driven;
 }
 
+bool has_spatial_bodies(const Model& model) {
+  return std::ranges::any_of(model.bodies, [](const Body& b) { return b.kind == BodyKind::spatial; });
+}
+
 int constraint_count(const Model& model) {
   const std::vector<bool> driven = driven_joints(model);
   int count = static_cast<int>(model.drivers.size() + model.couplers.size());
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    switch (model.joints[j].kind) {
+    const Joint& joint = model.joints[j];
+    const bool spatial = between(model, joint.body) == BodyKind::spatial;
+    switch (joint.kind) {
       case JointKind::fixed:
-        count += 3;
+        count += spatial ? 6 : 3;
         break;
       case JointKind::revolute:
       case JointKind::translational:
+        count += spatial ? 5 : 2;
+        break;
+      case JointKind::cylindrical:
+      case JointKind::universal:
+      case JointKind::constant_velocity:
+        count += 4;
+        break;
+      case JointKind::spherical:
+        count += spatial ? 3 : 2;
+        break;
+      case JointKind::planar:
+      case JointKind::orientation:
+        count += 3;
+        break;
+      case JointKind::point_on_line:
+      case JointKind::parallel:
         count += 2;
+        break;
+      case JointKind::point_on_plane:
+      case JointKind::perpendicular:
+        count += 1;
         break;
       case JointKind::distance:
         count += driven[j] ? 0 : 1;  // the driver stands in the place of the joint's

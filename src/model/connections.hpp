@@ -20,9 +20,13 @@ struct Connection {
 // From the keys bodies, chain or each. Throws InputError.
 std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names);
 
+// Of a joint or force element between these: the kind of its bodies, which is the same for both; the ground
+// is of either kind.
+BodyKind between(const Model& model, const int (&body)[2]);
+
 // Position at t = 0 of a body's centre; the origin for the ground [m].
 Vec3 start_position(const Model& model, int body);
-Real start_angle(const Model& model, int body);  // [rad]
+Real start_angle(const Model& model, int body);  // of a planar body [rad]
 // A direction, or a point [m], between the global frame and a body's, at t = 0.
 Vec3 to_body_point(const Model& model, int body, Vec3 global);
 Vec3 to_global_point(const Model& model, int body, Vec3 local);
@@ -32,6 +36,8 @@ Vec3 to_global_direction(const Model& model, int body, Vec3 local);
 // Fills the two local points from local_points, points or the bodies' centres. Throws InputError where the
 // ground needs a point that is not given.
 void find_end_points(const DeckTable& table, const Model& model, const Connection& connection, Vec3 local[2]);
+// Refuses a planar and a spatial body together.
+void check_same_kind(const DeckTable& table, const Model& model, const Connection& connection);
 // Refuses `key` together with chain or each: one global point cannot hold for several elements.
 void check_single(const DeckTable& table, const std::string& key);
 
@@ -47,6 +53,7 @@ JointGap joint_gap(const Model& model, const Joint& joint);
 
 // Per joint, whether a driver prescribes it.
 std::vector<bool> driven_joints(const Model& model);
+bool has_spatial_bodies(const Model& model);
 // Of joints, drivers and couplers: the number of the multibody side's constraint equations.
 int constraint_count(const Model& model);
 // How many numbers motors remember.

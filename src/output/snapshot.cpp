@@ -51,6 +51,13 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
       scalar("angular_velocity", "rad/s", "angular velocity of the body about z", bodies.angular_velocity),
       vector("force", "N", "total contact force on the shape", bodies.force),
       number("contacts", "touching neighbours and walls", bodies.contacts)};
+  if (bodies.orientation.empty()) return snapshot;
+  snapshot.fields.push_back({"orientation",
+                             {"1", "unit quaternion of the body's frame, scalar first, of continuous sign"},
+                             4,
+                             bodies.orientation.data()});
+  snapshot.fields.push_back(
+      vector("spin", "rad/s", "angular velocity of the body, global axes", bodies.spin));
   return snapshot;
 }
 

@@ -12,7 +12,8 @@ BodiesOutside bodies_outside(const Model& model, const MultibodyState& state) {
   if (state.position.empty()) return outside;
   for (int b = 0; b < layout.bodies(); ++b) {
     const Real* q = &state.position[static_cast<std::size_t>(layout.position(b))];
-    const Vec3 centre{q[0], q[1], model.bodies[static_cast<std::size_t>(b)].position.z};
+    const Body& body = model.bodies[static_cast<std::size_t>(b)];
+    const Vec3 centre{q[0], q[1], body.kind == BodyKind::spatial ? q[2] : body.position.z};
     if (!space.inside(centre) && ++outside.count == 1) outside.first = static_cast<std::size_t>(b);
   }
   return outside;

@@ -126,8 +126,14 @@ void momentum_columns(Group momentum) {
 }
 
 // k: number of the reaction.
-void reaction_columns(Group joint, std::size_t k) {
+void reaction_columns(Group joint, BodyKind kind, std::size_t k) {
   const char* text = "reaction on the joint's second body at its joint point";
+  if (kind == BodyKind::spatial) {
+    joint.add_vector("f", "N", text, [k](const Sample& s) { return s.reactions[k].force; });
+    joint.add_vector("torque_", "N m", "reaction torque on the joint's second body about its joint point",
+                     [k](const Sample& s) { return s.reactions[k].torque; });
+    return;
+  }
   joint.add("fx", "N", text, [k](const Sample& s) { return s.reactions[k].force.x; });
   joint.add("fy", "N", text, [k](const Sample& s) { return s.reactions[k].force.y; });
   joint.add("torque", "N m", "reaction torque on the joint's second body",
@@ -163,9 +169,24 @@ void contact_columns(Group contacts, const ContactTarget& target, std::size_t k)
                [k](const Sample& s) { return static_cast<Real>(s.contacts[k].contacts); });
 }
 
-void body_columns(Group body, std::size_t b) {
+void spatial_columns(Group body, std::size_t b) {
+  const auto part = [&](const char* name, Real Quaternion::*value) {
+    body.add(name, "1",
+             "orientation, a unit quaternion of continuous sign from the body's frame, scalar first",
+             [b, value](const Sample& s) { return s.bodies[b].orientation.*value; });
+  };
+  part("e0", &Quaternion::w);
+  part("e1", &Quaternion::x);
+  part("e2", &Quaternion::y);
+  part("e3", &Quaternion::z);
+  body.add_vector("w", "rad/s", "angular velocity in the body's frame",
+                  [b](const Sample& s) { return s.bodies[b].spin; });
+}
+
+void body_columns(Group body, BodyKind kind, std::size_t b) {
   body.add_vector("", "m", "position", [b](const Sample& s) { return s.bodies[b].position; });
   body.add_vector("v", "m/s", "velocity", [b](const Sample& s) { return s.bodies[b].velocity; });
+  if (kind == BodyKind::spatial) return spatial_columns(body, b);
   body.add("angle", "rad", "angle about z", [b](const Sample& s) { return s.bodies[b].angle; });
   body.add("angular_velocity", "rad/s", "angular velocity about z",
            [b](const Sample& s) { return s.bodies[b].angular_velocity; });
@@ -189,14 +210,14 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
   if (model.rotates()) rotation_columns({"rotation", out}, model.rolls());
   momentum_columns({"momentum", out});
   for (std::size_t k = 0; k < reactions.size(); ++k)
-    reaction_columns({"reactions/" + reactions[k].joint, out}, k);
+    reaction_columns({"reactions/" + reactions[k].joint, out}, reactions[k].kind, k);
   for (std::size_t k = 0; k < efforts.size(); ++k)
     effort_columns({"efforts/" + efforts[k].name, out}, efforts[k].is_angle, k);
   for (std::size_t k = 0; k < output.history_contacts.size(); ++k)
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
   for (const int body : output.history_bodies) {
     const auto b = static_cast<std::size_t>(body);
-    body_columns({"bodies/" + model.bodies[b].name, out}, b);
+    body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b].kind, b);
   }
   for (std::size_t k = 0; k < output.history_particles.size(); ++k)
     particle_columns({"particles/" + std::to_string(output.history_particles[k]), out}, k);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "model/connections.hpp"
 #include "partition/id_order.hpp"
 #include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
@@ -143,11 +144,15 @@ void Recorder::balance(State& state, HistorySample& sample) const {
 void Recorder::snapshot(State& state) {
   write_pending();
   backend_.reports().start_output();
-  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}};
+  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
   for (const int body : next.shapes.body) {
     next.angle.push_back(motion[body].angle);
     next.angular_velocity.push_back(motion[body].angular_velocity);
+    if (!has_spatial_bodies(model_)) continue;
+    const Quaternion p = orientation(motion[body]);
+    next.orientation.insert(next.orientation.end(), {p.w, p.x, p.y, p.z});
+    next.spin.push_back(global_spin(motion[body]));
   }
   pending_ = std::move(next);
   ++state.snapshots;
@@ -162,7 +167,7 @@ void Recorder::write_pending() {
   const ShapePack& s = snapshot.shapes;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
-                      s.force, s.contacts});
+                      s.force, s.contacts, snapshot.orientation, snapshot.spin});
 }
 
 void Recorder::flush_history() {

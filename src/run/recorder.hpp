@@ -46,6 +46,8 @@ class Recorder : public Records {
     Real time;
     ShapePack shapes;
     std::vector<Real> angle, angular_velocity;  // of the shapes' bodies
+    std::vector<Real> orientation;              // where bodies are spatial, likewise: quaternions
+    std::vector<Vec3> spin;                     // and angular velocities, global
   };
 
   bool writes_late() const;

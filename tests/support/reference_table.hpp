@@ -53,6 +53,9 @@ class ReferenceTable {
   ReferenceTable& operator=(const ReferenceTable&) = delete;
 
   const std::vector<Row>& rows() const { return rows_; }
+  bool has(const std::string& name) const {
+    return std::find(columns_.begin(), columns_.end(), name) != columns_.end();
+  }
 
  private:
   static std::vector<std::string> cells_of(const std::string& line) {

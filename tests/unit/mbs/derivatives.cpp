@@ -10,13 +10,12 @@
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
 #include "support/near.hpp"
+#include "unit/mbs/differences.hpp"
+#include "unit/mbs/efforts.hpp"
 
 using namespace scree;
 
 namespace {
-
-// Round-off of central differences of half width 1e-6, of terms of up to 100, and what they cut off.
-constexpr Real kDifferences = 3e-8;
 
 constexpr Real kTime = 0.3;
 
@@ -51,21 +50,6 @@ TimeFunction sine() {
   return function;
 }
 
-// Motors, a spring and limits on the joint of a model, which have rates and curvatures where the probe is.
-void add_efforts(Model& model) {
-  Motor line;
-  line.kind = MotorKind::line;
-  line.stall_effort = 3, line.free_rate = 2, line.command = sine();
-  Motor speed;
-  speed.kind = MotorKind::speed;
-  speed.gain = 2, speed.integral_gain = 5, speed.rate = sine();
-  model.motors = {line, speed};
-  Curve elastic{{-3, -1, 0, 1, 3}, {-2, -1, 0.5, 1, 4}, Interpolation::natural};
-  Curve dissipative{{-9, -1, 0, 2, 9}, {-3, -1, 0, 1, 5}, Interpolation::monotone};
-  model.joint_springs = {{"spring", 0, 7, 3, 0.2, elastic, dissipative}};
-  model.joint_limits = {{"lower", 0, 5, 6, 11, 0, 1.5}, {"upper", 0, -6, -5, 13, 0, 1}};
-}
-
 Model coupled_bodies() {
   Model model = two_bodies();
   model.joints.push_back(joint_between(JointKind::revolute, kGround, 0));
@@ -89,7 +73,7 @@ std::vector<std::pair<std::string, Model>> samples() {
       all.emplace_back("driver " + std::to_string(static_cast<int>(kind)) + ends, model);
       if (kind == JointKind::distance) continue;
       model.drivers.clear();
-      add_efforts(model);
+      add_efforts(model, sine());
       all.emplace_back("efforts on joint " + std::to_string(static_cast<int>(kind)) + ends, model);
     }
     Model spring = two_bodies();
@@ -105,48 +89,12 @@ std::vector<std::pair<std::string, Model>> samples() {
   }
   for (const bool follows : {false, true}) {
     Model force = two_bodies();
-    force.applied_forces.push_back({"push", 1, {0.2, -0.3, 0}, sine(), sine(), sine(), follows});
+    force.applied_forces.push_back({"push", 1, {0.2, -0.3, 0}, sine(), sine(), sine(), follows, {}, {}, {}});
     force.applied_forces[0].fy.value = -1.3;
     all.emplace_back(follows ? "following force" : "force", force);
   }
   all.emplace_back("coupler", coupled_bodies());
   return all;
-}
-
-using Matrix = std::vector<std::vector<Real>>;
-
-Matrix dense(const SparseTerm& term, int rows, int columns) {
-  Matrix matrix(static_cast<std::size_t>(rows), std::vector<Real>(static_cast<std::size_t>(columns), 0));
-  for (std::size_t i = 0; i < term.size(); ++i) {
-    matrix[static_cast<std::size_t>(term.row(i))][static_cast<std::size_t>(term.column(i))] += term.value(i);
-  }
-  return matrix;
-}
-
-// d f / d x by central differences of half width `step`.
-Matrix differences(const std::function<std::vector<Real>(const std::vector<Real>&)>& f, std::vector<Real> x,
-                   Real step = 1e-6) {
-  Matrix matrix(f(x).size(), std::vector<Real>(x.size()));
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    const Real centre = x[j];
-    x[j] = centre + step;
-    const std::vector<Real> after = f(x);
-    x[j] = centre - step;
-    const std::vector<Real> before = f(x);
-    x[j] = centre;
-    for (std::size_t i = 0; i < after.size(); ++i) matrix[i][j] = (after[i] - before[i]) / (2 * step);
-  }
-  return matrix;
-}
-
-void check_equal(const Matrix& a, const Matrix& b) {
-  REQUIRE(a.size() == b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < a[i].size(); ++j) {
-      CAPTURE(i, j);
-      CHECK(near(a[i][j], b[i][j], {.relative = kDifferences, .absolute = kDifferences}));
-    }
-  }
 }
 
 // A system at an instant that satisfies nothing in particular: the derivatives hold everywhere.

@@ -303,8 +303,11 @@ TEST_CASE("the books close: to round-off on revolute joints, to second order on 
   CHECK(gap(2e-3) < 1e-12);
   // On the wheel a slider with all of these, too: along an axis that turns, g.(q_1 - q_0) is not c_1 - c_0.
   model.bodies.push_back(paper_disc("slider", 0.1, 0.05));
-  model.joints.push_back(
-      {"slide", JointKind::translational, {0, 1}, {{0.1, 0.05, 0}, {0, 0, 0}}, {0.6, 0.8, 0}});
+  Joint slide;
+  slide.name = "slide", slide.kind = JointKind::translational;
+  slide.body[0] = 0, slide.body[1] = 1;
+  slide.point[0] = {0.1, 0.05, 0}, slide.axis = {0.6, 0.8, 0};
+  model.joints.push_back(slide);
   motor.joint = 1, motor.rate = constant(0.3), motor.gain = 20, motor.limit = 8;
   model.motors.push_back(motor);
   model.joint_springs.push_back({"slider's", 1, 30, 0.5, 0, {}, {}});

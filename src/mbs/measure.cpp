@@ -1,0 +1,86 @@
+#include "mbs/measure.hpp"
+
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+// sum_k c_k m_k
+class Sum final : public Measure {
+ public:
+  explicit Sum(std::vector<WeightedMeasure> terms)
+      : Measure(terms.front().measure->pair()), terms_(std::move(terms)) {}
+
+  bool is_angle() const override { return terms_.front().measure->is_angle(); }
+  Real value(const SpatialMotion& motion) const override {
+    Real sum = 0;
+    for (const WeightedMeasure& t : terms_) sum += t.weight * t.measure->value(motion);
+    return sum;
+  }
+  PairGradient gradient(const SpatialMotion& motion) const override {
+    PairGradient sum{};
+    for (const WeightedMeasure& t : terms_) {
+      const PairGradient one = t.measure->gradient(motion);
+      for (std::size_t k = 0; k < 4; ++k) sum[k] += t.weight * one[k];
+    }
+    return sum;
+  }
+  Real second(const SpatialMotion& motion) const override {
+    Real sum = 0;
+    for (const WeightedMeasure& t : terms_) sum += t.weight * t.measure->second(motion);
+    return sum;
+  }
+  void add_hessian(const SpatialMotion& motion, Real scale, PairHessian& hessian) const override {
+    for (const WeightedMeasure& t : terms_) t.measure->add_hessian(motion, scale * t.weight, hessian);
+  }
+  bool has_block(int block) const override {
+    for (const WeightedMeasure& t : terms_)
+      if (t.measure->has_block(block)) return true;
+    return false;
+  }
+  bool has_block(int row, int column) const override {
+    for (const WeightedMeasure& t : terms_)
+      if (t.measure->has_block(row, column)) return true;
+    return false;
+  }
+
+ private:
+  std::vector<WeightedMeasure> terms_;
+};
+
+}  // namespace
+
+std::unique_ptr<Measure> sum_of_measures(std::vector<WeightedMeasure> terms) {
+  return std::make_unique<Sum>(std::move(terms));
+}
+
+Real measure_rate(const Measure& measure, const SpatialMotion& motion) {
+  const PairGradient g = measure.gradient(motion);
+  const SpatialPose &one = motion[measure.pair().body[0]], &two = motion[measure.pair().body[1]];
+  return dot(g[0], one.velocity) + dot(g[1], one.spin) + dot(g[2], two.velocity) + dot(g[3], two.spin);
+}
+
+void add_block(SparseTerm& term, int row, int column, const Mat3& block) {
+  if (row < 0 || column < 0) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) term.add(row + i, column + j, component(row_of(block, i), j));
+}
+
+void add_gradient(const Measure& measure, const PairGradient& gradient, int row, SparseTerm& out) {
+  for (int k = 0; k < 4; ++k) {
+    const int column = measure.column(k);
+    if (column < 0 || !measure.has_block(k)) continue;
+    for (int j = 0; j < 3; ++j) out.add(row, column + j, component(gradient[static_cast<std::size_t>(k)], j));
+  }
+}
+
+void add_hessian(const Measure& measure, const PairHessian& hessian, SparseTerm& out) {
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      if (measure.has_block(i, j))
+        add_block(out, measure.column(i), measure.column(j),
+                  hessian[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
+}
+
+}  // namespace scree

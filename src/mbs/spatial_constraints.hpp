@@ -1,0 +1,16 @@
+// Rows of Phi between spatial bodies.
+#pragma once
+
+#include <memory>
+
+#include "mbs/constraints.hpp"
+#include "mbs/measure.hpp"
+
+namespace scree {
+
+// The points coincide: C = d. Three rows, along the global axes.
+std::unique_ptr<Constraint> coincidence_constraint(const SpatialPair& pair);
+// C = c - f(t). One row.
+std::unique_ptr<Constraint> measure_constraint(std::unique_ptr<Measure> c, ScalarFunction f);
+
+}  // namespace scree

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "base/error.hpp"
+#include "mbs/joint_parts.hpp"
+#include "mbs/spatial_constraints.hpp"
+#include "physics/spatial_rotation.hpp"
+
+namespace scree {
+
+namespace {
+
+// Axes of either marker in the frame of its body: x_i, y_i, z_i with the joint's axis along z.
+class SpatialParts final : public JointParts {
+ public:
+  SpatialParts(const Joint& joint, const BodyLayout& layout)
+      : name_(joint.name), pair_(spatial_pair(layout, joint.body, joint.point)) {
+    for (int i = 0; i < 2; ++i) axes_[i] = transposed(rotation_matrix(joint.marker[i]));
+  }
+
+  void points_meet() override { add(coincidence_constraint(pair_)); }
+  void point_on_axis() override {
+    displaced(0, ScalarFunction(0));
+    displaced(1, ScalarFunction(0));
+  }
+  void point_on_plane() override { displaced(2, ScalarFunction(0)); }
+  void same_orientation() override {
+    square(0, 1);
+    square(1, 2);
+    square(2, 0);
+  }
+  void axes_parallel() override {
+    square(0, 2);
+    square(1, 2);
+  }
+  void axes_perpendicular() override { square(2, 2); }
+  void arms_perpendicular() override { square(0, 1); }
+  // The sine of the twist that the second body has in excess of the first, both about their own axes.
+  void equal_spins() override {
+    std::vector<WeightedMeasure> terms;
+    terms.push_back({1, dot1_measure(pair_, axis(0, 0), axis(1, 1))});
+    terms.push_back({-1, dot1_measure(pair_, axis(0, 1), axis(1, 0))});
+    add(measure_constraint(sum_of_measures(std::move(terms)), ScalarFunction(0)));
+  }
+  void angle(ScalarFunction) override {
+    throw InputError(fmt::format(
+        "joint '{}': the angle of a joint in space cannot be driven yet; allowed are translational "
+        "and distance joints",
+        name_));
+  }
+  void displacement(ScalarFunction f) override { displaced(2, std::move(f)); }
+  void length(ScalarFunction f) override { add(measure_constraint(distance_measure(pair_), std::move(f))); }
+
+ private:
+  Vec3 axis(int body, int k) const { return row_of(axes_[body], k); }
+  void displaced(int k, ScalarFunction f) {
+    add(measure_constraint(dot2_measure(pair_, axis(0, k)), std::move(f)));
+  }
+  // Axis i of the first marker is perpendicular to axis j of the second one.
+  void square(int i, int j) {
+    add(measure_constraint(dot1_measure(pair_, axis(0, i), axis(1, j)), ScalarFunction(0)));
+  }
+
+  std::string name_;
+  SpatialPair pair_;
+  Mat3 axes_[2];
+};
+
+}  // namespace
+
+std::unique_ptr<JointParts> spatial_parts(const Joint& joint, const BodyLayout& layout) {
+  return std::make_unique<SpatialParts>(joint, layout);
+}
+
+}  // namespace scree

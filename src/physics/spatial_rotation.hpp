@@ -1,0 +1,65 @@
+// Orientations moved by rotation vectors, and their tangent: of the bodies, on the host.
+// Bruls, Cardona, Arnold, Mech. Mach. Theory 48 (2012).
+#pragma once
+
+#include <cmath>
+
+#include "base/mat3.hpp"
+#include "physics/orientation.hpp"
+
+namespace scree {
+
+inline Real norm(const Quaternion& p) { return std::sqrt(dot(p, p)); }
+inline Quaternion normalized(const Quaternion& p) { return (1 / norm(p)) * p; }
+inline Quaternion conjugate(const Quaternion& p) { return {p.w, -p.x, -p.y, -p.z}; }
+
+// A of v_global = A v_body; p: of length 1.
+inline Mat3 rotation_matrix(const Quaternion& p) {
+  const Real w = p.w, x = p.x, y = p.y, z = p.z;
+  return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+          {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+          {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+}
+// Its inverse, with w >= 0, after Shepperd, J. Guid. Control 1 (1978); a: orthonormal, of determinant 1.
+inline Quaternion quaternion_of(const Mat3& a) {
+  const Real t[4] = {a.x.x + a.y.y + a.z.z, a.x.x, a.y.y, a.z.z};
+  int largest = 0;
+  for (int k = 1; k < 4; ++k)
+    if (t[k] > t[largest]) largest = k;
+  const Real sx = a.z.y - a.y.z, sy = a.x.z - a.z.x, sz = a.y.x - a.x.y;
+  const Real xy = a.x.y + a.y.x, xz = a.x.z + a.z.x, yz = a.y.z + a.z.y;
+  const Real own = 1 + 2 * t[largest] - t[0];
+  const Quaternion p = largest == 0   ? Quaternion{1 + t[0], sx, sy, sz}
+                       : largest == 1 ? Quaternion{sx, own, xy, xz}
+                       : largest == 2 ? Quaternion{sy, xy, own, yz}
+                                      : Quaternion{sz, xz, yz, own};
+  return normalized(p.w < 0 ? Real(-1) * p : p);
+}
+
+// The rotation by |u| about u.
+inline Quaternion exponential(Vec3 u) {
+  const Real angle = norm(u), half = angle / 2;
+  // sin(half) / angle; the next term of the series is below round-off.
+  const Real scale =
+      angle < Real(1e-3) ? (1 - angle * angle / 24 * (1 - angle * angle / 80)) / 2 : std::sin(half) / angle;
+  return {std::cos(half), scale * u.x, scale * u.y, scale * u.z};
+}
+// Its inverse, of length up to pi.
+inline Vec3 rotation_vector(const Quaternion& p) {
+  const Vec3 v{p.x, p.y, p.z};
+  const Real sine = norm(v);
+  if (sine == 0) return {};
+  const Real half = p.w < 0 ? std::atan2(-sine, -p.w) : std::atan2(sine, p.w);
+  return (2 * half / sine) * v;
+}
+
+// T^-1(u) = 1 + u~/2 + c u~^2, c = 1/f^2 - (1 + cos f) / (2 f sin f), f = |u|: change of u per change of the
+// orientation, in the body's frame, of exponential(u). |u| < 2 pi.
+inline Mat3 inverse_tangent(Vec3 u) {
+  const Real f = norm(u), f2 = f * f;
+  const Real c = f < Real(0.03) ? (1 + f2 / 60 * (1 + f2 / 42)) / 12 : 1 / f2 - 1 / (2 * f * std::tan(f / 2));
+  const Mat3 t = tilde(u);
+  return identity3() + Real(0.5) * t + c * (t * t);
+}
+
+}  // namespace scree

@@ -1,0 +1,23 @@
+// Motors, a spring and limits for tests of derivatives: each acts, bends and resists where its joint is.
+#pragma once
+
+#include "model/model.hpp"
+
+namespace scree {
+
+// On the first joint of the model; `function`: of time.
+inline void add_efforts(Model& model, const TimeFunction& function) {
+  Motor line;
+  line.kind = MotorKind::line;
+  line.stall_effort = 3, line.free_rate = 2, line.command = function;
+  Motor speed;
+  speed.kind = MotorKind::speed;
+  speed.gain = 2, speed.integral_gain = 5, speed.rate = function;
+  model.motors = {line, speed};
+  const Curve elastic{{-3, -1, 0, 1, 3}, {-2, -1, 0.5, 1, 4}, Interpolation::natural};
+  const Curve dissipative{{-9, -1, 0, 2, 9}, {-3, -1, 0, 1, 5}, Interpolation::monotone};
+  model.joint_springs = {{"spring", 0, 7, 3, 0.2, elastic, dissipative}};
+  model.joint_limits = {{"lower", 0, 5, 6, 11, 0, 1.5}, {"upper", 0, -6, -5, 13, 0, 1}};
+}
+
+}  // namespace scree
