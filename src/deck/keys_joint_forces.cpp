@@ -8,7 +8,8 @@ namespace {
 
 Key joint_key() {
   return text("joint").required().about(
-      "The joint, revolute or translational. Its coordinate c: the angle of its second body minus that of "
+      "The joint, revolute or translational, or a row of joints: one for each, named NAME.0, NAME.1, ... Its "
+      "coordinate c: the angle of its second body minus that of "
       "the first "
       "[rad], or the displacement along its axis [m]. An effort above 0 pushes c up.");
 }

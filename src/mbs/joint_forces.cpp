@@ -9,16 +9,22 @@
 
 namespace scree {
 
-JointForces::JointForces(const Model& model, const BodyLayout& layout) {
-  const auto add = [&](const char* kind, const auto& element, std::unique_ptr<JointLaw> law) {
+JointForces::JointForces(const Model& model, const BodyLayout& layout, const BodyPoses& start) {
+  // make_law(c at t = 0)
+  const auto add = [&](const char* kind, const auto& element, const auto& make_law) {
     const Joint& joint = model.joints[static_cast<std::size_t>(element.joint)];
     const std::string title = fmt::format("{} '{}'", kind, element.name);
-    forces_.emplace_back(element.name, joint_coordinate(title, joint, layout), std::move(law));
+    std::unique_ptr<Constraint> coordinate = joint_coordinate(title, joint, layout);
+    Real c = 0;
+    coordinate->value(start, 0, &c);
+    forces_.emplace_back(element.name, std::move(coordinate), make_law(c));
   };
-  for (const Motor& e : model.motors) add("motor", e, make_joint_law(e, model.time.end));
-  for (const JointSpring& e : model.joint_springs) add("joint spring", e, make_joint_law(e));
+  for (const Motor& e : model.motors)
+    add("motor", e, [&](Real) { return make_joint_law(e, model.time.end); });
+  for (const JointSpring& e : model.joint_springs)
+    add("joint spring", e, [&](Real c) { return make_joint_law(e, c); });
   for (const JointLimit& e : model.joint_limits)
-    add("joint limit", e, make_joint_law(e, model.integrator.resolve_events));
+    add("joint limit", e, [&](Real) { return make_joint_law(e, model.integrator.resolve_events); });
 }
 
 void JointForces::open_step(const BodyPoses& poses, const SystemInstant& at, Real h,

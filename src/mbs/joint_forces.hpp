@@ -12,8 +12,9 @@ namespace scree {
 // does.
 class JointForces {
  public:
-  // Throws InputError naming an element that is refused.
-  JointForces(const Model& model, const BodyLayout& layout);
+  JointForces() = default;
+  // start: the bodies at t = 0. Throws InputError naming an element that is refused.
+  JointForces(const Model& model, const BodyLayout& layout, const BodyPoses& start);
 
   bool empty() const { return forces_.empty(); }
   // Opens a step of length h at this instant; with h = 0 efforts are those of instants until the next step.

@@ -125,24 +125,28 @@ class SpeedMotor final : public MotorLaw {
 // T = -(k (c - c_0) + d c' + F(c) + G(c'))
 class SpringLaw final : public JointLaw {
  public:
-  SpringLaw(const JointSpring& spring, const std::string& owner)
-      : spring_(spring), elastic_(spring.elastic, owner), dissipative_(spring.dissipative, owner) {}
+  SpringLaw(const JointSpring& spring, Real start, const std::string& owner)
+      : spring_(spring),
+        free_(spring.free.value_or(start)),
+        elastic_(spring.elastic, owner),
+        dissipative_(spring.dissipative, owner) {}
 
   JointEffort effort(const CoordinateInstant& at, Real) const override {
     const TimeValue elastic = elastic_(at.value), dissipative = dissipative_(at.rate);
-    const Real stored = spring_.stiffness * (at.value - spring_.free) + elastic.value;
+    const Real stored = spring_.stiffness * (at.value - free_) + elastic.value;
     const Real lost = spring_.damping * at.rate + dissipative.value;
     return {-(stored + lost), -(spring_.stiffness + elastic.rate), -(spring_.damping + dissipative.rate),
             std::max(std::abs(stored), std::abs(lost))};
   }
   Real energy(Real c) const override {
-    const Real stretch = c - spring_.free;
+    const Real stretch = c - free_;
     return spring_.stiffness / 2 * stretch * stretch + elastic_.integral(c);
   }
   Real stiffness() const override { return spring_.stiffness; }
 
  private:
   JointSpring spring_;
+  Real free_;
   IntegratedCurve elastic_;
   ScalarFunction dissipative_;
 };
@@ -217,8 +221,8 @@ std::unique_ptr<JointLaw> make_joint_law(const Motor& motor, Real end) {
   throw std::logic_error("a motor of no kind");
 }
 
-std::unique_ptr<JointLaw> make_joint_law(const JointSpring& spring) {
-  return std::make_unique<SpringLaw>(spring, fmt::format("joint spring '{}'", spring.name));
+std::unique_ptr<JointLaw> make_joint_law(const JointSpring& spring, Real start) {
+  return std::make_unique<SpringLaw>(spring, start, fmt::format("joint spring '{}'", spring.name));
 }
 
 std::unique_ptr<JointLaw> make_joint_law(const JointLimit& limit, bool resolve_events) {

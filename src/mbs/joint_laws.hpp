@@ -56,7 +56,8 @@ class JointLaw {
 // Throw InputError naming the element where a table of a time function is refused (end: of the simulated time
 // [s]).
 std::unique_ptr<JointLaw> make_joint_law(const Motor& motor, Real end);
-std::unique_ptr<JointLaw> make_joint_law(const JointSpring& spring);
+// start: the coordinate at t = 0.
+std::unique_ptr<JointLaw> make_joint_law(const JointSpring& spring, Real start);
 // resolve_events: as Integrator's.
 std::unique_ptr<JointLaw> make_joint_law(const JointLimit& limit, bool resolve_events);
 

@@ -39,7 +39,6 @@ RigidBodySystem::RigidBodySystem(const Model& model)
       poses_(layout_),
       scratch_(layout_),
       wrench_(model.bodies.size()),
-      joint_forces_(model, layout_),
       coordinate_scale_(static_cast<std::size_t>(layout_.columns()), 1) {
   kinds_.push_back(planar_bodies(model, layout_));
   for (const auto& kind : kinds_) {
@@ -83,6 +82,7 @@ void RigidBodySystem::add_elements(const Model& model) {
     constant_force_scale_ =
         std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
   }
+  joint_forces_ = JointForces(model, layout_, start_poses());
   constant_force_scale_ =
       std::max(constant_force_scale_, kElasticFloor * joint_forces_.elastic_scale(length_scale_));
 }

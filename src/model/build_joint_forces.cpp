@@ -22,14 +22,35 @@ int moving_joint(const DeckTable& table, const Model& model, const ModelNames& n
   return joint;
 }
 
-int moving_joint(const DeckTable& table, const Model& model, const ModelNames& names) {
-  return moving_joint(table, model, names, table.text("joint"), "joint");
+// The joint that the table names, or all of a row of joints.
+std::vector<int> moving_joints(const DeckTable& table, const Model& model, const ModelNames& names) {
+  const std::string& name = table.text("joint");
+  const auto of_row = [&](std::size_t i) { return fmt::format("{}.{}", name, i); };
+  std::vector<int> joints;
+  if (names.joints.count(name) == 0)
+    while (names.joints.count(of_row(joints.size())) > 0)
+      joints.push_back(moving_joint(table, model, names, of_row(joints.size()), "joint"));
+  if (joints.empty()) joints.push_back(moving_joint(table, model, names, name, "joint"));
+  return joints;
 }
 
-Motor build_motor(const DeckTable& table, const Model& model, const ModelNames& names) {
+// Adds element(joint) for every joint of the table; of a row's as NAME.0, NAME.1, ...
+template <class Element, class Build>
+void add_elements(const DeckTable& table, const Model& model, const ModelNames& names, NameMap& taken,
+                  std::vector<Element>& out, const Build& build) {
+  const std::vector<int> joints = moving_joints(table, model, names);
+  const bool row = names.joints.count(table.text("joint")) == 0;
+  const Element element = build(table);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    out.push_back(element);
+    out.back().name = row ? fmt::format("{}.{}", table.text("name"), i) : table.text("name");
+    out.back().joint = joints[i];
+    add_name(taken, out.back().name, 0, table);
+  }
+}
+
+Motor build_motor(const DeckTable& table) {
   Motor motor;
-  motor.name = table.text("name");
-  motor.joint = moving_joint(table, model, names);
   motor.kind = table.choice<MotorKind>("type");
   if (table.has("limit")) motor.limit = table.real("limit");
   switch (motor.kind) {
@@ -69,23 +90,18 @@ Curve build_curve(const DeckTable& table, const std::string& at, const std::stri
   return curve;
 }
 
-JointSpring build_spring(const DeckTable& table, const Model& model, const ModelNames& names) {
+JointSpring build_spring(const DeckTable& table) {
   JointSpring spring;
-  spring.name = table.text("name");
-  spring.joint = moving_joint(table, model, names);
   spring.stiffness = table.real("stiffness");
   spring.damping = table.real("damping");
-  spring.free =
-      table.has("free") ? table.real("free") : start_coordinate(model, joint_at(model, spring.joint));
+  if (table.has("free")) spring.free = table.real("free");
   spring.elastic = build_curve(table, "coordinates", "elastic_efforts");
   spring.dissipative = build_curve(table, "rates", "damping_efforts");
   return spring;
 }
 
-JointLimit build_limit(const DeckTable& table, const Model& model, const ModelNames& names) {
+JointLimit build_limit(const DeckTable& table) {
   JointLimit limit;
-  limit.name = table.text("name");
-  limit.joint = moving_joint(table, model, names);
   if (!table.has("lower") && !table.has("upper")) table.fail("name", "a limit needs lower, upper or both");
   if (table.has("lower")) limit.lower = table.real("lower");
   if (table.has("upper")) limit.upper = table.real("upper");
@@ -157,24 +173,15 @@ Coupler build_coupler(const DeckTable& table, const Model& model, const ModelNam
 
 void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names) {
   NameMap efforts, reactions = names.joints;  // as they stand side by side in the history
-  const auto add_to = [](NameMap& taken, const DeckTable& table) {
-    add_name(taken, table.text("name"), 0, table);
-  };
-  for (const DeckTable& table : deck.tables("motors")) {
-    add_to(efforts, table);
-    model.motors.push_back(build_motor(table, model, names));
-  }
-  for (const DeckTable& table : deck.tables("joint_springs")) {
-    add_to(efforts, table);
-    model.joint_springs.push_back(build_spring(table, model, names));
-  }
-  for (const DeckTable& table : deck.tables("joint_limits")) {
-    add_to(efforts, table);
-    model.joint_limits.push_back(build_limit(table, model, names));
-  }
+  for (const DeckTable& table : deck.tables("motors"))
+    add_elements(table, model, names, efforts, model.motors, build_motor);
+  for (const DeckTable& table : deck.tables("joint_springs"))
+    add_elements(table, model, names, efforts, model.joint_springs, build_spring);
+  for (const DeckTable& table : deck.tables("joint_limits"))
+    add_elements(table, model, names, efforts, model.joint_limits, build_limit);
   for (const Driver& driver : model.drivers) reactions.emplace(driver.name, 0);
   for (const DeckTable& table : deck.tables("couplers")) {
-    add_to(reactions, table);
+    add_name(reactions, table.text("name"), 0, table);
     model.couplers.push_back(build_coupler(table, model, names));
   }
 }

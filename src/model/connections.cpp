@@ -96,14 +96,6 @@ void check_single(const DeckTable& table, const std::string& key) {
   if (!table.has("bodies")) table.fail(key, "not used with chain or each; give local_points");
 }
 
-Real start_coordinate(const Model& model, const Joint& joint) {
-  if (joint.kind == JointKind::revolute)
-    return start_angle(model, joint.body[1]) - start_angle(model, joint.body[0]);
-  const Vec3 apart = to_global_point(model, joint.body[1], joint.point[1]) -
-                     to_global_point(model, joint.body[0], joint.point[0]);
-  return dot(apart, to_global_direction(model, joint.body[0], joint.axis));
-}
-
 JointGap joint_gap(const Model& model, const Joint& joint) {
   const Vec3 a = to_global_point(model, joint.body[0], joint.point[0]),
              b = to_global_point(model, joint.body[1], joint.point[1]);

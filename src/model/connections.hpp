@@ -35,9 +35,6 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
 // Refuses `key` together with chain or each: one global point cannot hold for several elements.
 void check_single(const DeckTable& table, const std::string& key);
 
-// The coordinate of a revolute or translational joint at t = 0 [rad or m].
-Real start_coordinate(const Model& model, const Joint& joint);
-
 // Whether the two sides of a joint meet at t = 0.
 struct JointGap {
   Vec3 end[2];   // the joint's point on either body [m]

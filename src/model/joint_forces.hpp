@@ -1,6 +1,7 @@
 // Motors, springs and limits on the coordinates of joints, and couplers between these coordinates.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,12 +34,13 @@ struct Motor {
   Real gain = 0, integral_gain = 0;  // [N m s/rad, N s/m], [N m/rad, N/m]
 };
 
-// Effort -(k (c - free) + d c' + F(c) + G(c')).
+// Effort -(k (c - free) + d c' + F(c) + G(c')); free is left out: c at t = 0.
 struct JointSpring {
   std::string name;
   int joint = 0;
-  Real stiffness = 0, damping = 0, free = 0;  // k, d, free
-  Curve elastic, dissipative;                 // F, G
+  Real stiffness = 0, damping = 0;  // k, d
+  std::optional<Real> free;
+  Curve elastic, dissipative;  // F, G
 };
 
 // Beyond lower or upper a contact's law pushes back: K d^n + C d', d being how far c is beyond.

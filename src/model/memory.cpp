@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <string>
 
 #include "base/host_memory.hpp"
 #include "model/model.hpp"
@@ -46,14 +48,20 @@ ModelSize bodies_and_links(const DeckTable& deck) {
     rows[table.text("name")] = count;
     size.bodies += count;
   }
+  std::map<std::string, std::int64_t> joints;
   for (const char* key : {"joints", "spring_dampers", "torsional_spring_dampers"}) {
     for (const DeckTable& table : deck.tables(key)) {
       const char* row = table.has("chain") ? "chain" : "each";
-      size.links += table.has(row) ? rows[table.text(row)] : 1;
+      const std::int64_t count = table.has(row) ? rows[table.text(row)] : 1;
+      if (key == std::string("joints")) joints[table.text("name")] = count;
+      size.links += count;
     }
   }
-  for (const char* key : {"drivers", "applied_forces", "motors", "joint_springs", "joint_limits", "couplers"})
+  for (const char* key : {"drivers", "applied_forces", "couplers"})
     size.links += std::ssize(deck.tables(key));
+  for (const char* key : {"motors", "joint_springs", "joint_limits"})
+    for (const DeckTable& table : deck.tables(key))
+      size.links += std::max<std::int64_t>(1, joints[table.text("joint")]);
   return size;
 }
 

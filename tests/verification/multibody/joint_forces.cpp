@@ -189,6 +189,18 @@ TEST_CASE("springs on joints: a table of a straight line is a stiffness, a quint
   CHECK(near(energy(damped), kInertia / 2, {.relative = 1e-8}));
 }
 
+TEST_CASE("a spring without a free coordinate has no effort at the start") {
+  Model model = flywheel();
+  model.bodies[0].angle = 0.4;
+  add_slider(model);
+  model.bodies[1].position = {0.3, 0, 0};
+  model.joint_springs = {{"coil", 0, 2, 0, {}, {}, {}}, {"spring", 1, 50, 0, {}, {}, {}}};
+  MultibodyRun run(model);
+  for (const JointEffortSample& sample : run.multibody.joint_efforts(run.state, 0)) CHECK(sample.effort == 0);
+  CHECK(run.multibody.joint_efforts(run.state, 0).at(1).coordinate == 0.3);
+  CHECK(run.state.acceleration == std::vector<Real>(6, 0));
+}
+
 TEST_CASE("a stop gives a slider back as the contact law says; undamped and linear at any step") {
   struct Case {
     Real damping, exponent, steps, rebound, allowed;  // steps: of a contact

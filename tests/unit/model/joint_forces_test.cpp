@@ -1,0 +1,95 @@
+// Motors, springs and limits on joints, and couplers, as a deck makes them.
+#include "model/memory.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+
+namespace scree {
+
+namespace {
+
+const std::string kDeck = kSmallDeck + R"(
+[[bodies]]
+name = "link"
+count = 3
+spacing = [0.2, 0.0]
+mass = 1.0
+inertia = 0.1
+position = [0.0, 0.0]
+angle = 0.3
+[[bodies]]
+name = "sled"
+mass = 1.0
+inertia = 0.1
+position = [0.1, 0.7]
+[[joints]]
+name = "hinge"
+type = "revolute"
+each = "link"
+[[joints]]
+name = "rail"
+type = "translational"
+bodies = ["ground", "sled"]
+local_points = [[0.0, 0.5], [0.0, 0.0]]
+axis = [0.1, 0.2]
+[[joints]]
+name = "weld"
+type = "fixed"
+bodies = ["link.0", "link.1"]
+)";
+
+std::string refusal(const std::string& table) {
+  return input_error([&] { model_of(kDeck + table); });
+}
+
+std::string coupler(const std::string& rest) { return "[[couplers]]\nname = \"c\"\n" + rest; }
+
+}  // namespace
+
+TEST_CASE("an effort on a row of joints is one on each") {
+  const std::string springs =
+      "[[joint_springs]]\nname = \"s\"\njoint = \"hinge\"\nstiffness = 2.0\n"
+      "[[joint_springs]]\nname = \"coil\"\njoint = \"rail\"\nstiffness = 3.0\n"
+      "[[motors]]\nname = \"m\"\njoint = \"hinge.1\"\ntype = \"effort\"\neffort = 1.0\n";
+  const Model model = model_of(kDeck + springs);
+  REQUIRE(model.joint_springs.size() == 4);
+  CHECK(model.joint_springs[2].name == "s.2");
+  CHECK(model.joint_springs[2].joint == 2);
+  CHECK(!model.joint_springs[2].free.has_value());
+  CHECK(model.joint_springs[3].name == "coil");
+  CHECK(model.motors[0].joint == 1);
+  CHECK(bodies_and_links(parse_deck(kDeck + springs, "deck.toml", {}).root).links == 5 + 3 + 1 + 1);
+}
+
+TEST_CASE("couplers of every type have their coefficients") {
+  const auto coefficients = [](const std::string& rest) {
+    return model_of(kDeck + coupler(rest)).couplers.at(0).coefficients;
+  };
+  const std::string hinges = "joints = [\"hinge.0\", \"hinge.1\"]\n";
+  CHECK(coefficients("type = \"gear\"\nradii = [2, 6]\n" + hinges) == std::vector<Real>{1, 3});
+  CHECK(coefficients("type = \"gear\"\nradii = [2, 6]\ninternal = true\n" + hinges) ==
+        std::vector<Real>{1, -3});
+  CHECK(coefficients("type = \"belt\"\nradii = [2, 6]\n" + hinges) == std::vector<Real>{1, -3});
+  CHECK(coefficients("type = \"rack-and-pinion\"\nradius = 0.2\njoints = [\"hinge.0\", \"rail\"]\n") ==
+        std::vector<Real>{-0.2, 1});
+  CHECK(coefficients("type = \"differential\"\njoints = [\"hinge.0\", \"hinge.1\", \"hinge.2\"]\n") ==
+        std::vector<Real>{1, 1, -2});
+  CHECK(coefficients("type = \"sum\"\ncoefficients = [2, -0.5]\njoints = [\"rail\", \"hinge.1\"]\n") ==
+        std::vector<Real>{2, -0.5});
+}
+
+TEST_CASE("what has no coordinate is refused with the joint's name and kind") {
+  CHECK(contains(refusal("[[motors]]\nname = \"m\"\njoint = \"weld\"\ntype = \"effort\"\neffort = 1.0\n"),
+                 "joint \"weld\" is a fixed joint; it must be revolute or translational"));
+  CHECK(contains(refusal("[[joint_limits]]\nname = \"m\"\njoint = \"rail\"\nstiffness = 1.0\n"),
+                 "a limit needs lower, upper or both"));
+  CHECK(
+      contains(refusal(coupler("type = \"sum\"\ncoefficients = [1, 0]\njoints = [\"rail\", \"hinge.0\"]\n")),
+               "must not be 0"));
+  CHECK(
+      contains(refusal(coupler("type = \"rack-and-pinion\"\nradius = 1\njoints = [\"rail\", \"hinge.0\"]\n")),
+               "joint \"rail\" must be revolute here"));
+  const std::string two = "name = \"s\"\njoint = \"rail\"\n";
+  CHECK(contains(refusal("[[joint_springs]]\n" + two + "[[joint_springs]]\n" + two), "\"s\""));
+}
+
+}  // namespace scree
