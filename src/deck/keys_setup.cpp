@@ -174,7 +174,8 @@ const TableKeys& contact_keys() {
            .about(
                "In place of damping: speed after over speed before a head-on impact, the same at every speed "
                "and mass, by C = 2 zeta sqrt(m* K (n+1)/2) d^((n-1)/2), exact for either `tension`; needs n "
-               "of at least 1. A body that particles meet counts as unmovable in it."),
+               "of at least 1. Of surfaces that attract, that of the law without attraction, with tension. A "
+               "body that particles meet counts as unmovable in it."),
        boolean("tension").otherwise("false").about(
            "Whether the force may pull just before separation; false cuts it at zero."),
        real("friction", "")
@@ -227,7 +228,7 @@ const TableKeys& contact_keys() {
            .left_out("work_of_adhesion is given, or none")
            .about("In place of work_of_adhesion: w/2, of one of two surfaces that are alike."),
        choice<Adhesion>("adhesion")
-           .otherwise_choice(Adhesion::jkr)
+           .left_out("jkr")
            .about(
                "With work_of_adhesion. Jkr: a neck that is made at touch and holds down to a pull of 3/2 pi "
                "w R* (Johnson, Kendall, Roberts, 1971; soft, sticky, large). Dmt: a pull of 2 pi w R* while "

@@ -117,8 +117,8 @@ struct RubbingShiftItem {
     for (Index k = 0; k < matrix.surface_count[i]; ++k) {
       const RubbingEntry& entry = matrix.surface_entries[surface_offsets[i] + k];
       if (entry.normal.neighbor == RubbingPath::kWall) continue;
-      residual[i] -=
-          entry.pull(-scale * moves.move[entry.normal.neighbor], scale * moves.turn[entry.normal.neighbor], with_grip);
+      residual[i] -= entry.pull(-scale * moves.move[entry.normal.neighbor],
+                                scale * moves.turn[entry.normal.neighbor], with_grip);
     }
   }
 };

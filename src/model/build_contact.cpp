@@ -235,7 +235,9 @@ void take_attraction(const DeckTable& table, KelvinVoigt& law) {
                  "needs Hertz's law: young_modulus and poisson_ratio of both materials, spheres, and no "
                  "stiffness; other laws may have an attraction");
     law.adhesion_work = (table.has("surface_energy") ? 2 : 1) * table.real(key);
-    law.neck = table.choice<Adhesion>("adhesion") == Adhesion::jkr;
+    law.neck = !table.has("adhesion") || table.choice<Adhesion>("adhesion") == Adhesion::jkr;
+  } else if (table.has("adhesion")) {
+    table.fail("adhesion", "needs work_of_adhesion or surface_energy beside it");
   }
   if (table.has("attraction")) {
     if (law.effective_modulus == 0 && law.exponent != 1)

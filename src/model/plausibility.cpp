@@ -206,6 +206,18 @@ std::string many_sizes(const Model& model) {
       smallest, largest);
 }
 
+std::string wide_attraction(const Model& model) {
+  const Real smallest = radius_range(model).smallest, reach = model.contact.reach;
+  if (smallest == 0 || reach <= smallest) return "";
+  return fmt::format(
+      "surfaces attract each other up to {:.3g} m beyond touch, more than the smallest radius, {:.3g} m: "
+      "laws "
+      "of attraction are of surfaces nearly in touch; a shorter attraction_range, less work of adhesion, or "
+      "a "
+      "larger modulus",
+      reach, smallest);
+}
+
 // Values of a distribution that it may take.
 std::vector<Real> values_of(const DeckTable& distribution) {
   switch (distribution.choice<DistributionKind>("kind")) {
@@ -299,6 +311,7 @@ std::vector<std::string> implausible(const DeckTable& deck, const Model& model) 
                                        gyration_beyond_extent(model),
                                        undamped_joints_in_space(model),
                                        many_sizes(model),
+                                       wide_attraction(model),
                                        odd_density(deck),
                                        odd_mass(deck, model),
                                        many_steps(model)};

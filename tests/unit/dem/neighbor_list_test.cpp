@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/pair_list.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
 
@@ -106,6 +107,36 @@ TEST_CASE("rows hold every pair and image in reach, once, by global id and image
         CHECK(found_row(built.items, built.list, i) == expected);
       }
     }
+}
+
+TEST_CASE("every slot is that of one pair, of a particle or of its partner") {
+  for (const BoxCase& box : kBoxes) {
+    CAPTURE(box.name);
+    const BuiltList built(box, 1);
+    const NeighborList& list = built.list;
+    const Index owned = built.items.layout.owned;
+    PairList pairs;
+    pairs.match(list, built.items.store);
+    CHECK(pairs.is_current);
+    CHECK(pairs.slots == list.neighbors.size());
+    REQUIRE(pairs.rows() == owned);
+    std::vector<int> uses(list.neighbors.size(), 0);
+    for (Index i = 0; i < owned; ++i)
+      for (Index k = pairs.offsets[i]; k < pairs.offsets[i + 1]; ++k) {
+        const ListedPair& pair = pairs.pairs[k];
+        CAPTURE(i, pair.j, pair.slot, pair.mirror);
+        CHECK((list.offsets[i] <= pair.slot && pair.slot < list.offsets[i + 1]));
+        CHECK(list.neighbors[pair.slot] == pair.j);
+        ++uses[pair.slot];
+        REQUIRE(pair.has_mirror() == (pair.j < owned));
+        if (!pair.has_mirror()) continue;
+        CHECK(i < pair.j);
+        CHECK((list.offsets[pair.j] <= pair.mirror && pair.mirror < list.offsets[pair.j + 1]));
+        CHECK(list.neighbors[pair.mirror] == i);
+        ++uses[pair.mirror];
+      }
+    CHECK(std::count(uses.begin(), uses.end(), 1) == std::ssize(uses));
+  }
 }
 
 TEST_CASE("the boxes of these tests have ghosts") {

@@ -1,5 +1,8 @@
 // Keys of surfaces that attract each other: what they become, what the search must reach, what is refused.
+#include <algorithm>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "model/limits.hpp"
 #include "physics/cohesion.hpp"
@@ -72,11 +75,26 @@ TEST_CASE("a constant attraction stands beside a linear law or Hertz's") {
   CHECK(model_of(hertz("attraction = 2.0\n")).contact.law(0, 0).attraction == 2);
 }
 
+TEST_CASE("an attraction that reaches farther than a radius is warned of") {
+  const auto warned = [](const std::string& range) {
+    const std::vector<std::string> texts =
+        model_warnings(linear("attraction = 1e-3\nattraction_range = " + range + "\n"));
+    return std::count_if(texts.begin(), texts.end(), [](const std::string& text) {
+      return contains(text, "attract each other up to 0.021 m beyond touch, more than the smallest radius");
+    });
+  };
+  CHECK(warned("0.021") == 1);
+  CHECK(warned("0.019") == 0);
+}
+
 TEST_CASE("what attraction does not go with is told with its remedy") {
   CHECK(contains(model_error(linear("work_of_adhesion = 0.1\n")),
                  "contact.pairs.0.work_of_adhesion = 0.1: needs Hertz's law: young_modulus"));
   CHECK(contains(model_error(hertz("work_of_adhesion = 0.1\nsurface_energy = 0.05\n")),
                  "surface_energy = 0.05: stands beside work_of_adhesion; give one of the two"));
+  for (const std::string form : {"jkr", "dmt"})
+    CHECK(contains(model_error(hertz("adhesion = \"" + form + "\"\n")),
+                   "contact.pairs.0.adhesion = \"" + form + "\": needs work_of_adhesion or surface_energy"));
   CHECK(contains(model_error(linear("exponent = 1.5\nattraction = 0.1\n")),
                  "attraction = 0.1: needs a pair with exponent = 1, or Hertz's law"));
   CHECK(contains(model_error(linear("attraction_range = 0.1\n")),
