@@ -57,7 +57,7 @@ TEST_CASE("keys that belong to a kind name words of their table's selector") {
     }
   };
   check_table(deck_keys());
-  CHECK(tables == 5);  // time, joints, particles, functions of time, distributions
+  CHECK(tables == 6);  // time, bodies, joints, particles, functions of time, distributions
 }
 
 }  // namespace scree
