@@ -147,7 +147,7 @@ const TableKeys& joint_keys() {
            .about("Direction of the axis at t = 0 in the global frame, of any length but 0."),
        vector("second_axis", "")
            .only_for(with_two)
-           .required_for(with_two)
+           .required()
            .about("The second body's axis or arm at t = 0, likewise; perpendicular to axis but for "
                   "constant-velocity "
                   "joints."),

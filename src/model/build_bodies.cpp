@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/rotation.hpp"
 #include "model/build_parts.hpp"
 #include "model/plausibility.hpp"
 #include "physics/spatial_rotation.hpp"
@@ -40,7 +41,7 @@ void read_inertia(const DeckTable& table, Body& body) {
   body.inertia = principal[0];
 }
 
-void read_orientation(const DeckTable& table, Body& body) {
+Quaternion read_orientation(const DeckTable& table) {
   const bool axis = table.has("rotation_axis");
   if (axis != table.has("rotation_angle"))
     table.fail(axis ? "rotation_axis" : "rotation_angle", "rotation_axis and rotation_angle go together");
@@ -49,20 +50,20 @@ void read_orientation(const DeckTable& table, Body& body) {
   if (axis) {
     const Vec3 along = table.vector("rotation_axis");
     if (norm(along) == 0) table.fail("rotation_axis", "must not be 0");
-    body.orientation = exponential((table.real("rotation_angle") / norm(along)) * along);
+    return exponential((table.real("rotation_angle") / norm(along)) * along);
   }
-  if (!table.has("quaternion")) return;
+  if (!table.has("quaternion")) return {};
   const std::vector<Real>& e = table.reals("quaternion");
   const Quaternion given{e[0], e[1], e[2], e[3]};
   if (!(std::abs(norm(given) - 1) < kUnitLength))
     table.fail("quaternion",
                fmt::format("must be of length 1, to {:g}; it is {:.9g}", kUnitLength, norm(given)));
-  body.orientation = normalized(given);
+  return normalized(given);
 }
 
 void read_spatial(const DeckTable& table, Body& body) {
   read_inertia(table, body);
-  read_orientation(table, body);
+  body.orientation = read_orientation(table);
   if (table.has("body_angular_velocity") && table.has("global_angular_velocity"))
     table.fail("global_angular_velocity", "not used together with body_angular_velocity");
   if (table.has("body_angular_velocity")) body.spin = table.vector("body_angular_velocity");
@@ -94,6 +95,11 @@ Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
 }
 
 }  // namespace
+
+Vec3 turned_at_start(const DeckTable& body, Vec3 local) {
+  if (body.choice<BodyKind>("kind") == BodyKind::planar) return Rotation(body.real("angle")).turn(local);
+  return rotation_matrix(read_orientation(body)) * local;
+}
 
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names) {
   for (const DeckTable& table : deck.tables("bodies")) {

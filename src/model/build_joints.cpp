@@ -204,10 +204,13 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
     add_name(taken, table.text("name"), 0, table);
     const int joint = find_name(names.joints, table, "joint", "joint");
     const Joint& driven = model.joints[static_cast<std::size_t>(joint)];
-    if (!can_be_driven(model, driven))
-      table.fail("joint", fmt::format("a {} joint of {} bodies cannot be driven; it must be translational or "
-                                      "distance, or revolute between planar bodies",
-                                      word_of(driven.kind), word_of(between(model, driven.body))));
+    if (!can_be_driven(model, driven)) {
+      const bool planar = between(model, driven.body) == BodyKind::planar;
+      table.fail(
+          "joint",
+          fmt::format("a {} joint cannot be driven; between {} bodies it must be {}translational or distance",
+                      word_of(driven.kind), planar ? "planar" : "spatial", planar ? "revolute, " : ""));
+    }
     model.drivers.push_back({table.text("name"), joint, build_motion(table.table("motion"))});
   }
 }

@@ -256,7 +256,7 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
     const std::int64_t count = row ? table.integer("count") : 1;
     for (const DeckTable& shape : table.tables("shapes")) {
       const Vec3 first = table.vector("position"), spacing = table.vector("spacing"),
-                 offset = Rotation(table.real("angle")).turn(shape.vector("offset"));
+                 offset = turned_at_start(table, shape.vector("offset"));
       for (std::int64_t i = 0; i < count; ++i) {
         const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
         if (allowed.inside(p)) continue;

@@ -54,7 +54,7 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
        "particles.d.positions = []: the group has no particles"},
       {spheres + kBody,
        {"gravity=[0, 0, -10]", "bodies.b.position=[0.5, 0.5, 0]"},
-       "gravity has -10 m/s^2 along z: bodies move in the x-y plane only"},
+       "gravity has -10 m/s^2 along z: planar bodies move in the x-y plane only"},
       {spheres,
        {"particles.d.radius=1.1", "particles.d.mass=5e3"},
        "a particle of radius 1.1 m is larger than the space, 2 m long in x"},
