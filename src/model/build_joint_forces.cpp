@@ -19,6 +19,11 @@ int moving_joint(const DeckTable& table, const Model& model, const ModelNames& n
   if (kind != JointKind::revolute && kind != JointKind::translational)
     table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be revolute or translational", name,
                                 word_of(kind)));
+  if (between(model, joint_at(model, joint).body) == BodyKind::spatial)
+    table.fail(key, fmt::format(
+                        "joint \"{}\" is between spatial bodies; motors, springs, limits and couplers are on "
+                        "joints of planar ones",
+                        name));
   return joint;
 }
 
