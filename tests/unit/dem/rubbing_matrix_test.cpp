@@ -1,5 +1,6 @@
 // The Newton matrix of contacts that rub: its blocks against its products, its bounds, the blocks' inverse.
 #include "dem/rubbing_matrix.hpp"
+
 #include "model/random.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
