@@ -38,7 +38,10 @@ class PlanarBodies final : public RigidBodies {
       : gravity_(model.gravity), contact_(model.bodies.size()) {
     for (int b = 0; b < layout.bodies(); ++b) {
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
-      if (body.kind == BodyKind::planar) bodies_.push_back({body, {b, layout.position(b), layout.column(b)}});
+      if (body.kind != BodyKind::planar) continue;
+      const Constants constants{body.mass,     body.inertia,          body.position,       body.angle,
+                                body.velocity, body.angular_velocity, !body.shapes.empty()};
+      bodies_.push_back({constants, {b, layout.position(b), layout.column(b)}});
     }
   }
 
@@ -120,7 +123,7 @@ class PlanarBodies final : public RigidBodies {
   void add_contact_derivatives(const BodyPoses&, const std::vector<BodyWrench>&,
                                SystemDerivatives& derivatives) const override {
     for (const Placed& b : bodies_) {
-      if (b.body.shapes.empty()) continue;
+      if (!b.body.has_shapes) continue;
       const int coordinate[3] = {b.at.column, b.at.column + 1, b.at.column + 2};
       const ContactBlock& block = contact_[static_cast<std::size_t>(b.at.body)];
       derivatives.stiffness.add_block(
@@ -182,8 +185,17 @@ class PlanarBodies final : public RigidBodies {
   }
 
  private:
+  // Of a body, what every step walks along: the model's holds names and shapes, too.
+  struct Constants {
+    Real mass, inertia;
+    Vec3 position;
+    Real angle;
+    Vec3 velocity;
+    Real angular_velocity;
+    bool has_shapes;
+  };
   struct Placed {
-    Body body;
+    Constants body;
     BodyPlace at;
   };
   // (x, y, angle) row by row, of what touches a body.
