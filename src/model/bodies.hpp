@@ -106,7 +106,7 @@ struct AppliedForce {
   Vec3 point;                   // in the body frame [m]
   TimeFunction fx, fy, torque;  // [N], [N], [N m]
   bool follows_body = false;
-  TimeFunction fz, torque_x, torque_y;  // of spatial bodies; torque is that about z
+  TimeFunction fz{}, torque_x{}, torque_y{};  // of spatial bodies; torque is that about z
 };
 
 }  // namespace scree

@@ -20,8 +20,8 @@ struct BodyMotion {
   Real angle = 0;             // about z [rad]
   Real angular_velocity = 0;  // about z [rad/s]
   BodyKind kind = BodyKind::planar;
-  Quaternion orientation;
-  Vec3 spin;  // angular velocity in the body's frame [rad/s]
+  Quaternion orientation{};
+  Vec3 spin{};  // angular velocity in the body's frame [rad/s]
 };
 
 // Position [m] and velocity [m/s] of a point fixed to a body.

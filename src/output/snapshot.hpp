@@ -31,8 +31,8 @@ struct BodySnapshot {
   std::span<const Vec3> force;             // contact force on the shape [N]
   std::span<const int> contacts;
   // Of the bodies, where some are spatial; else empty. orientation: scalar first, 4 numbers a shape.
-  std::span<const Real> orientation;
-  std::span<const Vec3> spin;  // angular velocity, global [rad/s]
+  std::span<const Real> orientation{};
+  std::span<const Vec3> spin{};  // angular velocity, global [rad/s]
 };
 
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
