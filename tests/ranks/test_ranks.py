@@ -30,6 +30,7 @@ MAIN_CASES = {
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
     # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
     "rubbing on bodies": ([HERE / "rubbing_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
+    "bodies in space": ([HERE / "spatial_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 4)),
     "rubbing, implicit": ([*RUBBING, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
     "rubbing after Hertz and Mindlin, implicit": ([HERE / "rubbing_hertz.toml", *IMPLICIT, *FIXED,
                                                    "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
@@ -39,6 +40,8 @@ MAIN_CASES = {
 }
 CASES = {
     **MAIN_CASES,
+    "bodies in space, implicit": ([HERE / "spatial_bodies.toml", *IMPLICIT, *FIXED, "integrator.substeps=1",
+                                   "parallel.imbalance=0.0", "time.end=0.08"], (1, 2)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (1, 3)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
 }
