@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mbs/joint_coordinate.hpp"
+#include "model/connections.hpp"
 
 namespace scree {
 
@@ -19,8 +20,7 @@ JointForces::JointForces(const Model& model, const BodyLayout& layout, const Bod
     coordinate->value(start, 0, &c);
     forces_.emplace_back(element.name, std::move(coordinate), make_law(c));
     for (const int body : joint.body) {
-      if (body != kGround && model.bodies[static_cast<std::size_t>(body)].kind == BodyKind::spatial)
-        forces_.back().turns_in_space(body, layout.column(body) + 3);
+      if (is_spatial(model, body)) forces_.back().turns_in_space(body, layout.column(body) + 3);
     }
   };
   for (const Motor& e : model.motors)

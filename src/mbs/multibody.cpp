@@ -178,9 +178,7 @@ IterationNorms Multibody::correct(const ContactWrenches& contacts) {
 Real Multibody::error() const {
   Real largest = 0;
   for (const auto& kind : impl_->system.kinds()) {
-    const Real error = kind->error(impl_->method, impl_->system.length_scale());
-    if (std::isnan(error)) return error;
-    largest = std::max(largest, error);
+    largest = larger_error(largest, kind->error(impl_->method, impl_->system.length_scale()));
   }
   return largest;
 }

@@ -139,11 +139,10 @@ class PlanarBodies final : public RigidBodies {
     for (const Placed& b : bodies_) {
       const Real *a0 = b.at.of(step.start_acceleration()), *a1 = b.at.of(step.acceleration());
       const Vec3 shift0{a0[0], a0[1], 0}, shift1{a1[0], a1[1], 0}, turn0{0, 0, a0[2]}, turn1{0, 0, a1[2]};
-      for (const Real error : {hht_position_error(step.coefficients(), step.step(), shift0, shift1, length),
-                               hht_position_error(step.coefficients(), step.step(), turn0, turn1, 1)}) {
-        if (std::isnan(error)) return error;  // no step passes as exact because a comparison was false
-        largest = std::max(largest, error);
-      }
+      const auto error = [&](Vec3 from, Vec3 to, Real over) {
+        return hht_position_error(step.coefficients(), step.step(), from, to, over);
+      };
+      largest = larger_error(larger_error(largest, error(shift0, shift1, length)), error(turn0, turn1, 1));
     }
     return largest;
   }

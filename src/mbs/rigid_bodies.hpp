@@ -1,6 +1,7 @@
 // What of a system depends on how the pose of a body is written: the bodies of one kind.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -32,6 +33,9 @@ struct BodyPlace {
     return &columns[static_cast<std::size_t>(column)];
   }
 };
+
+// Not a number if one of them is not: no step passes as exact because a comparison was false.
+inline Real larger_error(Real a, Real b) { return std::isnan(a) || a > b ? a : b; }
 
 // Vectors of positions, velocities and forces are those of the whole system; each kind reads and writes its
 // bodies' places of the layout. Vectors over bodies are in the model's order.

@@ -20,8 +20,7 @@ Real characteristic_length(const Model& model) {
   }
   const auto add_point = [&](int body, Vec3 point) {
     if (body == kGround) return;
-    const bool spatial = model.bodies[static_cast<std::size_t>(body)].kind == BodyKind::spatial;
-    reach = std::max(reach, spatial ? norm(point) : norm(planar(point)));
+    reach = std::max(reach, is_spatial(model, body) ? norm(point) : norm(planar(point)));
   };
   for (int i = 0; i < 2; ++i) {
     for (const Joint& joint : model.joints) add_point(joint.body[i], joint.point[i]);
@@ -49,11 +48,12 @@ RigidBodySystem::RigidBodySystem(const Model& model)
     kind->set_weight(weight_);
     constant_force_scale_ = std::max(constant_force_scale_, kind->weight_scale(length_scale_));
   }
-  add_constraints(model);
-  add_elements(model);
+  const BodyPoses start = start_poses();
+  add_constraints(model, start);
+  add_elements(model, start);
 }
 
-void RigidBodySystem::add_constraints(const Model& model) {
+void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start) {
   const std::vector<bool> driven = driven_joints(model);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
@@ -70,13 +70,13 @@ void RigidBodySystem::add_constraints(const Model& model) {
   }
   for (const Coupler& coupler : model.couplers) {
     std::vector<std::unique_ptr<Constraint>> rows;
-    rows.push_back(make_coupler(coupler, model, layout_, start_poses()));
+    rows.push_back(make_coupler(coupler, model, layout_, start));
     add_group(fmt::format("coupler '{}'", coupler.name), coupler.name, std::move(rows),
               between(model, model.joints[static_cast<std::size_t>(coupler.joints.front())].body));
   }
 }
 
-void RigidBodySystem::add_elements(const Model& model) {
+void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
   const Real end = model.time.end;
   for (const SpringDamper& e : model.spring_dampers)
     elements_.push_back(between(model, e.body) == BodyKind::spatial ? make_spatial_element(e, layout_, end)
@@ -84,14 +84,13 @@ void RigidBodySystem::add_elements(const Model& model) {
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers)
     elements_.push_back(make_force_element(e, layout_));
   for (const AppliedForce& e : model.applied_forces)
-    elements_.push_back(model.bodies[static_cast<std::size_t>(e.body)].kind == BodyKind::spatial
-                            ? make_spatial_element(e, layout_, end)
-                            : make_force_element(e, layout_, end));
+    elements_.push_back(is_spatial(model, e.body) ? make_spatial_element(e, layout_, end)
+                                                  : make_force_element(e, layout_, end));
   for (const auto& element : elements_) {
     constant_force_scale_ =
         std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
   }
-  joint_forces_ = JointForces(model, layout_, start_poses());
+  joint_forces_ = JointForces(model, layout_, start);
   constant_force_scale_ =
       std::max(constant_force_scale_, kElasticFloor * joint_forces_.elastic_scale(length_scale_));
 }

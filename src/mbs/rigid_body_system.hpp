@@ -80,8 +80,9 @@ class RigidBodySystem final : public MechanicalSystem {
 
  private:
   BodyPoses start_poses() const;
-  void add_constraints(const Model& model);
-  void add_elements(const Model& model);
+  // start: at t = 0.
+  void add_constraints(const Model& model, const BodyPoses& start);
+  void add_elements(const Model& model, const BodyPoses& start);
   void add_group(const std::string& title, const std::string& name,
                  std::vector<std::unique_ptr<Constraint>> parts, BodyKind kind);
 

@@ -12,11 +12,8 @@ namespace scree {
 
 namespace {
 
-// The body if it is spatial, else null.
-const Body* spatial_body(const Model& model, int body) {
-  if (body == kGround) return nullptr;
-  const Body& b = model.bodies[static_cast<std::size_t>(body)];
-  return b.kind == BodyKind::spatial ? &b : nullptr;
+const Quaternion& start_orientation(const Model& model, int body) {
+  return model.bodies[static_cast<std::size_t>(body)].orientation;
 }
 
 Connection named_pair(const DeckTable& table, const ModelNames& names) {
@@ -79,13 +76,13 @@ Vec3 to_global_point(const Model& model, int body, Vec3 local) {
 }
 
 Vec3 to_body_direction(const Model& model, int body, Vec3 global) {
-  if (const Body* spatial = spatial_body(model, body))
-    return transposed_times(rotation_matrix(spatial->orientation), global);
+  if (is_spatial(model, body))
+    return transposed_times(rotation_matrix(start_orientation(model, body)), global);
   return Rotation(-start_angle(model, body)).turn(global);
 }
 
 Vec3 to_global_direction(const Model& model, int body, Vec3 local) {
-  if (const Body* spatial = spatial_body(model, body)) return rotation_matrix(spatial->orientation) * local;
+  if (is_spatial(model, body)) return rotation_matrix(start_orientation(model, body)) * local;
   return Rotation(start_angle(model, body)).turn(local);
 }
 
@@ -110,7 +107,7 @@ void find_end_points(const DeckTable& table, const Model& model, const Connectio
 
 void check_same_kind(const DeckTable& table, const Model& model, const Connection& connection) {
   if (connection.body[0] == kGround || connection.body[1] == kGround) return;
-  const auto spatial = [&](int side) { return spatial_body(model, connection.body[side]) != nullptr; };
+  const auto spatial = [&](int side) { return is_spatial(model, connection.body[side]); };
   if (spatial(0) == spatial(1)) return;
   table.fail(table.has("bodies") ? "bodies" : "name",
              "connects a planar and a spatial body; both must be of one kind (bodies.kind)");
@@ -167,6 +164,10 @@ std::vector<bool> driven_joints(const Model& model) {
   std::vector<bool> driven(model.joints.size(), false);
   for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;
   return driven;
+}
+
+bool is_spatial(const Model& model, int body) {
+  return body != kGround && model.bodies[static_cast<std::size_t>(body)].kind == BodyKind::spatial;
 }
 
 bool has_spatial_bodies(const Model& model) {

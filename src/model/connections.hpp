@@ -54,6 +54,7 @@ JointGap joint_gap(const Model& model, const Joint& joint);
 // Per joint, whether a driver prescribes it.
 std::vector<bool> driven_joints(const Model& model);
 bool has_spatial_bodies(const Model& model);
+bool is_spatial(const Model& model, int body);  // the ground is not
 // Of joints, drivers and couplers: the number of the multibody side's constraint equations.
 int constraint_count(const Model& model);
 // How many numbers motors remember.

@@ -62,4 +62,17 @@ inline Mat3 inverse_tangent(Vec3 u) {
   return identity3() + Real(0.5) * t + c * (t * t);
 }
 
+// Over a step of length h, h3 = h^3: what the rotation vector of a motion with angular velocity w and its
+// rate w' has beside the integral of w (Magnus), w x w' h^3 / 12; in the body's frame.
+inline Vec3 rotation_drift(Real h3, Vec3 w, Vec3 rate) { return (h3 / 12) * cross(w, rate); }
+
+// J w' = torque + gyroscopic_torque(J, w), in the body's frame; it does no work.
+inline Vec3 gyroscopic_torque(const Mat3& inertia, Vec3 w) { return cross(inertia * w, w); }
+inline Real rotational_energy(const Mat3& inertia, Vec3 w) { return dot(w, inertia * w) / 2; }  // [J]
+
+// integrator_loss() (time_stepping.hpp) of a rotation; torques: without the gyroscopic one.
+inline Real rotation_loss(const Mat3& inertia, Vec3 turn, Vec3 w0, Vec3 w1, Vec3 torque0, Vec3 torque1) {
+  return dot(torque0 + torque1, turn) / 2 - (rotational_energy(inertia, w1) - rotational_energy(inertia, w0));
+}
+
 }  // namespace scree

@@ -12,12 +12,11 @@
 #include "support/near.hpp"
 #include "unit/mbs/differences.hpp"
 #include "unit/mbs/efforts.hpp"
+#include "unit/mbs/probe.hpp"
 
 using namespace scree;
 
 namespace {
-
-constexpr Real kTime = 0.3;
 
 Model two_bodies() {
   Model model = empty_model();
@@ -97,32 +96,11 @@ std::vector<std::pair<std::string, Model>> samples() {
   return all;
 }
 
-// A system at an instant that satisfies nothing in particular: the derivatives hold everywhere.
-struct Probe {
-  explicit Probe(const Model& sample) : model(sample), system(model) {
-    terms.applied_force.assign(static_cast<std::size_t>(system.coordinates()), 0);
-    terms.constraint.assign(static_cast<std::size_t>(system.constraints()), 0);
-    multipliers.assign(terms.constraint.size(), 0);
-    for (std::size_t j = 0; j < multipliers.size(); ++j) multipliers[j] = 3.1 - 1.7 * static_cast<Real>(j);
+// At a place that satisfies nothing in particular: the derivatives hold everywhere.
+struct DistortedProbe : Probe {
+  explicit DistortedProbe(const Model& sample) : Probe(sample) {
+    position = {0.35, -0.25, 0.3, 1.2, 0.6, -0.7}, velocity = {0.4, -0.9, 1.3, -0.6, 0.8, -2.1};
   }
-  void evaluate(const std::vector<Real>& q, const std::vector<Real>& v, Real t = kTime) {
-    system.evaluate({t, q, v}, terms);
-  }
-  // Phi_q^T lambda - Q
-  std::vector<Real> force(const std::vector<Real>& q, const std::vector<Real>& v) {
-    evaluate(q, v);
-    std::vector<Real> force(terms.applied_force.size(), 0);
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] = -terms.applied_force[i];
-    terms.constraint_jacobian.multiply_transposed(1, multipliers, force);
-    return force;
-  }
-
-  Model model;
-  RigidBodySystem system;
-  SystemTerms terms;
-  SystemDerivatives derivatives;
-  std::vector<Real> multipliers;
-  std::vector<Real> position{0.35, -0.25, 0.3, 1.2, 0.6, -0.7}, velocity{0.4, -0.9, 1.3, -0.6, 0.8, -2.1};
 };
 
 }  // namespace
@@ -130,7 +108,7 @@ struct Probe {
 TEST_CASE("stiffness and damping are the derivatives of the forces") {
   for (const auto& [name, model] : samples()) {
     INFO(name);
-    Probe probe(model);
+    DistortedProbe probe(model);
     const int n = probe.system.coordinates();
     probe.evaluate(probe.position, probe.velocity);
     const std::vector<Real> still(static_cast<std::size_t>(n), 0);
@@ -146,7 +124,7 @@ TEST_CASE("stiffness and damping are the derivatives of the forces") {
 TEST_CASE("the constraint Jacobian and right-hand sides are the derivatives of the constraints") {
   for (const auto& [name, model] : samples()) {
     INFO(name);
-    Probe probe(model);
+    DistortedProbe probe(model);
     const auto constraint = [&](const std::vector<Real>& q, Real t) {
       probe.evaluate(q, probe.velocity, t);
       return probe.terms.constraint;
@@ -196,7 +174,7 @@ TEST_CASE("Newton's matrix is the derivative of the residual, contact included")
   model.joints.push_back(joint_between(JointKind::translational, 0, 1));
   model.drivers.push_back({"driver", 0, sine()});
   model.spring_dampers.push_back({"spring", {kGround, 0}, {{2, 1, 0}, {-0.23, 0.12, 0}}, 70, 9, 0.4, sine()});
-  Probe probe(model);
+  DistortedProbe probe(model);
   HhtMethod method(probe.system, model.integrator.hht_alpha, probe.position, probe.velocity);
   MultibodyState state;
   state.position = probe.position;
