@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from model import GROUND, JOINT_KINDS, turned
+from model import GROUND, JOINT_KINDS, SLIDES, turned
 
 COILS = 6  # of a spring
 SHORT = 4  # springs shorter than so many units are straight lines
@@ -82,7 +82,7 @@ class Mechanism:
         period = self.model.period
         apart = ends[:, 1] - ends[:, 0]
         ends[:, 1] -= period * np.round(apart / np.where(period > 0, period, np.inf))
-        return ends, pairs, turned(axes, motion.angles[pairs[:, 0]])
+        return ends, pairs, turned(axes, motion.rotations[pairs[:, 0]])
 
     def draw(self, snapshot):
         """({style: lines [n][points][3]}, {joint's kind: points [n][3]}); "held" are points on the ground."""
@@ -91,20 +91,20 @@ class Mechanism:
         shown = motion.known[owner]
         bars = motion.places(owner[shown][:, None], local[shown])
         lines = {"bar": bars, "spring": zigzags(self._ends(motion, "spring")[0], self.unit)}
-        points, held = {}, []
+        points, held, guides = {}, [], []
         for kind in (*JOINT_KINDS, "torsional", "spring"):
             ends, pairs, axes = self._ends(motion, kind)
             held.append(ends[pairs == GROUND] if kind != "torsional" else np.empty((0, 3)))
             if kind == "distance":
                 lines["distance"] = ends
-            elif kind == "translational":
+            elif kind in SLIDES:
                 slid = np.sum((ends[:, 1] - ends[:, 0]) * axes, axis=1)
                 reach = np.stack([np.minimum(slid, 0), np.maximum(slid, 0)], axis=1)
                 reach += 12 * self.unit * np.array([-1, 1])
-                lines["guide"] = ends[:, :1] + reach[:, :, None] * axes[:, None]
+                guides.append(ends[:, :1] + reach[:, :, None] * axes[:, None])
             points[kind] = ends[:, 1]
             if kind == "torsional":  # at the centre of a body
                 points[kind] = np.where(pairs[:, 1:] == GROUND, ends[:, 0], ends[:, 1])
         points["distance"] = points["spring"] = np.empty((0, 3))
-        points["held"] = np.concatenate(held)
+        points["held"], lines["guide"] = np.concatenate(held), np.concatenate(guides)
         return lines, points

@@ -10,7 +10,9 @@ from results import fail
 
 GROUND = -1  # indexes the last row of a motion, which is the ground's
 SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
-JOINT_KINDS = ("revolute", "translational", "fixed", "distance")
+JOINT_KINDS = ("revolute", "translational", "fixed", "distance", "spherical", "universal", "constant-velocity",
+               "cylindrical", "planar", "point-on-line", "point-on-plane")
+SLIDES = ("translational", "cylindrical", "point-on-line")  # along an axis
 SPRING_TABLES = {"spring_dampers": "spring", "torsional_spring_dampers": "torsional"}
 
 
@@ -19,22 +21,50 @@ def in_space(vector):
     return np.array([*vector, 0.0][:3], dtype=float)
 
 
-def turned(vectors, angles):
+def about_z(angles):
+    """Rotations by these angles [rad], from the frames of planar bodies to the global one: [..., 3, 3]."""
+    return of_quaternions(np.stack([np.cos(angles / 2), 0 * angles, 0 * angles, np.sin(angles / 2)], axis=-1))
+
+
+def of_quaternions(quaternions):
+    """Rotations of these, scalar first, of any length."""
+    w, x, y, z = np.moveaxis(quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True), -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+
+def start_rotation(body):
+    """Of a body's table in the deck."""
+    if body["kind"] == "planar":
+        return about_z(np.array(float(body["angle"])))
+    if "quaternion" in body:
+        return of_quaternions(np.array(body["quaternion"], dtype=float))
+    axis, half = np.array(body.get("rotation_axis", [0.0, 0.0, 1.0])), body.get("rotation_angle", 0.0) / 2
+    return of_quaternions(np.array([np.cos(half), *(np.sin(half) / np.linalg.norm(axis) * axis)]))
+
+
+def turned(vectors, rotations):
     """Vectors in the frames of bodies, in the global one."""
-    c, s = np.cos(angles), np.sin(angles)
-    x, y, z = np.moveaxis(np.asarray(vectors, dtype=float), -1, 0)
-    return np.stack([c * x - s * y, s * x + c * y, z + 0 * c], axis=-1)
+    return np.einsum("...ij,...j->...i", rotations, np.asarray(vectors, dtype=float))
+
+
+def turned_back(vectors, rotations):
+    return turned(vectors, np.swapaxes(rotations, -2, -1))
 
 
 class Motion:
     """Of all bodies and, last, the ground. known: whether the results tell where the body is."""
 
-    def __init__(self, centers, angles, known):
-        self.centers, self.angles, self.known = centers, angles, known
+    def __init__(self, centers, rotations, known):
+        self.centers, self.rotations, self.known = centers, rotations, known
 
     def places(self, bodies, local):
         """Points fixed to bodies, in the global frame [m]."""
-        return self.centers[bodies] + turned(local, self.angles[bodies])
+        return self.centers[bodies] + turned(local, self.rotations[bodies])
 
 
 class Connections:
@@ -70,7 +100,7 @@ class Model:
 
     def _read_bodies(self, tables):
         self.names, self.offsets, self.rows = [], [], {}
-        centers, angles = [], []
+        centers, rotations = [], []
         for table in tables:
             offsets = np.array([in_space(s["offset"]) for s in table.get("shapes", [])]).reshape(-1, 3)
             for i in range(table.get("count", 1)):
@@ -78,10 +108,10 @@ class Model:
                 self.names.append(f"{table['name']}.{i}" if "count" in table else table["name"])
                 self.offsets.append(offsets)
                 centers.append(in_space(table["position"]) + i * in_space(table["spacing"]))
-                angles.append(table["angle"])
+                rotations.append(start_rotation(table))
         count = len(self.names)
         self.start = Motion(
-            np.array([*centers, np.zeros(3)]), np.array([*angles, 0.0]), np.ones(count + 1, dtype=bool)
+            np.array([*centers, np.zeros(3)]), np.array([*rotations, np.eye(3)]), np.ones(count + 1, dtype=bool)
         )
         self._index = {name: i for i, name in enumerate(self.names)} | {"ground": GROUND}
 
@@ -94,7 +124,7 @@ class Model:
         return [tuple(self._index[name] for name in table["bodies"])]
 
     def _local(self, body, point):
-        return turned(point - self.start.centers[body], -self.start.angles[body])
+        return turned_back(point - self.start.centers[body], self.start.rotations[body])
 
     def _points(self, table, pair, common):
         """The deck's points of a connection, in the bodies' frames. common: one point for both sides."""
@@ -114,7 +144,7 @@ class Model:
         def add(kind, table, common):
             axis = in_space(table.get("axis", [1.0, 0.0]))
             for pair in self._pairs(table):
-                local_axis = turned(axis, -self.start.angles[pair[0]])
+                local_axis = turned_back(axis, self.start.rotations[pair[0]])
                 self.connections.setdefault(kind, Connections()).add(
                     pair, self._points(table, pair, common), local_axis / np.linalg.norm(axis)
                 )
@@ -153,21 +183,34 @@ class Model:
     def motion(self, time, bodies, snapshot, history):
         """Where the bodies are in the snapshot of that time [s]: from their shapes, or where they have none, from
         the history's columns ({name: (values, ...)}). bodies: the shapes' Series, or None."""
-        motion = Motion(self.start.centers.copy(), self.start.angles.copy(), np.zeros_like(self.start.known))
+        motion = Motion(self.start.centers.copy(), self.start.rotations.copy(), np.zeros_like(self.start.known))
         motion.known[GROUND] = True
         if bodies is not None:
             index, first = np.unique(bodies.rows(snapshot, "body"), return_index=True)
-            motion.angles[index] = bodies.rows(snapshot, "angle")[first]
+            motion.rotations[index] = (
+                of_quaternions(bodies.rows(snapshot, "orientation")[first])
+                if bodies.has("orientation")  # where some are spatial
+                else about_z(bodies.rows(snapshot, "angle")[first])
+            )
             offsets = np.array([self.offsets[body][0] for body in index]).reshape(-1, 3)
             points = bodies.rows(snapshot, "Points")[first]
-            motion.centers[index] = points - turned(offsets, motion.angles[index])
+            motion.centers[index] = points - turned(offsets, motion.rotations[index])
             motion.known[index] = True
         for body in np.flatnonzero(~motion.known):
-            columns = [f"bodies/{self.names[body]}/{name}" for name in ("x", "y", "z", "angle")]
-            if all(name in history for name in columns):
-                values = [np.interp(time, history["step/time"][0], history[name][0]) for name in columns]
-                motion.centers[body], motion.angles[body] = values[:3], values[3]
-                motion.known[body] = True
+            found = {
+                name: np.interp(time, history["step/time"][0], history[column][0])
+                for name in ("x", "y", "z", "angle", "e0", "e1", "e2", "e3")
+                if (column := f"bodies/{self.names[body]}/{name}") in history
+            }
+            if not found:
+                continue
+            motion.centers[body] = [found[name] for name in "xyz"]
+            motion.rotations[body] = (
+                about_z(found["angle"])
+                if "angle" in found
+                else of_quaternions(np.array([found[f"e{k}"] for k in range(4)]))
+            )
+            motion.known[body] = True
         return motion
 
 

@@ -39,11 +39,15 @@ class Series:
 
     def rows(self, snapshot, name):
         """One snapshot's rows of Points or of a field."""
-        if name != "Points" and name not in self._root["PointData"]:
+        if name != "Points" and not self.has(name):
             fail(f"{self._file.filename}: holds no field {name}; the run's output.fields must name it")
         dataset = self._root[name if name == "Points" else f"PointData/{name}"]
         first = self._first[snapshot]
         return dataset[first : first + self._count[snapshot]]
+
+    def has(self, name):
+        """Whether the field is there."""
+        return name in self._root["PointData"]
 
     def speed(self, snapshot):
         """[m/s]"""

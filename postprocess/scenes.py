@@ -29,6 +29,13 @@ JOINTS = {
     "translational": ("s", "white"),
     "fixed": ("s", "#202020"),
     "torsional": ("o", "none"),
+    "spherical": ("o", "#808080"),
+    "universal": ("P", "white"),
+    "constant-velocity": ("P", "white"),
+    "cylindrical": ("s", "white"),
+    "planar": ("s", "white"),
+    "point-on-line": ("o", "#808080"),
+    "point-on-plane": ("o", "#808080"),
 }
 
 

@@ -195,7 +195,7 @@ class MechanismTest(unittest.TestCase):
                          {frozenset(pair) for pair in ((0, 2), (2, 3), (3, 1))})
 
     def test_a_body_without_shapes_is_where_the_history_says(self):
-        bodies = [{"name": "rod", "position": [1.0, 0.0], "angle": 0.0, "spacing": [0.0, 0.0]}]
+        bodies = [{"name": "rod", "kind": "planar", "position": [1.0, 0.0], "angle": 0.0, "spacing": [0.0, 0.0]}]
         joints = [{"name": "pin", "type": "revolute", "bodies": ["ground", "rod"], "point": [0.0, 0.0]}]
         model = Model(deck(bodies=bodies, joints=joints))
         self.assertFalse(model.motion(0.5, None, 0, {}).known[0])
@@ -204,7 +204,22 @@ class MechanismTest(unittest.TestCase):
         motion = model.motion(0.5, None, 0, {name: (column,) for name, column in values.items()})
         self.assertTrue(motion.known.all())
         np.testing.assert_allclose(motion.centers[[0, GROUND]], [[0.5, 0.5, 0], [0, 0, 0]])
-        np.testing.assert_allclose(motion.angles[0], 0.5)
+        np.testing.assert_allclose(motion.rotations[0, :, 0], [np.cos(0.5), np.sin(0.5), 0], atol=1e-15)
+
+    def test_a_body_in_space_turns_as_its_quaternion_says(self):
+        at = {"name": "top", "kind": "spatial", "position": [0.0, 0.0, 2.0], "spacing": [0.0, 0.0, 0.0]}
+        joints = [{"name": "tip", "type": "spherical", "bodies": ["ground", "top"], "point": [0.0, 0.0, 1.0]}]
+        half = np.sqrt(0.5)  # by a quarter turn about x: y to z
+        for pose in ({"rotation_axis": [2.0, 0.0, 0.0], "rotation_angle": np.pi / 2},
+                     {"quaternion": [half, half, 0.0, 0.0]}):
+            model = Model(deck(bodies=[at | pose], joints=joints))
+            (pairs, local, _) = model.connections["spherical"]
+            np.testing.assert_allclose(local[0], [[0, 0, 1], [0, -1, 0]], atol=1e-15)
+            values = {"step/time": [0, 1], "bodies/top/x": [0, 0], "bodies/top/y": [0, 0], "bodies/top/z": [2, 2],
+                      "bodies/top/e0": [1, 1], "bodies/top/e1": [0, 0], "bodies/top/e2": [0, 0],
+                      "bodies/top/e3": [0, 0]}
+            motion = model.motion(0.5, None, 0, {name: (column,) for name, column in values.items()})
+            np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 1], [0, -1, 2]], atol=1e-15)
 
 
 class WallTest(unittest.TestCase):
