@@ -24,6 +24,10 @@ constexpr Real kMostSkin = 4;
 // contacts need 3 to 5.
 constexpr int kMostFollowing = 12;
 
+// A residual that moves no particle by more than this part of its radius is round-off, though it be no small
+// part of the largest force: so it is where a first touch in weightlessness is all that acts.
+constexpr Real kRoundOffMove = 1e-12;
+
 // sum += weight * wrenches
 void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
   for (std::size_t b = 0; b < wrenches.size(); ++b) {
@@ -186,7 +190,7 @@ void CoupledStep::iterate(ImplicitStep& step) {
   const int most = model_.integrator.max_iterations;
   for (int iteration = 1; iteration <= most; ++iteration) {
     ++counts_.newton_iterations;
-    if (iterate_once(step, last)) return;
+    if (iterate_once(step, last, iteration == most)) return;
     if (model_.rotates() && iteration == kMostFollowing && iteration < most) freeze(step, last);
   }
   throw SimulationError(trouble_of(step, last, most));
@@ -223,7 +227,7 @@ std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, i
 
 // One Newton-like iteration of both sides. The bodies are corrected first, and the particles see that
 // correction: block Gauss-Seidel on the coupled Newton system.
-bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last) {
+bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) {
   const Integrator& limits = model_.integrator;
   ParticleNorms particles;
   {
@@ -252,6 +256,7 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last) {
     link_.broadcast_motion(backend_.list());
   }
   const bool particles_done =
+      final && last.judged_correction <= kRoundOffMove ||
       last.residual <= limits.residual_tolerance && last.judged_correction <= limits.correction_tolerance;
   if (bodies_done && particles_done) return true;
 

@@ -64,7 +64,7 @@ class CoupledStep {
   void solve_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
   void iterate(ImplicitStep& step);
   void freeze(ImplicitStep& step, const Iteration& last);
-  bool iterate_once(ImplicitStep& step, Iteration& last);
+  bool iterate_once(ImplicitStep& step, Iteration& last, bool final);
   std::string trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const;
   bool explicit_step_with_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h, bool keep_open);
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h);
