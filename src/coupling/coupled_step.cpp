@@ -255,9 +255,9 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) 
     const auto scope = timers_.time(Stage::broadcast_motion);
     link_.broadcast_motion(backend_.list());
   }
-  const bool particles_done =
-      final && last.judged_correction <= kRoundOffMove ||
-      last.residual <= limits.residual_tolerance && last.judged_correction <= limits.correction_tolerance;
+  const bool within = last.residual <= limits.residual_tolerance;
+  const bool particles_done = (within && last.judged_correction <= limits.correction_tolerance) ||
+                              (final && last.judged_correction <= kRoundOffMove);
   if (bodies_done && particles_done) return true;
 
   const auto scope = timers_.time(Stage::particle_correct);
