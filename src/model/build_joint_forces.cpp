@@ -155,13 +155,15 @@ void read_coordinates(const DeckTable& table, const Model& model, Coupler& coupl
   const std::vector<std::string>& words = table.texts("coordinates");
   if (words.size() != coupler.joints.size())
     fail(fmt::format("must have {} entries, as joints", coupler.joints.size()));
-  std::vector<JointCoordinate> wanted;
-  for (const std::string& word : words) {
-    if (word != word_of(JointCoordinate::angle) && word != word_of(JointCoordinate::displacement))
-      fail(fmt::format("\"{}\" must be \"angle\" or \"displacement\"", word));
-    wanted.push_back(value_of<JointCoordinate>(word));
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (words[k] != word_of(JointCoordinate::angle) && words[k] != word_of(JointCoordinate::displacement))
+      fail(fmt::format("\"{}\" must be \"angle\" or \"displacement\"", words[k]));
+    const Joint& joint = joint_at(model, coupler.joints[k]);
+    coupler.coordinates.push_back(value_of<JointCoordinate>(words[k]));
+    if (!has_coordinate(joint.kind, coupler.coordinates.back()))
+      fail(
+          fmt::format("joint \"{}\" is a {} joint and has no {}", joint.name, word_of(joint.kind), words[k]));
   }
-  take_coordinates(table, model, coupler, wanted);
 }
 
 Real ratio_of(const DeckTable& table) {
