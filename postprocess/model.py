@@ -11,8 +11,8 @@ from results import fail
 GROUND = -1  # indexes the last row of a motion, which is the ground's
 SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 JOINT_KINDS = ("revolute", "translational", "fixed", "distance", "spherical", "universal", "constant-velocity",
-               "cylindrical", "planar", "point-on-line", "point-on-plane")
-SLIDES = ("translational", "cylindrical", "point-on-line")  # along an axis
+               "cylindrical", "screw", "planar", "point-on-line", "point-on-plane")
+SLIDES = ("translational", "cylindrical", "screw", "point-on-line")  # along an axis
 SPRING_TABLES = {"spring_dampers": "spring", "torsional_spring_dampers": "torsional"}
 
 

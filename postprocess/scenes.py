@@ -33,6 +33,7 @@ JOINTS = {
     "universal": ("P", "white"),
     "constant-velocity": ("P", "white"),
     "cylindrical": ("s", "white"),
+    "screw": ("s", "#808080"),
     "planar": ("s", "white"),
     "point-on-line": ("o", "#808080"),
     "point-on-plane": ("o", "#808080"),

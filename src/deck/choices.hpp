@@ -102,6 +102,7 @@ enum class JointKind {
   distance,           // the two points keep their distance
   spherical,          // the two points coincide
   cylindrical,        // body 2's point stays on body 1's axis, the axes are parallel
+  screw,              // the same, and the displacement along the axis is lead times the turns about it
   universal,          // the two points coincide, an arm of either body perpendicular to that of the other one
   constant_velocity,  // the two points coincide, equal rates of rotation about two axes
   planar,             // body 2's point stays in body 1's plane, the normals are parallel
@@ -119,6 +120,7 @@ inline constexpr auto kWords<JointKind> =
                                     {"distance", JointKind::distance},
                                     {"spherical", JointKind::spherical},
                                     {"cylindrical", JointKind::cylindrical},
+                                    {"screw", JointKind::screw},
                                     {"universal", JointKind::universal},
                                     {"constant-velocity", JointKind::constant_velocity},
                                     {"planar", JointKind::planar},
@@ -127,6 +129,18 @@ inline constexpr auto kWords<JointKind> =
                                     {"parallel", JointKind::parallel},
                                     {"perpendicular", JointKind::perpendicular},
                                     {"orientation", JointKind::orientation}});
+
+// What a joint leaves free that can be driven, pushed and coupled.
+enum class JointCoordinate {
+  angle,         // of body 2 less that of body 1, about the axis
+  displacement,  // of body 2's point along body 1's axis
+  length         // from body 1's point to body 2's
+};
+template <>
+inline constexpr auto kWords<JointCoordinate> =
+    std::to_array<Word<JointCoordinate>>({{"angle", JointCoordinate::angle},
+                                          {"displacement", JointCoordinate::displacement},
+                                          {"length", JointCoordinate::length}});
 
 // What makes the effort of a motor.
 enum class MotorKind {

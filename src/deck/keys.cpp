@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "deck/choices.hpp"
+
 namespace scree {
 
 Key& Key::above(Real limit) {
@@ -88,6 +90,13 @@ Key choice_of_words(const std::string& name, std::vector<std::string> words,
   key.words = std::move(words);
   key.choice_of = &choice_of;
   return key;
+}
+Key coordinate_key() {
+  return choice<JointCoordinate>("coordinate")
+      .left_out("the joint's only one; of a screw the angle")
+      .about(
+          "Which coordinate of the joint: revolute joints have an angle, translational ones a displacement, "
+          "cylindrical joints and screws both, distance joints a length.");
 }
 Key name_key() { return make_key("name", ValueType::name); }
 Key file(const std::string& name) { return make_key(name, ValueType::file); }

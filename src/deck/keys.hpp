@@ -104,7 +104,8 @@ template <class Value>
 Key choice(const std::string& name) {
   return choice_of_words(name, words_of<Value>(), typeid(Value));
 }
-Key name_key();  // "name"
+Key name_key();        // "name"
+Key coordinate_key();  // "coordinate", of a joint
 Key file(const std::string& name);
 Key vector(const std::string& name, const std::string& unit);
 Key reals(const std::string& name, const std::string& unit);

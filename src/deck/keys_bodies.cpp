@@ -103,12 +103,14 @@ const TableKeys& body_keys() {
 
 const TableKeys& joint_keys() {
   using Kind = JointKind;
-  static constexpr auto pointed = {
-      Kind::revolute,  Kind::translational,     Kind::fixed,  Kind::spherical,     Kind::cylindrical,
-      Kind::universal, Kind::constant_velocity, Kind::planar, Kind::point_on_line, Kind::point_on_plane};
-  static constexpr auto with_axis = {
-      Kind::revolute, Kind::translational, Kind::cylindrical,    Kind::universal, Kind::constant_velocity,
-      Kind::planar,   Kind::point_on_line, Kind::point_on_plane, Kind::parallel,  Kind::perpendicular};
+  static constexpr auto pointed = {Kind::revolute,      Kind::translational,     Kind::fixed,
+                                   Kind::spherical,     Kind::cylindrical,       Kind::screw,
+                                   Kind::universal,     Kind::constant_velocity, Kind::planar,
+                                   Kind::point_on_line, Kind::point_on_plane};
+  static constexpr auto with_axis = {Kind::revolute, Kind::translational, Kind::cylindrical,
+                                     Kind::screw,    Kind::universal,     Kind::constant_velocity,
+                                     Kind::planar,   Kind::point_on_line, Kind::point_on_plane,
+                                     Kind::parallel, Kind::perpendicular};
   static constexpr auto with_two = {Kind::universal, Kind::constant_velocity, Kind::perpendicular};
   static const TableKeys keys = with_connection(
       "Joints between two bodies, or a body and the ground.",
@@ -119,7 +121,9 @@ const TableKeys& joint_keys() {
            "are: "
            "Spherical: the two points coincide. Cylindrical: the second body's point stays on the first "
            "body's axis, "
-           "the axes stay parallel. Universal: the points coincide, an arm of the first body (axis) stays "
+           "the axes stay parallel. Screw: the same, and the displacement along the axis grows by lead in "
+           "every "
+           "turn. Universal: the points coincide, an arm of the first body (axis) stays "
            "perpendicular to one of the second (second_axis). Constant-velocity: the points coincide, the "
            "bodies turn "
            "equally fast about axis and second_axis. Planar: the second body's point stays in the plane "
@@ -151,6 +155,12 @@ const TableKeys& joint_keys() {
            .about("The second body's axis or arm at t = 0, likewise; perpendicular to axis but for "
                   "constant-velocity "
                   "joints."),
+       real("lead", "m")
+           .only_for({JointKind::screw})
+           .required()
+           .about("Displacement of the second body along the axis in a turn about it: above 0 a right-handed "
+                  "screw, "
+                  "below 0 a left-handed one."),
        real("distance", "m")
            .only_for({JointKind::distance})
            .above(0)
@@ -164,13 +174,15 @@ const TableKeys& driver_keys() {
   static const TableKeys keys{
       "Prescribed motion of a joint.",
       {name_key().required().about("Name for messages and results."),
-       text("joint").required().about("The joint that is driven: revolute, translational or distance."),
+       text("joint").required().about("The joint that is driven, one that has a coordinate."),
+       coordinate_key(),
        quantity("motion", "rad or m", time_function_keys())
            .required()
            .about(
-               "Function of time of the relative angle of a revolute joint (angle of the second body minus "
-               "that of the first), the displacement along the axis of a translational joint, or the length "
-               "of a distance joint.")},
+               "Function of time of the coordinate: the angle of the second body minus that of the first (in "
+               "space about the axis, 0 where the joint was placed by point and axis, and counted on over "
+               "whole "
+               "turns), the displacement along the axis, or the length of a distance joint.")},
       ""};
   return keys;
 }

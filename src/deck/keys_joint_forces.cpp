@@ -8,18 +8,20 @@ namespace {
 
 Key joint_key() {
   return text("joint").required().about(
-      "The joint, revolute or translational, or a row of joints: one for each, named NAME.0, NAME.1, ... Its "
-      "coordinate c: the angle of its second body minus that of "
-      "the first "
-      "[rad], or the displacement along its axis [m]. An effort above 0 pushes c up.");
+      "The joint (revolute, translational, cylindrical or screw), or a row of joints: one for each, named "
+      "NAME.0, "
+      "NAME.1, ... Its coordinate c: the angle of its second body minus that of the first [rad], in space "
+      "about the "
+      "axis and counted on over whole turns, or the displacement along its axis [m]. An effort above 0 "
+      "pushes c up.");
 }
 
 }  // namespace
 
 const TableKeys& motor_keys() {
   static const TableKeys keys{
-      "Motors: efforts on the coordinates of joints, a torque on revolute and a force on translational ones.",
-      {name_key().required().about("Name for messages and results."), joint_key(),
+      "Motors: efforts on the coordinates of joints, a torque on an angle and a force on a displacement.",
+      {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
        choice<MotorKind>("type").required().about("Effort: a function of time. Line: stall_effort (command - "
                                                   "c'/free_rate), the torque-speed line of a motor. "
                                                   "Speed: gain e + integral_gain (integral of e over time), "
@@ -65,7 +67,7 @@ const TableKeys& motor_keys() {
 const TableKeys& joint_spring_keys() {
   static const TableKeys keys{
       "Springs and dampers on the coordinates of joints: effort = -(k (c - free) + d c' + F(c) + G(c')).",
-      {name_key().required().about("Name for messages and results."), joint_key(),
+      {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
        real("stiffness", "N m/rad or N/m").at_least(0).otherwise("0.0").about("k."),
        real("damping", "N m s/rad or N s/m").at_least(0).otherwise("0.0").about("d."),
        real("free", "rad or m").left_out("c at t = 0").about("c at which k has no effort."),
@@ -88,7 +90,7 @@ const TableKeys& joint_spring_keys() {
 const TableKeys& joint_limit_keys() {
   static const TableKeys keys{
       "Stops of joints: beyond a limit, by d > 0, the effort K d^n + C d' pushes back, and never pulls.",
-      {name_key().required().about("Name for messages and results."), joint_key(),
+      {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
        real("lower", "rad or m").left_out("none").about("Smallest c that is free."),
        real("upper", "rad or m").left_out("none").about("Largest c that is free."),
        real("stiffness", "N m/rad^n or N/m^n").above(0).required().about("K."),
@@ -109,9 +111,13 @@ const TableKeys& coupler_keys() {
            "c1 + (r2/r1) c2 (internal: -); belt, c1 - (r2/r1) c2; rack and pinion, the pinion first, c2 - "
            "radius c1; "
            "differential, the carrier last, c1 + c2 - 2 c3; sum, the sum of coefficients times coordinates."),
-       texts("joints").required().about(
-           "The joints, revolute or translational; gears, belts and differentials want "
-           "revolute ones, a rack is translational."),
+       texts("joints").required().about("The joints (revolute, translational, cylindrical or screw); gears, "
+                                        "belts, differentials and pinions "
+                                        "take their angles, a rack its displacement."),
+       texts("coordinates")
+           .only_for({Kind::sum})
+           .left_out("of each joint the only one, of a screw the angle")
+           .about("Per joint \"angle\" or \"displacement\"."),
        reals("radii", "m")
            .only_for({Kind::gear, Kind::belt})
            .entries(2)

@@ -373,6 +373,11 @@ const TableKeys& output_keys() {
            .about("Motors, springs and limits on joints whose coordinate, rate, effort and power are "
                   "recorded: the "
                   "first so many of the deck, in this order."),
+       integer("history_coordinates")
+           .at_least(0)
+           .otherwise("0")
+           .about("Joints whose coordinates and their rates are recorded: the first so many of the deck that "
+                  "have coordinates (angle, displacement, length), with or without an effort on them."),
        integers("history_particles")
            .at_least(0)
            .otherwise("[]")

@@ -85,8 +85,10 @@ std::unique_ptr<Constraint> make_coupler(const Coupler& coupler, const Model& mo
   const std::string title = fmt::format("coupler '{}'", coupler.name);
   std::vector<Term> terms;
   for (std::size_t k = 0; k < coupler.joints.size(); ++k) {
-    const Joint& joint = model.joints[static_cast<std::size_t>(coupler.joints[k])];
-    terms.push_back({joint_coordinate(title, joint, model, layout), coupler.coefficients[k]});
+    std::optional<JointCoordinate> wanted;
+    if (!coupler.coordinates.empty()) wanted = coupler.coordinates[k];
+    terms.push_back(
+        {joint_coordinate(title, model, coupler.joints[k], wanted, layout), coupler.coefficients[k]});
   }
   return std::make_unique<CouplerConstraint>(std::move(terms), start);
 }

@@ -1,18 +1,31 @@
 #include "mbs/joint_coordinate.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "mbs/joints.hpp"
+#include "model/joint_coordinates.hpp"
 
 namespace scree {
 
-std::unique_ptr<Constraint> joint_coordinate(const std::string& title, const Joint& joint, const Model& model,
+std::unique_ptr<Constraint> joint_coordinate(const std::string& title, const Model& model, int joint,
+                                             std::optional<JointCoordinate> wanted,
                                              const BodyLayout& layout) {
+  const JointCoordinate own = coordinate_of(title, model.joints[static_cast<std::size_t>(joint)], wanted);
   const std::unique_ptr<JointParts> parts = joint_parts(model, joint, layout);
-  add_driver(title, joint, ScalarFunction(0), *parts);
+  add_driver(own, ScalarFunction(0), *parts);
   std::vector<std::unique_ptr<Constraint>> rows = parts->take();
   return std::move(rows.front());
+}
+
+CoordinateInstant coordinate_at(const Constraint& coordinate, const BodyPoses& poses, const SystemInstant& at,
+                                SparseTerm& gradient) {
+  CoordinateInstant instant{at.time, 0, 0};
+  coordinate.value(poses, at.time, &instant.value);
+  gradient.begin();
+  coordinate.jacobian(poses, 0, gradient);
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    instant.rate += gradient.value(i) * at.velocity[static_cast<std::size_t>(gradient.column(i))];
+  return instant;
 }
 
 }  // namespace scree

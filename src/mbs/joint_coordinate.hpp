@@ -2,18 +2,26 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mbs/constraints.hpp"
-#include "model/bodies.hpp"
+#include "mbs/joint_laws.hpp"
+#include "mbs/mechanical_system.hpp"
 #include "model/body_layout.hpp"
 #include "model/model.hpp"
 
 namespace scree {
 
-// C = c, one row: the row of a driver (mbs/joints.hpp) with the motion f = 0. Throws InputError, which begins
-// with `title`, for a joint without a coordinate.
-std::unique_ptr<Constraint> joint_coordinate(const std::string& title, const Joint& joint, const Model& model,
-                                             const BodyLayout& layout);
+// C = c, one row: the row of a driver (mbs/joints.hpp) with the motion f = 0. joint: its number; wanted: as
+// of coordinate_of (model/joint_coordinates.hpp). Throws InputError, which begins with `title`, for a joint
+// without such a coordinate.
+std::unique_ptr<Constraint> joint_coordinate(const std::string& title, const Model& model, int joint,
+                                             std::optional<JointCoordinate> wanted, const BodyLayout& layout);
+
+// c and c' = c_q v of such a row. gradient: gets c_q.
+CoordinateInstant coordinate_at(const Constraint& coordinate, const BodyPoses& poses, const SystemInstant& at,
+                                SparseTerm& gradient);
 
 }  // namespace scree

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mbs/joint_coordinate.hpp"
+
 namespace scree {
 
 namespace {
@@ -19,26 +21,15 @@ JointForce::JointForce(std::string name, std::unique_ptr<Constraint> coordinate,
                        std::unique_ptr<JointLaw> law)
     : name_(std::move(name)), coordinate_(std::move(coordinate)), law_(std::move(law)) {}
 
-CoordinateInstant JointForce::coordinate_at(const BodyPoses& poses, const SystemInstant& at,
-                                            SparseTerm& gradient) const {
-  CoordinateInstant instant{at.time, 0, 0};
-  coordinate_->value(poses, at.time, &instant.value);
-  gradient.begin();
-  coordinate_->jacobian(poses, 0, gradient);
-  for (std::size_t i = 0; i < gradient.size(); ++i)
-    instant.rate += gradient.value(i) * at.velocity[scree::at(gradient.column(i))];
-  return instant;
-}
-
 void JointForce::open_step(const BodyPoses& poses, const SystemInstant& at, Real h, Real memory) {
-  step_ = {coordinate_at(poses, at, gradient_), memory, h};
+  step_ = {coordinate_at(*coordinate_, poses, at, gradient_), memory, h};
   start_effort_ = law_->effort(step_.start, memory).effort;
   in_step_ = h > 0;
 }
 
 Real JointForce::add_force(const BodyPoses& poses, const SystemInstant& at, Real length,
                            std::vector<Real>& force) {
-  last_ = coordinate_at(poses, at, gradient_);
+  last_ = coordinate_at(*coordinate_, poses, at, gradient_);
   effort_ = in_step_ ? law_->step_effort(step_, last_) : law_->effort(last_, memory());
   for (std::size_t i = 0; i < gradient_.size(); ++i)
     force[scree::at(gradient_.column(i))] += effort_.effort * gradient_.value(i);
@@ -106,7 +97,7 @@ Real JointForce::elastic_energy(const BodyPoses& poses, Real t) const {
 
 JointForce::Sample JointForce::sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const {
   SparseTerm gradient;
-  const CoordinateInstant instant = coordinate_at(poses, at, gradient);
+  const CoordinateInstant instant = coordinate_at(*coordinate_, poses, at, gradient);
   return {instant, law_->effort(instant, memory).effort};
 }
 

@@ -59,8 +59,6 @@ class JointForce {
   Sample sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const;
 
  private:
-  CoordinateInstant coordinate_at(const BodyPoses& poses, const SystemInstant& at,
-                                  SparseTerm& gradient) const;
   void find_coordinates();
   std::size_t place(int coordinate) const;
   void pull_back(const BodyPoses& poses);

@@ -15,7 +15,8 @@ JointForces::JointForces(const Model& model, const BodyLayout& layout, const Bod
   const auto add = [&](const char* kind, const auto& element, const auto& make_law) {
     const Joint& joint = model.joints[static_cast<std::size_t>(element.joint)];
     const std::string title = fmt::format("{} '{}'", kind, element.name);
-    std::unique_ptr<Constraint> coordinate = joint_coordinate(title, joint, model, layout);
+    std::unique_ptr<Constraint> coordinate =
+        joint_coordinate(title, model, element.joint, element.coordinate, layout);
     Real c = 0;
     coordinate->value(start, 0, &c);
     forces_.emplace_back(element.name, std::move(coordinate), make_law(c));

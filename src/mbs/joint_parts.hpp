@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mbs/constraints.hpp"
+#include "mbs/measure.hpp"
 #include "mbs/scalar_function.hpp"
 #include "model/body_layout.hpp"
 #include "model/model.hpp"
@@ -31,9 +32,11 @@ class JointParts {
   virtual void arms_perpendicular() = 0;
   // w_1 about z_1 equals w_2 about z_2.
   virtual void equal_spins() = 0;
+  // The displacement along the axis is `start` and `lead` in every turn [m].
+  virtual void advance(Real lead, Real start) = 0;
 
-  // The joint's coordinate is f: the angle of the second body less that of the first [rad], the displacement
-  // of the second point along the axis, the distance of the two points [m].
+  // A coordinate of the joint is f: the angle of the second body less that of the first [rad], the
+  // displacement of the second point along the axis, the distance of the two points [m].
   virtual void angle(ScalarFunction f) = 0;
   virtual void displacement(ScalarFunction f) = 0;
   virtual void length(ScalarFunction f) = 0;
@@ -47,9 +50,11 @@ class JointParts {
   std::vector<std::unique_ptr<Constraint>> rows_;
 };
 
-// By the kind of the joint's bodies.
-std::unique_ptr<JointParts> joint_parts(const Model& model, const Joint& joint, const BodyLayout& layout);
+// By the kind of the joint's bodies. joint: its number in the model.
+std::unique_ptr<JointParts> joint_parts(const Model& model, int joint, const BodyLayout& layout);
 std::unique_ptr<JointParts> planar_parts(const Joint& joint, const BodyLayout& layout);
-std::unique_ptr<JointParts> spatial_parts(const Joint& joint, const BodyLayout& layout);
+std::unique_ptr<JointParts> spatial_parts(const Joint& joint, int number, const BodyLayout& layout);
+// The angle of a joint in space. number: as of joint_parts.
+std::unique_ptr<Measure> joint_twist(const Joint& joint, int number, const BodyLayout& layout);
 
 }  // namespace scree

@@ -37,6 +37,11 @@ void add_joint(const Joint& joint, bool driven, JointParts& parts) {
       parts.point_on_axis();
       parts.axes_parallel();
       break;
+    case JointKind::screw:
+      parts.point_on_axis();
+      parts.axes_parallel();
+      parts.advance(joint.lead, joint.advance);
+      break;
     case JointKind::universal:
       parts.points_meet();
       parts.arms_perpendicular();
@@ -67,22 +72,14 @@ void add_joint(const Joint& joint, bool driven, JointParts& parts) {
   }
 }
 
-void add_driver(const std::string& title, const Joint& joint, ScalarFunction motion, JointParts& parts) {
-  switch (joint.kind) {
-    case JointKind::revolute:
-      parts.angle(std::move(motion));
-      break;
-    case JointKind::translational:
-      parts.displacement(std::move(motion));
-      break;
-    case JointKind::distance:
-      parts.length(std::move(motion));
-      break;
-    default:
-      throw InputError(
-          fmt::format("{}: joint '{}' is {} and has nothing to drive; allowed are revolute, "
-                      "translational and distance joints",
-                      title, joint.name, word_of(joint.kind)));
+void add_driver(JointCoordinate coordinate, ScalarFunction motion, JointParts& parts) {
+  switch (coordinate) {
+    case JointCoordinate::angle:
+      return parts.angle(std::move(motion));
+    case JointCoordinate::displacement:
+      return parts.displacement(std::move(motion));
+    case JointCoordinate::length:
+      return parts.length(std::move(motion));
   }
 }
 

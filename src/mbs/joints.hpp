@@ -9,7 +9,7 @@ namespace scree {
 
 // driven: a driver prescribes the joint's coordinate. Throws InputError naming a joint that is refused.
 void add_joint(const Joint& joint, bool driven, JointParts& parts);
-// title: of the driver, for messages. Throws InputError for a joint without a coordinate.
-void add_driver(const std::string& title, const Joint& joint, ScalarFunction motion, JointParts& parts);
+// One row: the coordinate is the motion.
+void add_driver(JointCoordinate coordinate, ScalarFunction motion, JointParts& parts);
 
 }  // namespace scree

@@ -53,6 +53,10 @@ std::unique_ptr<Measure> dot1_measure(const SpatialPair& pair, Vec3 a, Vec3 b);
 std::unique_ptr<Measure> dot2_measure(const SpatialPair& pair, Vec3 a);
 //   distance: |d| [m]; undefined where the points coincide
 std::unique_ptr<Measure> distance_measure(const SpatialPair& pair);
+//   twist: angle of the second body's x2 from the first one's x1 towards its y1, with whole turns [rad]; of
+//   the joint `joint` of the model, by which SpatialMotion::counted_angle knows the turns; undefined where x2
+//   is across both
+std::unique_ptr<Measure> twist_measure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint);
 
 // Sum of weight times measure, all of one pair of bodies; an angle if the first one is.
 struct WeightedMeasure {

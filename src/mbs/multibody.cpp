@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "mbs/energy_ledger.hpp"
 #include "mbs/hht_method.hpp"
+#include "mbs/joint_readings.hpp"
 #include "mbs/newton_solver.hpp"
 #include "mbs/reaction_watch.hpp"
 #include "mbs/rigid_body_system.hpp"
@@ -33,6 +34,8 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system) {
   state.position.resize(static_cast<std::size_t>(system.positions()));
   state.velocity.resize(static_cast<std::size_t>(system.coordinates()));
   for (const auto& kind : system.kinds()) kind->start(state.position, state.velocity);
+  state.counted_angles = static_cast<std::size_t>(system.counted_angles());
+  system.count_turns(system.poses_at({0, state.position, state.velocity}), state.position);
   check_start(model, system, state.position, state.velocity);
   return state;
 }
@@ -45,6 +48,7 @@ struct Multibody::Impl {
         start(checked_start(model, system)),
         method(system, model.integrator.hht_alpha, start.position, start.velocity),
         newton(system, method),
+        readings(model, system.layout()),
         watch(system.coordinate_scale(), system.constraint_scale()),
         time_control(model.time),
         corrects_start(model.integrator.corrected_start && has_spatial_bodies(model)),
@@ -78,6 +82,7 @@ struct Multibody::Impl {
   std::string start_change;
   HhtMethod method;
   NewtonSolver newton;
+  JointReadings readings;
   ReactionWatch watch;
   TimeControl time_control;
   bool corrects_start;
@@ -189,6 +194,8 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.watch_reactions(state, error());
   book_step(impl.system, state, impl.time, impl.method.step(), impl.end);
   impl.end.memory = impl.system.joint_forces().memory();
+  impl.system.count_turns(impl.system.poses(), impl.end.position);
+  impl.end.counted_angles = state.counted_angles;
   const bool efforts_differ = impl.system.joint_forces().end_step();
   if (efforts_differ || !impl.system.has_forces_of(end_wrench)) {
     impl.system.set_forces(end_wrench);
@@ -255,6 +262,12 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
         {impl_->system.groups()[i].name, groups[i].force, groups[i].torque, impl_->system.groups()[i].kind});
   }
   return reactions;
+}
+
+std::vector<JointReading> Multibody::joint_readings(const MultibodyState& state, Real t) const {
+  if (impl_->readings.empty()) return {};
+  const SystemInstant at{t, state.position, state.velocity};
+  return impl_->readings.at(impl_->system.poses_at(at), at);
 }
 
 std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& state, Real t) const {

@@ -13,8 +13,10 @@ namespace scree {
 
 // All that changes in time on the multibody side; a checkpoint stores exactly this.
 struct MultibodyState {
-  std::vector<Real>
-      position;  // q: x, y [m], angle [rad] of a planar body; x, y, z, quaternion of a spatial one
+  // q: x, y [m], angle [rad] of a planar body; x, y, z, quaternion of a spatial one; then angles of joints in
+  // space [rad], which say how often they went round
+  std::vector<Real> position;
+  std::size_t counted_angles = 0;  // of the positions, the last ones
   std::vector<Real> velocity;      // v: q'; of a spatial body the angular velocity in its frame last [rad/s]
   std::vector<Real> acceleration;  // a: v', with hht_alpha < 0 at t + hht_alpha h
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
@@ -43,6 +45,13 @@ struct Reaction {
   Vec3 force;   // [N]
   Vec3 torque;  // about that point [N m]
   BodyKind kind = BodyKind::planar;
+};
+
+// A coordinate of a joint at one instant.
+struct JointReading {
+  std::string joint;
+  JointCoordinate coordinate = JointCoordinate::angle;
+  Real value = 0, rate = 0;  // [rad or m, per s]
 };
 
 // A motor, spring or limit on a joint at one instant.
@@ -95,6 +104,8 @@ class Multibody {
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
+  // Coordinates of the joints that Output::history_coordinates counts.
+  std::vector<JointReading> joint_readings(const MultibodyState& state, Real t) const;
   // Of motors, springs and limits on joints, in this order.
   std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
 

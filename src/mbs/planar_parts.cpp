@@ -26,6 +26,7 @@ class PlanarParts final : public JointParts {
   void axes_perpendicular() override { refuse(); }
   void arms_perpendicular() override { refuse(); }
   void equal_spins() override { refuse(); }
+  void advance(Real, Real) override { refuse(); }
   void angle(ScalarFunction f) override { add(angle_constraint(pair_, std::move(f))); }
   void displacement(ScalarFunction f) override { add(axis_constraint(pair_, axis_, std::move(f))); }
   void length(ScalarFunction f) override { add(length_constraint(pair_, std::move(f))); }

@@ -8,6 +8,7 @@
 #include "mbs/coupler.hpp"
 #include "mbs/joints.hpp"
 #include "model/connections.hpp"
+#include "model/joint_coordinates.hpp"
 
 namespace scree {
 
@@ -48,6 +49,7 @@ RigidBodySystem::RigidBodySystem(const Model& model)
     kind->set_weight(weight_);
     constant_force_scale_ = std::max(constant_force_scale_, kind->weight_scale(length_scale_));
   }
+  add_counted_angles(model);
   const BodyPoses start = start_poses();
   add_constraints(model, start);
   add_elements(model, start);
@@ -57,15 +59,16 @@ void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start
   const std::vector<bool> driven = driven_joints(model);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    const std::unique_ptr<JointParts> parts = joint_parts(model, joint, layout_);
+    const std::unique_ptr<JointParts> parts = joint_parts(model, static_cast<int>(i), layout_);
     add_joint(joint, driven[i], *parts);
     add_group(fmt::format("joint '{}'", joint.name), joint.name, parts->take(), between(model, joint.body));
   }
   for (const Driver& driver : model.drivers) {
     const Joint& joint = model.joints[static_cast<std::size_t>(driver.joint)];
     const std::string title = fmt::format("driver '{}'", driver.name);
-    const std::unique_ptr<JointParts> parts = joint_parts(model, joint, layout_);
-    add_driver(title, joint, ScalarFunction(driver.motion, title, model.time.end), *parts);
+    const std::unique_ptr<JointParts> parts = joint_parts(model, driver.joint, layout_);
+    add_driver(coordinate_of(title, joint, driver.coordinate),
+               ScalarFunction(driver.motion, title, model.time.end), *parts);
     add_group(title, driver.name, parts->take(), between(model, joint.body));
   }
   for (const Coupler& coupler : model.couplers) {
@@ -113,7 +116,7 @@ void RigidBodySystem::add_group(const std::string& title, const std::string& nam
 }
 
 void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
-  for (const auto& kind : kinds_) kind->set_poses(at.position, at.velocity, poses_);
+  set_poses(at.position, at.velocity, poses_);
   if (terms.mass.size() == 0) {  // it is constant
     terms.mass.begin();
     for (const auto& kind : kinds_) kind->add_mass(terms.mass);
@@ -170,10 +173,29 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
 void RigidBodySystem::displace(const std::vector<Real>& start, const std::vector<Real>& displacement,
                                std::vector<Real>& position) const {
   for (const auto& kind : kinds_) kind->displace(start, displacement, position);
+  std::copy(start.begin() + layout_.positions(), start.end(), position.begin() + layout_.positions());
 }
 
 void RigidBodySystem::pull_back(const std::vector<Real>& displacement, std::vector<Real>& change) const {
   for (const auto& kind : kinds_) kind->pull_back(displacement, change);
+}
+
+void RigidBodySystem::add_counted_angles(const Model& model) {
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j)
+    if (counts_turns(model, model.joints[static_cast<std::size_t>(j)]))
+      counted_.push_back({j, joint_twist(model.joints[static_cast<std::size_t>(j)], j, layout_)});
+}
+
+void RigidBodySystem::count_turns(const BodyPoses& poses, std::vector<Real>& position) const {
+  auto angle = position.begin() + layout_.positions();
+  for (const CountedAngle& counted : counted_) *angle++ = counted.twist->value(poses.spatial);
+}
+
+void RigidBodySystem::set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
+                                BodyPoses& poses) const {
+  for (const auto& kind : kinds_) kind->set_poses(position, velocity, poses);
+  auto angle = position.begin() + layout_.positions();
+  for (const CountedAngle& counted : counted_) poses.spatial.set_counted_angle(counted.joint, *angle++);
 }
 
 BodyPoses RigidBodySystem::start_poses() const {
@@ -185,7 +207,7 @@ BodyPoses RigidBodySystem::start_poses() const {
 
 BodyPoses RigidBodySystem::poses_at(const SystemInstant& at) const {
   BodyPoses poses(layout_);
-  for (const auto& kind : kinds_) kind->set_poses(at.position, at.velocity, poses);
+  set_poses(at.position, at.velocity, poses);
   return poses;
 }
 
@@ -211,7 +233,7 @@ std::string RigidBodySystem::constraint_name(int constraint) const {
 }
 
 Powers RigidBodySystem::powers(const SystemInstant& at, const std::vector<Real>& multipliers) {
-  for (const auto& kind : kinds_) kind->set_poses(at.position, at.velocity, scratch_);
+  set_poses(at.position, at.velocity, scratch_);
   Powers powers;
   for (const auto& element : elements_) element->add_powers(scratch_, at.time, powers);
   for (std::size_t i = 0; i < constraints_.size(); ++i) {

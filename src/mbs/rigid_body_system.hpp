@@ -8,6 +8,7 @@
 #include "mbs/constraints.hpp"
 #include "mbs/force_elements.hpp"
 #include "mbs/joint_forces.hpp"
+#include "mbs/measure.hpp"
 #include "mbs/mechanical_system.hpp"
 #include "mbs/rigid_bodies.hpp"
 #include "model/body_exchange.hpp"
@@ -25,14 +26,15 @@ struct ConstraintGroup {
   int first_row = 0, end_row = 0;  // of Phi
 };
 
-// Positions and columns of the bodies stand as in the model's BodyLayout. Rows of Phi: joints, then drivers,
-// then couplers.
+// Positions and columns of the bodies stand as in the model's BodyLayout. After the bodies' positions stand
+// the angles of joints in space at the last accepted step [rad]: what tells how often they went round. Rows
+// of Phi: joints, then drivers, then couplers.
 class RigidBodySystem final : public MechanicalSystem {
  public:
   // Throws InputError naming the joint, driver or element that is refused.
   explicit RigidBodySystem(const Model& model);
 
-  int positions() const override { return layout_.positions(); }
+  int positions() const override { return layout_.positions() + counted_angles(); }
   int coordinates() const override { return layout_.columns(); }
   int constraints() const override { return static_cast<int>(constraint_scale_.size()); }
   void evaluate(const SystemInstant& at, SystemTerms& terms) override;
@@ -54,6 +56,13 @@ class RigidBodySystem final : public MechanicalSystem {
   void set_forces(const std::vector<BodyWrench>& wrench) { wrench_ = wrench; }
   // The wrenches set last have the same forces and torques.
   bool has_forces_of(const std::vector<BodyWrench>& wrench) const;
+
+  // Of joints in space: how many of the positions, the last ones, are angles.
+  int counted_angles() const { return static_cast<int>(counted_.size()); }
+  // Writes these angles: those of the poses, on the branches next to the angles that the poses were set with.
+  void count_turns(const BodyPoses& poses, std::vector<Real>& position) const;
+  // Of the last evaluate().
+  const BodyPoses& poses() const { return poses_; }
 
   JointForces& joint_forces() { return joint_forces_; }
   const JointForces& joint_forces() const { return joint_forces_; }
@@ -79,6 +88,14 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
 
  private:
+  struct CountedAngle {
+    int joint;  // of the model
+    std::unique_ptr<Measure> twist;
+  };
+
+  void add_counted_angles(const Model& model);
+  void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
+                 BodyPoses& poses) const;
   BodyPoses start_poses() const;
   // start: at t = 0.
   void add_constraints(const Model& model, const BodyPoses& start);
@@ -89,10 +106,11 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<Body> bodies_;
   BodyLayout layout_;
   std::vector<std::unique_ptr<RigidBodies>> kinds_;
+  std::vector<CountedAngle> counted_;
   Real length_scale_ = 1;
   Real constant_force_scale_ = 0;  // of the weights and of stiffness; see SystemTerms::force_scale [J]
   std::vector<Real> weight_;       // generalized forces of gravity
-  BodyPoses poses_;                // of the last evaluate()
+  BodyPoses poses_;
   BodyPoses scratch_;
   std::vector<BodyWrench> wrench_;
   std::vector<std::unique_ptr<Constraint>> constraints_;

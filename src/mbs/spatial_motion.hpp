@@ -31,8 +31,21 @@ class SpatialMotion {
   SpatialPose& operator[](int body) { return poses_[static_cast<std::size_t>(body + 1)]; }
   const SpatialPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }
 
+  // Angle of a joint at the last accepted step, whole turns included [rad]: of the branches of an angle the
+  // one nearest to it is meant. 0 where none was set.
+  Real counted_angle(int joint) const {
+    const auto j = static_cast<std::size_t>(joint);
+    return j < counted_.size() ? counted_[j] : 0;
+  }
+  void set_counted_angle(int joint, Real angle) {
+    const auto j = static_cast<std::size_t>(joint);
+    if (j >= counted_.size()) counted_.resize(j + 1, 0);
+    counted_[j] = angle;
+  }
+
  private:
   std::vector<SpatialPose> poses_;  // the ground first
+  std::vector<Real> counted_;       // by joint of the model
 };
 
 // Two bodies, a point fixed to each and the first column of each.

@@ -1,9 +1,6 @@
-#include <fmt/format.h>
-
-#include <string>
+#include <cmath>
 #include <utility>
 
-#include "base/error.hpp"
 #include "mbs/joint_parts.hpp"
 #include "mbs/spatial_constraints.hpp"
 #include "physics/spatial_rotation.hpp"
@@ -15,8 +12,8 @@ namespace {
 // Axes of either marker in the frame of its body: x_i, y_i, z_i with the joint's axis along z.
 class SpatialParts final : public JointParts {
  public:
-  SpatialParts(const Joint& joint, const BodyLayout& layout)
-      : name_(joint.name), pair_(spatial_pair(layout, joint.body, joint.point)) {
+  SpatialParts(const Joint& joint, int number, const BodyLayout& layout)
+      : number_(number), pair_(spatial_pair(layout, joint.body, joint.point)) {
     for (int i = 0; i < 2; ++i) axes_[i] = transposed(rotation_matrix(joint.marker[i]));
   }
 
@@ -44,14 +41,19 @@ class SpatialParts final : public JointParts {
     terms.push_back({-1, dot1_measure(pair_, axis(0, 1), axis(1, 0))});
     add(measure_constraint(sum_of_measures(std::move(terms)), ScalarFunction(0)));
   }
-  void angle(ScalarFunction) override {
-    throw InputError(fmt::format(
-        "joint '{}': the angle of a joint in space cannot be driven yet; allowed are translational "
-        "and distance joints",
-        name_));
+  void advance(Real lead, Real start) override {
+    std::vector<WeightedMeasure> terms;
+    terms.push_back({1, dot2_measure(pair_, axis(0, 2))});
+    terms.push_back({-lead / (2 * M_PI), twist()});
+    add(measure_constraint(sum_of_measures(std::move(terms)), ScalarFunction(start)));
   }
+  void angle(ScalarFunction f) override { add(measure_constraint(twist(), std::move(f))); }
   void displacement(ScalarFunction f) override { displaced(2, std::move(f)); }
   void length(ScalarFunction f) override { add(measure_constraint(distance_measure(pair_), std::move(f))); }
+
+  std::unique_ptr<Measure> twist() const {
+    return twist_measure(pair_, axis(0, 0), axis(0, 1), axis(1, 0), number_);
+  }
 
  private:
   Vec3 axis(int body, int k) const { return row_of(axes_[body], k); }
@@ -63,15 +65,19 @@ class SpatialParts final : public JointParts {
     add(measure_constraint(dot1_measure(pair_, axis(0, i), axis(1, j)), ScalarFunction(0)));
   }
 
-  std::string name_;
+  int number_;  // of the joint in the model
   SpatialPair pair_;
   Mat3 axes_[2];
 };
 
 }  // namespace
 
-std::unique_ptr<JointParts> spatial_parts(const Joint& joint, const BodyLayout& layout) {
-  return std::make_unique<SpatialParts>(joint, layout);
+std::unique_ptr<JointParts> spatial_parts(const Joint& joint, int number, const BodyLayout& layout) {
+  return std::make_unique<SpatialParts>(joint, number, layout);
+}
+
+std::unique_ptr<Measure> joint_twist(const Joint& joint, int number, const BodyLayout& layout) {
+  return SpatialParts(joint, number, layout).twist();
 }
 
 }  // namespace scree

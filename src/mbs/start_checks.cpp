@@ -8,6 +8,8 @@
 #include "base/error.hpp"
 #include "mbs/rank_check.hpp"
 #include "model/connections.hpp"
+#include "model/joint_coordinates.hpp"
+#include "physics/spatial_rotation.hpp"
 
 namespace scree {
 
@@ -84,6 +86,21 @@ void check_start_gaps(const Model& model, const RigidBodySystem& system, std::ve
   check_gaps(system, gap, kPositionGap, 0);
 }
 
+// Rows that keep two axes parallel hold for axes that point against each other, too; an angle does not.
+void check_senses(const Model& model) {
+  for (const Joint& joint : model.joints) {
+    if (!counts_turns(model, joint)) continue;
+    Vec3 axis[2];
+    for (int i = 0; i < 2; ++i)
+      axis[i] = to_global_direction(model, joint.body[i], rotation_matrix(joint.marker[i]) * Vec3{0, 0, 1});
+    if (dot(axis[0], axis[1]) < 0)
+      throw InputError(
+          fmt::format("joint '{}': its axes on the two bodies point against each other at t = 0; "
+                      "they must point the same way",
+                      joint.name));
+  }
+}
+
 // The direction of a spring-damper or a distance is not defined where its points coincide.
 void check_directions(const Model& model, const RigidBodySystem& system, const BodyPoses& poses) {
   const auto check = [&](const int(&body)[2], const Vec3(&point)[2], const char* kind,
@@ -123,6 +140,7 @@ void check_redundancy(const RigidBodySystem& system, const SparseTerm& jacobian)
 
 void check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
                  const std::vector<Real>& velocity) {
+  check_senses(model);
   check_directions(model, system, system.poses_at({0, position, velocity}));
   const SystemTerms terms = terms_at(system, position, velocity, 0);
   check_start_gaps(model, system, terms.constraint);

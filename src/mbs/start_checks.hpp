@@ -14,7 +14,7 @@ namespace scree {
 // Joints meet by the model's rule (joint_gap); gaps of drivers up to 1e-10 of the length scale and of angles
 // up to 1e-10 rad are taken as round-off. position, velocity: [coordinates]. Throws InputError naming the
 // joint or driver, its gap and what is allowed, or the joints and drivers that are redundant together, or the
-// element whose two points coincide.
+// element whose two points coincide, or the joint in space whose axes point against each other.
 void check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
                  const std::vector<Real>& velocity);
 

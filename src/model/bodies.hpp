@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ struct Joint {
   Vec3 axis{1, 0, 0};     // translational: unit vector in the frame of body[0]
   Real distance = 0;      // distance joint [m]
   Real angle_offset = 0;  // fixed, translational: angle of body[1] minus angle of body[0] at t = 0 [rad]
+  Real lead = 0;          // screw: displacement in a turn, right-handed above 0 [m]
+  Real advance = 0;       // screw: displacement where the angle is 0 [m]
   // Between spatial bodies, in place of axis and angle_offset: orientation of the joint's frame in each
   // body's, its axis along z; universal: the first body's arm along x, the second one's along y.
   Quaternion marker[2];
@@ -69,12 +72,12 @@ struct TimeFunction {
   std::array<Real, 2> end_rates{};  // clamped [1/s]
 };
 
-// Prescribes a joint coordinate: the relative angle of a revolute joint [rad], the displacement along the
-// axis of a translational joint or the length of a distance joint [m].
+// Prescribes a coordinate of a joint (model/joint_coordinates.hpp) [rad, m].
 struct Driver {
   std::string name;
   int joint = 0;
   TimeFunction motion;
+  std::optional<JointCoordinate> coordinate{};  // empty: the only one, or the first
 };
 
 // Spring-damper-actuator between two points: tension = k (l - free_length) + c dl/dt + actuator(t).

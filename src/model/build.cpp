@@ -198,6 +198,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.compression = static_cast<int>(table.integer("compression"));
   output.history_reactions = table.integer("history_reactions");
   output.history_efforts = table.integer("history_efforts");
+  output.history_coordinates = table.integer("history_coordinates");
   output.fields = table.texts("fields");
   for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
     const Real interval = table.real(key);

@@ -36,8 +36,10 @@ void build_torsional(const DeckTable& table, Model& model, const ModelNames& nam
     element.name = connection.name;
     for (int side = 0; side < 2; ++side) element.body[side] = connection.body[side];
     if (between(model, element.body) == BodyKind::spatial)
-      table.fail("name",
-                 "torsional springs are between planar bodies, or one and the ground; these are spatial");
+      table.fail(
+          "name",
+          "torsional springs are between planar bodies, or one and the ground; these are spatial: give "
+          "a spring on the angle of their joint, [[joint_springs]]");
     check_same_kind(table, model, connection);
     element.stiffness = table.real("stiffness");
     element.damping = table.real("damping");

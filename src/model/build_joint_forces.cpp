@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
+#include "model/joint_coordinates.hpp"
 
 namespace scree {
 
@@ -12,18 +14,22 @@ namespace {
 
 const Joint& joint_at(const Model& model, int joint) { return model.joints[static_cast<std::size_t>(joint)]; }
 
+// "revolute, translational, cylindrical or screw": joints of these bodies with this coordinate, or with any.
+std::string kinds_with(const Model& model, int joint, std::optional<JointCoordinate> coordinate) {
+  const bool spatial = between(model, joint_at(model, joint).body) == BodyKind::spatial;
+  const std::string both = spatial ? ", cylindrical or screw" : "";
+  if (coordinate == JointCoordinate::angle) return "revolute" + both;
+  if (coordinate == JointCoordinate::displacement) return "translational" + both;
+  return (spatial ? "revolute, translational" : "revolute or translational") + both;
+}
+
 int moving_joint(const DeckTable& table, const Model& model, const ModelNames& names, const std::string& name,
                  const std::string& key) {
   const int joint = find_name(names.joints, name, table, key, "joint");
   const JointKind kind = joint_at(model, joint).kind;
-  if (kind != JointKind::revolute && kind != JointKind::translational)
-    table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be revolute or translational", name,
-                                word_of(kind)));
-  if (between(model, joint_at(model, joint).body) == BodyKind::spatial)
-    table.fail(key, fmt::format(
-                        "joint \"{}\" is between spatial bodies; motors, springs, limits and couplers are on "
-                        "joints of planar ones",
-                        name));
+  if (!has_coordinate(kind, JointCoordinate::angle) && !has_coordinate(kind, JointCoordinate::displacement))
+    table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be {}", name, word_of(kind),
+                                kinds_with(model, joint, {})));
   return joint;
 }
 
@@ -50,6 +56,7 @@ void add_elements(const DeckTable& table, const Model& model, const ModelNames& 
     out.push_back(element);
     out.back().name = row ? fmt::format("{}.{}", table.text("name"), i) : table.text("name");
     out.back().joint = joints[i];
+    out.back().coordinate = read_coordinate(table, joint_at(model, joints[i]));
     add_name(taken, out.back().name, 0, table);
   }
 }
@@ -117,15 +124,46 @@ JointLimit build_limit(const DeckTable& table) {
   return limit;
 }
 
-void check_joints(const DeckTable& table, const Model& model, const Coupler& coupler,
-                  const std::vector<JointKind>& kinds) {
-  if (coupler.joints.size() != kinds.size())
-    table.fail("joints", fmt::format("must have {} entries for this type", kinds.size()));
-  for (std::size_t k = 0; k < kinds.size(); ++k)
-    if (joint_at(model, coupler.joints[k]).kind != kinds[k])
-      table.fail("joints",
-                 fmt::format("joint \"{}\" must be {} here", joint_at(model, coupler.joints[k]).name,
-                             kinds[k] == JointKind::revolute ? "revolute" : "translational"));
+void take_coordinates(const DeckTable& table, const Model& model, Coupler& coupler,
+                      const std::vector<JointCoordinate>& wanted) {
+  if (coupler.joints.size() != wanted.size())
+    table.fail("joints", fmt::format("must have {} entries for this type", wanted.size()));
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    if (const int joint = coupler.joints[k]; !has_coordinate(joint_at(model, joint).kind, wanted[k]))
+      table.fail("joints", fmt::format("joint \"{}\" must be {} here", joint_at(model, joint).name,
+                                       kinds_with(model, joint, wanted[k])));
+  coupler.coordinates = wanted;
+}
+
+// Of a sum, which takes any.
+void read_coordinates(const DeckTable& table, const Model& model, Coupler& coupler) {
+  if (coupler.joints.size() < 2 || coupler.joints.size() > 3)
+    table.fail("joints", "must have 2 or 3 entries");
+  const auto fail = [&](const std::string& problem) { table.fail("coordinates", problem); };
+  if (!table.has("coordinates")) {
+    for (const int joint : coupler.joints) {
+      const Joint& one = joint_at(model, joint);
+      if (one.kind == JointKind::cylindrical)
+        fail(
+            fmt::format("missing; joint \"{}\" is a cylindrical joint and has an angle and a displacement: "
+                        "give a list with one of them, and one for each of the others",
+                        one.name));
+      coupler.coordinates.push_back(coordinates_of(one.kind).front());
+    }
+    return;
+  }
+  const std::vector<std::string>& words = table.texts("coordinates");
+  if (words.size() != coupler.joints.size())
+    fail(fmt::format("must have {} entries, as joints", coupler.joints.size()));
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (words[k] != word_of(JointCoordinate::angle) && words[k] != word_of(JointCoordinate::displacement))
+      fail(fmt::format("\"{}\" must be \"angle\" or \"displacement\"", words[k]));
+    const Joint& joint = joint_at(model, coupler.joints[k]);
+    coupler.coordinates.push_back(value_of<JointCoordinate>(words[k]));
+    if (!has_coordinate(joint.kind, coupler.coordinates.back()))
+      fail(
+          fmt::format("joint \"{}\" is a {} joint and has no {}", joint.name, word_of(joint.kind), words[k]));
+  }
 }
 
 Real ratio_of(const DeckTable& table) {
@@ -135,28 +173,28 @@ Real ratio_of(const DeckTable& table) {
   return radii[1] / radii[0];
 }
 
-std::vector<Real> coefficients_of(const DeckTable& table, const Model& model, const Coupler& coupler) {
-  constexpr JointKind turns = JointKind::revolute, slides = JointKind::translational;
+// Also the coordinates.
+std::vector<Real> coefficients_of(const DeckTable& table, const Model& model, Coupler& coupler) {
+  constexpr JointCoordinate turns = JointCoordinate::angle, slides = JointCoordinate::displacement;
   switch (table.choice<CouplerKind>("type")) {
     case CouplerKind::gear:
-      check_joints(table, model, coupler, {turns, turns});
+      take_coordinates(table, model, coupler, {turns, turns});
       return {1, table.boolean("internal") ? -ratio_of(table) : ratio_of(table)};
     case CouplerKind::belt:
-      check_joints(table, model, coupler, {turns, turns});
+      take_coordinates(table, model, coupler, {turns, turns});
       return {1, -ratio_of(table)};
     case CouplerKind::rack_and_pinion:
-      check_joints(table, model, coupler, {turns, slides});
+      take_coordinates(table, model, coupler, {turns, slides});
       if (table.real("radius") == 0) table.fail("radius", "must not be 0");
       return {-table.real("radius"), 1};
     case CouplerKind::differential:
-      check_joints(table, model, coupler, {turns, turns, turns});
+      take_coordinates(table, model, coupler, {turns, turns, turns});
       return {1, 1, -2};
     case CouplerKind::sum:
       break;
   }
+  read_coordinates(table, model, coupler);
   const std::vector<Real>& coefficients = table.reals("coefficients");
-  if (coupler.joints.size() < 2 || coupler.joints.size() > 3)
-    table.fail("joints", "must have 2 or 3 entries");
   if (coefficients.size() != coupler.joints.size())
     table.fail("coefficients", fmt::format("must have {} entries, as joints", coupler.joints.size()));
   for (const Real coefficient : coefficients)

@@ -5,6 +5,7 @@
 
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
+#include "model/joint_coordinates.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {
@@ -154,10 +155,20 @@ bool has_points(JointKind kind) {
   return kind != JointKind::parallel && kind != JointKind::perpendicular && kind != JointKind::orientation;
 }
 
-// Whether a driver can prescribe what the joint leaves free.
-bool can_be_driven(const Model& model, const Joint& joint) {
-  if (joint.kind == JointKind::translational || joint.kind == JointKind::distance) return true;
-  return joint.kind == JointKind::revolute && between(model, joint.body) == BodyKind::planar;
+// Markers may begin turned and apart: the start is on the screw.
+void read_screw(const DeckTable& table, const Model& model, Joint& joint) {
+  joint.lead = table.real("lead");
+  if (joint.lead == 0) table.fail("lead", "must not be 0; a revolute joint has no advance");
+  Mat3 frame[2];  // rows: the global axes of either frame
+  for (int side = 0; side < 2; ++side) {
+    const Mat3 own = rotation_matrix(joint.marker[side]);
+    const auto axis = [&](Vec3 e) { return to_global_direction(model, joint.body[side], own * e); };
+    frame[side] = {axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})};
+  }
+  const Vec3 apart = to_global_point(model, joint.body[1], joint.point[1]) -
+                     to_global_point(model, joint.body[0], joint.point[0]);
+  const Real angle = std::atan2(dot(frame[0].y, frame[1].x), dot(frame[0].x, frame[1].x));
+  joint.advance = dot(apart, frame[0].z) - joint.lead / (2 * M_PI) * angle;
 }
 
 Joint build_joint(const DeckTable& table, const Model& model, const Connection& connection) {
@@ -181,6 +192,7 @@ Joint build_joint(const DeckTable& table, const Model& model, const Connection& 
   }
   if (spatial) {
     place_markers(table, model, joint);
+    if (joint.kind == JointKind::screw) read_screw(table, model, joint);
   } else {
     if (joint.kind == JointKind::translational)
       joint.axis = to_body_direction(model, joint.body[0], global_axis(table));
@@ -204,14 +216,12 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
     add_name(taken, table.text("name"), 0, table);
     const int joint = find_name(names.joints, table, "joint", "joint");
     const Joint& driven = model.joints[static_cast<std::size_t>(joint)];
-    if (!can_be_driven(model, driven)) {
-      const bool planar = between(model, driven.body) == BodyKind::planar;
-      table.fail(
-          "joint",
-          fmt::format("a {} joint cannot be driven; between {} bodies it must be {}translational or distance",
-                      word_of(driven.kind), planar ? "planar" : "spatial", planar ? "revolute, " : ""));
-    }
-    model.drivers.push_back({table.text("name"), joint, build_motion(table.table("motion"))});
+    if (coordinates_of(driven.kind).empty())
+      table.fail("joint", fmt::format("a {} joint cannot be driven; it must be revolute, translational, "
+                                      "cylindrical, screw or distance",
+                                      word_of(driven.kind)));
+    const JointCoordinate coordinate = read_coordinate(table, driven);
+    model.drivers.push_back({table.text("name"), joint, build_motion(table.table("motion")), coordinate});
   }
 }
 

@@ -127,6 +127,7 @@ Real spatial_gap(const Model& model, const Joint& joint, Vec3 apart) {
   switch (joint.kind) {
     case JointKind::translational:
     case JointKind::cylindrical:
+    case JointKind::screw:
     case JointKind::point_on_line:
       return norm(apart - along * axis);
     case JointKind::planar:
@@ -187,6 +188,9 @@ int constraint_count(const Model& model) {
       case JointKind::revolute:
       case JointKind::translational:
         count += spatial ? 5 : 2;
+        break;
+      case JointKind::screw:
+        count += 5;
         break;
       case JointKind::cylindrical:
       case JointKind::universal:

@@ -10,9 +10,9 @@
 
 namespace scree {
 
-// The coordinate c of a joint is what a driver could prescribe: of a revolute joint the angle of body[1]
-// minus that of body[0] [rad], of a translational joint the displacement along its axis [m]. An effort [N m,
-// N] above 0 pushes c up.
+// A coordinate c of a joint is what a driver could prescribe (model/joint_coordinates.hpp), an angle [rad] or
+// a displacement [m]; where none is named, the only one, or the first. An effort [N m, N] above 0 pushes c
+// up.
 
 // A function of c or of its rate by its points; past them it goes on with its rate there. Empty: 0.
 struct Curve {
@@ -32,6 +32,7 @@ struct Motor {
   // speed: gain e + integral_gain (integral of e), e = rate - c'
   TimeFunction rate;                 // wanted [rad/s, m/s]
   Real gain = 0, integral_gain = 0;  // [N m s/rad, N s/m], [N m/rad, N/m]
+  std::optional<JointCoordinate> coordinate{};
 };
 
 // Effort -(k (c - free) + d c' + F(c) + G(c')); free is left out: c at t = 0.
@@ -41,6 +42,7 @@ struct JointSpring {
   Real stiffness = 0, damping = 0;  // k, d
   std::optional<Real> free;
   Curve elastic, dissipative;  // F, G
+  std::optional<JointCoordinate> coordinate{};
 };
 
 // Beyond lower or upper a contact's law pushes back: K d^n + C d', d being how far c is beyond.
@@ -49,6 +51,7 @@ struct JointLimit {
   int joint = 0;
   Real lower = -kInfinity, upper = kInfinity;
   Real stiffness = 0, damping = 0, exponent = 1;  // K, C, n
+  std::optional<JointCoordinate> coordinate{};
 };
 
 // sum of coefficient[k] c[k] = its value at t = 0.
@@ -56,6 +59,7 @@ struct Coupler {
   std::string name;
   std::vector<int> joints;
   std::vector<Real> coefficients;
+  std::vector<JointCoordinate> coordinates{};  // per joint; empty: of each the only one, or the first
 };
 
 }  // namespace scree

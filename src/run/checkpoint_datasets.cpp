@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "model/body_layout.hpp"
 #include "model/connections.hpp"
+#include "model/joint_coordinates.hpp"
 #include "run/contact_rows.hpp"
 #include "run/state.hpp"
 
@@ -56,7 +57,10 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   State sizes;
   const std::size_t bodies = model.bodies.size();
   const BodyLayout layout(model.bodies);
-  sizes.bodies.position.resize(static_cast<std::size_t>(layout.positions()));
+  // Before the angles of joints in space were counted there were none.
+  if (checkpoint.reals.count("bodies/counted_angles") > 0)
+    sizes.bodies.counted_angles = static_cast<std::size_t>(counted_angles(model));
+  sizes.bodies.position.resize(static_cast<std::size_t>(layout.positions()) + sizes.bodies.counted_angles);
   for (std::vector<Real>* values :
        {&sizes.bodies.velocity, &sizes.bodies.acceleration, &sizes.bodies.force, &sizes.bodies.applied})
     values->resize(static_cast<std::size_t>(layout.columns()));

@@ -151,6 +151,18 @@ void effort_columns(Group effort, bool is_angle, std::size_t k) {
   effort.add("power", "W", "effort times rate", [k](const Sample& s) { return s.efforts[k].power; });
 }
 
+// k: number of the coordinate.
+void coordinate_columns(Group joint, JointCoordinate coordinate, std::size_t k) {
+  const bool angle = coordinate == JointCoordinate::angle;
+  const std::string name = word_of(coordinate);
+  const char* text = angle ? "angle of the joint's second body less that of the first"
+                     : coordinate == JointCoordinate::displacement ? "displacement along the joint's axis"
+                                                                   : "distance of the joint's two points";
+  joint.add(name, angle ? "rad" : "m", text, [k](const Sample& s) { return s.coordinates[k].value; });
+  joint.add(name + "_rate", angle ? "rad/s" : "m/s", "its rate",
+            [k](const Sample& s) { return s.coordinates[k].rate; });
+}
+
 std::string torque_text(const ContactTarget& target) {
   if (target.wall >= 0) return "torque of these forces about the wall's point";
   return target.row ? "torque of these forces about the origin"
@@ -201,7 +213,8 @@ void particle_columns(Group particle, std::size_t k) {
 }  // namespace
 
 std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions,
-                                            const std::vector<JointEffortSample>& efforts) {
+                                            const std::vector<JointEffortSample>& efforts,
+                                            const std::vector<JointReading>& coordinates) {
   std::vector<RecordedColumn> out;
   const Output& output = model.output;
   step_columns({"step", out});
@@ -213,6 +226,8 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
     reaction_columns({"reactions/" + reactions[k].joint, out}, reactions[k].kind, k);
   for (std::size_t k = 0; k < efforts.size(); ++k)
     effort_columns({"efforts/" + efforts[k].name, out}, efforts[k].is_angle, k);
+  for (std::size_t k = 0; k < coordinates.size(); ++k)
+    coordinate_columns({"coordinates/" + coordinates[k].joint, out}, coordinates[k].coordinate, k);
   for (std::size_t k = 0; k < output.history_contacts.size(); ++k)
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
   for (const int body : output.history_bodies) {

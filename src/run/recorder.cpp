@@ -31,6 +31,11 @@ std::vector<JointEffortSample> efforts_of(const Model& model, const BodyLink& li
   return efforts;
 }
 
+std::vector<JointReading> coordinates_of(const BodyLink& link, const State& state) {
+  if (link.multibody() == nullptr) return {};
+  return link.multibody()->joint_readings(state.bodies, state.clock.time);
+}
+
 // Where the particles are that the deck wants traced: NaN of those that were removed. Complete on rank 0.
 std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Backend& backend) {
   const std::vector<GlobalId>& wanted = model.output.history_particles;
@@ -76,7 +81,8 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
                    const State& state)
     : model_(model), backend_(backend), link_(link) {
   link.ranks().on_root([&] {
-    columns_ = history_columns(model, reactions_of(model, link, state), efforts_of(model, link, state));
+    columns_ = history_columns(model, reactions_of(model, link, state), efforts_of(model, link, state),
+                               coordinates_of(link, state));
     std::vector<HistoryColumn> heads;
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
@@ -110,6 +116,7 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   sample.bodies_outside = bodies_outside(model_, state.bodies).count;
   sample.reactions = reactions_of(model_, link_, state);
   sample.efforts = efforts_of(model_, link_, state);
+  sample.coordinates = coordinates_of(link_, state);
   sample.contacts = target_contacts(model_, link_, state, backend_);
   if (link_.multibody() != nullptr && !model_.output.history_bodies.empty())
     sample.bodies = link_.multibody()->motion(state.bodies);

@@ -10,6 +10,7 @@
 #include "deck/differences.hpp"
 #include "mbs/scalar_function.hpp"
 #include "model/build_parts.hpp"
+#include "model/joint_coordinates.hpp"
 #include "run/checkpoint_datasets.hpp"
 
 namespace scree {
@@ -194,6 +195,11 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     if (differences.empty()) check_constants(restart.state, options.restart, model.particles.totals);
   });
   check_hash(restart.state, checkpoint, ranks);
+  // Of a version that did not count them: from here on.
+  MultibodyState& bodies = restart.state.bodies;
+  const auto angles = static_cast<std::size_t>(counted_angles(model));
+  bodies.position.resize(bodies.position.size() - bodies.counted_angles + angles, 0);
+  bodies.counted_angles = angles;
   restart.changes = checkpoint.text("changes");
   apply(differences, model, restart);
   if (restart.changed)

@@ -18,6 +18,8 @@
 namespace scree {
 namespace {
 
+constexpr const char *kPositions = "bodies/position", *kCountedAngles = "bodies/counted_angles";
+
 // One list of members serves both directions: pack() and unpack() visit the same fields in the same order.
 class Writer {
  public:
@@ -29,6 +31,11 @@ class Writer {
   // What most runs have none of: nothing is written there.
   void if_any(const char* name, const std::vector<Real>& values) {
     if (!values.empty()) (*this)(name, values);
+  }
+  void poses(const std::vector<Real>& position, std::size_t angles) {
+    const auto end = position.end() - static_cast<std::ptrdiff_t>(angles);
+    out_.reals[kPositions].assign(position.begin(), end);
+    if (angles > 0) out_.reals[kCountedAngles].assign(end, position.end());
   }
   void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
     std::vector<Real>& values = out_.reals[name];
@@ -49,6 +56,14 @@ class Reader {
   void operator()(const char* name, std::vector<Real>& values) { values = in_.real_array(name); }
   void if_any(const char* name, std::vector<Real>& values) {
     if (in_.reals.count(name) > 0) (*this)(name, values);
+  }
+  void poses(std::vector<Real>& position, std::size_t& angles) {
+    position = in_.real_array(kPositions);
+    angles = 0;
+    if (in_.reals.count(kCountedAngles) == 0) return;
+    const std::vector<Real>& counted = in_.real_array(kCountedAngles);
+    angles = counted.size();
+    position.insert(position.end(), counted.begin(), counted.end());
   }
   void operator()(const char* name, std::vector<BodyWrench>& wrenches) {
     const std::vector<Real>& values = in_.real_array(name);
@@ -78,6 +93,14 @@ class Hasher {
     for (const Real value : values) hash_.add(value);
   }
   void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
+  // Of the angles the turns, where one has been round: all else of them follows from the bodies' poses.
+  void poses(const std::vector<Real>& position, std::size_t angles) {
+    const auto turns = [](Real angle) { return std::nearbyint(angle / (2 * M_PI)); };
+    const std::span<const Real> all(position), counted = all.last(angles);
+    for (const Real value : all.first(all.size() - angles)) hash_.add(value);
+    if (std::ranges::all_of(counted, [&](Real angle) { return turns(angle) == 0; })) return;
+    for (const Real angle : counted) hash_.add(turns(angle));
+  }
   void operator()(const char*, const std::vector<BodyWrench>& wrenches) {
     for (const BodyWrench& w : wrenches) hash_.add(w.force), hash_.add(w.torque);
   }
@@ -97,6 +120,7 @@ class FiniteCheck {
     for (const Real value : values) check(name, value);
   }
   void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
+  void poses(const std::vector<Real>& position, std::size_t) { (*this)(kPositions, position); }
   void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
     for (const BodyWrench& w : wrenches)
       if (!is_finite(w.force) || !is_finite(w.torque)) check(name, std::nan(""));
@@ -148,7 +172,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("counts/linear_iterations", state.counts.linear_iterations);
   visit("counts/rejected_error", state.counts.rejected_error);
   visit("counts/rejected_newton", state.counts.rejected_newton);
-  visit("bodies/position", state.bodies.position);
+  visit.poses(state.bodies.position, state.bodies.counted_angles);
   visit("bodies/velocity", state.bodies.velocity);
   visit("bodies/acceleration", state.bodies.acceleration);
   visit("bodies/multipliers", state.bodies.multipliers);

@@ -46,8 +46,11 @@ struct SpatialErrors {
   Real position = 0, rotation = 0, velocity = 0, spin = 0, force = 0;
 };
 
+// Of forces that stand in columns of their own.
+using ForceError = std::function<Real(const ReferenceTable::Row&, const std::vector<Reaction>&)>;
+
 inline SpatialErrors spatial_errors(const Model& model, const std::string& table, Real h, Real from = 0,
-                                    Real tolerance = 1e-13) {
+                                    Real tolerance = 1e-13, const ForceError& force_error = {}) {
   const ReferenceTable reference("spatial/" + table);
   MultibodyRun run(model, tolerance);
   SpatialErrors errors;
@@ -60,6 +63,7 @@ inline SpatialErrors spatial_errors(const Model& model, const std::string& table
     };
     const std::vector<BodyMotion> motion = run.multibody.motion(run.state);
     const std::vector<Reaction> reactions = run.multibody.reactions(run.state, run.time);
+    if (force_error) errors.force = std::max(errors.force, force_error(row, reactions));
     for (std::size_t b = 0; b < motion.size(); ++b) {
       const std::string n = std::to_string(b + 1);
       const char *at[] = {"x", "y", "z"}, *v[] = {"vx", "vy", "vz"}, *w[] = {"wx", "wy", "wz"},
@@ -132,14 +136,10 @@ inline Quaternion marker_along(Vec3 axis, Vec3 across) {
 }
 
 // The start is the reference's first row.
-inline Model slider_crank_in_space(Real hht_alpha) {
-  const ReferenceTable reference("spatial/slider_crank.csv");
+inline void start_from(Model& model, const std::string& table) {
+  const ReferenceTable reference("spatial/" + table);
   const ReferenceTable::Row& row = reference.rows().front();
-  Model model = spatial_model(hht_alpha);
-  model.bodies = {spatial_body("crank", 0.12, {1e-4, 1e-4, 1e-5}, {}),
-                  spatial_body("rod", 0.5, {4e-4, 4e-3, 4e-3}, {}),
-                  spatial_body("slider", 2, {1e-4, 1e-4, 1e-4}, {})};
-  for (std::size_t b = 0; b < 3; ++b) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const std::string n = std::to_string(b + 1);
     Body& body = model.bodies[b];
     body.position = {row["x" + n + " [m]"], row["y" + n + " [m]"], row["z" + n + " [m]"]};
@@ -147,6 +147,14 @@ inline Model slider_crank_in_space(Real hht_alpha) {
     body.spin = {row["wx" + n + " [rad/s]"], row["wy" + n + " [rad/s]"], row["wz" + n + " [rad/s]"]};
     body.orientation = normalized({row["e0_" + n], row["e1_" + n], row["e2_" + n], row["e3_" + n]});
   }
+}
+
+inline Model slider_crank_in_space(Real hht_alpha) {
+  Model model = spatial_model(hht_alpha);
+  model.bodies = {spatial_body("crank", 0.12, {1e-4, 1e-4, 1e-5}, {}),
+                  spatial_body("rod", 0.5, {4e-4, 4e-3, 4e-3}, {}),
+                  spatial_body("slider", 2, {1e-4, 1e-4, 1e-4}, {})};
+  start_from(model, "slider_crank.csv");
   const Quaternion along_x = marker_along({1, 0, 0}, {0, 1, 0});
   model.joints = {joint_at(JointKind::revolute, "hinge", kGround, 0, {0, 0.1, 0.12}, {0, 0, -0.04}),
                   joint_at(JointKind::spherical, "ball", 0, 1, {0, 0, 0.04}, {-0.15, 0, 0}),
@@ -156,6 +164,35 @@ inline Model slider_crank_in_space(Real hht_alpha) {
   // The slider's arm, x of its marker, along y; the rod's, y of its marker, along its z.
   model.joints[2].marker[0] = marker_along({0, 0, 1}, {0, 1, 0});
   model.joints[2].marker[1] = quaternion_of(transposed({{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}}));
+  return model;
+}
+
+// Two gears on hinges, the second with a pinion for a rack on a spring.
+inline Model gears_in_space(Real hht_alpha) {
+  Model model = spatial_model(hht_alpha);
+  model.gravity = {0, -9.81, 0};
+  model.bodies = {spatial_body("small", 1.5, {0.004, 0.004, 0.007}, {}),
+                  spatial_body("large", 4, {0.07, 0.07, 0.13}, {}), spatial_body("rack", 3, {1, 1, 1}, {})};
+  start_from(model, "gears.csv");
+  model.joints = {joint_at(JointKind::revolute, "first", kGround, 0, {}, {-0.05, 0, 0}),
+                  joint_at(JointKind::revolute, "second", kGround, 1, {0.35, 0, 0}, {}),
+                  joint_at(JointKind::translational, "guide", kGround, 2, {0.35, -0.08, 0}, {})};
+  model.joints[2].marker[0] = model.joints[2].marker[1] = marker_along({1, 0, 0}, {0, 1, 0});
+  model.joint_springs = {{"spring", 2, 400, 0, 0, {}, {}}};
+  model.couplers = {{"mesh", {0, 1}, {1, 2.5}}, {"rack", {1, 2}, {-0.08, 1}}};
+  return model;
+}
+
+// A nut on a screw along (0.6, 0, 0.8).
+inline Model screw_in_space(Real hht_alpha) {
+  Model model = spatial_model(hht_alpha);
+  model.bodies = {spatial_body("nut", 2, {0.012, 0.015, 0.009}, {})};
+  Sym3& j = model.bodies[0].inertia_tensor;
+  j.xy = 0.001, j.xz = -0.002, j.yz = 0.0015;
+  start_from(model, "screw.csv");
+  Joint thread = joint_at(JointKind::screw, "thread", kGround, 0, {}, {-0.1, 0, 0});
+  thread.marker[0] = marker_along({0.6, 0, 0.8}, {0.8, 0, -0.6}), thread.lead = 0.05;
+  model.joints = {thread};
   return model;
 }
 

@@ -11,6 +11,7 @@
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
 #include "support/near.hpp"
+#include "support/spatial_run.hpp"
 
 using namespace scree;
 
@@ -261,6 +262,20 @@ TEST_CASE(
   multibody.predict(state, 0, 1e-3);
   for (int i = 0; i < 5; ++i) multibody.correct(contacts);
   CHECK(multibody.correct(contacts).residual < 1e-12);
+}
+
+// The rows of parallel axes hold there, too.
+TEST_CASE("a hinge in space whose axes point against each other is refused") {
+  Model model = spatial_model(-0.1);
+  model.bodies = {spatial_body("flap", 1, {1, 1, 1}, {})};
+  model.joints = {joint_at(JointKind::revolute, "hinge", kGround, 0, {}, {})};
+  model.joints[0].marker[1] = exponential({M_PI, 0, 0});
+  CHECK(contains(refusal(model), "joint 'hinge': its axes on the two bodies point against each other"));
+  model.joints[0].marker[1] = exponential({0, 0, 3});
+  model.drivers = {{"drive", 0, {}}};
+  CHECK(contains(refusal(model), "driver 'drive': its two sides do not meet"));
+  model.drivers[0].motion.value = 3;
+  CHECK(refusal(model) == "nothing was refused");
 }
 
 TEST_CASE("PETSc's options: words that are none, unused ones, packages") {

@@ -1,6 +1,8 @@
 // Spatial bodies and their joints from the deck.
+#include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "model/connections.hpp"
 #include "physics/spatial_rotation.hpp"
@@ -88,9 +90,6 @@ TEST_CASE("joints that spatial and planar bodies cannot have are refused") {
                                        "1.0, 0.0]\n" +
                                        ends)),
       "perpendicular to axis"));
-  CHECK(contains(model_error(two_bodies() + joint("type = \"revolute\"\naxis = [1.0, 0.0, 0.0]\n" + ends) +
-                             "[[drivers]]\nname = \"d\"\njoint = \"j\"\nmotion = 0.0\n"),
-                 "a revolute joint cannot be driven; between spatial bodies"));
   const std::string planar =
       "[[bodies]]\nname = \"p\"\nmass = 1.0\ninertia = 0.1\nposition = [0.0, 0.0, 0.0]\n";
   CHECK(contains(model_error(two_bodies() + planar + joint("type = \"fixed\"\nbodies = [\"a\", \"p\"]\n")),
@@ -102,6 +101,75 @@ TEST_CASE("joints that spatial and planar bodies cannot have are refused") {
       "these are spatial"));
   CHECK(contains(model_error(kSpace + planar + "[[applied_forces]]\nname = \"f\"\nbody = \"p\"\nfz = 1.0\n"),
                  "the body is planar"));
+}
+
+TEST_CASE("which coordinate of a joint in space is meant") {
+  const std::string ends = "bodies = [\"a\", \"b\"]\naxis = [0.0, 3.0, 4.0]\n";
+  const auto deck = [&](const std::string& type, const std::string& element) {
+    return two_bodies() + joint("type = \"" + type + "\"\n" + ends) + element;
+  };
+  const std::string head = "name = \"e\"\njoint = \"j\"\n", drive = "[[drivers]]\n" + head + "motion = 0.0\n",
+                    motor = "[[motors]]\n" + head + "type = \"effort\"\neffort = 1.0\n",
+                    spring = "[[joint_springs]]\n" + head,
+                    limit = "[[joint_limits]]\n" + head + "upper = 1.0\nstiffness = 1.0\n",
+                    turn = "coordinate = \"angle\"\n", slide = "coordinate = \"displacement\"\n",
+                    length = "coordinate = \"length\"\n", screw = "screw\"\nlead = \"0.1";
+  CHECK(model_of(deck("revolute", drive)).drivers[0].coordinate == JointCoordinate::angle);
+  CHECK(model_of(deck("translational", drive)).drivers[0].coordinate == JointCoordinate::displacement);
+  for (const std::string& element : {drive, motor, spring, limit}) {
+    CHECK(contains(
+        model_error(deck("cylindrical", element)),
+        "coordinate: missing; joint \"j\" is a cylindrical joint and has an angle and a displacement"));
+    CHECK(model_error(deck("cylindrical", element + turn)).empty());
+    CHECK(model_error(deck("cylindrical", element + slide)).empty());
+    CHECK(contains(model_error(deck("revolute", element + slide)),
+                   "joint \"j\" is a revolute joint and has no displacement, but an angle"));
+    CHECK(contains(model_error(deck("cylindrical", element + length)), "has no length"));
+    CHECK(contains(model_error(deck("planar", element)), "a planar joint"));
+    CHECK(contains(model_error(deck("planar", element)), "cylindrical"));
+  }
+  const Model cylinder = model_of(deck("cylindrical", motor + slide));
+  CHECK(cylinder.motors[0].coordinate == JointCoordinate::displacement);
+}
+
+TEST_CASE("a screw has a lead, and begins where its points and frames are") {
+  const std::string thread = "type = \"screw\"\nbodies = [\"a\", \"b\"]\naxis = [2.0, 0.0, 0.0]\n";
+  CHECK(contains(model_error(two_bodies() + joint(thread)), "lead"));
+  CHECK(contains(model_error(two_bodies() + joint(thread + "lead = 0.0\n")), "must not be 0"));
+  const Model model = model_of(two_bodies() +
+                               joint(thread + "lead = -0.02\nlocal_points = [[0.1, 0.0, 0.0], "
+                                              "[0.0, 0.0, 0.0]]\n") +
+                               "[[motors]]\nname = \"m\"\njoint = \"j\"\ntype = \"effort\"\neffort = 1.0\n");
+  CHECK(model.joints[0].lead == -0.02);
+  CHECK(std::abs(model.joints[0].advance - 0.3) < kRoundOff);
+  CHECK(model.motors[0].coordinate == JointCoordinate::angle);
+}
+
+TEST_CASE("couplers between joints in space take the coordinates that they are about") {
+  const auto joint_of = [](const std::string& name, const std::string& type, const std::string& body) {
+    return "[[joints]]\nname = \"" + name + "\"\ntype = \"" + type + "\"\nbodies = [\"ground\", \"" + body +
+           "\"]\naxis = [1.0, 0.0, 0.0]\n";
+  };
+  const std::string hinges =
+      two_bodies() + joint_of("one", "cylindrical", "a") + joint_of("two", "translational", "b");
+  const auto coupler = [&](const std::string& rest) {
+    return hinges + "[[couplers]]\nname = \"c\"\njoints = [\"one\", \"two\"]\n" + rest;
+  };
+  using enum JointCoordinate;
+  CHECK(model_of(coupler("type = \"rack-and-pinion\"\nradius = 0.1\n")).couplers[0].coordinates ==
+        std::vector{angle, displacement});
+  CHECK(contains(model_error(coupler("type = \"belt\"\nradii = [0.1, 0.2]\n")),
+                 "joint \"two\" must be revolute, cylindrical or screw here"));
+  const std::string sum = "type = \"sum\"\ncoefficients = [1.0, 2.0]\n";
+  CHECK(contains(model_error(coupler(sum)), "coordinates: missing; joint \"one\" is a cylindrical joint"));
+  CHECK(model_of(coupler(sum + "coordinates = [\"displacement\", \"displacement\"]\n"))
+            .couplers[0]
+            .coordinates == std::vector{displacement, displacement});
+  CHECK(contains(model_error(coupler(sum + "coordinates = [\"angle\", \"angle\"]\n")),
+                 "joint \"two\" is a translational joint and has no angle"));
+  CHECK(
+      contains(model_error(coupler(sum + "coordinates = [\"angle\"]\n")), "must have 2 entries, as joints"));
+  CHECK(contains(model_error(coupler(sum + "coordinates = [\"angle\", \"turn\"]\n")), "\"turn\" must be"));
 }
 
 TEST_CASE("joints in space without numerical damping are warned of") {

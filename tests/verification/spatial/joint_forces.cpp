@@ -65,8 +65,10 @@ TEST_CASE("a spring lets a slider down an oblique axis and takes it back, to sec
   CHECK(coarse / fine < 4.3);
 }
 
-TEST_CASE(
-    "a motor, a spring and a stop between two bodies that fly and turn keep momentum, and their books") {
+namespace {
+
+// Two bodies that fly and turn as one, on a joint between them.
+Model flying_pair(JointKind kind) {
   Model model = spatial_model(-0.05);
   model.gravity = {};
   model.bodies = {spatial_body("one", 2, {0.1, 0.2, 0.15}, {0, 0, 0}),
@@ -74,12 +76,38 @@ TEST_CASE(
   for (Body& body : model.bodies) body.spin = {1, -2, 0.5};
   model.bodies[1].velocity = cross(Vec3{1, -2, 0.5}, Vec3{0.3, 0.1, 0.2});
   model.joints = {slide_along(0, 1, {0.3, 0.1, 0.2}, {0, 0, 0}, {0.6, 0, 0.8})};
+  model.joints[0].kind = kind;
+  return model;
+}
+
+// A motor, a spring and a stop on the displacement.
+Model pushed_pair() {
+  Model model = flying_pair(JointKind::translational);
   model.motors = {pusher(0.5, 4, 10)};
   model.motors[0].limit = 3;
   model.joint_springs = {{"spring", 0, 20, 0.5, {}, {}, {}}};
   JointLimit limit;
   limit.name = "stop", limit.upper = 0.06, limit.stiffness = 2000, limit.damping = 2;
   model.joint_limits = {limit};
+  return model;
+}
+
+// The same on the displacement of a cylindrical joint, and others on its angle.
+Model pushed_and_turned_pair() {
+  Model model = flying_pair(JointKind::cylindrical);
+  const Model pushed = pushed_pair();
+  for (const JointCoordinate coordinate : {JointCoordinate::displacement, JointCoordinate::angle}) {
+    for (Motor e : pushed.motors) e.coordinate = coordinate, model.motors.push_back(e);
+    for (JointSpring e : pushed.joint_springs) e.coordinate = coordinate, model.joint_springs.push_back(e);
+    for (JointLimit e : pushed.joint_limits) e.coordinate = coordinate, model.joint_limits.push_back(e);
+  }
+  model.motors[1].rate.value = 4, model.joint_springs[1].stiffness = 0.5,
+  model.joint_springs[1].damping = 0.02;
+  model.joint_limits[1].upper = 1, model.joint_limits[1].stiffness = 30, model.joint_limits[1].damping = 0.05;
+  return model;
+}
+
+void check_momentum_and_books(const Model& model) {
   struct Gap {
     Real energy = 0, momentum = 0, spin = 0;
   };
@@ -116,4 +144,11 @@ TEST_CASE(
   CHECK(coarse.spin / fine.spin > 3.5);
   CHECK(fine.energy < 1e-3);
   CHECK(coarse.energy / fine.energy > 3.5);
+}
+
+}  // namespace
+
+TEST_CASE("efforts on a joint between two bodies that fly and turn keep momentum, and their books") {
+  check_momentum_and_books(pushed_pair());
+  check_momentum_and_books(pushed_and_turned_pair());
 }

@@ -1,0 +1,77 @@
+#include <array>
+#include <cmath>
+
+#include "mbs/measure.hpp"
+
+namespace scree {
+
+namespace {
+
+// theta    = atan2(s, c), s = y_1.x_2, c = x_1.x_2: the rotation of the second frame against the first about
+// the
+//            z that they share
+// f_c = -s / (s^2 + c^2), f_s = c / (s^2 + c^2), and their derivatives f_cc = -f_ss = 2 s c / (s^2 + c^2)^2,
+// f_cs = (s^2 - c^2) / (s^2 + c^2)^2: exact also where the axes are not yet parallel, as in Newton's
+// iterations. gradient = f_c c_q + f_s s_q; with axes that are parallel 0, -u, 0, A_2^T A_1 u, u = z_1 in the
+// first body Hessian  = f_c c_qq + f_s s_qq + f_cc c_q c_q^T + f_ss s_q s_q^T + f_cs (c_q s_q^T + s_q c_q^T)
+// second   = f_c c''_0 + f_s s''_0 + f_cc c'^2 + f_ss s'^2 + 2 f_cs c' s'
+class TwistMeasure final : public Measure {
+ public:
+  TwistMeasure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint)
+      : Measure(pair),
+        cosine_(dot1_measure(pair, x1, x2)),
+        sine_(dot1_measure(pair, y1, x2)),
+        joint_(joint) {}
+
+  bool is_angle() const override { return true; }
+  // The branch nearest to the angle of the last accepted step.
+  Real value(const SpatialMotion& motion) const override {
+    const Real wrapped = std::atan2(sine_->value(motion), cosine_->value(motion));
+    return wrapped + 2 * M_PI * std::round((motion.counted_angle(joint_) - wrapped) / (2 * M_PI));
+  }
+  PairGradient gradient(const SpatialMotion& motion) const override {
+    const Slopes f = slopes(motion);
+    const PairGradient c = cosine_->gradient(motion), s = sine_->gradient(motion);
+    PairGradient sum{};
+    for (const std::size_t k : {1, 3}) sum[k] = f.c * c[k] + f.s * s[k];
+    return sum;
+  }
+  Real second(const SpatialMotion& motion) const override {
+    const Slopes f = slopes(motion);
+    const Real c = measure_rate(*cosine_, motion), s = measure_rate(*sine_, motion);
+    return f.c * cosine_->second(motion) + f.s * sine_->second(motion) + f.cc * (c * c - s * s) +
+           2 * f.cs * c * s;
+  }
+  void add_hessian(const SpatialMotion& motion, Real scale, PairHessian& k) const override {
+    const Slopes f = slopes(motion);
+    cosine_->add_hessian(motion, scale * f.c, k);
+    sine_->add_hessian(motion, scale * f.s, k);
+    const PairGradient c = cosine_->gradient(motion), s = sine_->gradient(motion);
+    for (const std::size_t i : {1, 3})
+      for (const std::size_t j : {1, 3})
+        k[i][j] = k[i][j] + outer(scale, c[i], f.cc * c[j] + f.cs * s[j]) +
+                  outer(scale, s[i], f.cs * c[j] - f.cc * s[j]);
+  }
+  bool has_block(int block) const override { return block % 2 == 1; }
+  bool has_block(int row, int column) const override { return row % 2 == 1 && column % 2 == 1; }
+
+ private:
+  struct Slopes {
+    Real c, s, cc, cs;
+  };
+  Slopes slopes(const SpatialMotion& motion) const {
+    const Real c = cosine_->value(motion), s = sine_->value(motion), r = 1 / (c * c + s * s);
+    return {-s * r, c * r, 2 * s * c * r * r, (s * s - c * c) * r * r};
+  }
+
+  std::unique_ptr<Measure> cosine_, sine_;
+  int joint_;
+};
+
+}  // namespace
+
+std::unique_ptr<Measure> twist_measure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint) {
+  return std::make_unique<TwistMeasure>(pair, x1, y1, x2, joint);
+}
+
+}  // namespace scree
