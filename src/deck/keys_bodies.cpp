@@ -18,7 +18,8 @@ std::vector<Key> connection_keys() {
       texts("markers")
           .entries(2)
           .left_out("points and axes are as other keys say")
-          .about("The two markers between which it stands, in place of the bodies, of points and axes; with chain "
+          .about("The two markers between which it stands, in place of the bodies, of points and axes; with "
+                 "chain "
                  "or each, of every element: markers of the row, with each the first one on the ground."),
       text("chain").left_out("none").about(
           "Name of a row of bodies: one element between each body and the next, named NAME.0, NAME.1, ..."),
@@ -68,15 +69,18 @@ TableKeys make_body_keys() {
            .only_for(spatial)
            .entries(6)
            .left_out("solids are given")
-           .about("Jxx, Jyy, Jzz, Jxy, Jxz, Jyz about the centre of mass along the axes of the body's frame, or "
-                  "along those of the inertia_ keys. The last three are entries of the tensor: Jxy = - sum of "
-                  "m x y."),
+           .about(
+               "Jxx, Jyy, Jzz, Jxy, Jxz, Jyz about the centre of mass along the axes of the body's frame, or "
+               "along those of the inertia_ keys. The last three are entries of the tensor: Jxy = - sum of "
+               "m x y."),
        vector("center_of_mass", "m")
            .left_out("solids are given, or the origin")
            .about("Centre of mass in the body's frame."),
-       vector("position", "m").required().about(
-           "Origin of the body's frame at t = 0, which is the centre of mass unless center_of_mass or solids "
-           "say otherwise; of a row, the first body's."),
+       vector("position", "m")
+           .required()
+           .about("Origin of the body's frame at t = 0, which is the centre of mass unless center_of_mass or "
+                  "solids "
+                  "say otherwise; of a row, the first body's."),
        real("angle", "rad").only_for(planar).otherwise("0.0").about("Angle of the body's frame at t = 0."),
        vector("velocity", "m/s").otherwise("zero").about("Velocity of that origin at t = 0."),
        real("angular_velocity", "rad/s")
@@ -91,8 +95,7 @@ TableKeys make_body_keys() {
            .only_for(spatial)
            .left_out("body_angular_velocity is given, or zero")
            .about("The same along the global axes."),
-       tables("shapes", shapes),
-       tables("solids", solid_keys())},
+       tables("shapes", shapes), tables("solids", solid_keys())},
       "kind"};
   for (const auto& [prefix, what, outer] :
        {std::array{"", "the body's frame at t = 0", "the global frame"},
@@ -135,8 +138,10 @@ const TableKeys& joint_keys() {
            "same of "
            "the point alone. Parallel, perpendicular: the axes are; the bodies move freely. Orientation: no "
            "relative "
-           "rotation. Of markers the axis is z, and the arms of universal joints are the first one's x and the "
-           "second one's y; which axes must agree at t = 0 must do so to 1e-6 rad, and then the second marker's "
+           "rotation. Of markers the axis is z, and the arms of universal joints are the first one's x and "
+           "the "
+           "second one's y; which axes must agree at t = 0 must do so to 1e-6 rad, and then the second "
+           "marker's "
            "are made exact."),
        vector("point", "m")
            .only_for(pointed)

@@ -96,8 +96,9 @@ class MeasureSpring final : public ForceElement {
   Law law_;
 };
 
-// F and T global or, if they follow the body, A f and A t, f and t along its axes or a marker's; torque in the body's frame A^T T + s x A^T F.
-// -Q_q: global: -(A^T T)~ - s~ (A^T F)~ at (pi, pi); following F: A f~ at (r, pi).  -Q_v = 0
+// F and T global or, if they follow the body, A f and A t, f and t along its axes or a marker's; torque in
+// the body's frame A^T T + s x A^T F. -Q_q: global: -(A^T T)~ - s~ (A^T F)~ at (pi, pi); following F: A f~ at
+// (r, pi).  -Q_v = 0
 class AppliedForceElement final : public ForceElement {
  public:
   AppliedForceElement(const AppliedForce& element, const BodyLayout& layout, Real end)

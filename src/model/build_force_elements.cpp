@@ -70,8 +70,7 @@ AppliedForce build_applied_force(const DeckTable& table, const Model& model, con
   if (table.has("point") && table.has("local_point"))
     table.fail("local_point", "not used together with point");
   if (table.has("point")) force.point = to_body_point(model, force.body, table.vector("point"));
-  if (table.has("local_point"))
-    force.point = from_center(model, force.body, table.vector("local_point"));
+  if (table.has("local_point")) force.point = from_center(model, force.body, table.vector("local_point"));
   force.fx = build_force(table.table("fx"));
   force.fy = build_force(table.table("fy"));
   force.torque = build_force(table.table("torque"));

@@ -102,7 +102,8 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
                     angle_between(one.z, two.z));
       return turned_frame(two, two.z, one.z);
     case JointKind::universal:
-      return square(one.x, two.y, "the first marker's x axis must be perpendicular to the second one's y axis");
+      return square(one.x, two.y,
+                    "the first marker's x axis must be perpendicular to the second one's y axis");
     case JointKind::perpendicular:
       return square(one.z, two.z, "the z axes of the two markers must be perpendicular");
     case JointKind::constant_velocity:
@@ -114,12 +115,11 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
   }
 }
 
-// Of the joint's ends; what markers must keep of each other at t = 0 they keep to kAligned [rad], and then the
-// second one is turned to keep it exactly.
+// Of the joint's ends; what markers must keep of each other at t = 0 they keep to kAligned [rad], and then
+// the second one is turned to keep it exactly.
 void place_markers(const DeckTable& table, const Model& model, const Connection& connection, Joint& joint) {
   if (connection.markers) {
-    for (std::size_t side = 0; side < 2; ++side)
-      joint.marker[side] = (*connection.markers)[side].orientation;
+    for (std::size_t side = 0; side < 2; ++side) joint.marker[side] = (*connection.markers)[side].orientation;
     const auto frame = [&](int side) { return global_frame(model, joint.body[side], joint.marker[side]); };
     joint.marker[1] =
         marker_at(model, joint.body[1], {}, aligned(table, joint.kind, frame(0), frame(1))).orientation;

@@ -65,8 +65,7 @@ Connection marked_pair(const DeckTable& table, const NamedEnds& ends) {
                                         table.texts("markers")[side]));
     connection.body[side] = ends[side]->bodies.front();
   }
-  if (connection.body[0] == connection.body[1])
-    table.fail("markers", "must be on two different bodies");
+  if (connection.body[0] == connection.body[1]) table.fail("markers", "must be on two different bodies");
   return connection;
 }
 
@@ -87,8 +86,9 @@ std::vector<Connection> find_connections(const DeckTable& table, const ModelName
   const bool marked = table.has("markers");
   const int rows = table.has("chain") + table.has("each");
   if (table.has("bodies") + rows + (marked && rows == 0) != 1)
-    table.fail("name", "exactly one of the keys bodies, markers, chain and each must be given, or markers with "
-                       "chain or each");
+    table.fail("name",
+               "exactly one of the keys bodies, markers, chain and each must be given, or markers with "
+               "chain or each");
   if (table.has("bodies")) return {named_pair(table, names)};
   if (rows == 0) return {marked_pair(table, named_ends(table, names))};
   const bool chain = table.has("chain");

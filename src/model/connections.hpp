@@ -46,8 +46,9 @@ Vec3 from_center(const Model& model, int body, Vec3 local);
 Marker marker_at(const Model& model, int body, Vec3 point, const Mat3& frame);
 Mat3 global_frame(const Model& model, int body, const Quaternion& orientation);  // at t = 0, rows x, y, z
 
-// The markers of a connection; without, those of the deck's point or local_points (left out: the body's centre
-// of mass, or midway between the two), the axes as its orientation_keys() say in the global frame at t = 0.
+// The markers of a connection; without, those of the deck's point or local_points (left out: the body's
+// centre of mass, or midway between the two), the axes as its orientation_keys() say in the global frame at t
+// = 0.
 Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection);
 // The same of the points alone.
 void find_common_points(const DeckTable& table, const Model& model, const Connection& connection,
@@ -55,8 +56,8 @@ void find_common_points(const DeckTable& table, const Model& model, const Connec
 // Refuses these keys of the table beside markers.
 void check_without_markers(const DeckTable& table, std::initializer_list<const char*> keys);
 
-// Fills the two local points from markers, local_points, points or the bodies' centres. Throws InputError where the
-// ground needs a point that is not given.
+// Fills the two local points from markers, local_points, points or the bodies' centres. Throws InputError
+// where the ground needs a point that is not given.
 void find_end_points(const DeckTable& table, const Model& model, const Connection& connection, Vec3 local[2]);
 // Refuses a planar and a spatial body together.
 void check_same_kind(const DeckTable& table, const Model& model, const Connection& connection);

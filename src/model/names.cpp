@@ -53,8 +53,8 @@ const NamedMarker& find_marker(const ModelNames& names, const std::string& name,
                                const std::string& key) {
   const auto found = names.markers.find(name);
   if (found != names.markers.end()) return found->second;
-  table.fail(key,
-             fmt::format("there is no marker named \"{}\"{}", name, suggestion(name, names_of(names.markers))));
+  table.fail(
+      key, fmt::format("there is no marker named \"{}\"{}", name, suggestion(name, names_of(names.markers))));
 }
 
 int find_material(const ModelNames& names, const DeckTable& table, const std::string& key) {

@@ -25,7 +25,7 @@ struct ModelNames {
   NameMap materials, bodies, joints;
   std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
   std::map<std::string, NamedMarker> markers;
-  std::vector<Real> densities;                   // of the materials [kg/m^3], 0 where not given
+  std::vector<Real> densities;  // of the materials [kg/m^3], 0 where not given
 };
 
 // Index of the name that `table.key` holds. what: "material", "body", ... for the message. Throws InputError

@@ -31,13 +31,12 @@ inline MassProperties solid_cylinder(Real density, Real radius, Real length) {
   const Real across = mass / 12 * (3 * r2 + length * length);
   return {mass, {}, {across, 0, 0, across, 0, mass / 2 * r2}};
 }
-// A cylinder of this length and a half sphere on either end, whose centre of mass is 3/8 of the radius from its
-// plane: across, both together have m (2/5 r^2 + l^2/4 + 3/8 r l) about the middle.
+// A cylinder of this length and a half sphere on either end, whose centre of mass is 3/8 of the radius from
+// its plane: across, both together have m (2/5 r^2 + l^2/4 + 3/8 r l) about the middle.
 inline MassProperties solid_capsule(Real density, Real radius, Real length) {
   MassProperties whole = solid_cylinder(density, radius, length);
   const MassProperties ends = solid_sphere(density, radius);
-  const Real across =
-      ends.inertia.xx + ends.mass * (length * length / 4 + Real(3) / 8 * radius * length);
+  const Real across = ends.inertia.xx + ends.mass * (length * length / 4 + Real(3) / 8 * radius * length);
   whole.mass += ends.mass;
   whole.inertia += Sym3{across, 0, 0, across, 0, ends.inertia.zz};
   return whole;
