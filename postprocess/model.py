@@ -70,7 +70,7 @@ def volume(solid):
 def center_of_mass(body, densities):
     """In the body's frame. densities: of the materials, by name."""
     if not body.get("solids"):
-        return in_space(body.get("center_of_mass", []))
+        return in_space(body.get("center_of_mass", [0.0, 0.0]))
     only = next(iter(densities), None)
     masses = [
         volume(s) * (s["density"] if "density" in s else densities[s.get("material", only)])

@@ -45,8 +45,8 @@ class FramesTest(CommandLineTest):
                                         'name = "hinge"\nbody = "boom"\nz_axis = [0.0, -1.0, 0.0]')
         line = deck[: deck.index('markers = ["tower"')].count("\n") + 1
         message = self.expect(BAD_INPUT, "check", self.write("deck.toml", deck)).stderr
-        self.assertRegex(message, rf'deck\.toml:{line}:11: joints\.hinge\.markers = \["tower", "hinge"\]: the z axes of the '
-                                  r"two markers must point in the same direction at t = 0; they are off by 180 degrees")
+        self.assertIn(f'deck.toml:{line}:11: joints.hinge.markers = ["tower", "hinge"]: the z axes of the two markers '
+                      "must point in the same direction at t = 0; they are off by 180 degrees", message)
 
     def test_the_frames_origin_stays_in_the_hinge(self):
         rows = self.run_boom("out")

@@ -224,9 +224,10 @@ class MechanismTest(unittest.TestCase):
 
     def test_frames_beside_centres_of_mass_and_markers(self):
         """A rod of two balls of 1 and 3 parts at 0 and 1 along its x axis, which starts along the global z."""
-        solids = [{"kind": "sphere", "radius": 0.1, "density": rho, "offset": [x, 0.0, 0.0]} for x, rho in ((0, 1), (1, 3))]
-        rod = {"name": "rod", "kind": "spatial", "position": [0.0, 0.0, 2.0], "spacing": [0.0, 0.0, 0.0], "solids": solids,
-               "x_axis": [0.0, 0.0, 1.0], "z_axis": [0.0, 1.0, 0.0]}
+        solids = [{"kind": "sphere", "radius": 0.1, "density": density, "offset": [x, 0.0, 0.0]}
+                  for x, density in ((0.0, 1.0), (1.0, 3.0))]
+        rod = {"name": "rod", "kind": "spatial", "position": [0.0, 0.0, 2.0], "spacing": [0.0, 0.0, 0.0],
+               "solids": solids, "x_axis": [0.0, 0.0, 1.0], "z_axis": [0.0, 1.0, 0.0]}
         markers = [{"name": "floor", "body": "ground", "local_point": [0.0, 0.0, 3.0]},
                    {"name": "end", "body": "rod", "local_point": [1.0, 0.0, 0.0]}]
         joints = [{"name": "ball", "type": "spherical", "markers": ["floor", "end"]},
