@@ -1,5 +1,5 @@
 // Keys of bodies, joints, drivers and force elements.
-#include <array>
+#include <algorithm>
 
 #include "deck/choices.hpp"
 #include "deck/keys.hpp"
@@ -97,10 +97,12 @@ TableKeys make_body_keys() {
            .about("The same along the global axes."),
        tables("shapes", shapes), tables("solids", solid_keys())},
       "kind"};
-  for (const auto& [prefix, what, outer] :
-       {std::array{"", "the body's frame at t = 0", "the global frame"},
-        std::array{"inertia_", "the axes of inertia_tensor", "the body's frame"}})
-    for (Key& key : orientation_keys(prefix, what, outer)) keys.keys.push_back(key.only_for(spatial));
+  const auto add = [&](const char* before, std::vector<Key> added) {
+    for (Key& key : added) key.only_for(spatial);
+    keys.keys.insert(std::ranges::find(keys.keys, before, &Key::name), added.begin(), added.end());
+  };
+  add("center_of_mass", orientation_keys("inertia_", "the axes of inertia_tensor", "the body's frame"));
+  add("velocity", orientation_keys("", "the body's frame at t = 0", "the global frame"));
   return keys;
 }
 

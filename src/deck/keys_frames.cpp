@@ -25,10 +25,12 @@ std::vector<Key> orientation_keys(const std::string& prefix, const std::string& 
           .about("The angle of this rotation, right-handed."),
       vector(named("z_axis"), "")
           .left_out(otherwise)
-          .about(fmt::format("The same by directions along {}, of any length but 0: that of the z axis.",
+          .about(fmt::format("The same by one or two directions in {}, of any length but 0: that of the z "
+                             "axis.",
                              outer)),
       vector(named("x_axis"), "")
-          .left_out("across the z axis, for what does not depend on it")
+          .left_out(
+              fmt::format("the direction across {}z_axis that is nearest to an axis of {}", prefix, outer))
           .about(fmt::format("That of the x axis, perpendicular to {0}z_axis: to 1e-6, then {0}z_axis is "
                              "kept.",
                              prefix))};
@@ -60,7 +62,8 @@ const TableKeys& solid_keys() {
          real("density", "kg/m^3").above(0).left_out("that of the material").about("Density."),
          text("material").left_out("the only material").about("Material that has the density.")},
         "kind"};
-    for (const Key& key : orientation_keys("", "its own frame", "the body's")) solid.keys.push_back(key);
+    for (const Key& key : orientation_keys("", "its own frame", "the body's frame"))
+      solid.keys.push_back(key);
     return solid;
   }();
   return keys;
