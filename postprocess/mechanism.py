@@ -50,9 +50,9 @@ class Mechanism:
         self._bars = self._find_bars()
 
     def _find_bars(self):
-        """(body, two points on it), of the shortest lines that connect a body's shapes and joints; its centre
-        where it has no shapes."""
-        points = [list(offsets) or [np.zeros(3)] for offsets in self.model.offsets]
+        """(body, two points on it), of the shortest lines that connect a body's shapes and joints; its
+        centre of mass where it has no shapes."""
+        points = [list(own) or [center] for own, center in zip(self.model.offsets, self.model.centers_of_mass)]
         for pairs, local, _ in self.model.connections.values():
             for pair, ends in zip(pairs, local):
                 for body, point in zip(pair, ends):

@@ -37,14 +37,46 @@ def of_quaternions(quaternions):
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
+def unit(vector):
+    return np.asarray(vector, dtype=float) / np.linalg.norm(vector)
+
+
+def orientation(table):
+    """What the deck's keys of an orientation say, as a rotation."""
+    if "quaternion" in table:
+        return of_quaternions(np.array(table["quaternion"], dtype=float))
+    if "z_axis" in table:
+        z = unit(table["z_axis"])  # without x_axis: the outer axis most nearly across
+        y = unit(np.cross(z, table.get("x_axis", np.eye(3)[np.argmin(np.abs(z))])))
+        return np.stack([np.cross(y, z), y, z], axis=-1)
+    half = table.get("rotation_angle", 0.0) / 2
+    axis = unit(table.get("rotation_axis", [0.0, 0.0, 1.0]))
+    return of_quaternions(np.array([np.cos(half), *(np.sin(half) * axis)]))
+
+
 def start_rotation(body):
     """Of a body's table in the deck."""
-    if body["kind"] == "planar":
-        return about_z(np.array(float(body["angle"])))
-    if "quaternion" in body:
-        return of_quaternions(np.array(body["quaternion"], dtype=float))
-    axis, half = np.array(body.get("rotation_axis", [0.0, 0.0, 1.0])), body.get("rotation_angle", 0.0) / 2
-    return of_quaternions(np.array([np.cos(half), *(np.sin(half) / np.linalg.norm(axis) * axis)]))
+    return about_z(np.array(float(body["angle"]))) if body["kind"] == "planar" else orientation(body)
+
+
+def volume(solid):
+    if solid["kind"] == "box":
+        return np.prod(solid["size"])
+    length, radius = solid.get("length", 0.0), solid["radius"]
+    ends = 0.0 if solid["kind"] == "cylinder" else 4 / 3 * np.pi * radius**3
+    return np.pi * radius**2 * length + ends
+
+
+def center_of_mass(body, densities):
+    """In the body's frame. densities: of the materials, by name."""
+    if not body.get("solids"):
+        return in_space(body.get("center_of_mass", [0.0, 0.0]))
+    only = next(iter(densities), None)
+    masses = [
+        volume(s) * (s["density"] if "density" in s else densities[s.get("material", only)])
+        for s in body["solids"]
+    ]
+    return np.average([in_space(s["offset"]) for s in body["solids"]], axis=0, weights=masses)
 
 
 def turned(vectors, rotations):
@@ -57,14 +89,14 @@ def turned_back(vectors, rotations):
 
 
 class Motion:
-    """Of all bodies and, last, the ground. known: whether the results tell where the body is."""
+    """Of the frames of all bodies and, last, the ground. known: whether the results tell where the body is."""
 
-    def __init__(self, centers, rotations, known):
-        self.centers, self.rotations, self.known = centers, rotations, known
+    def __init__(self, origins, rotations, known):
+        self.origins, self.rotations, self.known = origins, rotations, known
 
     def places(self, bodies, local):
         """Points fixed to bodies, in the global frame [m]."""
-        return self.centers[bodies] + turned(local, self.rotations[bodies])
+        return self.origins[bodies] + turned(local, self.rotations[bodies])
 
 
 class Connections:
@@ -95,23 +127,27 @@ class Model:
         self.gravity = in_space(deck["gravity"])
         self.boundaries = {side: space[side] for side in SIDES[: 4 if self.planar else 6]}
         self.walls = [(in_space(wall["point"]), in_space(wall["normal"])) for wall in deck.get("walls", [])]
-        self._read_bodies(deck.get("bodies", []))
+        densities = {material["name"]: material.get("density") for material in deck.get("materials", [])}
+        self._read_bodies(deck.get("bodies", []), densities)
+        self._markers = {marker["name"]: marker for marker in deck.get("markers", [])}
         self._read_connections(deck)
 
-    def _read_bodies(self, tables):
-        self.names, self.offsets, self.rows = [], [], {}
-        centers, rotations = [], []
+    def _read_bodies(self, tables, densities):
+        self.names, self.offsets, self.rows, self.centers_of_mass = [], [], {}, []
+        origins, rotations = [], []
         for table in tables:
             offsets = np.array([in_space(s["offset"]) for s in table.get("shapes", [])]).reshape(-1, 3)
             for i in range(table.get("count", 1)):
                 self.rows.setdefault(table["name"], []).append(len(self.names))
                 self.names.append(f"{table['name']}.{i}" if "count" in table else table["name"])
                 self.offsets.append(offsets)
-                centers.append(in_space(table["position"]) + i * in_space(table["spacing"]))
+                self.centers_of_mass.append(center_of_mass(table, densities))
+                origins.append(in_space(table["position"]) + i * in_space(table["spacing"]))
                 rotations.append(start_rotation(table))
+        self.centers_of_mass.append(np.zeros(3))  # the ground
         count = len(self.names)
         self.start = Motion(
-            np.array([*centers, np.zeros(3)]), np.array([*rotations, np.eye(3)]), np.ones(count + 1, dtype=bool)
+            np.array([*origins, np.zeros(3)]), np.array([*rotations, np.eye(3)]), np.ones(count + 1, dtype=bool)
         )
         self._index = {name: i for i, name in enumerate(self.names)} | {"ground": GROUND}
 
@@ -121,20 +157,24 @@ class Model:
             return list(zip(row, row[1:]))
         if "each" in table:
             return [(GROUND, body) for body in self.rows[table["each"]]]
+        if "markers" in table:
+            return [tuple(self._index[self._markers[name]["body"]] for name in table["markers"])]
         return [tuple(self._index[name] for name in table["bodies"])]
 
     def _local(self, body, point):
-        return turned_back(point - self.start.centers[body], self.start.rotations[body])
+        return turned_back(point - self.start.origins[body], self.start.rotations[body])
 
     def _points(self, table, pair, common):
         """The deck's points of a connection, in the bodies' frames. common: one point for both sides."""
+        if "markers" in table:
+            return [in_space(self._markers[name]["local_point"]) for name in table["markers"]]
         if "local_points" in table:
             return [in_space(p) for p in table["local_points"]]
         if "points" in table:
             return [self._local(body, in_space(p)) for body, p in zip(pair, table["points"])]
         if not common:
-            return [np.zeros(3), np.zeros(3)]
-        moving = [self.start.centers[body] for body in pair if body != GROUND]
+            return [self.centers_of_mass[body] for body in pair]
+        moving = [self.start.places(body, self.centers_of_mass[body]) for body in pair if body != GROUND]
         point = in_space(table["point"]) if "point" in table else np.mean(moving, axis=0)
         return [self._local(body, point) for body in pair]
 
@@ -142,11 +182,13 @@ class Model:
         self.connections = {}
 
         def add(kind, table, common):
-            axis = in_space(table.get("axis", [1.0, 0.0]))
+            axis = unit(in_space(table.get("axis", [1.0, 0.0])))
             for pair in self._pairs(table):
                 local_axis = turned_back(axis, self.start.rotations[pair[0]])
+                if "markers" in table:
+                    local_axis = orientation(self._markers[table["markers"][0]])[:, 2]
                 self.connections.setdefault(kind, Connections()).add(
-                    pair, self._points(table, pair, common), local_axis / np.linalg.norm(axis)
+                    pair, self._points(table, pair, common), local_axis
                 )
 
         for table in deck.get("joints", []):
@@ -183,7 +225,7 @@ class Model:
     def motion(self, time, bodies, snapshot, history):
         """Where the bodies are in the snapshot of that time [s]: from their shapes, or where they have none, from
         the history's columns ({name: (values, ...)}). bodies: the shapes' Series, or None."""
-        motion = Motion(self.start.centers.copy(), self.start.rotations.copy(), np.zeros_like(self.start.known))
+        motion = Motion(self.start.origins.copy(), self.start.rotations.copy(), np.zeros_like(self.start.known))
         motion.known[GROUND] = True
         if bodies is not None:
             index, first = np.unique(bodies.rows(snapshot, "body"), return_index=True)
@@ -194,17 +236,18 @@ class Model:
             )
             offsets = np.array([self.offsets[body][0] for body in index]).reshape(-1, 3)
             points = bodies.rows(snapshot, "Points")[first]
-            motion.centers[index] = points - turned(offsets, motion.rotations[index])
+            motion.origins[index] = points - turned(offsets, motion.rotations[index])
             motion.known[index] = True
         for body in np.flatnonzero(~motion.known):
             found = {
                 name: np.interp(time, history["step/time"][0], history[column][0])
-                for name in ("x", "y", "z", "angle", "e0", "e1", "e2", "e3")
+                for name in (*"xyz", "origin_x", "origin_y", "origin_z", "angle", "e0", "e1", "e2", "e3")
                 if (column := f"bodies/{self.names[body]}/{name}") in history
             }
             if not found:
                 continue
-            motion.centers[body] = [found[name] for name in "xyz"]
+            # Without columns of their own the frame's origin is the centre of mass.
+            motion.origins[body] = [found.get(f"origin_{name}", found[name]) for name in "xyz"]
             motion.rotations[body] = (
                 about_z(found["angle"])
                 if "angle" in found

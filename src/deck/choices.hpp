@@ -95,6 +95,14 @@ template <>
 inline constexpr auto kWords<BodyKind> = std::to_array<Word<BodyKind>>({{"planar", BodyKind::planar},
                                                                         {"spatial", BodyKind::spatial}});
 
+// Homogeneous solids that a body is made of; axes along z.
+enum class SolidKind { sphere, box, cylinder, capsule };
+template <>
+inline constexpr auto kWords<SolidKind> = std::to_array<Word<SolidKind>>({{"sphere", SolidKind::sphere},
+                                                                          {"box", SolidKind::box},
+                                                                          {"cylinder", SolidKind::cylinder},
+                                                                          {"capsule", SolidKind::capsule}});
+
 enum class JointKind {
   revolute,           // the two points coincide, in space the axes are parallel too
   translational,      // body 2's point stays on body 1's axis, no relative rotation

@@ -116,6 +116,12 @@ Key quantity(const std::string& name, const std::string& unit, const TableKeys& 
 Key table(const std::string& name, const TableKeys& keys);
 Key tables(const std::string& name, const TableKeys& keys);
 
+// Of an orientation: quaternion, or rotation_axis and rotation_angle, or z_axis with or without x_axis, each
+// after `prefix`; DeckTable's reader is read_orientation (model/frames.hpp). what: "the body's frame"; outer:
+// the frame in which that stands.
+std::vector<Key> orientation_keys(const std::string& prefix, const std::string& what,
+                                  const std::string& outer);
+
 // The whole deck, and its parts by subject.
 const TableKeys& deck_keys();
 const TableKeys& space_keys();
@@ -127,6 +133,8 @@ const TableKeys& wall_keys();
 const TableKeys& output_keys();
 const TableKeys& parallel_keys();
 const TableKeys& body_keys();
+const TableKeys& solid_keys();
+const TableKeys& marker_keys();
 const TableKeys& joint_keys();
 const TableKeys& driver_keys();
 const TableKeys& spring_damper_keys();

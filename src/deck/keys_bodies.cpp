@@ -1,4 +1,6 @@
 // Keys of bodies, joints, drivers and force elements.
+#include <algorithm>
+
 #include "deck/choices.hpp"
 #include "deck/keys.hpp"
 
@@ -11,8 +13,14 @@ std::vector<Key> connection_keys() {
   return {
       texts("bodies")
           .entries(2)
-          .left_out("chain or each is given")
+          .left_out("markers, chain or each is given")
           .about("The two bodies; one of them may be \"ground\"."),
+      texts("markers")
+          .entries(2)
+          .left_out("points and axes are as other keys say")
+          .about("The two markers between which it stands, in place of the bodies, of points and axes; with "
+                 "chain "
+                 "or each, of every element: markers of the row, with each the first one on the ground."),
       text("chain").left_out("none").about(
           "Name of a row of bodies: one element between each body and the next, named NAME.0, NAME.1, ..."),
       text("each").left_out("none").about(
@@ -34,9 +42,7 @@ Key local_points() {
       .about("The two points, each in its body's frame, in place of global ones.");
 }
 
-}  // namespace
-
-const TableKeys& body_keys() {
+TableKeys make_body_keys() {
   static const TableKeys shapes{
       "Circles (2D) or spheres (3D) fixed to the body, for contact and for pictures.",
       {real("radius", "m").above(0).required().about("Radius."),
@@ -44,7 +50,7 @@ const TableKeys& body_keys() {
        text("material").left_out("the only material").about("Material.")},
       ""};
   static constexpr auto planar = {BodyKind::planar}, spatial = {BodyKind::spatial};
-  static const TableKeys keys{
+  TableKeys keys{
       "Rigid bodies, one or a row of equal ones.",
       {name_key().required().about("Name; the bodies of a row are NAME.0, NAME.1, ..."),
        choice<BodyKind>("kind")
@@ -53,37 +59,30 @@ const TableKeys& body_keys() {
                   "space.dimension = 3, moves and turns in any direction."),
        integer("count").within(1, 10000000).left_out("a single body").about("Number of bodies of a row."),
        vector("spacing", "m").otherwise("zero").about("From each body of a row to the next."),
-       real("mass", "kg").above(0).required().about("Mass."),
+       real("mass", "kg").above(0).left_out("solids are given").about("Mass."),
        real("inertia", "kg m^2")
            .only_for(planar)
            .above(0)
-           .required()
+           .left_out("solids are given")
            .about("Moment of inertia about the centre of mass, z axis."),
        reals("inertia_tensor", "kg m^2")
            .only_for(spatial)
            .entries(6)
+           .left_out("solids are given")
+           .about(
+               "Jxx, Jyy, Jzz, Jxy, Jxz, Jyz about the centre of mass along the axes of the body's frame, or "
+               "along those of the inertia_ keys. The last three are entries of the tensor: Jxy = - sum of "
+               "m x y."),
+       vector("center_of_mass", "m")
+           .left_out("solids are given, or the origin")
+           .about("Centre of mass in the body's frame."),
+       vector("position", "m")
            .required()
-           .about("Jxx, Jyy, Jzz, Jxy, Jxz, Jyz about the centre of mass along the axes of the body's frame, "
-                  "whose "
-                  "origin it is. The last three are entries of the tensor: Jxy = - sum of m x y."),
-       vector("position", "m").required().about("Centre of mass at t = 0; of a row, the first body's."),
+           .about("Origin of the body's frame at t = 0, which is the centre of mass unless center_of_mass or "
+                  "solids "
+                  "say otherwise; of a row, the first body's."),
        real("angle", "rad").only_for(planar).otherwise("0.0").about("Angle of the body's frame at t = 0."),
-       reals("quaternion", "")
-           .only_for(spatial)
-           .entries(4)
-           .left_out("rotation_axis and rotation_angle are given, or [1, 0, 0, 0]")
-           .about("Orientation of the body's frame at t = 0, scalar first, from the body's components of a "
-                  "vector to "
-                  "the global ones; of length 1 to 1e-6."),
-       vector("rotation_axis", "")
-           .only_for(spatial)
-           .left_out("quaternion is given, or no rotation")
-           .about("The same as a rotation from the global frame about this axis, of any length but 0."),
-       real("rotation_angle", "rad")
-           .only_for(spatial)
-           .left_out("no rotation_axis is given")
-           .about("The angle of this rotation, right-handed."),
-       vector("velocity", "m/s").otherwise("zero").about("Velocity at t = 0."),
+       vector("velocity", "m/s").otherwise("zero").about("Velocity of that origin at t = 0."),
        real("angular_velocity", "rad/s")
            .only_for(planar)
            .otherwise("0.0")
@@ -96,8 +95,21 @@ const TableKeys& body_keys() {
            .only_for(spatial)
            .left_out("body_angular_velocity is given, or zero")
            .about("The same along the global axes."),
-       tables("shapes", shapes)},
+       tables("shapes", shapes), tables("solids", solid_keys())},
       "kind"};
+  const auto add = [&](const char* before, std::vector<Key> added) {
+    for (Key& key : added) key.only_for(spatial);
+    keys.keys.insert(std::ranges::find(keys.keys, before, &Key::name), added.begin(), added.end());
+  };
+  add("center_of_mass", orientation_keys("inertia_", "the axes of inertia_tensor", "the body's frame"));
+  add("velocity", orientation_keys("", "the body's frame at t = 0", "the global frame"));
+  return keys;
+}
+
+}  // namespace
+
+const TableKeys& body_keys() {
+  static const TableKeys keys = make_body_keys();
   return keys;
 }
 
@@ -132,7 +144,11 @@ const TableKeys& joint_keys() {
            "same of "
            "the point alone. Parallel, perpendicular: the axes are; the bodies move freely. Orientation: no "
            "relative "
-           "rotation."),
+           "rotation. Of markers the axis is z, and the arms of universal joints are the first one's x and "
+           "the "
+           "second one's y; which axes must agree at t = 0 must do so to 1e-6 rad, and then the second "
+           "marker's "
+           "are made exact."),
        vector("point", "m")
            .only_for(pointed)
            .left_out("the body's centre (with the ground), or midway between the two centres")
@@ -151,7 +167,7 @@ const TableKeys& joint_keys() {
            .about("Direction of the axis at t = 0 in the global frame, of any length but 0."),
        vector("second_axis", "")
            .only_for(with_two)
-           .required()
+           .left_out("markers are given")
            .about("The second body's axis or arm at t = 0, likewise; perpendicular to axis but for "
                   "constant-velocity "
                   "joints."),
@@ -219,7 +235,11 @@ const TableKeys& applied_force_keys() {
   static const TableKeys keys{
       "Forces and torques on a body as functions of time.",
       {name_key().required().about("Name for messages."),
-       text("body").required().about("The body that they act on."),
+       text("body").left_out("marker is given").about("The body that they act on."),
+       text("marker")
+           .left_out("body is given")
+           .about("The marker that they act at, in place of body and point; those that follow the body are "
+                  "along its axes."),
        vector("point", "m")
            .left_out("the body's centre")
            .about("Point of action at t = 0 in the global frame."),

@@ -35,6 +35,7 @@ const TableKeys& deck_keys() {
        tables("materials", material_keys()),
        tables("walls", wall_keys()),
        tables("bodies", body_keys()),
+       tables("markers", marker_keys()),
        tables("joints", joint_keys()),
        tables("drivers", driver_keys()),
        tables("spring_dampers", spring_damper_keys()),

@@ -258,8 +258,8 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
   const auto groups = impl_->system.reactions({t, state.position, state.velocity}, state.multipliers);
   std::vector<Reaction> reactions;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    reactions.push_back(
-        {impl_->system.groups()[i].name, groups[i].force, groups[i].torque, impl_->system.groups()[i].kind});
+    reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque,
+                         impl_->system.groups()[i].kind, groups[i].frame});
   }
   return reactions;
 }

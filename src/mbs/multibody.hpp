@@ -45,6 +45,7 @@ struct Reaction {
   Vec3 force;   // [N]
   Vec3 torque;  // about that point [N m]
   BodyKind kind = BodyKind::planar;
+  Quaternion frame{};  // between spatial bodies: of the joint's marker on body[0], global
 };
 
 // A coordinate of a joint at one instant.

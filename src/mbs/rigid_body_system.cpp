@@ -61,7 +61,8 @@ void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start
     const Joint& joint = model.joints[i];
     const std::unique_ptr<JointParts> parts = joint_parts(model, static_cast<int>(i), layout_);
     add_joint(joint, driven[i], *parts);
-    add_group(fmt::format("joint '{}'", joint.name), joint.name, parts->take(), between(model, joint.body));
+    add_group(fmt::format("joint '{}'", joint.name), joint.name, parts->take(), joint,
+              between(model, joint.body));
   }
   for (const Driver& driver : model.drivers) {
     const Joint& joint = model.joints[static_cast<std::size_t>(driver.joint)];
@@ -69,13 +70,14 @@ void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start
     const std::unique_ptr<JointParts> parts = joint_parts(model, driver.joint, layout_);
     add_driver(coordinate_of(title, joint, driver.coordinate),
                ScalarFunction(driver.motion, title, model.time.end), *parts);
-    add_group(title, driver.name, parts->take(), between(model, joint.body));
+    add_group(title, driver.name, parts->take(), joint, between(model, joint.body));
   }
   for (const Coupler& coupler : model.couplers) {
     std::vector<std::unique_ptr<Constraint>> rows;
     rows.push_back(make_coupler(coupler, model, layout_, start));
-    add_group(fmt::format("coupler '{}'", coupler.name), coupler.name, std::move(rows),
-              between(model, model.joints[static_cast<std::size_t>(coupler.joints.front())].body));
+    const Joint& first = model.joints[static_cast<std::size_t>(coupler.joints.front())];
+    add_group(fmt::format("coupler '{}'", coupler.name), coupler.name, std::move(rows), first,
+              between(model, first.body));
   }
 }
 
@@ -99,8 +101,11 @@ void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
 }
 
 void RigidBodySystem::add_group(const std::string& title, const std::string& name,
-                                std::vector<std::unique_ptr<Constraint>> parts, BodyKind kind) {
-  ConstraintGroup group{title, name, kind, static_cast<int>(constraints_.size()), 0, constraints(), 0};
+                                std::vector<std::unique_ptr<Constraint>> parts, const Joint& joint,
+                                BodyKind kind) {
+  ConstraintGroup group{title, name, kind};
+  group.body = joint.body[0], group.marker = joint.marker[0];
+  group.first = static_cast<int>(constraints_.size()), group.first_row = constraints();
   for (std::unique_ptr<Constraint>& part : parts) {
     first_row_.push_back(constraints());
     for (int row = 0; row < part->rows(); ++row) {
@@ -259,6 +264,9 @@ std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(
       constraints_[static_cast<std::size_t>(i)]->add_reaction(poses, lambda, reactions[k].force,
                                                               reactions[k].torque);
     }
+    reactions[k].frame = groups_[k].marker;
+    if (groups_[k].kind == BodyKind::spatial)
+      reactions[k].frame = quaternion_of(poses.spatial[groups_[k].body].rotation) * groups_[k].marker;
   }
   return reactions;
 }

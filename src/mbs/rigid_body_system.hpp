@@ -22,6 +22,8 @@ struct ConstraintGroup {
   std::string title;  // "joint 'pin'", "driver 'crank'"
   std::string name;   // "pin"
   BodyKind kind = BodyKind::planar;
+  int body = kGround;              // the joint's first one
+  Quaternion marker{};             // of the joint on it
   int first = 0, end = 0;          // of the system's constraint objects
   int first_row = 0, end_row = 0;  // of Phi
 };
@@ -81,9 +83,11 @@ class RigidBodySystem final : public MechanicalSystem {
   BodyPoses poses_at(const SystemInstant& at) const;
   Powers powers(const SystemInstant& at, const std::vector<Real>& multipliers);
   Real elastic_energy(const SystemInstant& at) const;
-  // Force [N] on body 2 of the group at its joint point and torque about that point [N m].
+  // Force [N] on body 2 of the group at its joint point and torque about that point [N m], global, and the
+  // orientation of the joint's marker on body 1.
   struct GroupReaction {
     Vec3 force, torque;
+    Quaternion frame;
   };
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
 
@@ -100,8 +104,9 @@ class RigidBodySystem final : public MechanicalSystem {
   // start: at t = 0.
   void add_constraints(const Model& model, const BodyPoses& start);
   void add_elements(const Model& model, const BodyPoses& start);
+  // joint: whose the rows are; of a coupler's, the first one.
   void add_group(const std::string& title, const std::string& name,
-                 std::vector<std::unique_ptr<Constraint>> parts, BodyKind kind);
+                 std::vector<std::unique_ptr<Constraint>> parts, const Joint& joint, BodyKind kind);
 
   std::vector<Body> bodies_;
   BodyLayout layout_;

@@ -9,6 +9,7 @@
 #include "mbs/force_elements.hpp"
 #include "mbs/measure.hpp"
 #include "mbs/scalar_function.hpp"
+#include "physics/spatial_rotation.hpp"
 
 namespace scree {
 
@@ -95,8 +96,9 @@ class MeasureSpring final : public ForceElement {
   Law law_;
 };
 
-// F and T global or, if they follow the body, A f and A t; torque in the body's frame A^T T + s x A^T F.
-// -Q_q: global: -(A^T T)~ - s~ (A^T F)~ at (pi, pi); following F: A f~ at (r, pi).  -Q_v = 0
+// F and T global or, if they follow the body, A f and A t, f and t along its axes or a marker's; torque in
+// the body's frame A^T T + s x A^T F. -Q_q: global: -(A^T T)~ - s~ (A^T F)~ at (pi, pi); following F: A f~ at
+// (r, pi).  -Q_v = 0
 class AppliedForceElement final : public ForceElement {
  public:
   AppliedForceElement(const AppliedForce& element, const BodyLayout& layout, Real end)
@@ -104,6 +106,7 @@ class AppliedForceElement final : public ForceElement {
         column_(layout.column(element.body)),
         point_(element.point),
         follows_body_(element.follows_body),
+        axes_(rotation_matrix(element.axes)),
         force_{{element.fx, owner(element), end},
                {element.fy, owner(element), end},
                {element.fz, owner(element), end}},
@@ -143,7 +146,7 @@ class AppliedForceElement final : public ForceElement {
   Loads loads_at(const BodyPoses& poses, Real t) const {
     const Vec3 f{force_[0](t).value, force_[1](t).value, force_[2](t).value},
         m{torque_[0](t).value, torque_[1](t).value, torque_[2](t).value};
-    if (follows_body_) return {f, m};
+    if (follows_body_) return {axes_ * f, axes_ * m};
     const SpatialPose& pose = poses.spatial[body_];
     return {pose.turn_back(f), pose.turn_back(m)};
   }
@@ -151,6 +154,7 @@ class AppliedForceElement final : public ForceElement {
   int body_, column_;
   Vec3 point_;
   bool follows_body_;
+  Mat3 axes_;  // from the marker's to the body's
   ScalarFunction force_[3], torque_[3];
 };
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/mat3.hpp"
+#include "model/body_exchange.hpp"
+
 namespace scree {
 
 namespace {
@@ -28,6 +31,16 @@ Real velocity_scale(const RigidBodySystem& system, const std::vector<Real>& velo
   return 1 + fastest;
 }
 
+// Of the origin of the body's frame at t = 0, which is what a deck gives [m/s]. v: the body's velocities.
+Vec3 origin_velocity(const Body& body, const Real* v) {
+  BodyMotion motion = start_motion(body);
+  if (body.kind == BodyKind::spatial)
+    motion.velocity = {v[0], v[1], v[2]}, motion.spin = {v[3], v[4], v[5]};
+  else
+    motion.velocity = {v[0], v[1], 0}, motion.angular_velocity = v[2];
+  return point_motion(motion, -body.center_of_mass).velocity;
+}
+
 }  // namespace
 
 std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& from,
@@ -35,8 +48,9 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
   const Real scale = velocity_scale(system, to);
   const auto limit = [&](std::size_t i, Real share) { return share * scale * system.coordinate_scale()[i]; };
   const auto changed = [&](std::size_t i) { return std::abs(to[i] - from[i]) > limit(i, kChanged); };
-  const auto number = [&](std::size_t i) {
-    return all_digits(std::abs(to[i]) > limit(i, kZero) ? to[i] : 0);
+  // Of a velocity like that of column i.
+  const auto number = [&](Real value, std::size_t i) {
+    return all_digits(std::abs(value) > limit(i, kZero) ? value : 0);
   };
   std::string text;
   const auto add = [&](const std::string& setting) { text += (text.empty() ? "" : ", ") + setting; };
@@ -46,21 +60,26 @@ std::string keys_to_set(const RigidBodySystem& system, const std::vector<Real>& 
     const bool spatial = body.kind == BodyKind::spatial;
     const std::size_t x = static_cast<std::size_t>(system.layout().column(static_cast<int>(b))),
                       turn = x + (spatial ? 3 : 2);
-    const bool moves = changed(x) || changed(x + 1) || (spatial && changed(x + 2));
+    const Vec3 before = origin_velocity(body, &from[x]), after = origin_velocity(body, &to[x]);
+    const auto differs = [&](int k) {
+      return std::abs(component(after, k) - component(before, k)) > limit(x, kChanged);
+    };
+    const bool moves = differs(0) || differs(1) || differs(2);
     const bool turns = changed(turn) || (spatial && (changed(turn + 1) || changed(turn + 2)));
     if (body.in_row || !(moves || turns)) continue;
     if (++shown > kBodiesShown) {
       ++more;
       continue;
     }
-    const std::string third = dimension == 2 ? "" : spatial ? ", " + number(x + 2) : ", 0.0";
+    const auto along = [&](int k) { return number(component(after, k), x); };
     if (moves)
-      add(fmt::format("bodies.{}.velocity = [{}, {}{}]", body.name, number(x), number(x + 1), third));
+      add(fmt::format("bodies.{}.velocity = [{}, {}{}]", body.name, along(0), along(1),
+                      dimension == 2 ? "" : ", " + along(2)));
     if (turns && spatial)
-      add(fmt::format("bodies.{}.body_angular_velocity = [{}, {}, {}]", body.name, number(turn),
-                      number(turn + 1), number(turn + 2)));
+      add(fmt::format("bodies.{}.body_angular_velocity = [{}, {}, {}]", body.name, number(to[turn], turn),
+                      number(to[turn + 1], turn + 1), number(to[turn + 2], turn + 2)));
     else if (turns)
-      add(fmt::format("bodies.{}.angular_velocity = {}", body.name, number(turn)));
+      add(fmt::format("bodies.{}.angular_velocity = {}", body.name, number(to[turn], turn)));
   }
   if (more > 0) text += fmt::format(" and the same for {} more", more);
   return text;

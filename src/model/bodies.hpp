@@ -15,6 +15,9 @@ namespace scree {
 
 inline constexpr int kGround = -1;  // body index of the ground; its frame is the global one
 
+// Points fixed to bodies are along the axes of the body's frame, from its centre of mass: the deck's are from
+// the frame's origin.
+
 // Circle (2D) or sphere (3D) fixed to a body.
 struct Shape {
   Vec3 offset;      // of its centre in the body frame [m]
@@ -38,6 +41,14 @@ struct Body {
   Sym3 inertia_tensor;     // J about the centre of mass, in the body's frame [kg m^2]
   Quaternion orientation;  // of the body's frame at t = 0
   Vec3 spin;               // angular velocity in the body's frame [rad/s]
+  // Of mass, from the origin of the body's frame, to which the deck's position and velocity belong [m].
+  Vec3 center_of_mass{};
+};
+
+// A point and axes fixed to a body; of the ground, in the global frame.
+struct Marker {
+  Vec3 point;              // [m]
+  Quaternion orientation;  // from the marker's components of a vector to the body's; its axis is z
 };
 
 // Between body[0] and body[1]; either may be the ground. Points and axis are in the body frames.
@@ -110,6 +121,7 @@ struct AppliedForce {
   TimeFunction fx, fy, torque;  // [N], [N], [N m]
   bool follows_body = false;
   TimeFunction fz{}, torque_x{}, torque_y{};  // of spatial bodies; torque is that about z
+  Quaternion axes{};  // of the components, in the frame of the spatial body that they follow
 };
 
 }  // namespace scree

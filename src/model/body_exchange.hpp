@@ -8,6 +8,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
+#include "model/bodies.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {
@@ -23,6 +24,11 @@ struct BodyMotion {
   Quaternion orientation{};
   Vec3 spin{};  // angular velocity in the body's frame [rad/s]
 };
+
+inline BodyMotion start_motion(const Body& body) {
+  return {body.position, body.velocity,    body.angle, body.angular_velocity,
+          body.kind,     body.orientation, body.spin};
+}
 
 // Position [m] and velocity [m/s] of a point fixed to a body.
 struct PointMotion {

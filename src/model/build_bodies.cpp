@@ -7,62 +7,109 @@
 #include <tuple>
 
 #include "base/rotation.hpp"
+#include "model/body_exchange.hpp"
 #include "model/build_parts.hpp"
+#include "model/frames.hpp"
 #include "model/plausibility.hpp"
+#include "physics/solid_body.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {
 
 namespace {
 
-constexpr Real kRoundOff = 1e-9;    // of the triangle rule
-constexpr Real kUnitLength = 1e-6;  // of a quaternion
+constexpr Real kRoundOff = 1e-9;  // of the triangle rule
+
+// What follows from solids must not be given beside them.
+void check_mass_keys(const DeckTable& table, bool spatial) {
+  const bool solid = !table.tables("solids").empty();
+  const std::string moment = spatial ? "inertia_tensor" : "inertia";
+  for (const std::string& key : {std::string("mass"), moment}) {
+    if (solid && table.has(key)) table.fail(key, "follows from solids; leave it out");
+    if (!solid && !table.has(key)) table.fail(key, "missing; without solids it must be given");
+  }
+  for (const char* key : {"center_of_mass", "inertia_quaternion", "inertia_rotation_axis",
+                          "inertia_rotation_angle", "inertia_x_axis", "inertia_z_axis"})
+    if (solid && table.has(key)) table.fail(key, "follows from solids; leave it out");
+}
+
+// About its own centre, along the axes of the body's frame.
+MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
+  const int material = table.has("density") ? 0 : find_material(names, table, "material");
+  const Real density =
+      table.has("density") ? table.real("density") : names.densities[static_cast<std::size_t>(material)];
+  if (density == 0) table.fail("density", "missing; the material has none, either");
+  const auto own = [&]() -> MassProperties {
+    switch (table.choice<SolidKind>("kind")) {
+      case SolidKind::sphere:
+        return solid_sphere(density, table.real("radius"));
+      case SolidKind::cylinder:
+        return solid_cylinder(density, table.real("radius"), table.real("length"));
+      case SolidKind::capsule:
+        return solid_capsule(density, table.real("radius"), table.real("length"));
+      case SolidKind::box:
+        break;
+    }
+    const std::vector<Real>& size = table.reals("size");
+    return solid_box(density, {size[0], size[1], size[2]});
+  }();
+  if (!std::isnormal(own.mass) || !std::isnormal(own.inertia.zz) || !std::isnormal(own.inertia.xx))
+    table.fail("kind", fmt::format("its mass, {:g} kg, or inertia is not a number that can be counted with",
+                                   own.mass));
+  return {own.mass, table.vector("offset"),
+          turned_tensor(rotation_matrix(read_orientation(table)), own.inertia)};
+}
+
+// Positive definite, and no principal moment above the sum of the other two: as of any body with mass.
+Real check_inertia(const DeckTable& table, const std::string& key, const Sym3& tensor) {
+  const std::array<Real, 3> principal = principal_values(tensor);
+  const std::string found = fmt::format("the principal moments are {:.6g}, {:.6g} and {:.6g} kg m^2",
+                                        principal[0], principal[1], principal[2]);
+  if (!(principal[0] > 0)) table.fail(key, found + "; all must be positive");
+  if (principal[2] > (principal[0] + principal[1]) * (1 + kRoundOff))
+    table.fail(key, found + "; none may be larger than the sum of the other two, which holds for any body");
+  return principal[0];
+}
+
+Sym3 read_inertia(const DeckTable& table) {
+  const std::vector<Real>& j = table.reals("inertia_tensor");
+  const Sym3 given{j[0], j[3], j[4], j[1], j[5], j[2]};
+  const Quaternion axes = read_orientation(table, "inertia_");
+  return axes.w == 1 ? given : turned_tensor(rotation_matrix(axes), given);
+}
+
+// Mass, centre of mass and inertia.
+void read_mass(const DeckTable& table, const ModelNames& names, Body& body) {
+  const bool spatial = body.kind == BodyKind::spatial;
+  check_mass_keys(table, spatial);
+  if (!table.tables("solids").empty()) {
+    std::vector<MassProperties> parts;
+    for (const DeckTable& solid : table.tables("solids")) parts.push_back(solid_of(solid, names));
+    const MassProperties whole = composed(parts);
+    body.mass = whole.mass, body.center_of_mass = whole.center, body.inertia_tensor = whole.inertia;
+    body.inertia = spatial ? check_inertia(table, "solids", whole.inertia) : whole.inertia.zz;
+    return;
+  }
+  body.mass = table.real("mass");
+  check_normal(table, "mass", body.mass);
+  if (table.has("center_of_mass")) body.center_of_mass = table.vector("center_of_mass");
+  if (!spatial) {
+    body.inertia = table.real("inertia");
+    check_normal(table, "inertia", body.inertia);
+    return;
+  }
+  body.inertia_tensor = read_inertia(table);
+  body.inertia = check_inertia(table, "inertia_tensor", body.inertia_tensor);
+}
 
 void read_planar(const DeckTable& table, Body& body) {
-  body.inertia = table.real("inertia");
-  check_normal(table, "inertia", body.inertia);
   body.angle = table.real("angle");
   body.angular_velocity = table.real("angular_velocity");
   if (body.velocity.z != 0)
     table.fail("velocity", "planar bodies move in the x-y plane; the z component must be 0");
 }
 
-// Positive definite, and no principal moment above the sum of the other two: as of any body with mass.
-void read_inertia(const DeckTable& table, Body& body) {
-  const std::vector<Real>& j = table.reals("inertia_tensor");
-  body.inertia_tensor = {j[0], j[3], j[4], j[1], j[5], j[2]};
-  const std::array<Real, 3> principal = principal_values(body.inertia_tensor);
-  const std::string found = fmt::format("the principal moments are {:.6g}, {:.6g} and {:.6g} kg m^2",
-                                        principal[0], principal[1], principal[2]);
-  if (!(principal[0] > 0)) table.fail("inertia_tensor", found + "; all must be positive");
-  if (principal[2] > (principal[0] + principal[1]) * (1 + kRoundOff))
-    table.fail("inertia_tensor",
-               found + "; none may be larger than the sum of the other two, which holds for any body");
-  body.inertia = principal[0];
-}
-
-Quaternion read_orientation(const DeckTable& table) {
-  const bool axis = table.has("rotation_axis");
-  if (axis != table.has("rotation_angle"))
-    table.fail(axis ? "rotation_axis" : "rotation_angle", "rotation_axis and rotation_angle go together");
-  if (axis && table.has("quaternion"))
-    table.fail("quaternion", "not used together with rotation_axis and rotation_angle");
-  if (axis) {
-    const Vec3 along = table.vector("rotation_axis");
-    if (norm(along) == 0) table.fail("rotation_axis", "must not be 0");
-    return exponential((table.real("rotation_angle") / norm(along)) * along);
-  }
-  if (!table.has("quaternion")) return {};
-  const std::vector<Real>& e = table.reals("quaternion");
-  const Quaternion given{e[0], e[1], e[2], e[3]};
-  if (!(std::abs(norm(given) - 1) < kUnitLength))
-    table.fail("quaternion",
-               fmt::format("must be of length 1, to {:g}; it is {:.9g}", kUnitLength, norm(given)));
-  return normalized(given);
-}
-
 void read_spatial(const DeckTable& table, Body& body) {
-  read_inertia(table, body);
   body.orientation = read_orientation(table);
   if (table.has("body_angular_velocity") && table.has("global_angular_velocity"))
     table.fail("global_angular_velocity", "not used together with body_angular_velocity");
@@ -71,16 +118,23 @@ void read_spatial(const DeckTable& table, Body& body) {
     body.spin = transposed_times(rotation_matrix(body.orientation), table.vector("global_angular_velocity"));
 }
 
+// From the origin of the body's frame to the centre of mass.
+void move_to_center(Body& body) {
+  if (body.center_of_mass == Vec3{}) return;
+  const PointMotion center = point_motion(start_motion(body), body.center_of_mass);
+  body.position = center.position, body.velocity = center.velocity;
+}
+
 Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
   Body body;
   body.kind = table.choice<BodyKind>("kind");
-  body.mass = table.real("mass");
-  check_normal(table, "mass", body.mass);
   body.position = table.vector("position");
   body.velocity = table.vector("velocity");
   const bool spatial = body.kind == BodyKind::spatial;
   if (spatial && dimension != 3) table.fail("kind", "\"spatial\" needs space.dimension = 3");
+  read_mass(table, names, body);
   spatial ? read_spatial(table, body) : read_planar(table, body);
+  move_to_center(body);
   std::set<std::tuple<Real, Real, Real, Real>> circles;
   for (const DeckTable& shape : table.tables("shapes")) {
     const Vec3 offset = shape.vector("offset");
@@ -89,7 +143,7 @@ Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
     if (!circles.insert({offset.x, offset.y, offset.z, radius}).second)
       shape.fail("radius",
                  "the body has a shape of this offset and radius already; each must be another one");
-    body.shapes.push_back({offset, radius, find_material(names, shape, "material")});
+    body.shapes.push_back({offset - body.center_of_mass, radius, find_material(names, shape, "material")});
   }
   return body;
 }

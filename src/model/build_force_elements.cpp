@@ -55,11 +55,24 @@ bool acts(const TimeFunction& f) { return f.kind != TimeFunctionKind::constant |
 AppliedForce build_applied_force(const DeckTable& table, const Model& model, const ModelNames& names) {
   AppliedForce force;
   force.name = table.text("name");
-  force.body = find_name(names.bodies, table, "body", "body");
+  if (table.has("body") == table.has("marker"))
+    table.fail("name", "exactly one of the keys body and marker must be given");
+  if (table.has("marker")) {
+    const NamedMarker& named = find_marker(names, table.text("marker"), table, "marker");
+    force.body = named.bodies.front();
+    if (named.row || force.body == kGround)
+      table.fail("marker", "must be on a single body; this one is on " +
+                               std::string(named.row ? "each body of a row" : "the ground"));
+    for (const char* key : {"point", "local_point"})
+      if (table.has(key)) table.fail(key, "not used together with marker");
+    force.point = named.marker.point, force.axes = named.marker.orientation;
+  } else {
+    force.body = find_name(names.bodies, table, "body", "body");
+  }
   if (table.has("point") && table.has("local_point"))
     table.fail("local_point", "not used together with point");
   if (table.has("point")) force.point = to_body_point(model, force.body, table.vector("point"));
-  if (table.has("local_point")) force.point = table.vector("local_point");
+  if (table.has("local_point")) force.point = from_center(model, force.body, table.vector("local_point"));
   force.fx = build_force(table.table("fx"));
   force.fy = build_force(table.table("fy"));
   force.torque = build_force(table.table("torque"));

@@ -2,36 +2,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
+#include "model/frames.hpp"
 #include "model/joint_coordinates.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {
 
 namespace {
-
-// The body's centre where the other side is the ground, otherwise midway between the centres [m].
-Vec3 default_point(const Model& model, const Connection& connection) {
-  const Vec3 a = start_position(model, connection.body[0]), b = start_position(model, connection.body[1]);
-  if (connection.body[0] == kGround) return b;
-  if (connection.body[1] == kGround) return a;
-  return Real(0.5) * (a + b);
-}
-
-// Local points of revolute, translational and fixed joints.
-void place_common_point(const DeckTable& table, const Model& model, const Connection& connection,
-                        Joint& joint) {
-  if (table.has("local_points")) {
-    if (table.has("point")) table.fail("local_points", "not used together with point");
-    for (std::size_t side = 0; side < 2; ++side) joint.point[side] = table.vectors("local_points")[side];
-    return;
-  }
-  if (table.has("point")) check_single(table, "point");
-  const Vec3 point = table.has("point") ? table.vector("point") : default_point(model, connection);
-  for (int side = 0; side < 2; ++side) joint.point[side] = to_body_point(model, joint.body[side], point);
-}
 
 Vec3 global_axis(const DeckTable& table) {
   const Vec3 axis = table.has("axis") ? table.vector("axis") : Vec3{1, 0, 0};
@@ -42,17 +23,7 @@ Vec3 global_axis(const DeckTable& table) {
 
 Vec3 direction(const DeckTable& table, const char* key) {
   if (!table.has(key)) table.fail(key, "missing; between spatial bodies this type of joint needs it");
-  const Vec3 along = table.vector(key);
-  if (norm(along) == 0) table.fail(key, "must not be 0");
-  return (1 / norm(along)) * along;
-}
-
-// Rows x, y, z = axis of a right-handed frame, x the global axis that is most nearly across.
-Mat3 frame_about(Vec3 axis) {
-  const Real a = std::abs(axis.x), b = std::abs(axis.y), c = std::abs(axis.z);
-  const Vec3 across = a <= b && a <= c ? Vec3{1, 0, 0} : b <= c ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
-  const Vec3 y = cross(axis, across), unit = (1 / norm(y)) * y;
-  return {cross(unit, axis), unit, axis};
+  return read_direction(table, key);
 }
 
 constexpr Real kSquare = 1e-9;  // cosine of axes that must be perpendicular
@@ -87,14 +58,10 @@ void place_frames(const DeckTable& table, const Joint& joint, Mat3 (&frame)[2]) 
     }
     case JointKind::constant_velocity: {
       const Vec3 one = direction(table, "axis"), two = direction(table, "second_axis");
-      const Vec3 normal = cross(one, two);
-      const Real sine = norm(normal), cosine = dot(one, two);
-      if (cosine < 0 && sine < kSquare) table.fail("second_axis", "must not point against axis");
-      // The first frame turned onto the second axis by the shortest way.
-      const Vec3 turn = sine > 0 ? (std::atan2(sine, cosine) / sine) * normal : Vec3{};
-      const Mat3 bend = rotation_matrix(exponential(turn));
+      if (dot(one, two) < 0 && norm(cross(one, two)) < kSquare)
+        table.fail("second_axis", "must not point against axis");
       frame[0] = frame_about(one);
-      frame[1] = frame[0] * transposed(bend);
+      frame[1] = turned_frame(frame[0], one, two);
       return;
     }
     default:
@@ -102,14 +69,67 @@ void place_frames(const DeckTable& table, const Joint& joint, Mat3 (&frame)[2]) 
   }
 }
 
-void place_markers(const DeckTable& table, const Model& model, Joint& joint) {
+constexpr Real kAligned = 1e-6;  // [rad]
+constexpr Real kDegrees = 180 / std::numbers::pi_v<Real>;
+
+// `wrong`: how far the markers are from it [rad].
+void check_aligned(const DeckTable& table, const std::string& must, Real wrong) {
+  if (wrong <= kAligned) return;
+  const std::string against =
+      wrong > std::numbers::pi_v<Real> / 2 ? "; turn one of them by half a turn about its x axis" : "";
+  table.fail("markers", fmt::format("{} at t = 0; they are off by {:.6g} degrees, allowed is {:.2g}{}", must,
+                                    wrong * kDegrees, kAligned * kDegrees, against));
+}
+
+// The second frame, turned to what the joint keeps.
+Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3& two) {
+  const auto square = [&](Vec3 a, Vec3 b, const char* must) {
+    check_aligned(table, must, std::abs(angle_between(a, b) - std::numbers::pi_v<Real> / 2));
+    const Vec3 across = b - dot(a, b) * a;
+    return turned_frame(two, b, (1 / norm(across)) * across);
+  };
+  switch (kind) {
+    case JointKind::fixed:
+    case JointKind::translational:
+    case JointKind::orientation:
+      check_aligned(table, "the axes of the two markers must be the same",
+                    norm(rotation_vector(quaternion_of(one * transposed(two)))));
+      return one;
+    case JointKind::revolute:
+    case JointKind::cylindrical:
+    case JointKind::planar:
+    case JointKind::parallel:
+      check_aligned(table, "the z axes of the two markers must point in the same direction",
+                    angle_between(one.z, two.z));
+      return turned_frame(two, two.z, one.z);
+    case JointKind::universal:
+      return square(one.x, two.y,
+                    "the first marker's x axis must be perpendicular to the second one's y axis");
+    case JointKind::perpendicular:
+      return square(one.z, two.z, "the z axes of the two markers must be perpendicular");
+    case JointKind::constant_velocity:
+      if (std::numbers::pi_v<Real> - angle_between(one.z, two.z) < kAligned)
+        table.fail("markers", "the z axes of the two markers must not point against each other");
+      return turned_frame(one, one.z, two.z);
+    default:
+      return two;
+  }
+}
+
+// Of the joint's ends; what markers must keep of each other at t = 0 they keep to kAligned [rad], and then
+// the second one is turned to keep it exactly.
+void place_markers(const DeckTable& table, const Model& model, const Connection& connection, Joint& joint) {
+  if (connection.markers) {
+    for (std::size_t side = 0; side < 2; ++side) joint.marker[side] = (*connection.markers)[side].orientation;
+    const auto frame = [&](int side) { return global_frame(model, joint.body[side], joint.marker[side]); };
+    joint.marker[1] =
+        marker_at(model, joint.body[1], {}, aligned(table, joint.kind, frame(0), frame(1))).orientation;
+    return;
+  }
   Mat3 frame[2];
   place_frames(table, joint, frame);
-  for (int side = 0; side < 2; ++side) {
-    const auto own = [&](Vec3 axis) { return to_body_direction(model, joint.body[side], axis); };
-    joint.marker[side] =
-        quaternion_of(transposed({own(frame[side].x), own(frame[side].y), own(frame[side].z)}));
-  }
+  for (int side = 0; side < 2; ++side)
+    joint.marker[side] = marker_at(model, joint.body[side], {}, frame[side]).orientation;
 }
 
 // What planar bodies cannot have.
@@ -142,7 +162,9 @@ std::string shown_point(const Model& model, const Joint& joint, Vec3 p) {
 void check_joint_meets(const DeckTable& table, const Model& model, const Joint& joint) {
   const JointGap gap = joint_gap(model, joint);
   if (gap.meets()) return;
-  const std::string key = joint.kind == JointKind::distance ? "distance" : "local_points";
+  const std::string key = joint.kind == JointKind::distance ? "distance"
+                          : table.has("markers")            ? "markers"
+                                                            : "local_points";
   table.fail(
       table.has(key) ? key : "name",
       fmt::format("the two sides of joint \"{}\" do not meet: at t = 0 the point of {} is at {}, that of "
@@ -177,6 +199,7 @@ Joint build_joint(const DeckTable& table, const Model& model, const Connection& 
   joint.kind = table.choice<JointKind>("type");
   for (int side = 0; side < 2; ++side) joint.body[side] = connection.body[side];
   check_same_kind(table, model, connection);
+  check_without_markers(table, {"point", "points", "local_points", "axis", "second_axis"});
   const bool spatial = between(model, joint.body) == BodyKind::spatial;
   if (!spatial) check_planar(table, joint);
   if (joint.kind == JointKind::distance) {
@@ -188,10 +211,10 @@ Joint build_joint(const DeckTable& table, const Model& model, const Connection& 
                                            : std::hypot(ends.x, ends.y);
     if (joint.distance == 0) table.fail("name", "the two points of a distance joint must not coincide");
   } else if (has_points(joint.kind)) {
-    place_common_point(table, model, connection, joint);
+    find_common_points(table, model, connection, joint.point);
   }
   if (spatial) {
-    place_markers(table, model, joint);
+    place_markers(table, model, connection, joint);
     if (joint.kind == JointKind::screw) read_screw(table, model, joint);
   } else {
     if (joint.kind == JointKind::translational)

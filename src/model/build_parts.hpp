@@ -14,6 +14,7 @@ void build_materials(const DeckTable& deck, Model& model, ModelNames& names);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
 void build_time(const DeckTable& deck, Model& model);  // control and end; also the integrator
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
+void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names);  // also couplers

@@ -6,18 +6,27 @@
 #include <cmath>
 
 #include "base/rotation.hpp"
+#include "model/frames.hpp"
 #include "physics/spatial_rotation.hpp"
 
 namespace scree {
 
 namespace {
 
+// The body's centre where the other side is the ground, otherwise midway between the centres [m].
+Vec3 default_point(const Model& model, const Connection& connection) {
+  const Vec3 a = start_position(model, connection.body[0]), b = start_position(model, connection.body[1]);
+  if (connection.body[0] == kGround) return b;
+  if (connection.body[1] == kGround) return a;
+  return Real(0.5) * (a + b);
+}
+
 const Quaternion& start_orientation(const Model& model, int body) {
   return model.bodies[static_cast<std::size_t>(body)].orientation;
 }
 
 Connection named_pair(const DeckTable& table, const ModelNames& names) {
-  Connection connection{table.text("name"), {}};
+  Connection connection{table.text("name"), {}, {}};
   const std::vector<std::string>& bodies = table.texts("bodies");
   for (std::size_t side = 0; side < 2; ++side) {
     if (bodies[side] == "ground") {
@@ -35,13 +44,53 @@ Connection named_pair(const DeckTable& table, const ModelNames& names) {
   return connection;
 }
 
+using NamedEnds = std::array<const NamedMarker*, 2>;
+
+NamedEnds named_ends(const DeckTable& table, const ModelNames& names) {
+  NamedEnds ends{};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const std::string& name = table.texts("markers")[side];
+    ends[side] = &find_marker(names, name, table, "markers");
+  }
+  return ends;
+}
+
+Ends markers_of(const NamedEnds& ends) { return {ends[0]->marker, ends[1]->marker}; }
+
+Connection marked_pair(const DeckTable& table, const NamedEnds& ends) {
+  Connection connection{table.text("name"), {}, markers_of(ends)};
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (ends[side]->row)
+      table.fail("markers", fmt::format("\"{}\" is on each body of a row; chain or each must name that",
+                                        table.texts("markers")[side]));
+    connection.body[side] = ends[side]->bodies.front();
+  }
+  if (connection.body[0] == connection.body[1]) table.fail("markers", "must be on two different bodies");
+  return connection;
+}
+
+// Of the elements of a row.
+void mark_row(const DeckTable& table, const NamedEnds& ends, std::vector<Connection>& connections) {
+  for (Connection& connection : connections) {
+    for (std::size_t side = 0; side < 2; ++side)
+      if (std::ranges::count(ends[side]->bodies, connection.body[side]) == 0)
+        table.fail("markers", fmt::format("\"{}\" must be on {} here", table.texts("markers")[side],
+                                          connection.body[side] == kGround ? "the ground" : "the row"));
+    connection.markers = markers_of(ends);
+  }
+}
+
 }  // namespace
 
 std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names) {
-  if (table.has("bodies") + table.has("chain") + table.has("each") != 1) {
-    table.fail("name", "exactly one of the keys bodies, chain and each must be given");
-  }
+  const bool marked = table.has("markers");
+  const int rows = table.has("chain") + table.has("each");
+  if (table.has("bodies") + rows + (marked && rows == 0) != 1)
+    table.fail("name",
+               "exactly one of the keys bodies, markers, chain and each must be given, or markers with "
+               "chain or each");
   if (table.has("bodies")) return {named_pair(table, names)};
+  if (rows == 0) return {marked_pair(table, named_ends(table, names))};
   const bool chain = table.has("chain");
   const std::string key = chain ? "chain" : "each";
   const std::vector<int>& row = find_row(names, table.text(key), table, key);
@@ -49,8 +98,9 @@ std::vector<Connection> find_connections(const DeckTable& table, const ModelName
   std::vector<Connection> connections;
   for (std::size_t i = chain ? 1 : 0; i < row.size(); ++i) {
     const std::string name = fmt::format("{}.{}", table.text("name"), connections.size());
-    connections.push_back({name, {chain ? row[i - 1] : kGround, row[i]}});
+    connections.push_back({name, {chain ? row[i - 1] : kGround, row[i]}, {}});
   }
+  if (marked) mark_row(table, named_ends(table, names), connections);
   return connections;
 }
 
@@ -86,15 +136,66 @@ Vec3 to_global_direction(const Model& model, int body, Vec3 local) {
   return Rotation(start_angle(model, body)).turn(local);
 }
 
+Vec3 from_center(const Model& model, int body, Vec3 local) {
+  return body == kGround ? local : local - model.bodies[static_cast<std::size_t>(body)].center_of_mass;
+}
+
+Mat3 global_frame(const Model& model, int body, const Quaternion& orientation) {
+  const Mat3 own = transposed(rotation_matrix(orientation));
+  const auto turn = [&](Vec3 axis) { return to_global_direction(model, body, axis); };
+  return {turn(own.x), turn(own.y), turn(own.z)};
+}
+
+Marker marker_at(const Model& model, int body, Vec3 point, const Mat3& frame) {
+  const auto own = [&](Vec3 axis) { return to_body_direction(model, body, axis); };
+  return {to_body_point(model, body, point),
+          quaternion_of(transposed({own(frame.x), own(frame.y), own(frame.z)}))};
+}
+
+Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection) {
+  if (connection.markers) return *connection.markers;
+  Vec3 local[2];
+  find_common_points(table, model, connection, local);
+  const Mat3 frame = transposed(rotation_matrix(read_orientation(table)));
+  Ends ends;
+  for (std::size_t side = 0; side < 2; ++side) {
+    ends[side] = marker_at(model, connection.body[side], {}, frame);
+    ends[side].point = local[side];
+  }
+  return ends;
+}
+
+void find_common_points(const DeckTable& table, const Model& model, const Connection& connection,
+                        Vec3 local[2]) {
+  if (table.has("local_points") && table.has("point"))
+    table.fail("local_points", "not used together with point");
+  if (table.has("point")) check_single(table, "point");
+  const Vec3 point = table.has("point") ? table.vector("point") : default_point(model, connection);
+  for (std::size_t side = 0; side < 2; ++side) {
+    const int body = connection.body[side];
+    local[side] = connection.markers          ? (*connection.markers)[side].point
+                  : table.has("local_points") ? from_center(model, body, table.vectors("local_points")[side])
+                                              : to_body_point(model, body, point);
+  }
+}
+
+void check_without_markers(const DeckTable& table, std::initializer_list<const char*> keys) {
+  for (const char* key : keys)
+    if (table.has("markers") && table.has(key)) table.fail(key, "not used together with markers");
+}
+
 void find_end_points(const DeckTable& table, const Model& model, const Connection& connection,
                      Vec3 local[2]) {
+  check_without_markers(table, {"points", "local_points"});
   if (table.has("points")) check_single(table, "points");
   if (table.has("points") && table.has("local_points"))
     table.fail("local_points", "not used together with points");
   for (std::size_t side = 0; side < 2; ++side) {
     const int body = connection.body[side];
-    if (table.has("local_points")) {
-      local[side] = table.vectors("local_points")[side];
+    if (connection.markers) {
+      local[side] = (*connection.markers)[side].point;
+    } else if (table.has("local_points")) {
+      local[side] = from_center(model, body, table.vectors("local_points")[side]);
     } else if (table.has("points")) {
       local[side] = to_body_point(model, body, table.vectors("points")[side]);
     } else if (body == kGround) {

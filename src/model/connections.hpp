@@ -1,23 +1,30 @@
 // Between which bodies, and which of their points, the joints and force elements of one deck table stand.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/mat3.hpp"
 #include "deck/deck.hpp"
 #include "model/model.hpp"
 #include "model/names.hpp"
 
 namespace scree {
 
-// One element: its name and its two bodies.
+// The two ends of a connection, each in the frame of its body.
+using Ends = std::array<Marker, 2>;
+
+// One element: its name and its two bodies, and its ends where the deck gives markers.
 struct Connection {
   std::string name;
   int body[2] = {kGround, kGround};
+  std::optional<Ends> markers{};
 };
 
-// From the keys bodies, chain or each. Throws InputError.
+// From the keys bodies, markers, chain or each. Throws InputError.
 std::vector<Connection> find_connections(const DeckTable& table, const ModelNames& names);
 
 // Of a joint or force element between these: the kind of its bodies, which is the same for both; the ground
@@ -33,8 +40,24 @@ Vec3 to_global_point(const Model& model, int body, Vec3 local);
 Vec3 to_body_direction(const Model& model, int body, Vec3 global);
 Vec3 to_global_direction(const Model& model, int body, Vec3 local);
 
-// Fills the two local points from local_points, points or the bodies' centres. Throws InputError where the
-// ground needs a point that is not given.
+// A point of the deck, in a body's frame from its origin, from the body's centre of mass [m].
+Vec3 from_center(const Model& model, int body, Vec3 local);
+// A point and a frame (rows x, y, z) at t = 0 in the global frame, as a marker of the body.
+Marker marker_at(const Model& model, int body, Vec3 point, const Mat3& frame);
+Mat3 global_frame(const Model& model, int body, const Quaternion& orientation);  // at t = 0, rows x, y, z
+
+// The markers of a connection; without, those of the deck's point or local_points (left out: the body's
+// centre of mass, or midway between the two), the axes as its orientation_keys() say in the global frame at t
+// = 0.
+Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection);
+// The same of the points alone.
+void find_common_points(const DeckTable& table, const Model& model, const Connection& connection,
+                        Vec3 local[2]);
+// Refuses these keys of the table beside markers.
+void check_without_markers(const DeckTable& table, std::initializer_list<const char*> keys);
+
+// Fills the two local points from markers, local_points, points or the bodies' centres. Throws InputError
+// where the ground needs a point that is not given.
 void find_end_points(const DeckTable& table, const Model& model, const Connection& connection, Vec3 local[2]);
 // Refuses a planar and a spatial body together.
 void check_same_kind(const DeckTable& table, const Model& model, const Connection& connection);

@@ -49,6 +49,14 @@ const std::vector<int>& find_row(const ModelNames& names, const std::string& nam
                               suggestion(name, names_of(names.rows))));
 }
 
+const NamedMarker& find_marker(const ModelNames& names, const std::string& name, const DeckTable& table,
+                               const std::string& key) {
+  const auto found = names.markers.find(name);
+  if (found != names.markers.end()) return found->second;
+  table.fail(
+      key, fmt::format("there is no marker named \"{}\"{}", name, suggestion(name, names_of(names.markers))));
+}
+
 int find_material(const ModelNames& names, const DeckTable& table, const std::string& key) {
   if (table.has(key)) return find_name(names.materials, table, key, "material");
   if (names.materials.size() == 1) return 0;

@@ -8,15 +8,24 @@
 
 #include "base/types.hpp"
 #include "deck/deck.hpp"
+#include "model/bodies.hpp"
 
 namespace scree {
 
 using NameMap = std::map<std::string, int>;
 
+// A marker of the deck: on a body, on each body of a row, or on the ground.
+struct NamedMarker {
+  std::vector<int> bodies;  // the ground: kGround alone
+  bool row = false;
+  Marker marker;
+};
+
 struct ModelNames {
   NameMap materials, bodies, joints;
   std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
-  std::vector<Real> densities;                   // of the materials [kg/m^3], 0 where not given
+  std::map<std::string, NamedMarker> markers;
+  std::vector<Real> densities;  // of the materials [kg/m^3], 0 where not given
 };
 
 // Index of the name that `table.key` holds. what: "material", "body", ... for the message. Throws InputError
@@ -28,6 +37,9 @@ int find_name(const NameMap& names, const std::string& name, const DeckTable& ta
 // Bodies of the row that `name` means. Throws InputError.
 const std::vector<int>& find_row(const ModelNames& names, const std::string& name, const DeckTable& table,
                                  const std::string& key);
+// Throws InputError.
+const NamedMarker& find_marker(const ModelNames& names, const std::string& name, const DeckTable& table,
+                               const std::string& key);
 // Material that `table.key` names; where the key is left out, the only material. Throws InputError.
 int find_material(const ModelNames& names, const DeckTable& table, const std::string& key);
 // Adds one entry of the list `table.key`, the name or number `shown`. Throws InputError where it is there.

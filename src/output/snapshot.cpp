@@ -58,11 +58,13 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
                              bodies.orientation.data()});
   snapshot.fields.push_back(
       vector("spin", "rad/s", "angular velocity of the body, global axes", bodies.spin));
+  snapshot.fields.push_back(vector("origin", "m", "origin of the body's frame", bodies.origin));
   return snapshot;
 }
 
 SeriesOptions with_global_id(SeriesOptions options) {
   if (options.fields) options.fields->emplace_back(kGlobalId);
+  options.names.clear();  // of the bodies
   return options;
 }
 

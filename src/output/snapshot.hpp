@@ -32,7 +32,8 @@ struct BodySnapshot {
   std::span<const int> contacts;
   // Of the bodies, where some are spatial; else empty. orientation: scalar first, 4 numbers a shape.
   std::span<const Real> orientation{};
-  std::span<const Vec3> spin{};  // angular velocity, global [rad/s]
+  std::span<const Vec3> spin{};    // angular velocity, global [rad/s]
+  std::span<const Vec3> origin{};  // of the body's frame [m]
 };
 
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
@@ -43,7 +44,8 @@ class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
   // cut off); 0 starts new files and removes old ones. options.fields: those of the particles beside
-  // the global id. Throws IoError where the files hold fewer snapshots, or other fields.
+  // the global id. options.names: of the bodies. Throws IoError where the files hold fewer snapshots, or
+  // other fields.
   SnapshotWriter(const std::string& directory, const SeriesOptions& options);
   // Both throw IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies);

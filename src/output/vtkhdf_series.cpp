@@ -197,6 +197,7 @@ void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
   file.write_text_attribute("/Scree", "title", options_.title);
   file.write_text_attribute("/Scree", "version", version());
   file.write_text_attribute("/Scree", "commit", commit());
+  if (!options_.names.empty()) file.write_text("/Scree/names", options_.names);
 }
 
 SnapshotPlace VtkHdfSeries::next_place(const PointSnapshot& snapshot) const {

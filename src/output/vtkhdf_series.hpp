@@ -52,6 +52,7 @@ struct SeriesOptions {
   Ranks ranks = {};     // that have the points; the constructor and append() are collective
   // Those of the snapshots to come, where files that are continued are to be looked at for them.
   std::optional<std::vector<std::string>> fields = {};
+  std::string names = {};  // a text for the dataset /Scree/names, where it is not empty
 };
 
 class VtkHdfSeries {

@@ -132,6 +132,13 @@ void reaction_columns(Group joint, BodyKind kind, std::size_t k) {
     joint.add_vector("f", "N", text, [k](const Sample& s) { return s.reactions[k].force; });
     joint.add_vector("torque_", "N m", "reaction torque on the joint's second body about its joint point",
                      [k](const Sample& s) { return s.reactions[k].torque; });
+    const auto in_frame = [k](const Sample& s, Vec3 Reaction::*load) {
+      return turned(conjugate(s.reactions[k].frame), s.reactions[k].*load);
+    };
+    joint.add_vector("marker_f", "N", "the reaction along the axes of the joint's first marker",
+                     [in_frame](const Sample& s) { return in_frame(s, &Reaction::force); });
+    joint.add_vector("marker_torque_", "N m", "the reaction torque along these axes",
+                     [in_frame](const Sample& s) { return in_frame(s, &Reaction::torque); });
     return;
   }
   joint.add("fx", "N", text, [k](const Sample& s) { return s.reactions[k].force.x; });
@@ -195,10 +202,22 @@ void spatial_columns(Group body, std::size_t b) {
                   [b](const Sample& s) { return s.bodies[b].spin; });
 }
 
-void body_columns(Group body, BodyKind kind, std::size_t b) {
-  body.add_vector("", "m", "position", [b](const Sample& s) { return s.bodies[b].position; });
-  body.add_vector("v", "m/s", "velocity", [b](const Sample& s) { return s.bodies[b].velocity; });
-  if (kind == BodyKind::spatial) return spatial_columns(body, b);
+// center: of mass, in the body's frame [m].
+void origin_columns(Group body, Vec3 center, std::size_t b) {
+  const auto origin = [b, center](const Sample& s) { return point_motion(s.bodies[b], -center); };
+  body.add_vector("origin_", "m", "position of the origin of the body's frame",
+                  [origin](const Sample& s) { return origin(s).position; });
+  body.add_vector("origin_v", "m/s", "velocity of the origin of the body's frame",
+                  [origin](const Sample& s) { return origin(s).velocity; });
+}
+
+void body_columns(Group body, const Body& of, std::size_t b) {
+  body.add_vector("", "m", "position of the centre of mass",
+                  [b](const Sample& s) { return s.bodies[b].position; });
+  body.add_vector("v", "m/s", "velocity of the centre of mass",
+                  [b](const Sample& s) { return s.bodies[b].velocity; });
+  if (!(of.center_of_mass == Vec3{})) origin_columns(body, of.center_of_mass, b);
+  if (of.kind == BodyKind::spatial) return spatial_columns(body, b);
   body.add("angle", "rad", "angle about z", [b](const Sample& s) { return s.bodies[b].angle; });
   body.add("angular_velocity", "rad/s", "angular velocity about z",
            [b](const Sample& s) { return s.bodies[b].angular_velocity; });
@@ -232,7 +251,7 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
   for (const int body : output.history_bodies) {
     const auto b = static_cast<std::size_t>(body);
-    body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b].kind, b);
+    body_columns({"bodies/" + model.bodies[b].name, out}, model.bodies[b], b);
   }
   for (std::size_t k = 0; k < output.history_particles.size(); ++k)
     particle_columns({"particles/" + std::to_string(output.history_particles[k]), out}, k);

@@ -75,6 +75,13 @@ std::vector<PointField> point_fields(const Output& output, const ParticleOutput&
   return fields;
 }
 
+// One per line, in the order in which the fields count the bodies.
+std::string body_names(const Model& model) {
+  std::string names;
+  for (const Body& body : model.bodies) names += body.name + '\n';
+  return names;
+}
+
 }  // namespace
 
 Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
@@ -87,8 +94,9 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
   });
-  snapshots_.emplace(directory, SeriesOptions{model.title, static_cast<int>(state.snapshots),
-                                              model.output.compression, link.ranks(), model.output.fields});
+  snapshots_.emplace(directory,
+                     SeriesOptions{model.title, static_cast<int>(state.snapshots), model.output.compression,
+                                   link.ranks(), model.output.fields, body_names(model)});
   if (writes_late()) backend.set_idle_work([this] { write_pending(); });
 }
 
@@ -151,7 +159,7 @@ void Recorder::balance(State& state, HistorySample& sample) const {
 void Recorder::snapshot(State& state) {
   write_pending();
   backend_.reports().start_output();
-  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}};
+  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
   for (const int body : next.shapes.body) {
     next.angle.push_back(motion[body].angle);
@@ -160,6 +168,8 @@ void Recorder::snapshot(State& state) {
     const Quaternion p = orientation(motion[body]);
     next.orientation.insert(next.orientation.end(), {p.w, p.x, p.y, p.z});
     next.spin.push_back(global_spin(motion[body]));
+    next.origin.push_back(
+        point_motion(motion[body], -model_.bodies[static_cast<std::size_t>(body)].center_of_mass).position);
   }
   pending_ = std::move(next);
   ++state.snapshots;
@@ -174,7 +184,7 @@ void Recorder::write_pending() {
   const ShapePack& s = snapshot.shapes;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
-                      s.force, s.contacts, snapshot.orientation, snapshot.spin});
+                      s.force, s.contacts, snapshot.orientation, snapshot.spin, snapshot.origin});
 }
 
 void Recorder::flush_history() {

@@ -47,7 +47,7 @@ class Recorder : public Records {
     ShapePack shapes;
     std::vector<Real> angle, angular_velocity;  // of the shapes' bodies
     std::vector<Real> orientation;              // where bodies are spatial, likewise: quaternions
-    std::vector<Vec3> spin;                     // and angular velocities, global
+    std::vector<Vec3> spin, origin;             // angular velocities, global; origins of the frames
   };
 
   bool writes_late() const;

@@ -48,6 +48,8 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "bodies.*.count",
                                                "joints.*.type",
                                                "joints.*.bodies",
+                                               "joints.*.markers",
+                                               "markers.*.body",
                                                "joints.*.chain",
                                                "joints.*.each",
                                                "drivers.*.joint",

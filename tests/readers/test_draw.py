@@ -176,7 +176,7 @@ class MechanismTest(unittest.TestCase):
     def test_springs_end_on_their_bodies(self):
         run = Run(NET)
         lines, points = Mechanism(run.model, run.motion, 1e-3).draw(len(run.particles) - 1)
-        centers = run.motion(len(run.particles) - 1).centers
+        centers = run.motion(len(run.particles) - 1).origins
         self.assertEqual(len(lines["spring"]), 19)
         np.testing.assert_allclose(lines["spring"][:, 0], centers[:19])
         np.testing.assert_allclose(lines["spring"][:, -1], centers[1:20])
@@ -203,7 +203,7 @@ class MechanismTest(unittest.TestCase):
                   "bodies/rod/angle": [0, 1]}
         motion = model.motion(0.5, None, 0, {name: (column,) for name, column in values.items()})
         self.assertTrue(motion.known.all())
-        np.testing.assert_allclose(motion.centers[[0, GROUND]], [[0.5, 0.5, 0], [0, 0, 0]])
+        np.testing.assert_allclose(motion.origins[[0, GROUND]], [[0.5, 0.5, 0], [0, 0, 0]])
         np.testing.assert_allclose(motion.rotations[0, :, 0], [np.cos(0.5), np.sin(0.5), 0], atol=1e-15)
 
     def test_a_body_in_space_turns_as_its_quaternion_says(self):
@@ -220,6 +220,27 @@ class MechanismTest(unittest.TestCase):
                       "bodies/top/e3": [0, 0]}
             motion = model.motion(0.5, None, 0, {name: (column,) for name, column in values.items()})
             np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 1], [0, -1, 2]], atol=1e-15)
+
+
+    def test_frames_beside_centres_of_mass_and_markers(self):
+        """A rod of two balls of 1 and 3 parts at 0 and 1 along its x axis, which starts along the global z."""
+        solids = [{"kind": "sphere", "radius": 0.1, "density": density, "offset": [x, 0.0, 0.0]}
+                  for x, density in ((0.0, 1.0), (1.0, 3.0))]
+        rod = {"name": "rod", "kind": "spatial", "position": [0.0, 0.0, 2.0], "spacing": [0.0, 0.0, 0.0],
+               "solids": solids, "x_axis": [0.0, 0.0, 1.0], "z_axis": [0.0, 1.0, 0.0]}
+        markers = [{"name": "floor", "body": "ground", "local_point": [0.0, 0.0, 3.0]},
+                   {"name": "end", "body": "rod", "local_point": [1.0, 0.0, 0.0]}]
+        joints = [{"name": "ball", "type": "spherical", "markers": ["floor", "end"]},
+                  {"name": "free", "type": "point-on-line", "bodies": ["ground", "rod"], "axis": [1.0, 0.0, 0.0]}]
+        model = Model(deck(bodies=[rod], markers=markers, joints=joints))
+        (pairs, local, _) = model.connections["spherical"]
+        np.testing.assert_allclose(model.start.places(pairs, local)[0], [[0, 0, 3]] * 2, atol=1e-15)
+        np.testing.assert_allclose(model.connections["point-on-line"][1][0], [[0, 0, 2.75], [0.75, 0, 0]], atol=1e-15)
+        values = {"x": 0, "y": 0.75, "z": 2, "origin_x": 0, "origin_y": 0, "origin_z": 2, "e0": 1, "e1": 0, "e2": 0,
+                  "e3": 0} | {f"e{k}": half for k, half in ((0, np.sqrt(0.5)), (3, np.sqrt(0.5)))}
+        history = {f"bodies/rod/{name}": ([value, value],) for name, value in values.items()} | {"step/time": ([0, 1],)}
+        motion = model.motion(0.5, None, 0, history)
+        np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 3], [0, 1, 2]], atol=1e-15)
 
 
 class WallTest(unittest.TestCase):

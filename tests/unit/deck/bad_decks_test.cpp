@@ -100,7 +100,7 @@ TEST_CASE("missing keys and tables") {
         "deck.toml:6:1: time.step: missing; with control = \"fixed\" it must be a number above 0 [s]");
   CHECK(contains(deck_error("title = \"x\"\n"), "deck.toml: space: missing; it must be a table"));
   CHECK(contains(deck_error(kSmallDeck + "[[bodies]]\nname = \"a\"\n"),
-                 "deck.toml:10:1: bodies.a.mass: missing; it must be a number above 0 [kg]"));
+                 "deck.toml:10:1: bodies.a.position: missing; it must be 2 numbers [m] in brackets"));
 }
 
 TEST_CASE("keys that the kind of table does not use") {

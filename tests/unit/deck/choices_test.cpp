@@ -57,7 +57,8 @@ TEST_CASE("keys that belong to a kind name words of their table's selector") {
     }
   };
   check_table(deck_keys());
-  CHECK(tables == 8);  // time, bodies, joints, motors, couplers, particles, functions of time, distributions
+  CHECK(tables ==
+        9);  // time, bodies, solids, joints, motors, couplers, particles, functions of time, distributions
 }
 
 }  // namespace scree

@@ -121,6 +121,16 @@ TEST_CASE("the refusal of start velocities says which keys to set to what, with 
   CHECK(contains(refusal(model), "; set velocities = \"consistent\" at the top of the deck"));
 }
 
+// The deck gives the velocity of the frame's origin.
+TEST_CASE("the keys to set are of the frame's origin where that is beside the centre of mass") {
+  Model model = hanging_disc();
+  model.space.dimension = 2;
+  model.drivers.push_back({"motor", 0, ramp(2)});
+  model.bodies[0].center_of_mass = {0.5, 0.25, 0};  // the centre moves at (0, 1)
+  CHECK(contains(refusal(model),
+                 "set bodies.bob.velocity = [0.5, 0.0], bodies.bob.angular_velocity = 2.0, or velocities"));
+}
+
 TEST_CASE("consistent start velocities change the given ones least in the norm of M") {
   // The pivot at (-0.5, 0) in the disc's frame leaves the motion (0, 1/2, 1) w: with the masses (1, 1, J) the
   // nearest to (u, v, s) has w = (v/2 + J s)/(1/4 + J).

@@ -152,7 +152,7 @@ TEST_CASE("joints between the wrong things") {
       model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nbodies = [\"a\", \"a\"]\n")),
       "must be two different bodies"));
   CHECK(contains(model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\n")),
-                 "exactly one of the keys bodies, chain and each"));
+                 "exactly one of the keys bodies, markers, chain and each"));
   CHECK(contains(model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nchain = \"a\"\n")),
                  "must name a row of two bodies or more"));
   CHECK(contains(model_error(kSmallDeck + kBodies +

@@ -1,6 +1,7 @@
 // Each column of the history shows its own value.
 #include "run/history_columns.hpp"
 
+#include <cmath>
 #include <map>
 
 #include "support/catch.hpp"
@@ -110,6 +111,44 @@ TEST_CASE("a column's value is that of its name") {
                                              {"particles/8/vx", 58},
                                              {"particles/8/vy", 59},
                                              {"particles/8/vz", 60}};
+  CHECK(found == expected);
+}
+
+// A quarter turn about z: the marker's x is the global y.
+TEST_CASE("reactions between spatial bodies, also along the axes of the marker") {
+  HistorySample sample = distinct_sample();
+  sample.reactions[0] = {"pin", {1, 2, 3}, {4, 5, 6}, BodyKind::spatial, exponential({0, 0, M_PI / 2})};
+  std::map<std::string, Real> found;
+  for (const RecordedColumn& column : history_columns(recorded_model(), sample.reactions))
+    if (column.head.group == "reactions/pin")
+      found[column.head.name] = std::round(column.value(sample) * 1e12) / 1e12;
+  const std::map<std::string, Real> expected{{"fx", 1},
+                                             {"fy", 2},
+                                             {"fz", 3},
+                                             {"torque_x", 4},
+                                             {"torque_y", 5},
+                                             {"torque_z", 6},
+                                             {"marker_fx", 2},
+                                             {"marker_fy", -1},
+                                             {"marker_fz", 3},
+                                             {"marker_torque_x", 5},
+                                             {"marker_torque_y", -4},
+                                             {"marker_torque_z", 6}};
+  CHECK(found == expected);
+}
+
+TEST_CASE("a body whose frame is beside its centre of mass has columns of that") {
+  Model model = recorded_model();
+  HistorySample sample = distinct_sample();
+  sample.bodies[1].angle = 0;
+  model.bodies[1].center_of_mass = {1, 2, 0};
+  std::map<std::string, Real> found;
+  for (const RecordedColumn& column : history_columns(model, sample.reactions))
+    if (column.head.name.starts_with("origin_")) found[column.head.name] = column.value(sample);
+  const Real w = 54;  // the velocity of the origin is v - w x (1, 2, 0)
+  const std::map<std::string, Real> expected{{"origin_x", 45},      {"origin_y", 45},
+                                             {"origin_z", 48},      {"origin_vx", 49 + 2 * w},
+                                             {"origin_vy", 51 - w}, {"origin_vz", 52}};
   CHECK(found == expected);
 }
 
