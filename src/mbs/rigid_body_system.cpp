@@ -176,6 +176,13 @@ void RigidBodySystem::pull_back(const std::vector<Real>& displacement, std::vect
   for (const auto& kind : kinds_) kind->pull_back(displacement, change);
 }
 
+SparseTerm RigidBodySystem::inverse_mass() const {
+  SparseTerm inverse;
+  inverse.begin();
+  for (const auto& kind : kinds_) kind->add_inverse_mass(inverse);
+  return inverse;
+}
+
 BodyPoses RigidBodySystem::start_poses() const {
   std::vector<Real> position(static_cast<std::size_t>(positions())),
       velocity(static_cast<std::size_t>(coordinates()));
