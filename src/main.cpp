@@ -152,6 +152,8 @@ ExitCode check(const Arguments& arguments) {
           const Multibody multibody(model);
           const std::string& change = multibody.start_change();
           constraints = "solver         " + multibody.solver_description();
+          if (!multibody.redundancy().empty())
+            constraints += "\nredundant      reactions shared: " + multibody.redundancy();
           if (!change.empty()) constraints += "\nvelocities     made consistent; largest change: " + change;
         });
       });

@@ -23,6 +23,10 @@ inline Mat3 transposed(const Mat3& a) {
 inline Mat3 operator*(const Mat3& a, const Mat3& b) {
   return {transposed_times(b, a.x), transposed_times(b, a.y), transposed_times(b, a.z)};
 }
+inline Mat3 inverse(const Mat3& a) {
+  const Vec3 x = cross(a.y, a.z), y = cross(a.z, a.x), z = cross(a.x, a.y);
+  return (1 / dot(a.x, x)) * transposed({x, y, z});
+}
 // From 0.
 inline Real component(Vec3 v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
 inline Vec3 row_of(const Mat3& a, int k) { return k == 0 ? a.x : k == 1 ? a.y : a.z; }

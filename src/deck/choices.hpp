@@ -47,6 +47,15 @@ template <>
 inline constexpr auto kWords<ContactEvents> = std::to_array<Word<ContactEvents>>(
     {{"resolved", ContactEvents::resolved}, {"end-of-step", ContactEvents::end_of_step}});
 
+// Rows of the joints and drivers that repeat others.
+enum class RedundantRows {
+  error,  // the run is refused and names them
+  share   // they share the load: the least reactions of those that hold the motion
+};
+template <>
+inline constexpr auto kWords<RedundantRows> =
+    std::to_array<Word<RedundantRows>>({{"error", RedundantRows::error}, {"share", RedundantRows::share}});
+
 // Of the particles on a GPU. The CPU always computes in full precision.
 enum class Precision {
   full,  // double throughout

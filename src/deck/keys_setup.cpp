@@ -117,6 +117,12 @@ const TableKeys& integrator_keys() {
            .about("HHT's numerical damping of bodies and particles. With adaptive steps it costs impacts no "
                   "accuracy; with fixed ones far above a tenth of a contact 0, which has none, errs least at "
                   "weak contact damping. Without it long runs of chains of joints fail."),
+       choice<RedundantRows>("redundant")
+           .otherwise_choice(RedundantRows::error)
+           .about("Joints and drivers that fix the same motion more than once, as every planar loop of "
+                  "hinges in space does: refused by name, or they share the load. The motion is the same "
+                  "whichever of them carry it; the reactions are then the least ones, weighted by the "
+                  "bodies' mobility."),
        choice<ParticleIntegrator>("particles")
            .otherwise_choice(ParticleIntegrator::hht)
            .about("Integrator of the particles: implicit, or explicit. Bodies always use HHT."),

@@ -22,7 +22,7 @@ constexpr const char* kLeftOut =
     "meshes. Bodies are rigid. Planar ones move along x and y and turn about z, in 3D too, and forces "
     "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
     "universal and all the other usual joints (`input/README.md`), of which universal ones have no driver, "
-    "motor or spring, and joints that repeat each other are refused. Joints have motors, "
+    "motor or spring. Joints have motors, "
     "springs and stops, but no play and no friction. All particles are there at the start: none flow in, "
     "bond or break. There is no fluid and no heat.";
 

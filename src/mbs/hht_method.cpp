@@ -22,13 +22,16 @@ KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, Syst
 }  // namespace
 
 HhtMethod::HhtMethod(MechanicalSystem& system, Real hht_alpha, const std::vector<Real>& position,
-                     const std::vector<Real>& velocity)
+                     const std::vector<Real>& velocity, const SparseTerm& inverse_mass)
     : system_(system),
       coefficients_(hht_coefficients(hht_alpha)),
       kkt_(record_pattern(system, {0, position, velocity}, terms_, derivatives_)),
       inertia_force_(count(system.coordinates())),
       constraint_force_(count(system.coordinates())),
-      residual_(count(system.coordinates() + system.constraints())) {}
+      residual_(count(system.coordinates() + system.constraints())) {
+  if (inverse_mass.size() > 0)
+    compliance_ = RowCompliance(terms_.constraint_jacobian, inverse_mass, system.constraints());
+}
 
 void HhtMethod::predict(const MultibodyState& state, Real t, Real h) {
   time_ = t;
@@ -42,6 +45,7 @@ void HhtMethod::predict(const MultibodyState& state, Real t, Real h) {
   velocity_.resize(state.velocity.size());
   acceleration_ = state.acceleration;
   multipliers_ = state.multipliers;
+  opened_ = true;
   update_motion();
 }
 
@@ -57,6 +61,8 @@ void HhtMethod::update_motion() {
 
 void HhtMethod::evaluate_residual() {
   system_.evaluate({end_time(), position_, velocity_}, terms_);
+  if (opened_) compliance_.update(terms_.constraint_jacobian);
+  opened_ = false;
   std::fill(inertia_force_.begin(), inertia_force_.end(), 0);
   std::fill(constraint_force_.begin(), constraint_force_.end(), 0);
   terms_.mass.multiply(1, acceleration_, inertia_force_);
@@ -78,7 +84,7 @@ void HhtMethod::newton_matrix(std::span<Real> values) {
   const Real scale = hht_inertia_weight(coefficients_);
   const KktWeights weights{scale, position_gain(), newmark_velocity_gain(coefficients_, step_),
                            position_gain() * scale, scale};
-  kkt_.assemble(terms_, derivatives_, weights, values);
+  kkt_.assemble(terms_, derivatives_, weights, compliance(), values);
 }
 
 void HhtMethod::apply_correction(std::span<const Real> delta) {
@@ -101,21 +107,24 @@ void HhtMethod::close(MultibodyState& state) {
   for (std::size_t i = 0; i < state.force.size(); ++i) state.force[i] -= constraint_force_[i];
 }
 
+void HhtMethod::evaluate_at(const MultibodyState& state, Real t, std::span<Real> values) {
+  system_.evaluate({t, state.position, state.velocity}, terms_);
+  compliance_.update(terms_.constraint_jacobian);
+  kkt_.assemble(terms_, derivatives_, KktWeights{}, compliance(), values);
+}
+
 void HhtMethod::acceleration_system(const MultibodyState& state, Real t, std::span<Real> values,
                                     std::span<Real> rhs) {
-  const SystemInstant at{t, state.position, state.velocity};
-  system_.evaluate(at, terms_);
-  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  evaluate_at(state, t, values);
   std::vector<Real> acceleration_rhs(terms_.constraint.size());
-  system_.acceleration_rhs(at, acceleration_rhs);
+  system_.acceleration_rhs({t, state.position, state.velocity}, acceleration_rhs);
   std::copy(terms_.applied_force.begin(), terms_.applied_force.end(), rhs.begin());
   std::copy(acceleration_rhs.begin(), acceleration_rhs.end(), rhs.begin() + system_.coordinates());
 }
 
 void HhtMethod::velocity_system(const MultibodyState& state, Real t, std::span<Real> values,
                                 std::span<Real> rhs) {
-  system_.evaluate({t, state.position, state.velocity}, terms_);
-  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  evaluate_at(state, t, values);
   const std::vector<Real> rate = constraint_rate(state, t);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t j = 0; j < rate.size(); ++j) rhs[state.velocity.size() + j] = -rate[j];
@@ -123,8 +132,7 @@ void HhtMethod::velocity_system(const MultibodyState& state, Real t, std::span<R
 
 void HhtMethod::constraint_system(const MultibodyState& state, Real t, const std::vector<Real>& motion,
                                   std::span<Real> values, std::span<Real> rhs) {
-  system_.evaluate({t, state.position, state.velocity}, terms_);
-  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  evaluate_at(state, t, values);
   std::vector<Real> rate(terms_.constraint.size(), 0);
   terms_.constraint_jacobian.multiply(1, motion, rate);
   std::fill(rhs.begin(), rhs.end(), 0);
@@ -142,7 +150,8 @@ std::vector<Real> HhtMethod::constraint_rate(const MultibodyState& state, Real t
 bool HhtMethod::change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs) {
   system_.evaluate({end_time(), state.position, state.velocity}, terms_);
   if (terms_.applied_force == state.applied) return false;
-  kkt_.assemble(terms_, derivatives_, KktWeights{}, values);
+  compliance_.update(terms_.constraint_jacobian);
+  kkt_.assemble(terms_, derivatives_, KktWeights{}, compliance(), values);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];
   return true;

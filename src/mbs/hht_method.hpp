@@ -9,6 +9,7 @@
 #include "mbs/kkt_matrix.hpp"
 #include "mbs/mechanical_system.hpp"
 #include "mbs/multibody.hpp"
+#include "mbs/row_compliance.hpp"
 #include "physics/time_stepping.hpp"
 
 namespace scree {
@@ -20,8 +21,10 @@ namespace scree {
 class HhtMethod {
  public:
   // position, velocity: any instant at which the system can be evaluated; it gives the matrix its pattern.
+  // inverse_mass: M^-1 of a system whose rows of Phi may repeat others; they then share the load, and all
+  // matrices here have -C = -eps S (RowCompliance) in the place of 0. Empty: none do.
   HhtMethod(MechanicalSystem& system, Real hht_alpha, const std::vector<Real>& position,
-            const std::vector<Real>& velocity);
+            const std::vector<Real>& velocity, const SparseTerm& inverse_mass = {});
 
   const SparsePattern& pattern() const { return kkt_.pattern(); }
   const HhtCoefficients& coefficients() const { return coefficients_; }
@@ -31,7 +34,8 @@ class HhtMethod {
 
   // At the current iterate: e1 (Eq. 16) in the first `coordinates` places, e2 (Eq. 17) in the other ones.
   //   e1 = M a / (1 + alpha) + (Phi_q^T lambda - Q)_{n+1} - alpha / (1 + alpha) (Phi_q^T lambda - Q)_n
-  //   e2 = Phi / (beta h^2)
+  //   e2 = Phi / (beta h^2); where rows share, the solver takes it as P e2 - C lambda, with P
+  //   NewtonSolver::drop_misfit
   void evaluate_residual();
   const std::vector<Real>& residual() const { return residual_; }
   // Eqs. 14, 15 at the iterate of the last evaluate_residual(). values: [entries of pattern()]. The unknown
@@ -46,17 +50,17 @@ class HhtMethod {
   void close(MultibodyState& state);
 
   // Acceleration-level system at the state's q, v and at time t:
-  //   [M, Phi_q^T; Phi_q, 0] (a, lambda) = (Q, acceleration_rhs).
+  //   [M, Phi_q^T; Phi_q, -C] (a, lambda) = (Q, acceleration_rhs),  C = 0 unless rows share.
   void acceleration_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
   // Sets a, lambda from its solution, and the forces that go with them.
   void set_acceleration(std::span<const Real> solution, MultibodyState& state) const;
 
   // Velocity-level system at the state's q, v and at time t:
-  //   [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, velocity_rhs - Phi_q v).
+  //   [M, Phi_q^T; Phi_q, -C] (d, mu) = (0, velocity_rhs - Phi_q v).
   // v + d satisfies the constraints, and no smaller d in the norm of M does.
   void velocity_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
 
-  // [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, Phi_q motion) at the state and time t.
+  // [M, Phi_q^T; Phi_q, -C] (d, mu) = (0, Phi_q motion) at the state and time t.
   void constraint_system(const MultibodyState& state, Real t, const std::vector<Real>& motion,
                          std::span<Real> values, std::span<Real> rhs);
 
@@ -66,10 +70,20 @@ class HhtMethod {
 
   // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
   // change dQ changes the reactions too,
-  //   [M, Phi_q^T; Phi_q, 0] (d, d_lambda) = (dQ, 0),  a += (1 + alpha) d,  lambda += d_lambda.
+  //   [M, Phi_q^T; Phi_q, -C] (d, d_lambda) = (dQ, 0),  a += (1 + alpha) d,  lambda += d_lambda.
   // Returns false, with nothing to solve, where the forces are the same.
   bool change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs);
   void apply_change(std::span<const Real> solution, MultibodyState& state) const;
+
+  // Whether rows share the load, and C of the open step or of the last system [constraints]. It is that of
+  // the step's first evaluation.
+  bool shares() const { return !compliance_.empty(); }
+  const std::vector<Real>& compliance() const { return compliance_.of_row(); }
+  // Of a row at the iterate: what its constraint is off, without what it yields, Phi - beta h^2 C lambda.
+  Real gap(std::size_t row) const {
+    return shares() ? terms_.constraint[row] - position_gain() * compliance()[row] * multipliers_[row]
+                    : terms_.constraint[row];
+  }
 
   // Change of the position per change of the acceleration, beta h^2 [s^2].
   Real position_gain() const { return newmark_position_gain(coefficients_, step_); }
@@ -92,12 +106,16 @@ class HhtMethod {
 
  private:
   void update_motion();
+  // The matrix of an instant, at a state: M's weight 1, nothing else.
+  void evaluate_at(const MultibodyState& state, Real t, std::span<Real> values);
 
   MechanicalSystem& system_;
   HhtCoefficients coefficients_;
   SystemTerms terms_;
   SystemDerivatives derivatives_;
   KktMatrix kkt_;
+  RowCompliance compliance_;
+  bool opened_ = false;  // a step, whose compliance is not known yet
   Real time_ = 0, step_ = 0;
   std::vector<Real> start_position_, start_velocity_, start_acceleration_, start_force_;
   std::vector<Real> displacement_, position_, velocity_, acceleration_, multipliers_;

@@ -60,6 +60,7 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
   tangent_inertia_ = slots_of(derivatives.tangent_inertia, 0, false);
   jacobian_ = slots_of(jacobian, coordinates, false);
   jacobian_transposed_ = slots_of(jacobian, coordinates, true);
+  for (int row = coordinates; row < coordinates + constraints; ++row) diagonal_.push_back(slot_of(row, row));
 }
 
 std::vector<int> KktMatrix::slots_of(const SparseTerm& term, int row_offset, bool transposed) const {
@@ -67,15 +68,20 @@ std::vector<int> KktMatrix::slots_of(const SparseTerm& term, int row_offset, boo
   for (std::size_t i = 0; i < term.size(); ++i) {
     int row = term.row(i) + row_offset, column = term.column(i);
     if (transposed) std::swap(row, column);
-    const auto begin = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row)];
-    const auto end = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row) + 1];
-    slots[i] = static_cast<int>(std::lower_bound(begin, end, column) - pattern_.column.begin());
+    slots[i] = slot_of(row, column);
   }
   return slots;
 }
 
+int KktMatrix::slot_of(int row, int column) const {
+  const auto begin = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row)];
+  const auto end = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row) + 1];
+  return static_cast<int>(std::lower_bound(begin, end, column) - pattern_.column.begin());
+}
+
 void KktMatrix::assemble(const SystemTerms& terms, const SystemDerivatives& derivatives,
-                         const KktWeights& weights, std::span<Real> values) const {
+                         const KktWeights& weights, std::span<const Real> compliance,
+                         std::span<Real> values) const {
   std::fill(values.begin(), values.end(), 0);
   scatter(terms.mass, mass_, weights.mass, values);
   scatter(derivatives.stiffness, stiffness_, weights.stiffness, values);
@@ -84,6 +90,8 @@ void KktMatrix::assemble(const SystemTerms& terms, const SystemDerivatives& deri
   scatter(derivatives.tangent_inertia, tangent_inertia_, weights.tangent, values);
   scatter(terms.constraint_jacobian, jacobian_, 1, values);
   scatter(terms.constraint_jacobian, jacobian_transposed_, 1, values);
+  for (std::size_t j = 0; j < compliance.size(); ++j)
+    values[static_cast<std::size_t>(diagonal_[j])] -= compliance[j];
 }
 
 }  // namespace scree

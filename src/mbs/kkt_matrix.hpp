@@ -1,4 +1,4 @@
-// The saddle-point matrix [A, Phi_q^T; Phi_q, 0] in compressed rows, filled through slots found once.
+// The saddle-point matrix [A, Phi_q^T; Phi_q, -C] in compressed rows, filled through slots found once.
 #pragma once
 
 #include <span>
@@ -29,16 +29,19 @@ class KktMatrix {
   KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates, int constraints);
 
   const SparsePattern& pattern() const { return pattern_; }
-  // values: [entries of the pattern]. Cost is linear in the number of contributions.
+  // compliance: C's diagonal [constraints], or empty: C = 0. values: [entries of the pattern]. Cost is linear
+  // in the number of contributions.
   void assemble(const SystemTerms& terms, const SystemDerivatives& derivatives, const KktWeights& weights,
-                std::span<Real> values) const;
+                std::span<const Real> compliance, std::span<Real> values) const;
 
  private:
   std::vector<int> slots_of(const SparseTerm& term, int row_offset, bool transposed) const;
+  int slot_of(int row, int column) const;
 
   SparsePattern pattern_;
   std::vector<int> mass_, stiffness_, damping_, inertia_stiffness_, tangent_inertia_, jacobian_,
       jacobian_transposed_;
+  std::vector<int> diagonal_;  // of the constraints' rows
 };
 
 }  // namespace scree

@@ -29,14 +29,15 @@ constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
 // The bodies' error, over the tolerance, from which they decide on the step's length.
 constexpr Real kGoverns = 0.3;
 
-MultibodyState checked_start(const Model& model, RigidBodySystem& system) {
+// redundancy: what is to be said of constraints that share the load.
+MultibodyState checked_start(const Model& model, RigidBodySystem& system, std::string& redundancy) {
   MultibodyState state;
   state.position.resize(static_cast<std::size_t>(system.positions()));
   state.velocity.resize(static_cast<std::size_t>(system.coordinates()));
   for (const auto& kind : system.kinds()) kind->start(state.position, state.velocity);
   state.counted_angles = static_cast<std::size_t>(system.counted_angles());
   system.count_turns(system.poses_at({0, state.position, state.velocity}), state.position);
-  check_start(model, system, state.position, state.velocity);
+  redundancy = check_start(model, system, state.position, state.velocity);
   return state;
 }
 
@@ -45,8 +46,9 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system) {
 struct Multibody::Impl {
   explicit Impl(const Model& model)
       : system(model),
-        start(checked_start(model, system)),
-        method(system, model.integrator.hht_alpha, start.position, start.velocity),
+        start(checked_start(model, system, redundancy)),
+        method(system, model.integrator.hht_alpha, start.position, start.velocity,
+               model.integrator.redundant == RedundantRows::share ? system.inverse_mass() : SparseTerm{}),
         newton(system, method),
         readings(model, system.layout()),
         watch(system.coordinate_scale(), system.constraint_scale()),
@@ -78,6 +80,7 @@ struct Multibody::Impl {
   }
 
   RigidBodySystem system;
+  std::string redundancy;
   MultibodyState start;  // q of the model, and its v or those nearest to them that are consistent
   std::string start_change;
   HhtMethod method;
@@ -97,6 +100,11 @@ void Multibody::Impl::settle_velocities(const Model& model) {
   const std::string trouble = velocity_trouble(system, method.constraint_rate(start, 0), given);
   if (trouble.empty() && !model.consistent_velocities) return;
   newton.solve_velocity(start, 0);
+  if (method.shares()) {
+    const std::string conflict = velocity_trouble(system, method.constraint_rate(start, 0), start.velocity);
+    if (!conflict.empty())
+      throw InputError(conflict + ", and no velocities satisfy it and the others that fix the same motion");
+  }
   if (model.consistent_velocities) {
     start_change = largest_change(system, given, start.velocity);
     return;
@@ -151,6 +159,8 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   impl_->system.set_contacts({wrench, {}});
   impl_->open_step(state, 0, 0);
   impl_->newton.solve_acceleration(state, 0);
+  if (impl_->method.shares())
+    check_start_accelerations(impl_->system, impl_->newton.misfit(), state.acceleration);
   return state;
 }
 
@@ -287,6 +297,7 @@ std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& st
 int Multibody::coordinates() const { return impl_->system.coordinates(); }
 int Multibody::constraints() const { return impl_->system.constraints(); }
 const std::string& Multibody::start_change() const { return impl_->start_change; }
+const std::string& Multibody::redundancy() const { return impl_->redundancy; }
 std::string Multibody::solver_description() const { return impl_->newton.description(); }
 
 }  // namespace scree

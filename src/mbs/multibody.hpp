@@ -66,7 +66,7 @@ struct JointEffortSample {
 class Multibody {
  public:
   // Throws InputError where joints do not meet, start velocities contradict the joints, or constraints are
-  // redundant (all by joint name).
+  // redundant and may not be (all by joint name).
   explicit Multibody(const Model& model);
   ~Multibody();
 
@@ -113,6 +113,10 @@ class Multibody {
   // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular
   // velocity of body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.
   const std::string& start_change() const;
+
+  // Where constraints that repeat each other share the load: rows, rank and names, e.g. "20 rows of rank 17:
+  // joint 'a', joint 'b'"; empty where none do.
+  const std::string& redundancy() const;
 
   int coordinates() const;
   int constraints() const;

@@ -15,6 +15,8 @@ namespace scree {
 namespace {
 
 constexpr Real kReuseContraction = 1e-2;
+// Each leaves of a misfit its round-off, over the rows' share.
+constexpr int kMisfitPasses = 2;
 
 }  // namespace
 
@@ -44,13 +46,13 @@ Real NewtonSolver::scaled_residual() const {
     largest = std::max(largest, force * scale[i]);
     dynamic = std::max(dynamic, std::abs(residual[i]) * scale[i]);
   }
-  const std::vector<Real>& gap = method_.terms().constraint;
-  for (std::size_t j = 0; j < gap.size(); ++j) {
-    if (!std::isfinite(gap[j])) {
+  for (std::size_t j = 0; j < method_.terms().constraint.size(); ++j) {
+    const Real gap = method_.gap(j);
+    if (!std::isfinite(gap)) {
       throw SimulationError(fmt::format("mbs_correct, rank 0: the residual of {} is not finite at t = {} s",
                                         system_.constraint_name(static_cast<int>(j)), method_.end_time()));
     }
-    kinematic = std::max(kinematic, std::abs(gap[j]) / system_.constraint_scale()[j]);
+    kinematic = std::max(kinematic, std::abs(gap) / system_.constraint_scale()[j]);
   }
   // Without any force the residual is zero as well.
   return std::max(dynamic / std::max(largest, std::numeric_limits<Real>::min()), kinematic);
@@ -74,12 +76,35 @@ void NewtonSolver::solve_linear(PetscSolver& solver, bool refactor) {
 
 void NewtonSolver::solve_acceleration_level() {
   const std::span<Real> factored = acceleration_solver_.values();
-  const bool refactor = !has_acceleration_factors_ ||
-                        std::memcmp(factored.data(), acceleration_matrix_.data(), factored.size_bytes()) != 0;
+  bool refactor = !has_acceleration_factors_ ||
+                  std::memcmp(factored.data(), acceleration_matrix_.data(), factored.size_bytes()) != 0;
   has_acceleration_factors_ = false;  // should this fail
   if (refactor) std::copy(acceleration_matrix_.begin(), acceleration_matrix_.end(), factored.begin());
+  refactor = drop_misfit(acceleration_solver_, refactor);
   solve_linear(acceleration_solver_, refactor);
   has_acceleration_factors_ = true;
+}
+
+bool NewtonSolver::drop_misfit(PetscSolver& solver, bool refactor) {
+  if (!method_.shares()) return refactor;
+  const std::vector<Real>& compliance = method_.compliance();
+  const std::size_t n = system_.coordinate_scale().size();
+  const std::span<Real> forces = solver.rhs().first(n), gaps = solver.rhs().subspan(n);
+  misfit_.assign(gaps.size(), 0);
+  if (std::all_of(gaps.begin(), gaps.end(), [](Real gap) { return gap == 0; })) return refactor;
+  forces_.assign(forces.begin(), forces.end());
+  std::fill(forces.begin(), forces.end(), 0);
+  for (int pass = 0; pass < kMisfitPasses; ++pass) {
+    solve_linear(solver, refactor);
+    refactor = false;
+    for (std::size_t j = 0; j < gaps.size(); ++j) {
+      const Real misfit = -compliance[j] * solver.solution()[n + j];
+      misfit_[j] += misfit;
+      gaps[j] -= misfit;
+    }
+  }
+  std::copy(forces_.begin(), forces_.end(), forces.begin());
+  return refactor;
 }
 
 void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {
@@ -113,9 +138,13 @@ IterationNorms NewtonSolver::iterate() {
   method_.evaluate_residual();
   IterationNorms norms;
   norms.residual = scaled_residual();
-  const bool refactor = first_ || norms.residual > kReuseContraction * last_residual_;
+  bool refactor = first_ || norms.residual > kReuseContraction * last_residual_;
   if (refactor) method_.newton_matrix(solver_.values());
   std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
+  refactor = drop_misfit(solver_, refactor);
+  const std::span<Real> gaps = solver_.rhs().subspan(system_.coordinate_scale().size());
+  for (std::size_t j = 0; j < method_.compliance().size(); ++j)
+    gaps[j] -= method_.compliance()[j] * method_.multipliers()[j];
   solve_linear(solver_, refactor);
   norms.correction = scaled_correction();
   method_.apply_correction(solver_.solution());

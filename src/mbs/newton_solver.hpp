@@ -27,7 +27,7 @@ class NewtonSolver {
   void solve_velocity(MultibodyState& state, Real t);
 
   // The part of a motion that the constraints at the state take away, the least in the norm of M: d of
-  // [M, Phi_q^T; Phi_q, 0] (d, mu) = (0, Phi_q motion). At t = 0. Throws SimulationError as
+  // [M, Phi_q^T; Phi_q, -C] (d, mu) = (0, Phi_q motion). At t = 0. Throws SimulationError as
   // iterate() does.
   std::vector<Real> constrained_part(const MultibodyState& state, const std::vector<Real>& motion);
 
@@ -41,11 +41,20 @@ class NewtonSolver {
   // is not finite.
   IterationNorms iterate();
 
+  // Of rows that share: what the last solve_acceleration() left unsolved in their right-hand sides
+  // [constraints]; of no size unless rows that repeat each other contradict each other.
+  const std::vector<Real>& misfit() const { return misfit_; }
+
   std::string description() const { return solver_.description(); }
 
  private:
   // Solves the system of acceleration_matrix_ for the right-hand side in acceleration_solver_.
   void solve_acceleration_level();
+  // Where rows share the load: takes from the constraints' part g of the right-hand side what no motion can
+  // satisfy, as round-off and the digits of a deck leave it in rows that repeat each other. Their multipliers
+  // would grow by it over C. g += C mu with [A, Phi_q^T; Phi_q, -C] (x, mu) = (0, g). Returns whether the
+  // matrix has yet to be factored.
+  bool drop_misfit(PetscSolver& solver, bool refactor);
   Real scaled_residual() const;
   Real scaled_correction() const;
   void solve_linear(PetscSolver& solver, bool refactor);
@@ -53,10 +62,11 @@ class NewtonSolver {
   const MechanicalSystem& system_;
   HhtMethod& method_;
   PetscSolver solver_;
-  // [M, Phi_q^T; Phi_q, 0] has factors of its own: where Phi_q is constant they stay.
+  // [M, Phi_q^T; Phi_q, -C] has factors of its own: where Phi_q is constant they stay.
   PetscSolver acceleration_solver_;
   std::vector<Real> acceleration_matrix_;  // [entries of the pattern]
   bool has_acceleration_factors_ = false;  // of acceleration_solver_.values()
+  std::vector<Real> misfit_, forces_;
   Real last_residual_ = 0;
   bool first_ = true;  // iteration of its step
 };

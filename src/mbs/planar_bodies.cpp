@@ -81,6 +81,13 @@ class PlanarBodies final : public RigidBodies {
       mass.add(b.at.column + 2, b.at.column + 2, b.body.inertia);
     }
   }
+  void add_inverse_mass(SparseTerm& inverse) const override {
+    for (const Placed& b : bodies_) {
+      inverse.add(b.at.column, b.at.column, 1 / b.body.mass);
+      inverse.add(b.at.column + 1, b.at.column + 1, 1 / b.body.mass);
+      inverse.add(b.at.column + 2, b.at.column + 2, 1 / b.body.inertia);
+    }
+  }
   void set_weight(std::vector<Real>& force) const override {
     for (const Placed& b : bodies_) {
       b.at.of(force)[0] = b.body.mass * gravity_.x;

@@ -5,6 +5,8 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
 namespace scree {
 
@@ -16,6 +18,7 @@ constexpr Real kTakesPart = 1e-6;    // coefficient of a dependency, relative to
 constexpr Real kPivotShift = 1e-14;  // keeps the factorization going past a pivot that vanishes
 
 using Matrix = Eigen::SparseMatrix<Real>;
+using RowMajorMatrix = Eigen::SparseMatrix<Real, Eigen::RowMajor>;
 using Vector = Eigen::VectorXd;
 
 Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
@@ -31,24 +34,45 @@ Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entri
   return matrix;
 }
 
+using Combination = std::map<int, Real, std::greater<>>;  // coefficient by place in the order of elimination
+
 // With P A^T A P^T = L D L^T and l the part of L's row k left of the diagonal, the first k columns of A P^T
-// combine by L_11^-T l to what is nearest to column k. The combination minus column k, in the order of A's
-// columns.
-Vector combination(const Matrix& l, int k, const Eigen::SimplicialLDLT<Matrix>& factors) {
-  Vector c = Vector::Zero(l.rows());
-  for (int i = 0; i < k; ++i) c[i] = l.coeff(k, i);
-  for (int i = k; i-- > 0;) {
-    for (Matrix::InnerIterator it(l, i); it; ++it) {
-      if (it.row() > i && it.row() < k) c[i] -= it.value() * c[it.row()];
+// combine by L_11^-T l to what is nearest to column k. The combination minus column k; without columns that
+// depend on others themselves.
+Combination combination(const RowMajorMatrix& l, int k, const std::vector<bool>& depends) {
+  Combination c, left;
+  const auto subtract = [&](int row, Real scale) {
+    for (RowMajorMatrix::InnerIterator it(l, row); it; ++it) {
+      const int i = static_cast<int>(it.col());
+      if (i < row && !depends[static_cast<std::size_t>(i)]) left[i] -= scale * it.value();
     }
+  };
+  subtract(k, -1);
+  while (!left.empty()) {
+    const auto [i, value] = *left.begin();
+    left.erase(left.begin());
+    c[i] = value;
+    subtract(i, value);
   }
   c[k] = -1;
-  return factors.permutationPinv() * c;
+  return c;
+}
+
+// Largest component of A P^T c.
+Real length_of(const Matrix& a, const std::vector<int>& column_at, const Combination& c) {
+  std::map<int, Real> sum;
+  for (const auto& [place, weight] : c)
+    for (Matrix::InnerIterator it(a, column_at[static_cast<std::size_t>(place)]); it; ++it)
+      sum[static_cast<int>(it.row())] += weight * it.value();
+  Real largest = 0;
+  for (const auto& [row, value] : sum) largest = std::max(largest, std::abs(value));
+  return largest;
 }
 
 }  // namespace
 
-std::vector<int> dependent_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
+std::vector<std::vector<int>> column_dependencies(int rows, int columns,
+                                                  const std::vector<MatrixEntry>& entries) {
   for (const MatrixEntry& entry : entries) {
     if (!std::isfinite(entry.value)) return {};
   }
@@ -59,22 +83,32 @@ std::vector<int> dependent_columns(int rows, int columns, const std::vector<Matr
   factors.setShift(kPivotShift);
   factors.compute(normal);
   const Vector pivots = factors.vectorD();
-  const Matrix l = factors.matrixL();
+  const RowMajorMatrix l = Matrix(factors.matrixL());
+  std::vector<int> column_at(static_cast<std::size_t>(columns));  // by place in the order of elimination
+  for (int j = 0; j < columns; ++j)
+    column_at[static_cast<std::size_t>(factors.permutationP().indices()[j])] = j;
+  std::vector<std::vector<int>> dependencies;
+  std::vector<bool> depends(static_cast<std::size_t>(columns), false);
   for (int k = 0; k < columns; ++k) {
     if (pivots[k] > kSuspect) continue;
-    const Vector c = combination(l, k, factors);
-    const Vector rest = a * c;
-    Real largest = 0, distance = 0;
-    for (const Real x : c) largest = std::max(largest, std::abs(x));
-    for (const Real x : rest) distance = std::max(distance, std::abs(x));
-    if (distance > kDependent * largest) continue;
-    std::vector<int> dependent;
-    for (int j = 0; j < columns; ++j) {
-      if (std::abs(c[j]) > kTakesPart * largest) dependent.push_back(j);
+    const Combination c = combination(l, k, depends);
+    Real largest = 0;
+    for (const auto& [place, weight] : c) largest = std::max(largest, std::abs(weight));
+    if (length_of(a, column_at, c) > kDependent * largest) continue;
+    depends[static_cast<std::size_t>(k)] = true;
+    std::vector<int>& dependency = dependencies.emplace_back();
+    for (const auto& [place, weight] : c) {
+      if (std::abs(weight) > kTakesPart * largest)
+        dependency.push_back(column_at[static_cast<std::size_t>(place)]);
     }
-    return dependent;
+    std::sort(dependency.begin(), dependency.end());
   }
-  return {};
+  return dependencies;
+}
+
+std::vector<int> dependent_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
+  const std::vector<std::vector<int>> dependencies = column_dependencies(rows, columns, entries);
+  return dependencies.empty() ? std::vector<int>{} : dependencies.front();
 }
 
 }  // namespace scree

@@ -58,6 +58,7 @@ class RigidBodies {
   // length: of the system [m].
   virtual void set_scale(Real length, std::vector<Real>& coordinate_scale) const = 0;
   virtual void add_mass(SparseTerm& mass) const = 0;
+  virtual void add_inverse_mass(SparseTerm& inverse) const = 0;
   virtual void set_weight(std::vector<Real>& force) const = 0;
   // Largest weight times the length [J].
   virtual Real weight_scale(Real length) const = 0;

@@ -203,6 +203,13 @@ void RigidBodySystem::set_poses(const std::vector<Real>& position, const std::ve
   for (const CountedAngle& counted : counted_) poses.spatial.set_counted_angle(counted.joint, *angle++);
 }
 
+SparseTerm RigidBodySystem::inverse_mass() const {
+  SparseTerm inverse;
+  inverse.begin();
+  for (const auto& kind : kinds_) kind->add_inverse_mass(inverse);
+  return inverse;
+}
+
 BodyPoses RigidBodySystem::start_poses() const {
   std::vector<Real> position(static_cast<std::size_t>(positions())),
       velocity(static_cast<std::size_t>(coordinates()));

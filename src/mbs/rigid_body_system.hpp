@@ -66,6 +66,9 @@ class RigidBodySystem final : public MechanicalSystem {
   // Of the last evaluate().
   const BodyPoses& poses() const { return poses_; }
 
+  // M^-1, constant.
+  SparseTerm inverse_mass() const;
+
   JointForces& joint_forces() { return joint_forces_; }
   const JointForces& joint_forces() const { return joint_forces_; }
 
@@ -76,6 +79,8 @@ class RigidBodySystem final : public MechanicalSystem {
   // a joint or force element from the centre of its body; without these 1 m.
   Real length_scale() const { return length_scale_; }
   const std::vector<ConstraintGroup>& groups() const { return groups_; }
+  // Of one row.
+  int group_of(int row) const { return group_[static_cast<std::size_t>(row)]; }
   // C of one row is an angle [rad], not a length [m].
   bool is_angle(int row) const { return is_angle_[static_cast<std::size_t>(row)]; }
 

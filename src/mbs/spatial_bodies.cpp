@@ -109,6 +109,12 @@ class SpatialBodies final : public RigidBodies {
       add_block(mass, b.turning(), b.turning(), b.inertia);
     }
   }
+  void add_inverse_mass(SparseTerm& inverse) const override {
+    for (const Placed& b : bodies_) {
+      for (int k = 0; k < 3; ++k) inverse.add(b.at.column + k, b.at.column + k, 1 / b.body.mass);
+      add_block(inverse, b.turning(), b.turning(), scree::inverse(b.inertia));
+    }
+  }
   void set_weight(std::vector<Real>& force) const override {
     for (const Placed& b : bodies_) write(b.body.mass * gravity_, b.at.of(force));
   }

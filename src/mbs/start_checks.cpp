@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "mbs/rank_check.hpp"
+#include "mbs/redundancy.hpp"
 #include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
 #include "physics/spatial_rotation.hpp"
@@ -15,25 +16,12 @@ namespace scree {
 
 namespace {
 
-constexpr Real kPositionGap = 1e-10;  // of the constraint's scale
-constexpr Real kKeptGap = 1e-6;       // the same on the way, where steps have kept it to their tolerance
-constexpr Real kVelocityGap = 1e-8;   // of the largest velocity plus the constraint's scale per second
-constexpr std::size_t kNamesShown = 8;
+constexpr Real kPositionGap = 1e-10;     // of the constraint's scale
+constexpr Real kKeptGap = 1e-6;          // the same on the way, where steps have kept it to their tolerance
+constexpr Real kVelocityGap = 1e-8;      // of the largest velocity plus the constraint's scale per second
+constexpr Real kAccelerationGap = 1e-3;  // the same of accelerations
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-// Names without repetition, shortened to the first few.
-std::string list_names(const std::vector<std::string>& names) {
-  std::vector<std::string> once;
-  for (const std::string& name : names) {
-    if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
-  }
-  const std::size_t shown = std::min(once.size(), kNamesShown);
-  std::string text =
-      fmt::format("{}", fmt::join(once.begin(), once.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-  if (once.size() > shown) text += fmt::format(" and {} more", once.size() - shown);
-  return text;
-}
 
 // Of a group's gap [m, rad], or its rate with per = "/s": what is wrong with the length of its length rows or
 // of its angle rows, or nothing.
@@ -50,6 +38,20 @@ std::string row_trouble(const RigidBodySystem& system, const ConstraintGroup& gr
     if (size <= limit * scale) continue;
     return fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what, size, angle ? "rad" : "m",
                        per, limit * scale);
+  }
+  return "";
+}
+
+// The same of the rates of all groups, the limit times the largest rate of the coordinates plus one scale.
+std::string rate_trouble(const RigidBodySystem& system, const std::vector<Real>& gap,
+                         const std::vector<Real>& rate, Real limit, const char* what, const char* per) {
+  Real fastest = 0;
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    fastest = std::max(fastest, std::abs(rate[i]) / system.coordinate_scale()[i]);
+  }
+  for (const ConstraintGroup& group : system.groups()) {
+    const std::string trouble = row_trouble(system, group, gap, limit * (1 + fastest), what, per);
+    if (!trouble.empty()) return trouble;
   }
   return "";
 }
@@ -121,44 +123,29 @@ void check_directions(const Model& model, const RigidBodySystem& system, const B
   }
 }
 
-void check_redundancy(const RigidBodySystem& system, const SparseTerm& jacobian) {
-  std::vector<MatrixEntry> transposed;
-  for (std::size_t i = 0; i < jacobian.size(); ++i) {
-    const Real scale = system.coordinate_scale()[at(jacobian.column(i))];
-    transposed.push_back({jacobian.column(i), jacobian.row(i), jacobian.value(i) * scale});
-  }
-  const std::vector<int> rows = dependent_columns(system.coordinates(), system.constraints(), transposed);
-  if (rows.empty()) return;
-  std::vector<std::string> names;
-  for (const int row : rows) names.push_back(system.constraint_name(row));
-  throw InputError(
-      fmt::format("redundant constraints: {} fix the same motion more than once; remove or change one",
-                  list_names(names)));
-}
-
 }  // namespace
 
-void check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
-                 const std::vector<Real>& velocity) {
+std::string check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
+                        const std::vector<Real>& velocity) {
   check_senses(model);
   check_directions(model, system, system.poses_at({0, position, velocity}));
   const SystemTerms terms = terms_at(system, position, velocity, 0);
   check_start_gaps(model, system, terms.constraint);
-  check_redundancy(system, terms.constraint_jacobian);
+  return check_redundancy(model, system, terms.constraint_jacobian);
 }
 
 std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity) {
-  Real fastest = 0;
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    fastest = std::max(fastest, std::abs(velocity[i]) / system.coordinate_scale()[i]);
-  }
-  for (const ConstraintGroup& group : system.groups()) {
-    const std::string trouble = row_trouble(system, group, gap_rate, kVelocityGap * (1 + fastest),
-                                            "the velocities at t = 0 contradict it by", "/s");
-    if (!trouble.empty()) return trouble;
-  }
-  return "";
+  return rate_trouble(system, gap_rate, velocity, kVelocityGap, "the velocities at t = 0 contradict it by",
+                      "/s");
+}
+
+void check_start_accelerations(const RigidBodySystem& system, const std::vector<Real>& misfit,
+                               const std::vector<Real>& acceleration) {
+  const std::string trouble =
+      rate_trouble(system, misfit, acceleration, kAccelerationGap,
+                   "no accelerations at t = 0 satisfy it and the others, they miss by", "/s^2");
+  if (!trouble.empty()) throw InputError(trouble);
 }
 
 void check_joints_hold(RigidBodySystem& system, const std::vector<Real>& position,

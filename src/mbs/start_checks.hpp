@@ -14,15 +14,21 @@ namespace scree {
 // Joints meet by the model's rule (joint_gap); gaps of drivers up to 1e-10 of the length scale and of angles
 // up to 1e-10 rad are taken as round-off. position, velocity: [coordinates]. Throws InputError naming the
 // joint or driver, its gap and what is allowed, or the joints and drivers that are redundant together, or the
-// element whose two points coincide, or the joint in space whose axes point against each other.
-void check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
-                 const std::vector<Real>& velocity);
+// element whose two points coincide, or the joint in space whose axes point against each other. Returns what
+// is to be said of redundant ones that share the load.
+std::string check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
+                        const std::vector<Real>& velocity);
 
 // The joint or driver that the start velocities contradict, and by how much; empty where they contradict
 // none. gap_rate: Phi_q q' + Phi_t at the start; up to 1e-8 of the largest velocity plus one length scale (1
 // rad) per second is taken as round-off.
 std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity);
+// Of rows that share the load. misfit: what the accelerations leave of their right-hand sides; a thousandth
+// of the largest acceleration plus one length scale (1 rad) per second squared is allowed, as near a singular
+// position rows count as repeated that nearly are. Throws InputError naming the joint or driver.
+void check_start_accelerations(const RigidBodySystem& system, const std::vector<Real>& misfit,
+                               const std::vector<Real>& acceleration);
 // The same of the positions alone at a later time t [s], where they are as exact as steps keep them: gaps up
 // to 1e-6 of the length scale (1e-6 rad).
 void check_joints_hold(RigidBodySystem& system, const std::vector<Real>& position,

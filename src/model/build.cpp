@@ -143,6 +143,7 @@ void build_time(const DeckTable& deck, Model& model) {
   Integrator& integrator = model.integrator;
   integrator.hht_alpha = method.real("hht_alpha");
   integrator.corrected_start = method.boolean("corrected_start");
+  integrator.redundant = method.choice<RedundantRows>("redundant");
   integrator.particles = method.choice<ParticleIntegrator>("particles");
   integrator.resolve_events = method.choice<ContactEvents>("contact_events") == ContactEvents::resolved;
   integrator.substeps = static_cast<int>(method.integer("substeps"));

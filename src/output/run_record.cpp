@@ -58,6 +58,7 @@ toml::table run_table(const RunRecord& record) {
                      {"backend", record.backend},
                      {"solver", record.solver},
                      {"start_change", record.start_change},
+                     {"redundancy", record.redundancy},
                      {"restarted_from", record.restarted_from},
                      {"changes", lines(record.changes)},
                      {"state_hash", record.state_hash},

@@ -19,6 +19,7 @@ struct RunRecord {
   std::string started, ended;  // ISO 8601, UTC
   std::string backend, solver;
   std::string start_change;  // velocities = "consistent": the largest change at t = 0
+  std::string redundancy;    // of constraints that share the load: rows, rank, names
   std::string restarted_from;
   std::string changes;     // lines on the keys that --allow-changes let differ since t = 0
   std::string state_hash;  // of the state in the last checkpoint; empty before the first

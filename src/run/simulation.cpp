@@ -118,6 +118,9 @@ void Simulation::start_or_resume() {
     step_.start(state_.bodies);
     if (!start_change().empty())
       log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
+    if (link_.multibody() && !link_.multibody()->redundancy().empty())
+      log_.info("redundant constraints share their reactions, which rigid bodies leave open: " +
+                link_.multibody()->redundancy());
   } else {
     load_state();
     step_.counts() = state_.counts;
@@ -302,6 +305,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.backend = backend_->description();
   record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
   record.start_change = start_change();
+  record.redundancy = link_.multibody() ? link_.multibody()->redundancy() : "";
   record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_;
   record.ranks = ranks_.size();

@@ -49,6 +49,15 @@ def four_bar(end=1.0, control="fixed", alpha=-0.05, stiffness=0.0, motion=None):
     return text + (MOTOR.format(motion) if motion else "")
 
 
+def spatial_four_bar():
+    """The same in space, under a load across: three of its twenty conditions say again what the others say."""
+    text = four_bar(end=0.2).replace("dimension = 2", "dimension = 3").replace("-2.0]", "-2.0, -2.0]")
+    text = text.replace(" 2.0]", " 2.0, 2.0]").replace("[0.0, -9.8066]", "[0.0, -9.8066, 3.0]")
+    text = re.sub(r"(position|point) = \[([^]]*)\]", r"\1 = [\2, 0.0]", text)
+    text = re.sub(r"\ninertia = (\S+)\n", r'\nkind = "spatial"\ninertia_tensor = [\1, \1, \1, 0.0, 0.0, 0.0]\n', text)
+    return text.replace('"revolute"', '"revolute"\naxis = [0.0, 0.0, 1.0]')
+
+
 class BodiesTest(CommandLineTest):
     def use(self, **settings):
         self.deck = self.write("deck.toml", four_bar(**settings))
@@ -107,6 +116,39 @@ class MotionTest(BodiesTest):
         text = self.expect(BAD_INPUT, "check", self.deck).stderr
         self.assertRegex(text, r'deck\.toml:\d+:\d+: drivers\.motor\.motion\.interpolation = "linear": the velocity of '
                                "a motion must not jump; allowed for a driver: natural, clamped, monotone")
+
+
+class RedundancyTest(BodiesTest):
+    SHARE = ("--set", "integrator.redundant=share", "--set", "output.history_csv=true")
+    NAMES = "joint 'o', joint 'a', joint 'b', joint 'd'"
+
+    def test_a_loop_of_hinges_is_refused_or_shares_its_reactions(self):
+        self.deck = self.write("deck.toml", spatial_four_bar())
+        for words in (("check", self.deck), ("run", self.deck, "--output", self.folder / "out")):
+            text = self.expect(BAD_INPUT, *words).stderr
+            self.assertIn(f"redundant constraints: {self.NAMES} fix the same motion more than once, 20 rows have rank "
+                          "17; ", text)
+            self.assertIn("make joint 'o' spherical and joint 'd' cylindrical", text)
+        said = f"20 rows of rank 17: {self.NAMES}"
+        self.assertIn(f"reactions shared: {said}\n", self.expect(DONE, "check", self.deck, *self.SHARE).stdout)
+        self.assertIn(said, self.run_deck(DONE, "whole", *self.SHARE).stdout)
+        self.assertEqual(self.record("whole")["run"]["redundancy"], said)
+
+    def test_a_restart_has_the_same_bits(self):
+        self.deck = self.write("deck.toml", spatial_four_bar())
+        words = (*self.SHARE, "--set", "output.checkpoint_interval=0.12")
+        self.run_deck(DONE, "whole", *words)
+        self.run_deck(DONE, "parts", *words, "--restart", self.folder / "whole/checkpoint.h5")
+        self.assertEqual(self.record("whole")["run"]["state_hash"], self.record("parts")["run"]["state_hash"])
+        whole, parts = ((self.folder / name / "history.csv").read_text().splitlines() for name in ("whole", "parts"))
+        self.assertLess(len(parts), len(whole) / 2)
+        self.assertEqual(parts[-1], whole[-1])
+
+    def test_a_word_that_is_no_choice_is_refused(self):
+        self.use()
+        text = self.expect(BAD_INPUT, "check", self.deck, "--set", "integrator.redundant=drop").stderr
+        self.assertIn('"error"', text)
+        self.assertIn('"share"', text)
 
 
 class OscillationTest(BodiesTest):

@@ -1,5 +1,6 @@
 #include "mbs/rank_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/catch.hpp"
@@ -21,6 +22,22 @@ TEST_CASE("a dependency names exactly the columns that take part") {
   CHECK(dependent_columns(4, 5, entries) == std::vector<int>{0, 2, 3});
   CHECK(dependent_columns(2, 2, {{0, 0, 1}}) == std::vector<int>{1});
   CHECK(dependent_columns(2, 2, {{0, 0, 1e9}, {0, 1, 1e-9}}) == std::vector<int>{0, 1});
+}
+
+TEST_CASE("all dependencies are found, as many as columns less the rank") {
+  // Columns 0 and 1; 2 = 3 + 4; 5 is zero; 6 = 2 - 3 = 4 again.
+  const std::vector<MatrixEntry> entries = {{0, 0, 1}, {0, 1, 2}, {1, 2, 1}, {2, 2, 1},
+                                            {1, 3, 1}, {2, 4, 1}, {2, 6, 3}, {3, 7, 1}};
+  const std::vector<std::vector<int>> found = column_dependencies(4, 8, entries);
+  REQUIRE(found.size() == 4);
+  std::vector<bool> takes_part(8, false);
+  for (const std::vector<int>& columns : found) {
+    CHECK(std::is_sorted(columns.begin(), columns.end()));
+    for (const int column : columns) takes_part[static_cast<std::size_t>(column)] = true;
+  }
+  CHECK(takes_part == std::vector<bool>{true, true, true, true, true, true, true, false});
+  CHECK(std::count(found.begin(), found.end(), std::vector<int>{5}) == 1);
+  CHECK(std::count(found.begin(), found.end(), std::vector<int>{0, 1}) == 1);
 }
 
 TEST_CASE("a long chain is checked in linear time") {

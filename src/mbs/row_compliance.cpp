@@ -1,0 +1,45 @@
+#include "mbs/row_compliance.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace scree {
+
+namespace {
+
+// The matrix' condition grows with 1/eps, the gap that the compliance leaves with eps: at 1e-9 multipliers
+// have seven digits, and rows of 1 m and 1 kg under a few N yield by 1e-15 m in a step of 1 ms.
+constexpr Real kShare = 1e-9;
+
+using Entries = std::vector<std::vector<std::size_t>>;  // of a SparseTerm, by row
+
+Entries entries_by_row(const SparseTerm& term, std::size_t rows) {
+  Entries entries(rows);
+  for (std::size_t i = 0; i < term.size(); ++i) entries[static_cast<std::size_t>(term.row(i))].push_back(i);
+  return entries;
+}
+
+}  // namespace
+
+RowCompliance::RowCompliance(const SparseTerm& jacobian, const SparseTerm& inverse_mass, int constraints)
+    : of_row_(static_cast<std::size_t>(constraints)) {
+  int coordinates = 0;
+  for (std::size_t i = 0; i < inverse_mass.size(); ++i)
+    coordinates = std::max(coordinates, inverse_mass.row(i) + 1);
+  const Entries of_constraint = entries_by_row(jacobian, of_row_.size()),
+                of_coordinate = entries_by_row(inverse_mass, static_cast<std::size_t>(coordinates));
+  for (std::size_t row = 0; row < of_constraint.size(); ++row)
+    for (const std::size_t one : of_constraint[row])
+      for (const std::size_t m : of_coordinate[static_cast<std::size_t>(jacobian.column(one))])
+        for (const std::size_t other : of_constraint[row])
+          if (jacobian.column(other) == inverse_mass.column(m))
+            products_.push_back({static_cast<int>(row), one, other, kShare * inverse_mass.value(m)});
+}
+
+void RowCompliance::update(const SparseTerm& jacobian) {
+  std::fill(of_row_.begin(), of_row_.end(), 0);
+  for (const Product& p : products_)
+    of_row_[static_cast<std::size_t>(p.row)] += p.weight * jacobian.value(p.one) * jacobian.value(p.other);
+}
+
+}  // namespace scree
