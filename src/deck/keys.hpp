@@ -130,6 +130,7 @@ const TableKeys& joint_keys();
 const TableKeys& driver_keys();
 const TableKeys& spring_damper_keys();
 const TableKeys& torsional_spring_damper_keys();
+const TableKeys& bushing_keys();
 const TableKeys& applied_force_keys();
 const TableKeys& motor_keys();
 const TableKeys& joint_spring_keys();

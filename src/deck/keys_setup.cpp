@@ -39,6 +39,7 @@ const TableKeys& deck_keys() {
        tables("drivers", driver_keys()),
        tables("spring_dampers", spring_damper_keys()),
        tables("torsional_spring_dampers", torsional_spring_damper_keys()),
+       tables("bushings", bushing_keys()),
        tables("applied_forces", applied_force_keys()),
        tables("motors", motor_keys()),
        tables("joint_springs", joint_spring_keys()),
@@ -373,6 +374,10 @@ const TableKeys& output_keys() {
            .about("Motors, springs and limits on joints whose coordinate, rate, effort and power are "
                   "recorded: the "
                   "first so many of the deck, in this order."),
+       integer("history_bushings")
+           .at_least(0)
+           .otherwise("100")
+           .about("Bushings whose deflection and load are recorded: the first so many of the deck."),
        integers("history_particles")
            .at_least(0)
            .otherwise("[]")

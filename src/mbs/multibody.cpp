@@ -271,6 +271,17 @@ std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& st
   return out;
 }
 
+std::vector<BushingSample> Multibody::bushings(const MultibodyState& state, Real t) const {
+  if (impl_->system.bushings().empty()) return {};
+  const BodyPoses poses = impl_->system.poses_at({t, state.position, state.velocity});
+  std::vector<BushingSample> out;
+  for (const BushingElement* bushing : impl_->system.bushings()) {
+    const BushingLoad load = bushing->load(poses);
+    out.push_back({bushing->name(), load.shift, load.turn, load.force, load.torque});
+  }
+  return out;
+}
+
 int Multibody::coordinates() const { return impl_->system.coordinates(); }
 int Multibody::constraints() const { return impl_->system.constraints(); }
 const std::string& Multibody::start_change() const { return impl_->start_change; }

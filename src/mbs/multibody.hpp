@@ -53,6 +53,13 @@ struct JointEffortSample {
   Real effort = 0, power = 0;     // [N m] or [N]; [W], above 0 where it is fed in
 };
 
+// At one instant, along the axes of the bushing's frame on the first body.
+struct BushingSample {
+  std::string name;
+  Vec3 shift, turn;    // of the second frame from the first: displacement [m], rotation vector [rad]
+  Vec3 force, torque;  // on the second body, about its point [N, N m]
+};
+
 class Multibody {
  public:
   // Throws InputError where joints do not meet, start velocities contradict the joints, or constraints are
@@ -97,6 +104,8 @@ class Multibody {
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
   // Of motors, springs and limits on joints, in this order.
   std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
+
+  std::vector<BushingSample> bushings(const MultibodyState& state, Real t) const;
 
   // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular
   // velocity of body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.

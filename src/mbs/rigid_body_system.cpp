@@ -26,6 +26,8 @@ Real characteristic_length(const Model& model) {
     for (const Joint& joint : model.joints) add_point(joint.body[i], joint.point[i]);
     for (const SpringDamper& element : model.spring_dampers) add_point(element.body[i], element.point[i]);
   }
+  for (const Bushing& element : model.bushings)
+    for (int i = 0; i < 2; ++i) add_point(element.body[i], element.point[i]);
   for (const AppliedForce& element : model.applied_forces) add_point(element.body, element.point);
   return radius > 0 ? radius : reach > 0 ? reach : 1;
 }
@@ -83,6 +85,11 @@ void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
                                                                     : make_force_element(e, layout_, end));
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers)
     elements_.push_back(make_force_element(e, layout_));
+  for (const Bushing& e : model.bushings) {
+    auto element = std::make_unique<BushingElement>(e, layout_);
+    bushings_.push_back(element.get());
+    elements_.push_back(std::move(element));
+  }
   for (const AppliedForce& e : model.applied_forces)
     elements_.push_back(is_spatial(model, e.body) ? make_spatial_element(e, layout_, end)
                                                   : make_force_element(e, layout_, end));

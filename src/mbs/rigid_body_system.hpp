@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mbs/bushing.hpp"
 #include "mbs/constraints.hpp"
 #include "mbs/force_elements.hpp"
 #include "mbs/joint_forces.hpp"
@@ -58,6 +59,8 @@ class RigidBodySystem final : public MechanicalSystem {
   JointForces& joint_forces() { return joint_forces_; }
   const JointForces& joint_forces() const { return joint_forces_; }
 
+  const std::vector<const BushingElement*>& bushings() const { return bushings_; }
+
   const std::vector<Body>& bodies() const { return bodies_; }
   const BodyLayout& layout() const { return layout_; }
   const std::vector<std::unique_ptr<RigidBodies>>& kinds() const { return kinds_; }
@@ -101,6 +104,7 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<int> group_;      // of every row
   std::vector<ConstraintGroup> groups_;
   std::vector<std::unique_ptr<ForceElement>> elements_;
+  std::vector<const BushingElement*> bushings_;  // of these
   JointForces joint_forces_;
   std::vector<Real> coordinate_scale_, constraint_scale_;
 };

@@ -86,6 +86,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
     build_bodies(root, model, names);
     build_joints(root, model, names);
     build_force_elements(root, model, names);
+    build_bushings(root, model, names);
     build_joint_forces(root, model, names);
     build_particles(root, model, names, size, share, log);
     build_contact(root, model, names);
@@ -198,6 +199,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.compression = static_cast<int>(table.integer("compression"));
   output.history_reactions = table.integer("history_reactions");
   output.history_efforts = table.integer("history_efforts");
+  output.history_bushings = table.integer("history_bushings");
   output.fields = table.texts("fields");
   for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
     const Real interval = table.real(key);

@@ -94,7 +94,7 @@ std::string multibody_lines(const Model& model) {
   for (const Body& body : model.bodies) shapes += std::ssize(body.shapes), bare += body.shapes.empty();
   const int coordinates = BodyLayout(model.bodies).columns(), constraints = constraint_count(model);
   const std::int64_t elements = std::ssize(model.spring_dampers) +
-                                std::ssize(model.torsional_spring_dampers) +
+                                std::ssize(model.torsional_spring_dampers) + std::ssize(model.bushings) +
                                 std::ssize(model.applied_forces) + std::ssize(model.motors) +
                                 std::ssize(model.joint_springs) + std::ssize(model.joint_limits);
   std::string lines =

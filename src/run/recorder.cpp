@@ -31,6 +31,14 @@ std::vector<JointEffortSample> efforts_of(const Model& model, const BodyLink& li
   return efforts;
 }
 
+std::vector<BushingSample> bushings_of(const Model& model, const BodyLink& link, const State& state) {
+  if (link.multibody() == nullptr || model.output.history_bushings == 0) return {};
+  std::vector<BushingSample> bushings = link.multibody()->bushings(state.bodies, state.clock.time);
+  const auto wanted = static_cast<std::size_t>(model.output.history_bushings);
+  if (bushings.size() > wanted) bushings.resize(wanted);
+  return bushings;
+}
+
 // Where the particles are that the deck wants traced: NaN of those that were removed. Complete on rank 0.
 std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Backend& backend) {
   const std::vector<GlobalId>& wanted = model.output.history_particles;
@@ -76,7 +84,8 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
                    const State& state)
     : model_(model), backend_(backend), link_(link) {
   link.ranks().on_root([&] {
-    columns_ = history_columns(model, reactions_of(model, link, state), efforts_of(model, link, state));
+    columns_ = history_columns(model, reactions_of(model, link, state), efforts_of(model, link, state),
+                               bushings_of(model, link, state));
     std::vector<HistoryColumn> heads;
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
@@ -110,6 +119,7 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   sample.bodies_outside = bodies_outside(model_, state.bodies).count;
   sample.reactions = reactions_of(model_, link_, state);
   sample.efforts = efforts_of(model_, link_, state);
+  sample.bushings = bushings_of(model_, link_, state);
   sample.contacts = target_contacts(model_, link_, state, backend_);
   if (link_.multibody() != nullptr && !model_.output.history_bodies.empty())
     sample.bodies = link_.multibody()->motion(state.bodies);
