@@ -135,6 +135,7 @@ const TableKeys& applied_force_keys();
 const TableKeys& motor_keys();
 const TableKeys& joint_spring_keys();
 const TableKeys& joint_limit_keys();
+const TableKeys& joint_friction_keys();
 const TableKeys& coupler_keys();
 const TableKeys& particle_keys();
 const TableKeys& time_function_keys();

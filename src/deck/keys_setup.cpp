@@ -44,6 +44,7 @@ const TableKeys& deck_keys() {
        tables("motors", motor_keys()),
        tables("joint_springs", joint_spring_keys()),
        tables("joint_limits", joint_limit_keys()),
+       tables("joint_frictions", joint_friction_keys()),
        tables("couplers", coupler_keys()),
        tables("particles", particle_keys())},
       ""};
@@ -371,9 +372,10 @@ const TableKeys& output_keys() {
        integer("history_efforts")
            .at_least(0)
            .otherwise("100")
-           .about("Motors, springs and limits on joints whose coordinate, rate, effort and power are "
-                  "recorded: the "
-                  "first so many of the deck, in this order."),
+           .about(
+               "Motors, springs, limits and friction on joints whose coordinate, rate, effort and power are "
+               "recorded: the "
+               "first so many of the deck, in this order."),
        integer("history_bushings")
            .at_least(0)
            .otherwise("100")

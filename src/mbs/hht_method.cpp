@@ -14,7 +14,7 @@ KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, Syst
   const std::vector<Real> still(count(system.coordinates()), 0), multipliers(count(system.constraints()), 0);
   terms.applied_force.assign(count(system.coordinates()), 0);
   terms.constraint.assign(count(system.constraints()), 0);
-  system.evaluate(at, terms);
+  system.evaluate({at.time, at.position, at.velocity, &multipliers}, terms);
   system.differentiate(at, {still, still, multipliers}, derivatives);
   return KktMatrix(terms, derivatives, system.coordinates(), system.constraints());
 }
@@ -56,7 +56,7 @@ void HhtMethod::update_motion() {
 }
 
 void HhtMethod::evaluate_residual() {
-  system_.evaluate({end_time(), position_, velocity_}, terms_);
+  system_.evaluate({end_time(), position_, velocity_, &multipliers_}, terms_);
   std::fill(inertia_force_.begin(), inertia_force_.end(), 0);
   std::fill(constraint_force_.begin(), constraint_force_.end(), 0);
   terms_.mass.multiply(1, acceleration_, inertia_force_);
@@ -76,8 +76,8 @@ void HhtMethod::newton_matrix(std::span<Real> values) {
   system_.differentiate({end_time(), position_, velocity_}, {displacement_, acceleration_, multipliers_},
                         derivatives_);
   const Real scale = hht_inertia_weight(coefficients_);
-  const KktWeights weights{scale, position_gain(), newmark_velocity_gain(coefficients_, step_),
-                           position_gain() * scale, scale};
+  const KktWeights weights{
+      scale, position_gain(), newmark_velocity_gain(coefficients_, step_), position_gain() * scale, scale, 1};
   kkt_.assemble(terms_, derivatives_, weights, values);
 }
 

@@ -33,6 +33,7 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system) {
   state.position.resize(static_cast<std::size_t>(system.positions()));
   state.velocity.resize(static_cast<std::size_t>(system.coordinates()));
   for (const auto& kind : system.kinds()) kind->start(state.position, state.velocity);
+  state.multipliers.assign(static_cast<std::size_t>(system.constraints()), 0);
   check_start(model, system, state.position, state.velocity);
   return state;
 }
@@ -55,10 +56,11 @@ struct Multibody::Impl {
 
   void settle_velocities(const Model& model);
   void open_step(const MultibodyState& state, Real t, Real h) {
-    const SystemInstant at{t, state.position, state.velocity};
+    const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
     if (!system.joint_forces().empty())
       system.joint_forces().open_step(system.poses_at(at), at, h, state.memory);
   }
+  void solve_acceleration(MultibodyState& state, Real t);
   MultibodyState state_after(const MultibodyState& state, Real tau) const;
   MultibodyState corrected_start(const MultibodyState& state, Real h);
   void predict(const MultibodyState& state, Real t, Real h) {
@@ -85,6 +87,15 @@ struct Multibody::Impl {
   MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;       // of the open step's start [s]
 };
+
+// Efforts that the reactions load: by those found without them.
+void Multibody::Impl::solve_acceleration(MultibodyState& state, Real t) {
+  open_step(state, t, 0);
+  newton.solve_acceleration(state, t);
+  if (!system.joint_forces().are_loaded()) return;
+  open_step(state, t, 0);
+  newton.solve_acceleration(state, t);
+}
 
 void Multibody::Impl::settle_velocities(const Model& model) {
   if (system.constraints() == 0) return;
@@ -144,16 +155,14 @@ Multibody::~Multibody() = default;
 MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   MultibodyState state = impl_->start;
   impl_->system.set_contacts({wrench, {}});
-  impl_->open_step(state, 0, 0);
-  impl_->newton.solve_acceleration(state, 0);
+  impl_->solve_acceleration(state, 0);
   return state;
 }
 
 void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench) {
   impl_->system.set_contacts({wrench, {}});
-  impl_->open_step(state, t, 0);
   check_joints_hold(impl_->system, state.position, state.velocity, t);
-  impl_->newton.solve_acceleration(state, t);
+  impl_->solve_acceleration(state, t);
 }
 
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
@@ -260,7 +269,7 @@ std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) 
 std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& state, Real t) const {
   const JointForces& forces = impl_->system.joint_forces();
   if (forces.empty()) return {};
-  const SystemInstant at{t, state.position, state.velocity};
+  const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
   const auto samples = forces.samples(impl_->system.poses_at(at), at, state.memory);
   std::vector<JointEffortSample> out;
   for (std::size_t i = 0; i < samples.size(); ++i) {

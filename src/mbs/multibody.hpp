@@ -21,7 +21,7 @@ struct MultibodyState {
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
   std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body
-  std::vector<Real> memory;        // of the motors that have one, in their order (mbs/joint_laws.hpp)
+  std::vector<Real> memory;        // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
   Real dissipated = 0;             // in force elements since t = 0 [J]
   Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
   Real driver_work = 0;            // done by drivers, actuators and applied forces since t = 0 [J]
@@ -45,7 +45,7 @@ struct Reaction {
   BodyKind kind = BodyKind::planar;
 };
 
-// A motor, spring or limit on a joint at one instant.
+// A motor, spring, limit or friction on a joint at one instant.
 struct JointEffortSample {
   std::string name;
   bool is_angle = false;
@@ -102,7 +102,7 @@ class Multibody {
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
-  // Of motors, springs and limits on joints, in this order.
+  // Of motors, springs, limits and friction on joints, in this order.
   std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
 
   std::vector<BushingSample> bushings(const MultibodyState& state, Real t) const;

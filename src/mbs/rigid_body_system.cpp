@@ -97,9 +97,19 @@ void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
     constant_force_scale_ =
         std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
   }
-  joint_forces_ = JointForces(model, layout_, start);
+  joint_forces_ = JointForces(model, layout_, start, load_rows(model));
   constant_force_scale_ =
       std::max(constant_force_scale_, kElasticFloor * joint_forces_.elastic_scale(length_scale_));
+}
+
+// Of the rows of a joint those of lengths are displacements along perpendicular axes, or points that
+// coincide: their multipliers are forces.
+std::vector<std::vector<int>> RigidBodySystem::load_rows(const Model& model) const {
+  std::vector<std::vector<int>> rows(model.joints.size());
+  for (std::size_t j = 0; j < rows.size(); ++j)
+    for (int row = groups_[j].first_row; row < groups_[j].end_row; ++row)
+      if (!is_angle(row)) rows[j].push_back(row);
+  return rows;
 }
 
 void RigidBodySystem::add_group(const std::string& title, const std::string& name,
@@ -159,11 +169,13 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
   derivatives.stiffness.begin();
   derivatives.damping.begin();
   derivatives.tangent_inertia.begin();
+  derivatives.reaction.begin();
   for (const auto& kind : kinds_) kind->set_tangents(iterate.displacement, poses_);
   for (const auto& element : elements_) {
     element->add_derivatives(poses_, at.time, derivatives.stiffness, derivatives.damping);
   }
-  joint_forces_.add_derivatives(poses_, at, derivatives);
+  joint_forces_.add_derivatives(poses_, {at.time, at.position, at.velocity, &iterate.multipliers},
+                                derivatives);
   for (const auto& kind : kinds_) {
     kind->add_inertial_derivatives(poses_, derivatives);
     kind->add_contact_derivatives(poses_, wrench_, derivatives);
@@ -227,11 +239,11 @@ Powers RigidBodySystem::powers(const SystemInstant& at, const std::vector<Real>&
   return powers;
 }
 
-Real RigidBodySystem::elastic_energy(const SystemInstant& at) const {
+Real RigidBodySystem::elastic_energy(const SystemInstant& at, const std::vector<Real>& memory) const {
   const BodyPoses poses = poses_at(at);
   Real energy = 0;
   for (const auto& element : elements_) energy += element->elastic_energy(poses);
-  return energy + joint_forces_.elastic_energy(poses, at.time);
+  return energy + joint_forces_.elastic_energy(poses, at.time, memory);
 }
 
 std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(

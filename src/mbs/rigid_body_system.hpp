@@ -74,7 +74,8 @@ class RigidBodySystem final : public MechanicalSystem {
   // At any instant, from scratch.
   BodyPoses poses_at(const SystemInstant& at) const;
   Powers powers(const SystemInstant& at, const std::vector<Real>& multipliers);
-  Real elastic_energy(const SystemInstant& at) const;
+  // memory: as in the state.
+  Real elastic_energy(const SystemInstant& at, const std::vector<Real>& memory) const;
   // Force [N] on body 2 of the group at its joint point and torque about that point [N m].
   struct GroupReaction {
     Vec3 force, torque;
@@ -86,6 +87,8 @@ class RigidBodySystem final : public MechanicalSystem {
   // start: at t = 0.
   void add_constraints(const Model& model, const BodyPoses& start);
   void add_elements(const Model& model, const BodyPoses& start);
+  // Of every joint.
+  std::vector<std::vector<int>> load_rows(const Model& model) const;
   void add_group(const std::string& title, const std::string& name,
                  std::vector<std::unique_ptr<Constraint>> parts, BodyKind kind);
 

@@ -217,7 +217,8 @@ int constraint_count(const Model& model) {
 }
 
 int memory_count(const Model& model) {
-  return static_cast<int>(std::ranges::count(model.motors, MotorKind::speed, &Motor::kind));
+  return static_cast<int>(std::ranges::count(model.motors, MotorKind::speed, &Motor::kind) +
+                          std::ssize(model.joint_frictions));
 }
 
 std::vector<std::pair<int, int>> connected_bodies(const Model& model) {

@@ -59,7 +59,7 @@ ModelSize bodies_and_links(const DeckTable& deck) {
   }
   for (const char* key : {"drivers", "applied_forces", "couplers"})
     size.links += std::ssize(deck.tables(key));
-  for (const char* key : {"motors", "joint_springs", "joint_limits"})
+  for (const char* key : {"motors", "joint_springs", "joint_limits", "joint_frictions"})
     for (const DeckTable& table : deck.tables(key))
       size.links += std::max<std::int64_t>(1, joints[table.text("joint")]);
   return size;
@@ -70,7 +70,8 @@ ModelSize size_of(const Model& model) {
           std::ssize(model.joints) + std::ssize(model.drivers) + std::ssize(model.spring_dampers) +
               std::ssize(model.torsional_spring_dampers) + std::ssize(model.bushings) +
               std::ssize(model.applied_forces) + std::ssize(model.motors) + std::ssize(model.joint_springs) +
-              std::ssize(model.joint_limits) + std::ssize(model.couplers)};
+              std::ssize(model.joint_limits) + std::ssize(model.joint_frictions) +
+              std::ssize(model.couplers)};
 }
 
 Real bytes_to_build_bodies(const ModelSize& size, int rank) {

@@ -104,7 +104,7 @@ struct Output {
   bool history_csv = false;
   int compression = 0;                   // of particles in snapshots and checkpoints: 0, or deflate's level
   std::int64_t history_reactions = 100;  // joints and drivers, the first so many
-  std::int64_t history_efforts = 100;    // motors, springs and limits on joints, the first so many
+  std::int64_t history_efforts = 100;    // motors and all else on joints, the first so many
   std::int64_t history_bushings = 100;   // the first so many
   std::vector<std::string> fields;       // of particles in snapshots: names in dem/output_fields.hpp
   std::vector<int> history_bodies;       // indices into Model::bodies
@@ -141,6 +141,7 @@ struct Model {
   std::vector<Motor> motors;
   std::vector<JointSpring> joint_springs;
   std::vector<JointLimit> joint_limits;
+  std::vector<JointFriction> joint_frictions;
   std::vector<Coupler> couplers;
   TimeControl time;
   Integrator integrator;
