@@ -25,7 +25,7 @@ struct HistorySample {
   RubbingLosses losses{};                     // parts of ledger.dissipated_contacts [J]
   std::int64_t left = 0, bodies_outside = 0;  // particles, bodies
   std::vector<Reaction> reactions;            // of the joints and drivers that are recorded
-  std::vector<JointEffortSample> efforts;     // of the motors, springs and limits that are recorded
+  std::vector<JointEffortSample> efforts;     // of all on joints that is recorded
   std::vector<BushingSample> bushings;        // those that are recorded
   std::vector<ContactSum> contacts;           // per entry of Output::history_contacts
   std::vector<BodyMotion> bodies;             // all of them, where some are recorded

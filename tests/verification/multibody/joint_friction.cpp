@@ -182,3 +182,115 @@ TEST_CASE("faster than the Stribeck rate friction falls from its value at rest")
   CHECK(torn.state.velocity[2] > 2.5);
   CHECK(near(effort_of(torn), -0.02, {.relative = 1e-9}));
 }
+
+namespace {
+
+// On a pin at one end, let go level; the load of the pin changes all the time.
+Model rubbing_pendulum(Real alpha) {
+  Model model = empty_model();
+  model.integrator.hht_alpha = alpha;
+  model.bodies = {paper_disc("bob", 0.5, 0)};
+  model.joints = {ground_pin("pin", 0, {}, {-0.5, 0, 0})};
+  model.joint_frictions = {friction_of(0.2, kMu * 0.05, 40)};
+  return model;
+}
+
+// Crank and slider; both pins, the wrist and the guide rub.
+Model rubbing_crank() {
+  Model model = empty_model();
+  model.integrator.hht_alpha = -0.1;
+  const Real crank = 0.2, rod = 0.5, angle = 0.7;
+  const Real knee_x = crank * std::cos(angle), knee_y = crank * std::sin(angle);
+  const Real slider = knee_x + std::sqrt(rod * rod - knee_y * knee_y);
+  model.bodies = {paper_disc("crank", knee_x / 2, knee_y / 2),
+                  paper_disc("rod", (knee_x + slider) / 2, knee_y / 2), paper_disc("slider", slider, 0)};
+  model.bodies[0].angle = angle, model.bodies[1].angle = -std::asin(knee_y / rod);
+  model.bodies[0].angular_velocity = 12;
+  model.consistent_velocities = true;
+  model.joints = {ground_pin("shaft", 0, {}, {-crank / 2, 0, 0})};
+  const auto add = [&](const char* name, int first, int second, Vec3 on_first, Vec3 on_second) {
+    Joint joint = ground_pin(name, second, on_first, on_second);
+    joint.body[0] = first;
+    model.joints.push_back(joint);
+  };
+  add("knee", 0, 1, {crank / 2, 0, 0}, {-rod / 2, 0, 0});
+  add("wrist", 1, 2, {rod / 2, 0, 0}, {});
+  add("guide", kGround, 2, {}, {});
+  model.joints.back().kind = JointKind::translational;
+  for (int j = 0; j < 4; ++j) {
+    model.joint_frictions.push_back(friction_of(0.02, j < 3 ? 0.1 * 0.02 : 0.1, j < 3 ? 5 : 2000, 0));
+    model.joint_frictions.back().name = "friction." + std::to_string(j);
+    model.joint_frictions.back().joint = j;
+  }
+  return model;
+}
+
+struct Outcome {
+  std::vector<Real> position, velocity;
+  Real gap = 0, dissipated = 0;
+  int iterations = 0;
+};
+
+Outcome outcome_of(const Model& model, Real h, Real end) {
+  MultibodyRun run(model, 1e-11);
+  Outcome out;
+  const Real start = energy(run);
+  Real before = 0;
+  for (int i = 0; i < static_cast<int>(std::lround(end / h)); ++i) {
+    run.step(h);
+    out.gap = std::max(out.gap, std::abs(energy(run) - start));
+    REQUIRE(run.state.dissipated >= before - 1e-12);
+    before = run.state.dissipated;
+  }
+  out.position = run.state.position, out.velocity = run.state.velocity;
+  out.dissipated = run.state.dissipated, out.iterations = run.iterations;
+  return out;
+}
+
+Real apart(const std::vector<Real>& a, const std::vector<Real>& b) {
+  Real largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("under a load that changes friction is of second order, in a slide and where it turns back") {
+  for (const Real end : {0.3, 1.2}) {  // in the first swing; after two turns
+    INFO("until " << end);
+    const Outcome exact = outcome_of(rubbing_pendulum(-0.1), 5e-5, end),
+                  coarse = outcome_of(rubbing_pendulum(-0.1), 4e-3, end),
+                  fine = outcome_of(rubbing_pendulum(-0.1), 5e-4, end);
+    CHECK(apart(coarse.position, exact.position) < 1e-3);
+    CHECK(apart(coarse.position, exact.position) / apart(fine.position, exact.position) > 50);
+    CHECK(apart(coarse.velocity, exact.velocity) / apart(fine.velocity, exact.velocity) > 50);
+    CHECK((coarse.dissipated - exact.dissipated) / (fine.dissipated - exact.dissipated) > 50);
+    CHECK(fine.gap < 1e-7 * fine.dissipated);
+    CHECK(fine.iterations < 4 * static_cast<int>(end / 5e-4));
+  }
+}
+
+TEST_CASE("a crank whose joints all rub is of second order and keeps its books") {
+  const Outcome exact = outcome_of(rubbing_crank(), 1e-4, 1), coarse = outcome_of(rubbing_crank(), 4e-3, 1),
+                fine = outcome_of(rubbing_crank(), 1e-3, 1);
+  CHECK(apart(coarse.position, exact.position) < 2e-3);
+  CHECK(apart(coarse.position, exact.position) / apart(fine.position, exact.position) > 12);
+  CHECK(fine.dissipated > 1.5);
+  CHECK(coarse.gap < 1e-5 * coarse.dissipated);
+  CHECK(coarse.gap / fine.gap > 8);
+}
+
+TEST_CASE("a rejected step leaves no trace in friction") {
+  const Model model = rubbing_pendulum(-0.1);
+  MultibodyRun straight(model), tried(model);
+  const ContactWrenches none{std::vector<BodyWrench>(1), {}};
+  for (int i = 0; i < 200; ++i) {
+    tried.multibody.predict(tried.state, tried.time, 0.03);
+    for (int k = 0; k < 3; ++k) tried.multibody.correct(none);
+    straight.step(2e-3), tried.step(2e-3);
+  }
+  CHECK(straight.state.position == tried.state.position);
+  CHECK(straight.state.velocity == tried.state.velocity);
+  CHECK(straight.state.memory == tried.state.memory);
+  CHECK(straight.state.dissipated == tried.state.dissipated);
+}
