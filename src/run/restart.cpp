@@ -51,6 +51,7 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "joints.*.each",
                                                "drivers.*.joint",
                                                "motors.*.type",
+                                               "joint_frictions.*.joint",
                                                "couplers.*.type",
                                                "couplers.*.joints",
                                                "particles.*.kind",
