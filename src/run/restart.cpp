@@ -41,6 +41,7 @@ bool must_stay(const DeckDifference& difference, bool periodic) {
                                                "joints",
                                                "drivers",
                                                "motors",
+                                               "joint_frictions",
                                                "couplers",
                                                "particles",
                                                "space.dimension",
