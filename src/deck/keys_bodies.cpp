@@ -228,6 +228,34 @@ const TableKeys& torsional_spring_damper_keys() {
   return keys;
 }
 
+const TableKeys& bushing_keys() {
+  static const TableKeys keys = with_connection(
+      "Bushings between spatial bodies, or one and the ground: K x + C x' + preload pulls the second body's "
+      "frame back onto the first one's. x: the displacement of the second point along the first frame's "
+      "axes, then the rotation vector from the first frame to the second, for turns of up to 2.6 rad.",
+      {vector("point", "m")
+           .left_out("local_points is given")
+           .about("The bushing's point at t = 0 in the global frame."),
+       local_points(),
+       vector("axis", "")
+           .left_out("the frame's axes are the global ones at t = 0")
+           .about("z axis of the bushing's frame at t = 0 in the global frame, of any length but 0."),
+       vector("second_axis", "")
+           .left_out("axis is left out, too")
+           .about("Its x axis, likewise, perpendicular to axis."),
+       reals("stiffness", "N/m, N m/rad")
+           .required()
+           .about("K: its diagonal, six numbers, or all of it row by row, 36 numbers [N/m, N/rad; N m/m, N "
+                  "m/rad]; symmetric, and no deflection may have an energy below 0."),
+       reals("damping", "N s/m, N m s/rad").left_out("zero").about("C, likewise."),
+       reals("preload", "N, N m")
+           .entries(6)
+           .left_out("zero")
+           .about("What the bushing carries without deflection: above 0 it pulls the second body back along "
+                  "the axis.")});
+  return keys;
+}
+
 const TableKeys& applied_force_keys() {
   static const TableKeys keys{
       "Forces and torques on a body as functions of time.",

@@ -1,4 +1,4 @@
-// Keys of motors, springs and limits on joints, and of couplers.
+// Keys of motors, springs, limits and friction on joints, and of couplers.
 #include "deck/choices.hpp"
 #include "deck/keys.hpp"
 
@@ -94,6 +94,43 @@ const TableKeys& joint_limit_keys() {
        real("stiffness", "N m/rad^n or N/m^n").above(0).required().about("K."),
        real("damping", "N m s/rad or N s/m").at_least(0).otherwise("0.0").about("C."),
        real("exponent", "").at_least(1).otherwise("1.0").about("n.")},
+      ""};
+  return keys;
+}
+
+const TableKeys& joint_friction_keys() {
+  static const TableKeys keys{
+      "Dry friction of joints: they stick on a spring up to the effort T_max = s (effort + "
+      "friction_coefficient radius F), F the force that the joint transmits, and slide with it; s = 1 + "
+      "(static_ratio - 1) exp(-(c'/stribeck_rate)^2).",
+      {name_key().required().about("Name for messages and results."), joint_key(), coordinate_key(),
+       real("effort", "N m or N").at_least(0).otherwise("0.0").about("Friction without load."),
+       real("friction_coefficient", "")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Of the surfaces that the joint's force F presses together; in a translational joint F is "
+                  "the force across the axis."),
+       real("radius", "m")
+           .above(0)
+           .left_out("there is no friction_coefficient, or the coordinate is a displacement: 1 in its place")
+           .about("Of the pin, or of a screw's thread: where an angle rubs."),
+       real("stiffness", "N m/rad or N/m")
+           .above(0)
+           .required()
+           .about("Of the spring on which the joint sticks: it gives way by T_max / stiffness before it "
+                  "slides."),
+       real("damping", "N m s/rad or N s/m")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Of a dashpot beside this spring."),
+       real("static_ratio", "")
+           .at_least(1)
+           .otherwise("1.0")
+           .about("T_max at rest over that of a fast slide."),
+       real("stribeck_rate", "rad/s or m/s")
+           .above(0)
+           .left_out("static_ratio is 1")
+           .about("c' at which the excess of T_max at rest has fallen to 37 %.")},
       ""};
   return keys;
 }

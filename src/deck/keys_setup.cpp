@@ -40,10 +40,12 @@ const TableKeys& deck_keys() {
        tables("drivers", driver_keys()),
        tables("spring_dampers", spring_damper_keys()),
        tables("torsional_spring_dampers", torsional_spring_damper_keys()),
+       tables("bushings", bushing_keys()),
        tables("applied_forces", applied_force_keys()),
        tables("motors", motor_keys()),
        tables("joint_springs", joint_spring_keys()),
        tables("joint_limits", joint_limit_keys()),
+       tables("joint_frictions", joint_friction_keys()),
        tables("couplers", coupler_keys()),
        tables("particles", particle_keys())},
       ""};
@@ -377,14 +379,18 @@ const TableKeys& output_keys() {
        integer("history_efforts")
            .at_least(0)
            .otherwise("100")
-           .about("Motors, springs and limits on joints whose coordinate, rate, effort and power are "
-                  "recorded: the "
-                  "first so many of the deck, in this order."),
+           .about(
+               "Motors, springs, limits and friction on joints whose coordinate, rate, effort and power are "
+               "recorded: the first so many of the deck, in this order."),
        integer("history_coordinates")
            .at_least(0)
            .otherwise("0")
            .about("Joints whose coordinates and their rates are recorded: the first so many of the deck that "
                   "have coordinates (angle, displacement, length), with or without an effort on them."),
+       integer("history_bushings")
+           .at_least(0)
+           .otherwise("100")
+           .about("Bushings whose deflection and load are recorded: the first so many of the deck."),
        integers("history_particles")
            .at_least(0)
            .otherwise("[]")

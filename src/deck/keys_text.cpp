@@ -23,7 +23,7 @@ constexpr const char* kLeftOut =
     "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
     "universal and all the other usual joints (`input/README.md`), of which universal ones have no driver, "
     "motor or spring. Joints have motors, "
-    "springs and stops, but no play and no friction. All particles are there at the start: none flow in, "
+    "springs, stops and dry friction, but no play. All particles are there at the start: none flow in, "
     "bond or break. There is no fluid and no heat.";
 
 // Appends the words of `text` in lines of kWidth, each line indented.

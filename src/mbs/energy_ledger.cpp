@@ -17,7 +17,7 @@ void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Rea
 MultibodyEnergies stored_energies(const RigidBodySystem& system, const MultibodyState& state, Real t) {
   MultibodyEnergies energies;
   for (const auto& kind : system.kinds()) kind->add_energies(state, energies);
-  energies.elastic = system.elastic_energy({t, state.position, state.velocity});
+  energies.elastic = system.elastic_energy({t, state.position, state.velocity}, state.memory);
   return energies;
 }
 

@@ -14,7 +14,7 @@ KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, Syst
   const std::vector<Real> still(count(system.coordinates()), 0), multipliers(count(system.constraints()), 0);
   terms.applied_force.assign(count(system.coordinates()), 0);
   terms.constraint.assign(count(system.constraints()), 0);
-  system.evaluate(at, terms);
+  system.evaluate({at.time, at.position, at.velocity, &multipliers}, terms);
   system.differentiate(at, {still, still, multipliers}, derivatives);
   // Systems without rotations in space keep the order of elimination that they have always had, and their
   // bits.
@@ -63,7 +63,7 @@ void HhtMethod::update_motion() {
 }
 
 void HhtMethod::evaluate_residual() {
-  system_.evaluate({end_time(), position_, velocity_}, terms_);
+  system_.evaluate({end_time(), position_, velocity_, &multipliers_}, terms_);
   if (opened_) compliance_.update(terms_.constraint_jacobian);
   opened_ = false;
   std::fill(inertia_force_.begin(), inertia_force_.end(), 0);
@@ -85,8 +85,8 @@ void HhtMethod::newton_matrix(std::span<Real> values) {
   system_.differentiate({end_time(), position_, velocity_}, {displacement_, acceleration_, multipliers_},
                         derivatives_);
   const Real scale = hht_inertia_weight(coefficients_);
-  const KktWeights weights{scale, position_gain(), newmark_velocity_gain(coefficients_, step_),
-                           position_gain() * scale, scale};
+  const KktWeights weights{
+      scale, position_gain(), newmark_velocity_gain(coefficients_, step_), position_gain() * scale, scale, 1};
   kkt_.assemble(terms_, derivatives_, weights, compliance(), values);
 }
 

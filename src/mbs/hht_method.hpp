@@ -41,6 +41,7 @@ class HhtMethod {
   // Eqs. 14, 15 at the iterate of the last evaluate_residual(). values: [entries of pattern()]. The unknown
   // is the change of the pose over beta h^2, so that Phi_q and its transpose stand as they are:
   //   A = (M / (1 + alpha) - h gamma Q_v) T^-1 + beta h^2 ((M a)_q / (1 + alpha) + (Phi_q^T lambda - Q)_q)
+  // and -Q_lambda stands beside Phi_q^T.
   void newton_matrix(std::span<Real> values);
   // Subtracts `delta`, the Newton matrix' solution for residual(), from (a, lambda), T^-1 times in a, and
   // updates q, v.

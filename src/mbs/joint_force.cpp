@@ -21,15 +21,28 @@ JointForce::JointForce(std::string name, std::unique_ptr<Constraint> coordinate,
                        std::unique_ptr<JointLaw> law)
     : name_(std::move(name)), coordinate_(std::move(coordinate)), law_(std::move(law)) {}
 
+Real JointForce::load_of(const SystemInstant& at) const {
+  if (at.multipliers == nullptr) return last_.load;
+  Real square = 0;
+  for (const int row : load_rows_) {
+    const Real lambda = (*at.multipliers)[scree::at(row)];
+    square += lambda * lambda;
+  }
+  return std::sqrt(square);
+}
+
 void JointForce::open_step(const BodyPoses& poses, const SystemInstant& at, Real h, Real memory) {
   step_ = {coordinate_at(*coordinate_, poses, at, gradient_), memory, h};
+  step_.start.load = last_.load = load_of(at);
   start_effort_ = law_->effort(step_.start, memory).effort;
   in_step_ = h > 0;
 }
 
 Real JointForce::add_force(const BodyPoses& poses, const SystemInstant& at, Real length,
                            std::vector<Real>& force) {
+  const Real load = load_of(at);
   last_ = coordinate_at(*coordinate_, poses, at, gradient_);
+  last_.load = load;
   effort_ = in_step_ ? law_->step_effort(step_, last_) : law_->effort(last_, memory());
   for (std::size_t i = 0; i < gradient_.size(); ++i)
     force[scree::at(gradient_.column(i))] += effort_.effort * gradient_.value(i);
@@ -62,8 +75,9 @@ void JointForce::pull_back(const BodyPoses& poses) {
   }
 }
 
-void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at, SparseTerm& stiffness,
-                                 SparseTerm& damping) {
+void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at,
+                                 SystemDerivatives& derivatives) {
+  SparseTerm &stiffness = derivatives.stiffness, &damping = derivatives.damping;
   const Real one = 1;
   hessian_.begin();
   coordinate_->hessian(poses, &one, hessian_);
@@ -81,23 +95,32 @@ void JointForce::add_derivatives(const BodyPoses& poses, const SystemInstant& at
   damping.add_block(coordinates_, [&](std::size_t i, std::size_t j) {
     return -effort_.by_rate * along_[i] * displaced_[j];
   });
+  // Where F is 0 it has no gradient: 0 is one of those between which it jumps.
+  const Real inverse = last_.load > 0 ? 1 / last_.load : 0;
+  for (const int row : load_rows_) {
+    const Real part = -effort_.by_load * inverse * (*at.multipliers)[scree::at(row)];
+    for (std::size_t i = 0; i < coordinates_.size(); ++i)
+      derivatives.reaction.add(row, coordinates_[i], part * along_[i]);
+  }
 }
 
 JointWork JointForce::work() const {
   const Real done = (start_effort_ + effort_.effort) / 2 * (last_.value - step_.start.value);
   if (law_->drives()) return {0, done};
-  return {-done - (law_->energy(last_.value) - law_->energy(step_.start.value)), 0};
+  const Real stored = law_->energy(last_.value, memory()) - law_->energy(step_.start.value, step_.memory);
+  return {-done - stored, 0};
 }
 
-Real JointForce::elastic_energy(const BodyPoses& poses, Real t) const {
+Real JointForce::elastic_energy(const BodyPoses& poses, Real t, Real memory) const {
   Real c = 0;
   coordinate_->value(poses, t, &c);
-  return law_->energy(c);
+  return law_->energy(c, memory);
 }
 
 JointForce::Sample JointForce::sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const {
   SparseTerm gradient;
-  const CoordinateInstant instant = coordinate_at(*coordinate_, poses, at, gradient);
+  CoordinateInstant instant = coordinate_at(*coordinate_, poses, at, gradient);
+  instant.load = load_of(at);
   return {instant, law_->effort(instant, memory).effort};
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mbs/constraints.hpp"
@@ -20,6 +21,7 @@ struct JointWork {
 //   Q     = T(c, c', t) g,  c' = g.v
 //   -Q_q  = -(T_c g g^T + T_c' g (H^T v)^T + T H)
 //   -Q_v T^-1 = -T_c' g (T^-T g)^T, T^-1 as of MechanicalSystem
+//   -Q_lambda = -T_F g (lambda / F)^T, F = |lambda| of the rows that load the law
 class JointForce {
  public:
   // coordinate: a constraint of one row with f = 0, whose C is c.
@@ -28,30 +30,34 @@ class JointForce {
   // A body of the joint whose rotation has three columns, from this one on.
   void turns_in_space(int body, int column) { rotations_.push_back({body, column}); }
 
+  // The rows of Phi whose multipliers are, along perpendicular axes, the force that the joint transmits.
+  void is_loaded_by(std::vector<int> rows) { load_rows_ = std::move(rows); }
+
   const std::string& name() const { return name_; }
   bool is_angle() const { return coordinate_->is_angle(); }
   bool remembers() const { return law_->remembers(); }
   bool resolves_events() const { return law_->resolves_events(); }
+  bool is_loaded() const { return law_->is_loaded(); }
 
-  // The instant from which a step of length h begins, and what the law remembers there; h = 0: forces at
-  // instants alone, until the next step.
+  // The instant from which a step of length h begins, with its multipliers, and what the law remembers there;
+  // h = 0: forces at instants alone, until the next step. Where an instant has no multipliers, the load is
+  // that of the last one that had some.
   void open_step(const BodyPoses& poses, const SystemInstant& at, Real h, Real memory);
   // As they are at the instant of an evaluation, no longer for the step.
   void end_step() { in_step_ = false; }
 
   // Adds to Q [coordinates]. Returns the size of what it added [J]: a force times `length` [m], or a torque.
   Real add_force(const BodyPoses& poses, const SystemInstant& at, Real length, std::vector<Real>& force);
-  // Adds -Q_q and -Q_v T^-1 [coordinates, coordinates], at the instant of the last add_force().
-  void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SparseTerm& stiffness,
-                       SparseTerm& damping);
+  // Adds -Q_q, -Q_v T^-1 and -Q_lambda, at the instant of the last add_force().
+  void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SystemDerivatives& derivatives);
   // From the opening of the step to the last add_force(), trapezoidal over the coordinate.
   JointWork work() const;
   // To remember at the end of the step, which is the instant of the last add_force().
   Real memory() const { return law_->memory_after(step_, last_); }
 
-  Real elastic_energy(const BodyPoses& poses, Real t) const;
+  Real elastic_energy(const BodyPoses& poses, Real t, Real memory) const;
   Real elastic_scale(Real length) const { return law_->stiffness() * (is_angle() ? 1 : length * length); }
-  // At any instant; memory: as the state's there.
+  // At any instant, with its multipliers; memory: as the state's there.
   struct Sample {
     CoordinateInstant at;
     Real effort = 0;
@@ -59,6 +65,7 @@ class JointForce {
   Sample sample(const BodyPoses& poses, const SystemInstant& at, Real memory) const;
 
  private:
+  Real load_of(const SystemInstant& at) const;
   void find_coordinates();
   std::size_t place(int coordinate) const;
   void pull_back(const BodyPoses& poses);
@@ -71,6 +78,7 @@ class JointForce {
   std::unique_ptr<Constraint> coordinate_;
   std::unique_ptr<JointLaw> law_;
   std::vector<RotationColumns> rotations_;  // in space
+  std::vector<int> load_rows_;
   LawStep step_;
   Real start_effort_ = 0;
   bool in_step_ = false;

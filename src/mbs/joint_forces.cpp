@@ -10,7 +10,8 @@
 
 namespace scree {
 
-JointForces::JointForces(const Model& model, const BodyLayout& layout, const BodyPoses& start) {
+JointForces::JointForces(const Model& model, const BodyLayout& layout, const BodyPoses& start,
+                         const std::vector<std::vector<int>>& load_rows) {
   // make_law(c at t = 0)
   const auto add = [&](const char* kind, const auto& element, const auto& make_law) {
     const Joint& joint = model.joints[static_cast<std::size_t>(element.joint)];
@@ -20,6 +21,8 @@ JointForces::JointForces(const Model& model, const BodyLayout& layout, const Bod
     Real c = 0;
     coordinate->value(start, 0, &c);
     forces_.emplace_back(element.name, std::move(coordinate), make_law(c));
+    if (forces_.back().is_loaded())
+      forces_.back().is_loaded_by(load_rows[static_cast<std::size_t>(element.joint)]);
     for (const int body : joint.body) {
       if (is_spatial(model, body)) forces_.back().turns_in_space(body, layout.column(body) + 3);
     }
@@ -30,6 +33,12 @@ JointForces::JointForces(const Model& model, const BodyLayout& layout, const Bod
     add("joint spring", e, [&](Real c) { return make_joint_law(e, c); });
   for (const JointLimit& e : model.joint_limits)
     add("joint limit", e, [&](Real) { return make_joint_law(e, model.integrator.resolve_events); });
+  for (const JointFriction& e : model.joint_frictions)
+    add("joint friction", e, [&](Real) { return make_joint_law(e); });
+}
+
+bool JointForces::are_loaded() const {
+  return std::ranges::any_of(forces_, [](const JointForce& force) { return force.is_loaded(); });
 }
 
 void JointForces::open_step(const BodyPoses& poses, const SystemInstant& at, Real h,
@@ -56,13 +65,14 @@ Real JointForces::add_force(const BodyPoses& poses, const SystemInstant& at, Rea
 
 void JointForces::add_derivatives(const BodyPoses& poses, const SystemInstant& at,
                                   SystemDerivatives& derivatives) {
-  for (JointForce& force : forces_)
-    force.add_derivatives(poses, at, derivatives.stiffness, derivatives.damping);
+  for (JointForce& force : forces_) force.add_derivatives(poses, at, derivatives);
 }
 
-Real JointForces::elastic_energy(const BodyPoses& poses, Real t) const {
+Real JointForces::elastic_energy(const BodyPoses& poses, Real t, const std::vector<Real>& memory) const {
   Real energy = 0;
-  for (const JointForce& force : forces_) energy += force.elastic_energy(poses, t);
+  auto next = memory.begin();
+  for (const JointForce& force : forces_)
+    energy += force.elastic_energy(poses, t, force.remembers() ? *next++ : 0);
   return energy;
 }
 

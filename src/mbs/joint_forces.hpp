@@ -1,4 +1,4 @@
-// All motors, springs and limits on the joints of a model.
+// All motors, springs, limits and friction on the joints of a model.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,19 @@
 
 namespace scree {
 
-// In the model's order: motors, springs, limits. `memory` is what they remember, one number for each that
-// does.
+// In the model's order: motors, springs, limits, friction. `memory` is what they remember, one number for
+// each that does.
 class JointForces {
  public:
   JointForces() = default;
-  // start: the bodies at t = 0. Throws InputError naming an element that is refused.
-  JointForces(const Model& model, const BodyLayout& layout, const BodyPoses& start);
+  // start: the bodies at t = 0; load_rows: of Phi, for each joint those of the force that it transmits.
+  // Throws InputError naming an element that is refused.
+  JointForces(const Model& model, const BodyLayout& layout, const BodyPoses& start,
+              const std::vector<std::vector<int>>& load_rows);
 
   bool empty() const { return forces_.empty(); }
+  // Whether an effort depends on the joints' reactions.
+  bool are_loaded() const;
   // Opens a step of length h at this instant; with h = 0 efforts are those of instants until the next step.
   void open_step(const BodyPoses& poses, const SystemInstant& at, Real h, const std::vector<Real>& memory);
   // From here on as at instants. Returns whether an effort may differ from what it was for the step.
@@ -25,8 +29,8 @@ class JointForces {
   // As ForceElement's; add_force returns the size of the largest one [J].
   Real add_force(const BodyPoses& poses, const SystemInstant& at, Real length, std::vector<Real>& force);
   void add_derivatives(const BodyPoses& poses, const SystemInstant& at, SystemDerivatives& derivatives);
-  Real elastic_energy(const BodyPoses& poses, Real t) const;  // [J]
-  Real elastic_scale(Real length) const;                      // the largest one
+  Real elastic_energy(const BodyPoses& poses, Real t, const std::vector<Real>& memory) const;  // [J]
+  Real elastic_scale(Real length) const;  // the largest one
 
   // From the opening of the step to the last add_force(), and what is remembered there.
   JointWork work() const;

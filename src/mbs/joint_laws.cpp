@@ -138,7 +138,7 @@ class SpringLaw final : public JointLaw {
     return {-(stored + lost), -(spring_.stiffness + elastic.rate), -(spring_.damping + dissipative.rate),
             std::max(std::abs(stored), std::abs(lost))};
   }
-  Real energy(Real c) const override {
+  Real energy(Real c, Real) const override {
     const Real stretch = c - free_;
     return spring_.stiffness / 2 * stretch * stretch + elastic_.integral(c);
   }
@@ -182,7 +182,7 @@ class LimitLaw final : public JointLaw {
     return sum;
   }
   bool resolves_events() const override { return resolve_events_; }
-  Real energy(Real c) const override {
+  Real energy(Real c, Real) const override {
     Real sum = 0;
     for (const Side& side : side_)
       if (const Real d = side.overlap({0, c, 0}); d > 0) sum += law_.energy(d);

@@ -1,4 +1,5 @@
-// Laws of efforts on one joint coordinate: motors, springs, limits. They know neither joints nor bodies.
+// Laws of efforts on one joint coordinate: motors, springs, limits, friction. They know neither joints nor
+// bodies.
 #pragma once
 
 #include <memory>
@@ -13,6 +14,7 @@ namespace scree {
 struct CoordinateInstant {
   Real time = 0;             // t [s]
   Real value = 0, rate = 0;  // c, c' [rad or m, per s]
+  Real load = 0;             // F: force of the joint's reaction [N]; for the laws that depend on it
 };
 
 // An effort T, which pushes c up where it is above 0, and its derivatives.
@@ -20,6 +22,7 @@ struct JointEffort {
   Real effort = 0;                 // T [N m or N]
   Real by_value = 0, by_rate = 0;  // T_c, T_c'
   Real size = 0;                   // its largest single contribution, as they may cancel
+  Real by_load = 0;                // T_F
 };
 
 // A step from `start`, with what the law remembered there.
@@ -46,9 +49,12 @@ class JointLaw {
   // What is remembered at the end of an accepted step.
   virtual Real memory_after(const LawStep& step, const CoordinateInstant&) const { return step.memory; }
 
+  // Whether the effort depends on the load.
+  virtual bool is_loaded() const { return false; }
+
   // Whether its work is fed in; else it is stored, and dissipated.
   virtual bool drives() const { return false; }
-  virtual Real energy(Real) const { return 0; }  // stored at c [J]
+  virtual Real energy(Real, Real) const { return 0; }  // stored at c, with what is remembered there [J]
   // Largest stiffness -T_c that goes without saying [N m/rad or N/m].
   virtual Real stiffness() const { return 0; }
 };
@@ -60,5 +66,6 @@ std::unique_ptr<JointLaw> make_joint_law(const Motor& motor, Real end);
 std::unique_ptr<JointLaw> make_joint_law(const JointSpring& spring, Real start);
 // resolve_events: as Integrator's.
 std::unique_ptr<JointLaw> make_joint_law(const JointLimit& limit, bool resolve_events);
+std::unique_ptr<JointLaw> make_joint_law(const JointFriction& friction);
 
 }  // namespace scree

@@ -48,6 +48,9 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
     columns[static_cast<std::size_t>(row)].push_back(column);
     columns[static_cast<std::size_t>(column)].push_back(row);
   }
+  for (std::size_t i = 0; i < derivatives.reaction.size(); ++i)
+    columns[static_cast<std::size_t>(derivatives.reaction.column(i))].push_back(coordinates +
+                                                                                derivatives.reaction.row(i));
   // PETSc's own LU wants every diagonal entry to be there, zeros too.
   for (int row = 0; row < coordinates + constraints; ++row) {
     columns[static_cast<std::size_t>(row)].push_back(row);
@@ -62,6 +65,7 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
   jacobian_ = slots_of(jacobian, coordinates, false);
   jacobian_transposed_ = slots_of(jacobian, coordinates, true);
   for (int row = coordinates; row < coordinates + constraints; ++row) diagonal_.push_back(slot_of(row, row));
+  reaction_ = slots_of(derivatives.reaction, coordinates, true);
 }
 
 std::vector<int> KktMatrix::slots_of(const SparseTerm& term, int row_offset, bool transposed) const {
@@ -89,6 +93,7 @@ void KktMatrix::assemble(const SystemTerms& terms, const SystemDerivatives& deri
   scatter(derivatives.damping, damping_, weights.damping, values);
   scatter(derivatives.inertia_stiffness, inertia_stiffness_, weights.inertia_stiffness, values);
   scatter(derivatives.tangent_inertia, tangent_inertia_, weights.tangent, values);
+  scatter(derivatives.reaction, reaction_, weights.reaction, values);
   scatter(terms.constraint_jacobian, jacobian_, 1, values);
   scatter(terms.constraint_jacobian, jacobian_transposed_, 1, values);
   for (std::size_t j = 0; j < compliance.size(); ++j)

@@ -20,9 +20,9 @@ struct SparsePattern {
 };
 
 // A = mass M T^-1 + stiffness (Phi_q^T lambda - Q)_q + damping (-Q_v T^-1) + inertia_stiffness (M a)_q, T = 1
-// at the acceleration level.
+// at the acceleration level. Beside Phi_q^T stands reaction (-Q_lambda).
 struct KktWeights {
-  Real mass = 1, stiffness = 0, damping = 0, inertia_stiffness = 0, tangent = 0;
+  Real mass = 1, stiffness = 0, damping = 0, inertia_stiffness = 0, tangent = 0, reaction = 0;
 };
 
 class KktMatrix {
@@ -44,7 +44,7 @@ class KktMatrix {
 
   SparsePattern pattern_;
   std::vector<int> mass_, stiffness_, damping_, inertia_stiffness_, tangent_inertia_, jacobian_,
-      jacobian_transposed_;
+      jacobian_transposed_, reaction_;
   std::vector<int> diagonal_;  // of the constraints' rows
 };
 

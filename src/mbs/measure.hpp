@@ -9,6 +9,7 @@
 
 #include "mbs/sparse_term.hpp"
 #include "mbs/spatial_motion.hpp"
+#include "physics/orientation.hpp"
 
 namespace scree {
 
@@ -46,7 +47,7 @@ class Measure {
   SpatialPair pair_;
 };
 
-// The four, each in a file of its own: dot1, dot2, distance, twist.
+// Each in a file of its own.
 //   dot1: al.be
 std::unique_ptr<Measure> dot1_measure(const SpatialPair& pair, Vec3 a, Vec3 b);
 //   dot2: al.d [m]
@@ -57,6 +58,11 @@ std::unique_ptr<Measure> distance_measure(const SpatialPair& pair);
 //   the joint `joint` of the model, by which SpatialMotion::counted_angle knows the turns; undefined where x2
 //   is across both
 std::unique_ptr<Measure> twist_measure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint);
+
+//   turn: component k of the rotation vector from the first of two frames fixed to the bodies to the second
+//   one, along the axes of either, in which it has the same components [rad]; frame: its orientation in the
+//   frame of its body. It jumps at half a turn.
+std::unique_ptr<Measure> turn_measure(const SpatialPair& pair, const Quaternion (&frame)[2], int k);
 
 // Sum of weight times measure, all of one pair of bodies; an angle if the first one is.
 struct WeightedMeasure {

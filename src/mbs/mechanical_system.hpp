@@ -19,6 +19,8 @@ struct SystemInstant {
   Real time = 0;                      // t [s]
   const std::vector<Real>& position;  // q [positions]
   const std::vector<Real>& velocity;  // v [coordinates]
+  // lambda [constraints], where forces depend on reactions; none: those of the last instant that had some.
+  const std::vector<Real>* multipliers = nullptr;
 };
 
 // What Newton's matrix depends on besides; all but lambda [coordinates].
@@ -39,12 +41,13 @@ struct SystemTerms {
   Real force_scale = 0;
 };
 
-// What Newton's matrix needs besides; all [coordinates, coordinates].
+// What Newton's matrix needs besides; [coordinates, coordinates] where nothing else stands.
 struct SystemDerivatives {
   SparseTerm stiffness;          // (Phi_q^T lambda - Q)_q
   SparseTerm damping;            // -Q_v T^-1
   SparseTerm inertia_stiffness;  // (M a)_q
   SparseTerm tangent_inertia;    // M (T^-1 - 1)
+  SparseTerm reaction;           // -Q_lambda^T [constraints, coordinates]
 };
 
 class MechanicalSystem {

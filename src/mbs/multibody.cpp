@@ -35,6 +35,7 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system, std::s
   state.position.resize(static_cast<std::size_t>(system.positions()));
   state.velocity.resize(static_cast<std::size_t>(system.coordinates()));
   for (const auto& kind : system.kinds()) kind->start(state.position, state.velocity);
+  state.multipliers.assign(static_cast<std::size_t>(system.constraints()), 0);
   state.counted_angles = static_cast<std::size_t>(system.counted_angles());
   system.count_turns(system.poses_at({0, state.position, state.velocity}), state.position);
   redundancy = check_start(model, system, state.position, state.velocity);
@@ -61,10 +62,11 @@ struct Multibody::Impl {
 
   void settle_velocities(const Model& model);
   void open_step(const MultibodyState& state, Real t, Real h) {
-    const SystemInstant at{t, state.position, state.velocity};
+    const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
     if (!system.joint_forces().empty())
       system.joint_forces().open_step(system.poses_at(at), at, h, state.memory);
   }
+  void solve_acceleration(MultibodyState& state, Real t);
   MultibodyState state_after(const MultibodyState& state, Real tau) const;
   MultibodyState corrected_start(const MultibodyState& state, Real h);
   void predict(const MultibodyState& state, Real t, Real h) {
@@ -93,6 +95,15 @@ struct Multibody::Impl {
   MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;       // of the open step's start [s]
 };
+
+// Efforts that the reactions load: by those found without them.
+void Multibody::Impl::solve_acceleration(MultibodyState& state, Real t) {
+  open_step(state, t, 0);
+  newton.solve_acceleration(state, t);
+  if (!system.joint_forces().are_loaded()) return;
+  open_step(state, t, 0);
+  newton.solve_acceleration(state, t);
+}
 
 void Multibody::Impl::settle_velocities(const Model& model) {
   if (system.constraints() == 0) return;
@@ -157,8 +168,7 @@ Multibody::~Multibody() = default;
 MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   MultibodyState state = impl_->start;
   impl_->system.set_contacts({wrench, {}});
-  impl_->open_step(state, 0, 0);
-  impl_->newton.solve_acceleration(state, 0);
+  impl_->solve_acceleration(state, 0);
   if (impl_->method.shares())
     check_start_accelerations(impl_->system, impl_->newton.misfit(), state.acceleration);
   return state;
@@ -166,9 +176,8 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
 
 void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench) {
   impl_->system.set_contacts({wrench, {}});
-  impl_->open_step(state, t, 0);
   check_joints_hold(impl_->system, state.position, state.velocity, t);
-  impl_->newton.solve_acceleration(state, t);
+  impl_->solve_acceleration(state, t);
 }
 
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
@@ -283,13 +292,24 @@ std::vector<JointReading> Multibody::joint_readings(const MultibodyState& state,
 std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& state, Real t) const {
   const JointForces& forces = impl_->system.joint_forces();
   if (forces.empty()) return {};
-  const SystemInstant at{t, state.position, state.velocity};
+  const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
   const auto samples = forces.samples(impl_->system.poses_at(at), at, state.memory);
   std::vector<JointEffortSample> out;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const CoordinateInstant& c = samples[i].at;
     out.push_back({forces.all()[i].name(), forces.all()[i].is_angle(), c.value, c.rate, samples[i].effort,
                    samples[i].effort * c.rate});
+  }
+  return out;
+}
+
+std::vector<BushingSample> Multibody::bushings(const MultibodyState& state, Real t) const {
+  if (impl_->system.bushings().empty()) return {};
+  const BodyPoses poses = impl_->system.poses_at({t, state.position, state.velocity});
+  std::vector<BushingSample> out;
+  for (const BushingElement* bushing : impl_->system.bushings()) {
+    const BushingLoad load = bushing->load(poses);
+    out.push_back({bushing->name(), load.shift, load.turn, load.force, load.torque});
   }
   return out;
 }

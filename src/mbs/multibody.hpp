@@ -23,7 +23,7 @@ struct MultibodyState {
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
   std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body
-  std::vector<Real> memory;        // of the motors that have one, in their order (mbs/joint_laws.hpp)
+  std::vector<Real> memory;        // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
   Real dissipated = 0;             // in force elements since t = 0 [J]
   Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
   Real driver_work = 0;            // done by drivers, actuators and applied forces since t = 0 [J]
@@ -55,12 +55,19 @@ struct JointReading {
   Real value = 0, rate = 0;  // [rad or m, per s]
 };
 
-// A motor, spring or limit on a joint at one instant.
+// A motor, spring, limit or friction on a joint at one instant.
 struct JointEffortSample {
   std::string name;
   bool is_angle = false;
   Real coordinate = 0, rate = 0;  // [rad] or [m], per s
   Real effort = 0, power = 0;     // [N m] or [N]; [W], above 0 where it is fed in
+};
+
+// At one instant, along the axes of the bushing's frame on the first body.
+struct BushingSample {
+  std::string name;
+  Vec3 shift, turn;    // of the second frame from the first: displacement [m], rotation vector [rad]
+  Vec3 force, torque;  // on the second body, about its point [N, N m]
 };
 
 class Multibody {
@@ -107,8 +114,10 @@ class Multibody {
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
   // Coordinates of the joints that Output::history_coordinates counts.
   std::vector<JointReading> joint_readings(const MultibodyState& state, Real t) const;
-  // Of motors, springs and limits on joints, in this order.
+  // Of motors, springs, limits and friction on joints, in this order.
   std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
+
+  std::vector<BushingSample> bushings(const MultibodyState& state, Real t) const;
 
   // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular
   // velocity of body 'crank' (id 0) from 0.0 to 2.5 rad/s"; empty where nothing changed.

@@ -27,6 +27,8 @@ Real characteristic_length(const Model& model) {
     for (const Joint& joint : model.joints) add_point(joint.body[i], joint.point[i]);
     for (const SpringDamper& element : model.spring_dampers) add_point(element.body[i], element.point[i]);
   }
+  for (const Bushing& element : model.bushings)
+    for (int i = 0; i < 2; ++i) add_point(element.body[i], element.point[i]);
   for (const AppliedForce& element : model.applied_forces) add_point(element.body, element.point);
   return radius > 0 ? radius : reach > 0 ? reach : 1;
 }
@@ -88,6 +90,11 @@ void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
                                                                     : make_force_element(e, layout_, end));
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers)
     elements_.push_back(make_force_element(e, layout_));
+  for (const Bushing& e : model.bushings) {
+    auto element = std::make_unique<BushingElement>(e, layout_);
+    bushings_.push_back(element.get());
+    elements_.push_back(std::move(element));
+  }
   for (const AppliedForce& e : model.applied_forces)
     elements_.push_back(is_spatial(model, e.body) ? make_spatial_element(e, layout_, end)
                                                   : make_force_element(e, layout_, end));
@@ -95,9 +102,19 @@ void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
     constant_force_scale_ =
         std::max(constant_force_scale_, kElasticFloor * element->elastic_scale(length_scale_));
   }
-  joint_forces_ = JointForces(model, layout_, start);
+  joint_forces_ = JointForces(model, layout_, start, load_rows(model));
   constant_force_scale_ =
       std::max(constant_force_scale_, kElasticFloor * joint_forces_.elastic_scale(length_scale_));
+}
+
+// Of the rows of a joint those of lengths are displacements along perpendicular axes, or points that
+// coincide: their multipliers are forces.
+std::vector<std::vector<int>> RigidBodySystem::load_rows(const Model& model) const {
+  std::vector<std::vector<int>> rows(model.joints.size());
+  for (std::size_t j = 0; j < rows.size(); ++j)
+    for (int row = groups_[j].first_row; row < groups_[j].end_row; ++row)
+      if (!is_angle(row)) rows[j].push_back(row);
+  return rows;
 }
 
 void RigidBodySystem::add_group(const std::string& title, const std::string& name,
@@ -160,11 +177,13 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
   derivatives.stiffness.begin();
   derivatives.damping.begin();
   derivatives.tangent_inertia.begin();
+  derivatives.reaction.begin();
   for (const auto& kind : kinds_) kind->set_tangents(iterate.displacement, poses_);
   for (const auto& element : elements_) {
     element->add_derivatives(poses_, at.time, derivatives.stiffness, derivatives.damping);
   }
-  joint_forces_.add_derivatives(poses_, at, derivatives);
+  joint_forces_.add_derivatives(poses_, {at.time, at.position, at.velocity, &iterate.multipliers},
+                                derivatives);
   for (const auto& kind : kinds_) {
     kind->add_inertial_derivatives(poses_, derivatives);
     kind->add_contact_derivatives(poses_, wrench_, derivatives);
@@ -254,11 +273,11 @@ Powers RigidBodySystem::powers(const SystemInstant& at, const std::vector<Real>&
   return powers;
 }
 
-Real RigidBodySystem::elastic_energy(const SystemInstant& at) const {
+Real RigidBodySystem::elastic_energy(const SystemInstant& at, const std::vector<Real>& memory) const {
   const BodyPoses poses = poses_at(at);
   Real energy = 0;
   for (const auto& element : elements_) energy += element->elastic_energy(poses);
-  return energy + joint_forces_.elastic_energy(poses, at.time);
+  return energy + joint_forces_.elastic_energy(poses, at.time, memory);
 }
 
 std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(

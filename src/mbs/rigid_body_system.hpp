@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mbs/bushing.hpp"
 #include "mbs/constraints.hpp"
 #include "mbs/force_elements.hpp"
 #include "mbs/joint_forces.hpp"
@@ -72,6 +73,8 @@ class RigidBodySystem final : public MechanicalSystem {
   JointForces& joint_forces() { return joint_forces_; }
   const JointForces& joint_forces() const { return joint_forces_; }
 
+  const std::vector<const BushingElement*>& bushings() const { return bushings_; }
+
   const std::vector<Body>& bodies() const { return bodies_; }
   const BodyLayout& layout() const { return layout_; }
   const std::vector<std::unique_ptr<RigidBodies>>& kinds() const { return kinds_; }
@@ -87,7 +90,8 @@ class RigidBodySystem final : public MechanicalSystem {
   // At any instant, from scratch.
   BodyPoses poses_at(const SystemInstant& at) const;
   Powers powers(const SystemInstant& at, const std::vector<Real>& multipliers);
-  Real elastic_energy(const SystemInstant& at) const;
+  // memory: as in the state.
+  Real elastic_energy(const SystemInstant& at, const std::vector<Real>& memory) const;
   // Force [N] on body 2 of the group at its joint point and torque about that point [N m], global, and the
   // orientation of the joint's marker on body 1.
   struct GroupReaction {
@@ -109,6 +113,8 @@ class RigidBodySystem final : public MechanicalSystem {
   // start: at t = 0.
   void add_constraints(const Model& model, const BodyPoses& start);
   void add_elements(const Model& model, const BodyPoses& start);
+  // Of every joint.
+  std::vector<std::vector<int>> load_rows(const Model& model) const;
   // joint: whose the rows are; of a coupler's, the first one.
   void add_group(const std::string& title, const std::string& name,
                  std::vector<std::unique_ptr<Constraint>> parts, const Joint& joint, BodyKind kind);
@@ -129,6 +135,7 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<int> group_;      // of every row
   std::vector<ConstraintGroup> groups_;
   std::vector<std::unique_ptr<ForceElement>> elements_;
+  std::vector<const BushingElement*> bushings_;  // of these
   JointForces joint_forces_;
   std::vector<Real> coordinate_scale_, constraint_scale_;
 };

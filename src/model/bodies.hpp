@@ -113,6 +113,22 @@ struct TorsionalSpringDamper {
   Real free_angle = 0;  // [rad]
 };
 
+// Rows of a symmetric matrix.
+using Matrix6 = std::array<std::array<Real, 6>, 6>;
+
+// Between two spatial bodies, or one and the ground: K x + C x' + preload pulls the second body's frame back
+// onto that of the first one. x: displacement of the second point along the first frame's axes [m], then the
+// rotation vector from the first frame to the second one [rad].
+struct Bushing {
+  std::string name;
+  int body[2] = {kGround, kGround};
+  Vec3 point[2];                  // in the body frames [m]
+  Quaternion marker[2];           // orientation of the bushing's frame in each body's
+  Matrix6 stiffness{};            // K [N/m, N/rad; N m/m, N m/rad]
+  Matrix6 damping{};              // C, likewise times s
+  std::array<Real, 6> preload{};  // [N, N m]
+};
+
 // Force at a point of a body, and a torque. The direction is global, or turns with the body: of a spatial
 // body that of the torque too.
 struct AppliedForce {

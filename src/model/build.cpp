@@ -87,6 +87,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
     build_markers(root, model, names);
     build_joints(root, model, names);
     build_force_elements(root, model, names);
+    build_bushings(root, model, names);
     build_joint_forces(root, model, names);
     build_particles(root, model, names, size, share, log);
     build_contact(root, model, names);
@@ -201,6 +202,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.history_reactions = table.integer("history_reactions");
   output.history_efforts = table.integer("history_efforts");
   output.history_coordinates = table.integer("history_coordinates");
+  output.history_bushings = table.integer("history_bushings");
   output.fields = table.texts("fields");
   for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
     const Real interval = table.real(key);

@@ -1,4 +1,4 @@
-// Motors, springs and limits on joints, and couplers.
+// Motors, springs, limits and friction on joints, and couplers.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -124,6 +124,35 @@ JointLimit build_limit(const DeckTable& table) {
   return limit;
 }
 
+JointFriction build_friction(const DeckTable& table) {
+  JointFriction friction;
+  friction.effort = table.real("effort");
+  friction.lever = table.real("friction_coefficient") * (table.has("radius") ? table.real("radius") : 1);
+  if (friction.effort == 0 && friction.lever == 0)
+    table.fail("name", "friction needs effort or friction_coefficient, above 0");
+  friction.stiffness = table.real("stiffness");
+  friction.damping = table.real("damping");
+  friction.static_ratio = table.real("static_ratio");
+  if ((friction.static_ratio > 1) != table.has("stribeck_rate"))
+    table.fail("stribeck_rate", "static_ratio above 1 and stribeck_rate belong together");
+  if (table.has("stribeck_rate")) friction.stribeck_rate = table.real("stribeck_rate");
+  return friction;
+}
+
+// A pin has a radius, a slide has none.
+void check_radius(const DeckTable& table, const Joint& joint) {
+  const bool turns = is_angle(read_coordinate(table, joint)), rubs = table.real("friction_coefficient") > 0;
+  if (turns && rubs && !table.has("radius"))
+    table.fail(
+        "radius",
+        fmt::format("missing; the coordinate of joint \"{}\" is an angle, and friction_coefficient acts "
+                    "at the radius of its pin",
+                    joint.name));
+  if (table.has("radius") && !(turns && rubs))
+    table.fail("radius", turns ? "not used without friction_coefficient"
+                               : fmt::format("not used; joint \"{}\" slides", joint.name));
+}
+
 void take_coordinates(const DeckTable& table, const Model& model, Coupler& coupler,
                       const std::vector<JointCoordinate>& wanted) {
   if (coupler.joints.size() != wanted.size())
@@ -222,6 +251,10 @@ void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& n
     add_elements(table, model, names, efforts, model.joint_springs, build_spring);
   for (const DeckTable& table : deck.tables("joint_limits"))
     add_elements(table, model, names, efforts, model.joint_limits, build_limit);
+  for (const DeckTable& table : deck.tables("joint_frictions")) {
+    add_elements(table, model, names, efforts, model.joint_frictions, build_friction);
+    check_radius(table, joint_at(model, model.joint_frictions.back().joint));
+  }
   for (const Driver& driver : model.drivers) reactions.emplace(driver.name, 0);
   for (const DeckTable& table : deck.tables("couplers")) {
     add_name(reactions, table.text("name"), 0, table);

@@ -17,6 +17,7 @@ void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
 void build_force_elements(const DeckTable& deck, Model& model, const ModelNames& names);
+void build_bushings(const DeckTable& deck, Model& model, const ModelNames& names);
 void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& names);  // also couplers
 // Warns of files without particles. size: of the bodies; gets the number of particles before any is built.
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,

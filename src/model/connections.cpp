@@ -320,7 +320,8 @@ int constraint_count(const Model& model) {
 }
 
 int memory_count(const Model& model) {
-  return static_cast<int>(std::ranges::count(model.motors, MotorKind::speed, &Motor::kind));
+  return static_cast<int>(std::ranges::count(model.motors, MotorKind::speed, &Motor::kind) +
+                          std::ssize(model.joint_frictions));
 }
 
 std::vector<std::pair<int, int>> connected_bodies(const Model& model) {
@@ -331,6 +332,7 @@ std::vector<std::pair<int, int>> connected_bodies(const Model& model) {
   for (const Joint& joint : model.joints) add(joint.body);
   for (const SpringDamper& element : model.spring_dampers) add(element.body);
   for (const TorsionalSpringDamper& element : model.torsional_spring_dampers) add(element.body);
+  for (const Bushing& element : model.bushings) add(element.body);
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;

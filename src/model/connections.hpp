@@ -80,7 +80,7 @@ bool has_spatial_bodies(const Model& model);
 bool is_spatial(const Model& model, int body);  // the ground is not
 // Of joints, drivers and couplers: the number of the multibody side's constraint equations.
 int constraint_count(const Model& model);
-// How many numbers motors remember.
+// How many numbers motors and friction on joints remember.
 int memory_count(const Model& model);
 // Pairs of bodies, smaller index first, that a joint or a force element connects; sorted, each once.
 std::vector<std::pair<int, int>> connected_bodies(const Model& model);

@@ -1,4 +1,4 @@
-// Motors, springs and limits on the coordinates of joints, and couplers between these coordinates.
+// Motors, springs, limits and friction on the coordinates of joints, and couplers between these coordinates.
 #pragma once
 
 #include <optional>
@@ -51,6 +51,19 @@ struct JointLimit {
   int joint = 0;
   Real lower = -kInfinity, upper = kInfinity;
   Real stiffness = 0, damping = 0, exponent = 1;  // K, C, n
+  std::optional<JointCoordinate> coordinate{};
+};
+
+// Sticks on a spring until the effort reaches s (effort + lever F), then slides with it; F: the force that
+// the joint transmits [N], s = 1 + (static_ratio - 1) exp(-(c'/stribeck_rate)^2).
+struct JointFriction {
+  std::string name;
+  int joint = 0;
+  Real effort = 0;                  // [N m or N]
+  Real lever = 0;                   // of an angle friction coefficient times radius [m], else [-]
+  Real stiffness = 0, damping = 0;  // while it sticks [N m/rad, N/m], [N m s/rad, N s/m]
+  Real static_ratio = 1;            // at least 1
+  Real stribeck_rate = kInfinity;   // [rad/s, m/s]
   std::optional<JointCoordinate> coordinate{};
 };
 

@@ -49,7 +49,7 @@ ModelSize bodies_and_links(const DeckTable& deck) {
     size.bodies += count;
   }
   std::map<std::string, std::int64_t> joints;
-  for (const char* key : {"joints", "spring_dampers", "torsional_spring_dampers"}) {
+  for (const char* key : {"joints", "spring_dampers", "torsional_spring_dampers", "bushings"}) {
     for (const DeckTable& table : deck.tables(key)) {
       const char* row = table.has("chain") ? "chain" : "each";
       const std::int64_t count = table.has(row) ? rows[table.text(row)] : 1;
@@ -59,7 +59,7 @@ ModelSize bodies_and_links(const DeckTable& deck) {
   }
   for (const char* key : {"drivers", "applied_forces", "couplers"})
     size.links += std::ssize(deck.tables(key));
-  for (const char* key : {"motors", "joint_springs", "joint_limits"})
+  for (const char* key : {"motors", "joint_springs", "joint_limits", "joint_frictions"})
     for (const DeckTable& table : deck.tables(key))
       size.links += std::max<std::int64_t>(1, joints[table.text("joint")]);
   return size;
@@ -68,8 +68,9 @@ ModelSize bodies_and_links(const DeckTable& deck) {
 ModelSize size_of(const Model& model) {
   return {model.particles.totals.count, std::ssize(model.bodies),
           std::ssize(model.joints) + std::ssize(model.drivers) + std::ssize(model.spring_dampers) +
-              std::ssize(model.torsional_spring_dampers) + std::ssize(model.applied_forces) +
-              std::ssize(model.motors) + std::ssize(model.joint_springs) + std::ssize(model.joint_limits) +
+              std::ssize(model.torsional_spring_dampers) + std::ssize(model.bushings) +
+              std::ssize(model.applied_forces) + std::ssize(model.motors) + std::ssize(model.joint_springs) +
+              std::ssize(model.joint_limits) + std::ssize(model.joint_frictions) +
               std::ssize(model.couplers)};
 }
 

@@ -105,8 +105,9 @@ struct Output {
   bool history_csv = false;
   int compression = 0;                   // of particles in snapshots and checkpoints: 0, or deflate's level
   std::int64_t history_reactions = 100;  // joints and drivers, the first so many
-  std::int64_t history_efforts = 100;    // motors, springs and limits on joints, the first so many
+  std::int64_t history_efforts = 100;    // motors and all else on joints, the first so many
   std::int64_t history_coordinates = 0;  // joints with coordinates, the first so many
+  std::int64_t history_bushings = 100;   // the first so many
   std::vector<std::string> fields;       // of particles in snapshots: names in dem/output_fields.hpp
   std::vector<int> history_bodies;       // indices into Model::bodies
   std::vector<GlobalId> history_particles;  // global ids
@@ -137,10 +138,12 @@ struct Model {
   std::vector<Driver> drivers;
   std::vector<SpringDamper> spring_dampers;
   std::vector<TorsionalSpringDamper> torsional_spring_dampers;
+  std::vector<Bushing> bushings;
   std::vector<AppliedForce> applied_forces;
   std::vector<Motor> motors;
   std::vector<JointSpring> joint_springs;
   std::vector<JointLimit> joint_limits;
+  std::vector<JointFriction> joint_frictions;
   std::vector<Coupler> couplers;
   TimeControl time;
   Integrator integrator;

@@ -120,6 +120,7 @@ std::vector<Real> body_extents(const Model& model) {
   for (int side = 0; side < 2; ++side) {
     for (const Joint& joint : model.joints) reach(joint.body[side], joint.point[side], 0);
     for (const SpringDamper& spring : model.spring_dampers) reach(spring.body[side], spring.point[side], 0);
+    for (const Bushing& bushing : model.bushings) reach(bushing.body[side], bushing.point[side], 0);
   }
   for (const AppliedForce& force : model.applied_forces) reach(force.body, force.point, 0);
   return extents;

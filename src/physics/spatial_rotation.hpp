@@ -62,6 +62,21 @@ inline Mat3 inverse_tangent(Vec3 u) {
   return identity3() + Real(0.5) * t + c * (t * t);
 }
 
+// D with D du = d(T^-1(u)) e, e constant: how the inverse tangent changes with u.
+//   D = -e~/2 - c ((u~ e)~ + u~ e~) + (c'/f) (u~^2 e) u^T
+inline Mat3 inverse_tangent_change(Vec3 u, Vec3 e) {
+  const Real f = norm(u), f2 = f * f;
+  // c and c'/f by their series, below which the closed forms cancel.
+  const bool small = f < Real(0.25);
+  const Real tangent = std::tan(f / 2), sine = std::sin(f / 2);
+  const Real c = small ? (1 + f2 / 60 * (1 + f2 / 42 * (1 + f2 / 40))) / 12 : 1 / f2 - 1 / (2 * f * tangent);
+  const Real slope = small ? (1 + f2 / 21 * (1 + 3 * f2 / 80 * (1 + 10 * f2 / 297))) / 360
+                           : (1 / (2 * f * tangent) + 1 / (4 * sine * sine) - 2 / f2) / f2;
+  const Vec3 once = cross(u, e), twice = cross(u, once);
+  const Mat3 turn = Real(-0.5) * tilde(e) - c * (tilde(once) + tilde(u) * tilde(e));
+  return turn + outer(slope, twice, u);
+}
+
 // Over a step of length h, h3 = h^3: what the rotation vector of a motion with angular velocity w and its
 // rate w' has beside the integral of w (Magnus), w x w' h^3 / 12; in the body's frame.
 inline Vec3 rotation_drift(Real h3, Vec3 w, Vec3 rate) { return (h3 / 12) * cross(w, rate); }

@@ -93,10 +93,10 @@ std::string multibody_lines(const Model& model) {
   std::int64_t shapes = 0, bare = 0;
   for (const Body& body : model.bodies) shapes += std::ssize(body.shapes), bare += body.shapes.empty();
   const int coordinates = BodyLayout(model.bodies).columns(), constraints = constraint_count(model);
-  const std::int64_t elements = std::ssize(model.spring_dampers) +
-                                std::ssize(model.torsional_spring_dampers) +
-                                std::ssize(model.applied_forces) + std::ssize(model.motors) +
-                                std::ssize(model.joint_springs) + std::ssize(model.joint_limits);
+  const std::int64_t elements =
+      std::ssize(model.spring_dampers) + std::ssize(model.torsional_spring_dampers) +
+      std::ssize(model.bushings) + std::ssize(model.applied_forces) + std::ssize(model.motors) +
+      std::ssize(model.joint_springs) + std::ssize(model.joint_limits) + std::ssize(model.joint_frictions);
   std::string lines =
       fmt::format("bodies         {} with {}, {}, {}, {}\n", model.bodies.size(),
                   counted(shapes, "shape", "shapes"), counted(std::ssize(model.joints), "joint", "joints"),

@@ -147,6 +147,19 @@ void reaction_columns(Group joint, BodyKind kind, std::size_t k) {
             [k](const Sample& s) { return s.reactions[k].torque.z; });
 }
 
+// k: number of the bushing.
+void bushing_columns(Group bushing, std::size_t k) {
+  const std::string along = ", along the bushing's axes on the first body";
+  bushing.add_vector("", "m", "displacement of the second body's point" + along,
+                     [k](const Sample& s) { return s.bushings[k].shift; });
+  bushing.add_vector("turn_", "rad", "rotation vector of the second body's frame" + along,
+                     [k](const Sample& s) { return s.bushings[k].turn; });
+  bushing.add_vector("f", "N", "force on the second body" + along,
+                     [k](const Sample& s) { return s.bushings[k].force; });
+  bushing.add_vector("torque_", "N m", "torque on the second body about its point" + along,
+                     [k](const Sample& s) { return s.bushings[k].torque; });
+}
+
 // k: number of the effort.
 void effort_columns(Group effort, bool is_angle, std::size_t k) {
   effort.add("coordinate", is_angle ? "rad" : "m", "coordinate of the joint",
@@ -233,7 +246,8 @@ void particle_columns(Group particle, std::size_t k) {
 
 std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions,
                                             const std::vector<JointEffortSample>& efforts,
-                                            const std::vector<JointReading>& coordinates) {
+                                            const std::vector<JointReading>& coordinates,
+                                            const std::vector<BushingSample>& bushings) {
   std::vector<RecordedColumn> out;
   const Output& output = model.output;
   step_columns({"step", out});
@@ -247,6 +261,7 @@ std::vector<RecordedColumn> history_columns(const Model& model, const std::vecto
     effort_columns({"efforts/" + efforts[k].name, out}, efforts[k].is_angle, k);
   for (std::size_t k = 0; k < coordinates.size(); ++k)
     coordinate_columns({"coordinates/" + coordinates[k].joint, out}, coordinates[k].coordinate, k);
+  for (std::size_t k = 0; k < bushings.size(); ++k) bushing_columns({"bushings/" + bushings[k].name, out}, k);
   for (std::size_t k = 0; k < output.history_contacts.size(); ++k)
     contact_columns({"contacts/" + output.history_contacts[k].name, out}, output.history_contacts[k], k);
   for (const int body : output.history_bodies) {

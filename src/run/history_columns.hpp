@@ -25,8 +25,9 @@ struct HistorySample {
   RubbingLosses losses{};                     // parts of ledger.dissipated_contacts [J]
   std::int64_t left = 0, bodies_outside = 0;  // particles, bodies
   std::vector<Reaction> reactions;            // of the joints and drivers that are recorded
-  std::vector<JointEffortSample> efforts;     // of the motors, springs and limits that are recorded
+  std::vector<JointEffortSample> efforts;     // of all on joints that is recorded
   std::vector<JointReading> coordinates;      // of the joints that are recorded
+  std::vector<BushingSample> bushings;        // those that are recorded
   std::vector<ContactSum> contacts;           // per entry of Output::history_contacts
   std::vector<BodyMotion> bodies;             // all of them, where some are recorded
   std::vector<TracedParticle> traced;         // per entry of Output::history_particles; NaN: removed
@@ -37,9 +38,11 @@ struct RecordedColumn {
   std::function<Real(const HistorySample&)> value;
 };
 
-// reactions, efforts, coordinates: of any sample; they name the joints, motors, springs and limits.
+// reactions, efforts, coordinates, bushings: of any sample; they name the joints, what acts on them, and the
+// bushings.
 std::vector<RecordedColumn> history_columns(const Model& model, const std::vector<Reaction>& reactions,
                                             const std::vector<JointEffortSample>& efforts = {},
-                                            const std::vector<JointReading>& coordinates = {});
+                                            const std::vector<JointReading>& coordinates = {},
+                                            const std::vector<BushingSample>& bushings = {});
 
 }  // namespace scree

@@ -36,6 +36,14 @@ std::vector<JointReading> coordinates_of(const BodyLink& link, const State& stat
   return link.multibody()->joint_readings(state.bodies, state.clock.time);
 }
 
+std::vector<BushingSample> bushings_of(const Model& model, const BodyLink& link, const State& state) {
+  if (link.multibody() == nullptr || model.output.history_bushings == 0) return {};
+  std::vector<BushingSample> bushings = link.multibody()->bushings(state.bodies, state.clock.time);
+  const auto wanted = static_cast<std::size_t>(model.output.history_bushings);
+  if (bushings.size() > wanted) bushings.resize(wanted);
+  return bushings;
+}
+
 // Where the particles are that the deck wants traced: NaN of those that were removed. Complete on rank 0.
 std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Backend& backend) {
   const std::vector<GlobalId>& wanted = model.output.history_particles;
@@ -89,7 +97,7 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
     : model_(model), backend_(backend), link_(link) {
   link.ranks().on_root([&] {
     columns_ = history_columns(model, reactions_of(model, link, state), efforts_of(model, link, state),
-                               coordinates_of(link, state));
+                               coordinates_of(link, state), bushings_of(model, link, state));
     std::vector<HistoryColumn> heads;
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
@@ -125,6 +133,7 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   sample.reactions = reactions_of(model_, link_, state);
   sample.efforts = efforts_of(model_, link_, state);
   sample.coordinates = coordinates_of(link_, state);
+  sample.bushings = bushings_of(model_, link_, state);
   sample.contacts = target_contacts(model_, link_, state, backend_);
   if (link_.multibody() != nullptr && !model_.output.history_bodies.empty())
     sample.bodies = link_.multibody()->motion(state.bodies);

@@ -54,6 +54,23 @@ Joint joint_between(JointKind kind, int first, int second) {
   return joint;
 }
 
+// Every entry of its matrices is another one.
+Bushing bushing_between(int first, int second) {
+  Bushing bushing;
+  bushing.name = "bushing";
+  bushing.body[0] = first, bushing.body[1] = second;
+  bushing.point[0] = {0.2, -0.3, 0.15}, bushing.point[1] = {-0.1, 0.25, 0.3};
+  bushing.marker[0] = exponential({0.4, 0.9, -0.3}), bushing.marker[1] = exponential({-0.2, 0.5, 0.6});
+  bushing.preload = {1, -2, 3, 0.4, -0.5, 0.6};
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = 0; b < 6; ++b) {
+      const Real sum = static_cast<Real>(a + b), product = static_cast<Real>(a * b);
+      bushing.stiffness[a][b] = (a == b ? 9 : 1) + std::cos(sum + 2 * product);
+      bushing.damping[a][b] = (a == b ? 2 : 0) + 0.3 * std::sin(1 + 2 * sum + product);
+    }
+  return bushing;
+}
+
 std::vector<std::pair<std::string, Model>> samples() {
   std::vector<std::pair<std::string, Model>> all;
   for (const auto& [first, second] : {std::pair{0, 1}, {kGround, 1}, {0, kGround}}) {
@@ -92,6 +109,15 @@ std::vector<std::pair<std::string, Model>> samples() {
     all.emplace_back("spring" + ends, spring);
     spring.spring_dampers[0].point[0] = spring.spring_dampers[0].point[1] = {};
     all.emplace_back("spring between centres" + ends, spring);
+    Model bushing = two_bodies();
+    bushing.bushings = {bushing_between(first, second)};
+    all.emplace_back("bushing" + ends, bushing);
+    Bushing& bare = bushing.bushings[0];
+    bare.preload = {1, -2, 3, 0, 0, 0};
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = 0; b < 6; ++b)
+        if (a > 2 || b > 2) bare.stiffness[a][b] = bare.damping[a][b] = 0;
+    all.emplace_back("bushing without turns" + ends, bushing);
   }
   for (const bool follows : {false, true}) {
     Model force = two_bodies();

@@ -1,7 +1,9 @@
 // Motors, springs and limits on joints, and couplers, as a deck makes them.
+#include "model/connections.hpp"
 #include "model/memory.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
+#include "support/near.hpp"
 
 namespace scree {
 
@@ -58,6 +60,43 @@ TEST_CASE("an effort on a row of joints is one on each") {
   CHECK(model.joint_springs[3].name == "coil");
   CHECK(model.motors[0].joint == 1);
   CHECK(bodies_and_links(parse_deck(kDeck + springs, "deck.toml", {}).root).links == 5 + 3 + 1 + 1);
+}
+
+TEST_CASE("friction on joints has the lever of its surfaces") {
+  const auto friction = [](const std::string& rest) {
+    return "[[joint_frictions]]\nname = \"f\"\nstiffness = 100.0\n" + rest;
+  };
+  const Model model =
+      model_of(kDeck + friction("joint = \"hinge\"\nfriction_coefficient = 0.2\nradius = 0.05\n"
+                                "static_ratio = 1.2\nstribeck_rate = 0.1\n"));
+  REQUIRE(model.joint_frictions.size() == 3);
+  CHECK(model.joint_frictions[1].name == "f.1");
+  CHECK(near(model.joint_frictions[1].lever, 0.01, {.relative = 1e-15}));
+  CHECK(memory_count(model) == 3);
+  const std::string slide = "joint = \"rail\"\n", pin = "joint = \"hinge.0\"\n";
+  CHECK(model_of(kDeck + friction(slide + "friction_coefficient = 0.2\neffort = 3.0\n"))
+            .joint_frictions[0]
+            .lever == 0.2);
+  const auto refused = [&](const std::string& rest, const std::string& key, const std::string& text) {
+    const std::string message = refusal(friction(rest));
+    INFO(message);
+    CHECK(contains(message, "joint_frictions.f." + key));
+    CHECK(contains(message, text));
+  };
+  refused(slide, "name", "friction needs effort or friction_coefficient, above 0");
+  refused(pin + "friction_coefficient = 0.2\n", "radius", "missing; joint \"hinge.0\" is revolute");
+  refused(pin + "effort = 1.0\nradius = 0.1\n", "radius", "not used without friction_coefficient");
+  refused(slide + "friction_coefficient = 0.2\nradius = 0.1\n", "radius", "is translational");
+  refused(slide + "effort = 1.0\nstatic_ratio = 1.5\n", "stribeck_rate", "belong together");
+  refused(slide + "effort = 1.0\nstribeck_rate = 1.5\n", "stribeck_rate", "belong together");
+  refused(slide + "effort = 1.0\nstatic_ratio = 0.5\n", "static_ratio", "at least 1");
+  refused(slide + "effort = -1.0\n", "effort", "at least 0");
+  refused(slide + "effort = 1.0\ndamping = -1.0\n", "damping", "at least 0");
+  refused("joint = \"weld\"\neffort = 1.0\n", "joint", "it must be revolute or translational");
+  CHECK(contains(refusal("[[joint_frictions]]\nname = \"f\"\neffort = 1.0\n" + slide),
+                 "joint_frictions.f.stiffness"));
+  CHECK(contains(refusal("[[joint_frictions]]\nname = \"f\"\neffort = 1.0\nstiffness = 0.0\n" + slide),
+                 "above 0"));
 }
 
 TEST_CASE("couplers of every type have their coefficients") {

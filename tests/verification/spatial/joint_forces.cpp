@@ -65,6 +65,28 @@ TEST_CASE("a spring lets a slider down an oblique axis and takes it back, to sec
   CHECK(coarse / fine < 4.3);
 }
 
+TEST_CASE("a slider on an oblique axis rubs by the force across it: it holds, or slides with what is left") {
+  const Vec3 axis{1.0 / 3, -2.0 / 3, -2.0 / 3};
+  Model model = spatial_model(-0.05);
+  model.bodies = {spatial_body("slider", 2, {0.1, 0.2, 0.15}, {0, 0, 0})};
+  model.joints = {slide_along(kGround, 0, {0.1, 0.2, 0}, {0.1, 0.2, 0}, axis)};
+  const Real along = 9.81 * 2 / 3, across = 9.81 * std::sqrt(5.0) / 3;
+  JointFriction friction;
+  friction.name = "friction", friction.stiffness = 4e4, friction.damping = 60;
+  const auto outcome = [&](Real mu) {
+    friction.lever = mu;
+    model.joint_frictions = {friction};
+    MultibodyRun run(model, 1e-11);
+    run.steps(1000, 1e-3);
+    return run.multibody.joint_efforts(run.state, run.time).at(0);
+  };
+  const JointEffortSample held = outcome(1.2), slid = outcome(0.3);
+  CHECK(near(held.effort, -2 * along, {.relative = 1e-6}));
+  CHECK(std::abs(held.rate) < 1e-7);
+  CHECK(near(slid.effort, -2 * 0.3 * across, {.relative = 1e-6}));
+  CHECK(near(slid.rate, along - 0.3 * across, {.relative = 2e-3}));
+}
+
 namespace {
 
 // Two bodies that fly and turn as one, on a joint between them.
