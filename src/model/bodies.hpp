@@ -43,6 +43,7 @@ struct Body {
   Vec3 spin;               // angular velocity in the body's frame [rad/s]
   // Of mass, from the origin of the body's frame, to which the deck's position and velocity belong [m].
   Vec3 center_of_mass{};
+  bool of_solids = false;  // mass and inertia follow from solids
 };
 
 // A point and axes fixed to a body; of the ground, in the global frame.

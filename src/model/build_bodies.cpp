@@ -86,6 +86,7 @@ void read_mass(const DeckTable& table, const ModelNames& names, Body& body) {
     std::vector<MassProperties> parts;
     for (const DeckTable& solid : table.tables("solids")) parts.push_back(solid_of(solid, names));
     const MassProperties whole = composed(parts);
+    body.of_solids = true;
     body.mass = whole.mass, body.center_of_mass = whole.center, body.inertia_tensor = whole.inertia;
     body.inertia = spatial ? check_inertia(table, "solids", whole.inertia) : whole.inertia.zz;
     return;

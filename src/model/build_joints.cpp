@@ -97,6 +97,7 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
       return one;
     case JointKind::revolute:
     case JointKind::cylindrical:
+    case JointKind::screw:
     case JointKind::planar:
     case JointKind::parallel:
       check_aligned(table, "the z axes of the two markers must point in the same direction",
@@ -111,25 +112,30 @@ Mat3 aligned(const DeckTable& table, JointKind kind, const Mat3& one, const Mat3
       if (std::numbers::pi_v<Real> - angle_between(one.z, two.z) < kAligned)
         table.fail("markers", "the z axes of the two markers must not point against each other");
       return turned_frame(one, one.z, two.z);
-    default:
-      return two;
+    case JointKind::spherical:
+    case JointKind::distance:
+    case JointKind::point_on_line:
+    case JointKind::point_on_plane:
+      break;
   }
+  return two;
 }
 
-// Of the joint's ends; what markers must keep of each other at t = 0 they keep to kAligned [rad], and then
-// the second one is turned to keep it exactly.
-void place_markers(const DeckTable& table, const Model& model, const Connection& connection, Joint& joint) {
-  if (connection.markers) {
-    for (std::size_t side = 0; side < 2; ++side) joint.marker[side] = (*connection.markers)[side].orientation;
-    const auto frame = [&](int side) { return global_frame(model, joint.body[side], joint.marker[side]); };
-    joint.marker[1] =
-        marker_at(model, joint.body[1], {}, aligned(table, joint.kind, frame(0), frame(1))).orientation;
-    return;
-  }
+// What markers must keep of each other at t = 0 they keep to kAligned, and then the second one is turned to
+// keep it exactly.
+Ends spatial_ends(const DeckTable& table, const Model& model, const Connection& connection,
+                  const Joint& joint) {
   Mat3 frame[2];
-  place_frames(table, joint, frame);
-  for (int side = 0; side < 2; ++side)
-    joint.marker[side] = marker_at(model, joint.body[side], {}, frame[side]).orientation;
+  if (!connection.markers) {
+    place_frames(table, joint, frame);
+    return find_ends(table, model, connection, frame);
+  }
+  Ends ends = *connection.markers;
+  for (std::size_t side = 0; side < 2; ++side)
+    frame[side] = global_frame(model, joint.body[side], ends[side].orientation);
+  const Mat3 second = aligned(table, joint.kind, frame[0], frame[1]);
+  ends[1].orientation = marker_at(model, joint.body[1], {}, second).orientation;
+  return ends;
 }
 
 // What planar bodies cannot have.
@@ -173,20 +179,18 @@ void check_joint_meets(const DeckTable& table, const Model& model, const Joint& 
                   body_name(model, joint.body[1]), shown_point(model, joint, gap.end[1]), gap.size));
 }
 
-bool has_points(JointKind kind) {
-  return kind != JointKind::parallel && kind != JointKind::perpendicular && kind != JointKind::orientation;
+bool has_common_point(JointKind kind) {
+  return kind != JointKind::distance && kind != JointKind::parallel && kind != JointKind::perpendicular &&
+         kind != JointKind::orientation;
 }
 
 // Markers may begin turned and apart: the start is on the screw.
 void read_screw(const DeckTable& table, const Model& model, Joint& joint) {
   joint.lead = table.real("lead");
   if (joint.lead == 0) table.fail("lead", "must not be 0; a revolute joint has no advance");
-  Mat3 frame[2];  // rows: the global axes of either frame
-  for (int side = 0; side < 2; ++side) {
-    const Mat3 own = rotation_matrix(joint.marker[side]);
-    const auto axis = [&](Vec3 e) { return to_global_direction(model, joint.body[side], own * e); };
-    frame[side] = {axis({1, 0, 0}), axis({0, 1, 0}), axis({0, 0, 1})};
-  }
+  Mat3 frame[2];
+  for (int side = 0; side < 2; ++side)
+    frame[side] = global_frame(model, joint.body[side], joint.marker[side]);
   const Vec3 apart = to_global_point(model, joint.body[1], joint.point[1]) -
                      to_global_point(model, joint.body[0], joint.point[0]);
   const Real angle = std::atan2(dot(frame[0].y, frame[1].x), dot(frame[0].x, frame[1].x));
@@ -210,11 +214,15 @@ Joint build_joint(const DeckTable& table, const Model& model, const Connection& 
                      : spatial             ? norm(ends)
                                            : std::hypot(ends.x, ends.y);
     if (joint.distance == 0) table.fail("name", "the two points of a distance joint must not coincide");
-  } else if (has_points(joint.kind)) {
+  } else if (!spatial) {
     find_common_points(table, model, connection, joint.point);
   }
   if (spatial) {
-    place_markers(table, model, connection, joint);
+    const Ends ends = spatial_ends(table, model, connection, joint);
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (has_common_point(joint.kind)) joint.point[side] = ends[side].point;
+      joint.marker[side] = ends[side].orientation;
+    }
     if (joint.kind == JointKind::screw) read_screw(table, model, joint);
   } else {
     if (joint.kind == JointKind::translational)

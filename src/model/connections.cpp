@@ -152,16 +152,14 @@ Marker marker_at(const Model& model, int body, Vec3 point, const Mat3& frame) {
           quaternion_of(transposed({own(frame.x), own(frame.y), own(frame.z)}))};
 }
 
-Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection) {
+Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection,
+               const Mat3 (&frame)[2]) {
   if (connection.markers) return *connection.markers;
   Vec3 local[2];
   find_common_points(table, model, connection, local);
-  const Mat3 frame = transposed(rotation_matrix(read_orientation(table)));
   Ends ends;
-  for (std::size_t side = 0; side < 2; ++side) {
-    ends[side] = marker_at(model, connection.body[side], {}, frame);
-    ends[side].point = local[side];
-  }
+  for (std::size_t side = 0; side < 2; ++side)
+    ends[side] = {local[side], marker_at(model, connection.body[side], {}, frame[side]).orientation};
   return ends;
 }
 

@@ -46,10 +46,10 @@ Vec3 from_center(const Model& model, int body, Vec3 local);
 Marker marker_at(const Model& model, int body, Vec3 point, const Mat3& frame);
 Mat3 global_frame(const Model& model, int body, const Quaternion& orientation);  // at t = 0, rows x, y, z
 
-// The markers of a connection; without, those of the deck's point or local_points (left out: the body's
-// centre of mass, or midway between the two), the axes as its orientation_keys() say in the global frame at t
-// = 0.
-Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection);
+// The markers of a connection; without, the deck's point or local_points (left out: the body's centre of
+// mass, or midway between the two), and on either body these axes: rows x, y, z at t = 0 in the global frame.
+Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection,
+               const Mat3 (&frame)[2]);
 // The same of the points alone.
 void find_common_points(const DeckTable& table, const Model& model, const Connection& connection,
                         Vec3 local[2]);

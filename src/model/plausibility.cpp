@@ -130,8 +130,8 @@ std::string gyration_beyond_extent(const Model& model) {
   std::size_t first = 0, count = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
-    const bool far =
-        extents[b] > 0 && radius_of_gyration(body.inertia, body.mass) > kMostGyration * extents[b];
+    const bool far = !body.of_solids && extents[b] > 0 &&
+                     radius_of_gyration(body.inertia, body.mass) > kMostGyration * extents[b];
     if (far && ++count == 1) first = b;
   }
   if (count == 0) return "";

@@ -97,6 +97,7 @@ std::vector<std::pair<std::string, Model>> samples() {
     Model force = two_bodies();
     force.applied_forces.push_back(
         {"push", 1, {0.2, -0.3, 0.1}, sine(), sine(), sine(), follows, sine(), sine(), {}});
+    force.applied_forces.back().axes = exponential({0.4, -1.0, 0.3});  // of those that follow
     force.applied_forces[0].fy.value = -1.3;
     all.emplace_back(follows ? "following force" : "force", force);
   }

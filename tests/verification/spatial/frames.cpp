@@ -125,7 +125,25 @@ TEST_CASE("quaternions keep their sign through all turns") {
   CHECK(changes > 10);
 }
 
-// A hanging row of rods with a ball joint to the next: half of it moves as the references' chain does.
+// 6 N along the marker's z axis, which is the body's x and the global y, on 2 kg; in its centre of mass.
+TEST_CASE("a force that follows its body acts along its marker") {
+  const std::string body =
+      "gravity = [0.0, 0.0, 0.0]\n" + kHead.substr(kHead.find("[space]")) +
+      "[[bodies]]\nname = \"a\"\nkind = \"spatial\"\nposition = [0.0, 0.0, 0.0]\nx_axis = [0, 1, 0]\nz_axis "
+      "= [0, 0, "
+      "1]\nmass = 2.0\ninertia_tensor = [0.2, 0.3, 0.4, 0, 0, 0]\ncenter_of_mass = [0.3, 0.0, 0.0]\n"
+      "[[markers]]\nname = \"m\"\nbody = \"a\"\nlocal_point = [0.3, 0.0, 0.0]\nz_axis = [1, 0, 0]\n"
+      "[[applied_forces]]\nname = \"f\"\nmarker = \"m\"\nfz = 6.0\n";
+  const auto moved = [&](const std::string& keys) {
+    MultibodyRun run(model_of(body + keys), 1e-13);
+    run.steps(100, 1e-3);
+    return run.multibody.motion(run.state)[0].position - Vec3{0, 0.3, 0};
+  };
+  CHECK(norm(moved("follows_body = true\n") - Vec3{0, 0.015, 0}) < 1e-12);
+  CHECK(norm(moved("") - Vec3{0, 0, 0.015}) < 1e-12);
+}
+
+// Rods with a ball joint to the next, the first one on the ground.
 TEST_CASE("a row of ten bodies on the markers of a chain moves as on points given one by one") {
   const std::string rods = kHead +
                            "[[bodies]]\nname = \"rod\"\nkind = \"spatial\"\ncount = 10\nspacing = [0.1, 0.0, "
