@@ -54,8 +54,8 @@ MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
     return solid_box(density, {size[0], size[1], size[2]});
   }();
   if (!std::isnormal(own.mass) || !std::isnormal(own.inertia.zz) || !std::isnormal(own.inertia.xx))
-    table.fail("kind", fmt::format("its mass, {:g} kg, or inertia is not a number that can be counted with",
-                                   own.mass));
+    table.fail("kind",
+               fmt::format("its mass, {:g} kg, or its inertia is beyond what a number holds", own.mass));
   return {own.mass, table.vector("offset"),
           turned_tensor(rotation_matrix(read_orientation(table)), own.inertia)};
 }
@@ -89,6 +89,9 @@ void read_mass(const DeckTable& table, const ModelNames& names, Body& body) {
     body.of_solids = true;
     body.mass = whole.mass, body.center_of_mass = whole.center, body.inertia_tensor = whole.inertia;
     body.inertia = spatial ? check_inertia(table, "solids", whole.inertia) : whole.inertia.zz;
+    if (!std::isnormal(body.inertia))
+      table.fail("solids", fmt::format("the moment of inertia, {:g} kg m^2, is beyond what a number holds",
+                                       body.inertia));
     return;
   }
   body.mass = table.real("mass");

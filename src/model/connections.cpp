@@ -69,11 +69,12 @@ Connection marked_pair(const DeckTable& table, const NamedEnds& ends) {
   return connection;
 }
 
-// Of the elements of a row.
+// Of the elements of a row, whose bodies have consecutive numbers.
 void mark_row(const DeckTable& table, const NamedEnds& ends, std::vector<Connection>& connections) {
   for (Connection& connection : connections) {
     for (std::size_t side = 0; side < 2; ++side)
-      if (std::ranges::count(ends[side]->bodies, connection.body[side]) == 0)
+      if (const std::vector<int>& on = ends[side]->bodies;
+          connection.body[side] < on.front() || connection.body[side] > on.back())
         table.fail("markers", fmt::format("\"{}\" must be on {} here", table.texts("markers")[side],
                                           connection.body[side] == kGround ? "the ground" : "the row"));
     connection.markers = markers_of(ends);
@@ -171,9 +172,8 @@ void find_common_points(const DeckTable& table, const Model& model, const Connec
   const Vec3 point = table.has("point") ? table.vector("point") : default_point(model, connection);
   for (std::size_t side = 0; side < 2; ++side) {
     const int body = connection.body[side];
-    local[side] = connection.markers          ? (*connection.markers)[side].point
-                  : table.has("local_points") ? from_center(model, body, table.vectors("local_points")[side])
-                                              : to_body_point(model, body, point);
+    local[side] = table.has("local_points") ? from_center(model, body, table.vectors("local_points")[side])
+                                            : to_body_point(model, body, point);
   }
 }
 

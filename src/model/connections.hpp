@@ -50,7 +50,7 @@ Mat3 global_frame(const Model& model, int body, const Quaternion& orientation); 
 // mass, or midway between the two), and on either body these axes: rows x, y, z at t = 0 in the global frame.
 Ends find_ends(const DeckTable& table, const Model& model, const Connection& connection,
                const Mat3 (&frame)[2]);
-// The same of the points alone.
+// The same of the points alone, without markers.
 void find_common_points(const DeckTable& table, const Model& model, const Connection& connection,
                         Vec3 local[2]);
 // Refuses these keys of the table beside markers.

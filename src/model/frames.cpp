@@ -59,6 +59,7 @@ Quaternion read_orientation(const DeckTable& table, const std::string& prefix) {
 Vec3 read_direction(const DeckTable& table, const std::string& key) {
   const Vec3 along = table.vector(key);
   if (norm(along) == 0) table.fail(key, "must not be 0");
+  if (!std::isnormal(norm(along))) table.fail(key, "its length is beyond what a number holds");
   return (1 / norm(along)) * along;
 }
 
