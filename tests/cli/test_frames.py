@@ -53,8 +53,8 @@ class FramesTest(CommandLineTest):
         self.assertGreater(rows[-1]["bodies/boom/z"], 0.02)
         for row in rows:
             for axis in "xyz":
-                self.assertAlmostEqual(row[f"bodies/boom/origin_{axis}"], 0, delta=1e-12)
-                self.assertAlmostEqual(row[f"bodies/boom/origin_v{axis}"], 0, delta=1e-12)
+                self.assertAlmostEqual(row[f"bodies/boom/origin_{axis}"], 0, delta=1e-10)
+                self.assertAlmostEqual(row[f"bodies/boom/origin_v{axis}"], 0, delta=1e-6)  # positions meet, not rates
 
     def test_reactions_along_the_marker_are_those_along_the_space(self):
         """The stem's axis z is that of the rod, which the orientation of the rod says."""
