@@ -178,6 +178,9 @@ TEST_CASE("markers that do not meet are refused with their gap") {
       "one of them by half a turn"));
   CHECK(contains(model_error(marked(along_x, "z_axis = [0, -1, 0.01]\n") + joint("revolute")),
                  "they are off by 0.572939 degrees"));
+  CHECK(contains(model_error(marked(along_x, "z_axis = [0, 1, 0]\n") +
+                             joint("screw", "markers = [\"m\", \"n\"]\nlead = 0.1\n")),
+                 "must point in the same direction"));
   CHECK(contains(model_error(marked("", "") + joint("fixed")),
                  "axes of the two markers must be the same at t = 0; "
                  "they are off by 90 degrees"));

@@ -125,6 +125,22 @@ TEST_CASE("quaternions keep their sign through all turns") {
   CHECK(changes > 10);
 }
 
+// n is turned by 0.5 rad from m about the axis of both.
+TEST_CASE("the angle of a joint by markers is that between their x axes") {
+  Model model = model_of(
+      kHead +
+      "[[bodies]]\nname = \"a\"\nkind = \"spatial\"\nposition = [0.0, 0.0, 0.0]\nmass = 2.0\ninertia_tensor "
+      "= "
+      "[0.2, 0.3, 0.4, 0, 0, 0]\nbody_angular_velocity = [0.0, 0.0, 2.0]\n[[markers]]\nname = \"m\"\nbody = "
+      "\"ground\"\n[[markers]]\nname = \"n\"\nbody = \"a\"\nrotation_axis = [0, 0, 1]\nrotation_angle = "
+      "0.5\n[[joints]]\nname = \"j\"\ntype = \"revolute\"\nmarkers = [\"m\", \"n\"]\n");
+  model.output.history_coordinates = 1;
+  MultibodyRun run(model, 1e-13);
+  CHECK(std::abs(run.multibody.joint_readings(run.state, 0).front().value - 0.5) < 1e-15);
+  run.steps(100, 1e-3);
+  CHECK(std::abs(run.multibody.joint_readings(run.state, run.time).front().value - 0.7) < 1e-12);
+}
+
 // 6 N along the marker's z axis, which is the body's x and the global y, on 2 kg; in its centre of mass.
 TEST_CASE("a force that follows its body acts along its marker") {
   const std::string body =
