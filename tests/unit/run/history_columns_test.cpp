@@ -37,6 +37,7 @@ HistorySample distinct_sample() {
   s.contacts = {{{32, 33, 34}, {35, 36, 37}, 38}, {{39, 40, 41}, {42, 43, 44}, 45}};
   s.bodies = {{}, {{46, 47, 48}, {49, 51, 52}, 53, 54}};
   s.traced = {{8, {55, 56, 57}, {58, 59, 60}}};
+  s.coordinates = {{"nut", JointCoordinate::angle, 71, 72}, {"nut", JointCoordinate::displacement, 73, 74}};
   return s;
 }
 
@@ -45,7 +46,8 @@ HistorySample distinct_sample() {
 TEST_CASE("a column's value is that of its name") {
   const HistorySample sample = distinct_sample();
   std::map<std::string, Real> found;
-  for (const RecordedColumn& column : history_columns(recorded_model(), sample.reactions)) {
+  for (const RecordedColumn& column :
+       history_columns(recorded_model(), sample.reactions, {}, sample.coordinates)) {
     const std::string path = column.head.group + "/" + column.head.name;
     CAPTURE(path);
     CHECK(found.emplace(path, column.value(sample)).second);
@@ -83,6 +85,10 @@ TEST_CASE("a column's value is that of its name") {
                                              {"reactions/pin/fx", 29},
                                              {"reactions/pin/fy", 30},
                                              {"reactions/pin/torque", 31},
+                                             {"coordinates/nut/angle", 71},
+                                             {"coordinates/nut/angle_rate", 72},
+                                             {"coordinates/nut/displacement", 73},
+                                             {"coordinates/nut/displacement_rate", 74},
                                              {"contacts/arm/fx", 32},
                                              {"contacts/arm/fy", 33},
                                              {"contacts/arm/fz", 34},

@@ -117,6 +117,28 @@ TEST_CASE("the hash is of every field that changes in time, and of no other") {
   });
 }
 
+TEST_CASE("angles of joints in space stand by themselves in a checkpoint, and their turns in the hash") {
+  State state = awkward_state();
+  const State without = state;
+  state.bodies.counted_angles = 2;
+  for (const Real angle : {0.5, -3.1}) state.bodies.position.push_back(angle);
+  const Checkpoint packed = pack(state);
+  CHECK(packed.reals.at("bodies/position").size() == without.bodies.position.size());
+  CHECK(packed.reals.at("bodies/counted_angles") == std::vector<Real>{0.5, -3.1});
+  const State returned = unpack(packed);
+  CHECK(same_bits(returned.bodies.position, state.bodies.position));
+  CHECK(returned.bodies.counted_angles == 2);
+  CHECK(pack(without).reals.count("bodies/counted_angles") == 0);
+  CHECK(state_hash(state, true) == state_hash(without, true));  // none has been round
+  state.bodies.position.back() -= 2 * M_PI;
+  const std::uint64_t once = state_hash(state, true);
+  CHECK(once != state_hash(without, true));
+  state.bodies.position.back() -= 2 * M_PI;
+  CHECK(state_hash(state, true) != once);
+  state.bodies.position.back() = std::numeric_limits<Real>::infinity();
+  CHECK_THROWS_AS(check_state(state, "some.h5", 0, {}), IoError);
+}
+
 TEST_CASE("the state of particles that do not rotate has nothing of rotation") {
   State state = awkward_state();
   state.there = {};
