@@ -134,8 +134,7 @@ const TableKeys& joint_keys() {
            "Spherical: the two points coincide. Cylindrical: the second body's point stays on the first "
            "body's axis, "
            "the axes stay parallel. Screw: the same, and the displacement along the axis grows by lead in "
-           "every "
-           "turn. Universal: the points coincide, an arm of the first body (axis) stays "
+           "every turn. Universal: the points coincide, an arm of the first body (axis) stays "
            "perpendicular to one of the second (second_axis). Constant-velocity: the points coincide, the "
            "bodies turn "
            "equally fast about axis and second_axis. Planar: the second body's point stays in the plane "
@@ -175,8 +174,7 @@ const TableKeys& joint_keys() {
            .only_for({JointKind::screw})
            .required()
            .about("Displacement of the second body along the axis in a turn about it: above 0 a right-handed "
-                  "screw, "
-                  "below 0 a left-handed one."),
+                  "screw, below 0 a left-handed one."),
        real("distance", "m")
            .only_for({JointKind::distance})
            .above(0)
@@ -197,8 +195,7 @@ const TableKeys& driver_keys() {
            .about(
                "Function of time of the coordinate: the angle of the second body minus that of the first (in "
                "space about the axis, 0 where the joint was placed by point and axis, and counted on over "
-               "whole "
-               "turns), the displacement along the axis, or the length of a distance joint.")},
+               "whole turns), the displacement along the axis, or the length of a distance joint.")},
       ""};
   return keys;
 }

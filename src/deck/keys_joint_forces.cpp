@@ -9,11 +9,9 @@ namespace {
 Key joint_key() {
   return text("joint").required().about(
       "The joint (revolute, translational, cylindrical or screw), or a row of joints: one for each, named "
-      "NAME.0, "
-      "NAME.1, ... Its coordinate c: the angle of its second body minus that of the first [rad], in space "
-      "about the "
-      "axis and counted on over whole turns, or the displacement along its axis [m]. An effort above 0 "
-      "pushes c up.");
+      "NAME.0, NAME.1, ... Its coordinate c: the angle of its second body minus that of the first [rad], in "
+      "space about the axis and counted on over whole turns, or the displacement along its axis [m]. An "
+      "effort above 0 pushes c up.");
 }
 
 }  // namespace
@@ -112,8 +110,8 @@ const TableKeys& coupler_keys() {
            "radius c1; "
            "differential, the carrier last, c1 + c2 - 2 c3; sum, the sum of coefficients times coordinates."),
        texts("joints").required().about("The joints (revolute, translational, cylindrical or screw); gears, "
-                                        "belts, differentials and pinions "
-                                        "take their angles, a rack its displacement."),
+                                        "belts, differentials and pinions take their angles, a rack its "
+                                        "displacement."),
        texts("coordinates")
            .only_for({Kind::sum})
            .left_out("of each joint the only one, of a screw the angle")

@@ -7,14 +7,12 @@ namespace scree {
 
 namespace {
 
-// theta    = atan2(s, c), s = y_1.x_2, c = x_1.x_2: the rotation of the second frame against the first about
-// the
-//            z that they share
-// f_c = -s / (s^2 + c^2), f_s = c / (s^2 + c^2), and their derivatives f_cc = -f_ss = 2 s c / (s^2 + c^2)^2,
-// f_cs = (s^2 - c^2) / (s^2 + c^2)^2: exact also where the axes are not yet parallel, as in Newton's
-// iterations. gradient = f_c c_q + f_s s_q; with axes that are parallel 0, -u, 0, A_2^T A_1 u, u = z_1 in the
-// first body Hessian  = f_c c_qq + f_s s_qq + f_cc c_q c_q^T + f_ss s_q s_q^T + f_cs (c_q s_q^T + s_q c_q^T)
+// theta    = atan2(s, c), s = y_1.x_2, c = x_1.x_2: the rotation of frame 2 against frame 1 about their z
+// gradient = f_c c_q + f_s s_q; where the axes are parallel 0, -u, 0, A_2^T A_1 u, u = z_1 in body 1
+// Hessian  = f_c c_qq + f_s s_qq + f_cc c_q c_q^T + f_ss s_q s_q^T + f_cs (c_q s_q^T + s_q c_q^T)
 // second   = f_c c''_0 + f_s s''_0 + f_cc c'^2 + f_ss s'^2 + 2 f_cs c' s'
+// with f_c = -s / r, f_s = c / r, f_cc = -f_ss = 2 s c / r^2, f_cs = (s^2 - c^2) / r^2, r = s^2 + c^2: exact
+// also where the axes are not parallel yet, in Newton's iterations.
 class TwistMeasure final : public Measure {
  public:
   TwistMeasure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint)
