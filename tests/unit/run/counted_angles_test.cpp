@@ -1,0 +1,103 @@
+// Angles of joints in space in checkpoints, and in those of a version that did not count their turns.
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "run/restart.hpp"
+#include "run/simulation.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/petsc_run.hpp"
+#include "unit/output/scratch.hpp"
+
+namespace scree {
+
+namespace {
+
+// A wheel turns at 100 rad/s.
+const std::string kDeck = R"(
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+[time]
+end = 0.02
+control = "fixed"
+step = 1e-3
+[integrator]
+hht_alpha = -0.1
+[[bodies]]
+name = "wheel"
+kind = "spatial"
+position = [0.0, 0.0, 0.0]
+mass = 1.0
+inertia_tensor = [0.01, 0.02, 0.01, 0.0, 0.0, 0.0]
+body_angular_velocity = [0.0, 100.0, 0.0]
+[[joints]]
+name = "axle"
+type = "revolute"
+bodies = ["ground", "wheel"]
+axis = [0.0, 1.0, 0.0]
+)";
+
+struct Case {
+  explicit Case(const std::vector<std::string>& overrides = {})
+      : deck(parse_deck(kDeck, "deck.toml", overrides)) {
+    petsc();
+    model = build_model(deck, log);
+    options.backend = "cpu", options.overwrite = true;
+    options.resolved_deck = deck.resolved_text(), options.fingerprint = deck.fingerprint();
+  }
+  bool run(const std::string& directory, const std::string& restart = "") {
+    options.output_directory = directory, options.restart = restart;
+    return run_simulation(model, options, log) == ExitCode::done;
+  }
+  Restart read(const std::string& path) {
+    options.restart = path;
+    return read_restart(model, options, log);
+  }
+  std::string refusal(const std::string& path) {
+    try {
+      read(path);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  Log log{true};
+  Deck deck;
+  Model model;
+  RunOptions options;
+};
+
+}  // namespace
+
+TEST_CASE("a checkpoint without counted angles goes on, and counts from its pose") {
+  const ScratchDirectory folder;
+  Case old;
+  REQUIRE(old.run(folder.path()));
+  Checkpoint checkpoint = read_checkpoint(folder / "checkpoint_end.h5");
+  const std::vector<Real> counted = checkpoint.reals.at("bodies/counted_angles");
+  REQUIRE(counted.size() == 1);
+  CHECK(counted[0] == Approx(2).epsilon(1e-12));
+  checkpoint.reals.erase("bodies/counted_angles");
+  write_checkpoint(folder / "old.h5", checkpoint);
+  const MultibodyState read = old.read(folder / "old.h5").state.bodies;
+  CHECK(read.counted_angles == 1);
+  CHECK(read.position.size() == 8);
+  const ScratchDirectory whole, parts;
+  Case longer({"time.end=0.03"});
+  REQUIRE(longer.run(whole.path()));
+  REQUIRE(longer.run(parts.path(), folder / "old.h5"));
+  const auto last = [](const ScratchDirectory& results) {
+    return read_checkpoint(results / "checkpoint_end.h5").reals.at("bodies/counted_angles");
+  };
+  CHECK(last(parts) == last(whole));
+  checkpoint.reals["bodies/counted_angles"] = {1, 2};
+  write_checkpoint(folder / "old.h5", checkpoint);
+  CHECK(contains(old.refusal(folder / "old.h5"),
+                 "/reals/bodies/counted_angles has 2 values; the deck's model has 1"));
+}
+
+}  // namespace scree
