@@ -16,7 +16,10 @@ KktMatrix record_pattern(MechanicalSystem& system, const SystemInstant& at, Syst
   terms.constraint.assign(count(system.constraints()), 0);
   system.evaluate(at, terms);
   system.differentiate(at, {still, still, multipliers}, derivatives);
-  return KktMatrix(terms, derivatives, system.coordinates(), system.constraints());
+  // Systems without rotations in space keep the order of elimination that they have always had, and their
+  // bits.
+  const bool turns_in_space = system.positions() != system.coordinates();
+  return KktMatrix(terms, derivatives, system.coordinates(), system.constraints(), turns_in_space);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ void scatter(const SparseTerm& term, const std::vector<int>& slots, Real weight,
 }  // namespace
 
 KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates,
-                     int constraints) {
+                     int constraints, bool knows_diagonals) {
   Columns columns(static_cast<std::size_t>(coordinates + constraints));
   for (const SparseTerm* term : {&terms.mass, &derivatives.stiffness, &derivatives.damping,
                                  &derivatives.inertia_stiffness, &derivatives.tangent_inertia}) {
@@ -53,6 +53,7 @@ KktMatrix::KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivati
     columns[static_cast<std::size_t>(row)].push_back(row);
   }
   pattern_ = compress(columns);
+  if (knows_diagonals) pattern_.first_weak_diagonal = coordinates;
   mass_ = slots_of(terms.mass, 0, false);
   stiffness_ = slots_of(derivatives.stiffness, 0, false);
   damping_ = slots_of(derivatives.damping, 0, false);

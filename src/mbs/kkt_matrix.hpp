@@ -13,6 +13,8 @@ namespace scree {
 struct SparsePattern {
   std::vector<int> row_start;  // [rows + 1]
   std::vector<int> column;     // [entries]
+  // From this row on diagonal entries are 0, or all but 0, until others are eliminated; -1: not known.
+  int first_weak_diagonal = -1;
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
 };
@@ -26,7 +28,9 @@ struct KktWeights {
 class KktMatrix {
  public:
   // The terms must have been evaluated once, so that their patterns are known.
-  KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates, int constraints);
+  // knows_diagonals: the pattern says which are weak.
+  KktMatrix(const SystemTerms& terms, const SystemDerivatives& derivatives, int coordinates, int constraints,
+            bool knows_diagonals);
 
   const SparsePattern& pattern() const { return pattern_; }
   // compliance: C's diagonal [constraints], or empty: C = 0. values: [entries of the pattern]. Cost is linear

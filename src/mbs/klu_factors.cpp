@@ -1,5 +1,6 @@
 #include "mbs/klu_factors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -9,6 +10,12 @@ namespace {
 
 // Quotients are rounded: as near as this to a limit klu_factor decides.
 constexpr double kMargin = 1e-12;
+// KLU's numbers of orderings.
+constexpr int kAmd = 0, kColamd = 1;
+// However the factors of so few rows fill, it costs little.
+constexpr int kFewRows = 128;
+// Share of the weak diagonals; one here and there does no harm.
+constexpr double kBareShare = 1.0 / 16;
 
 // Column k of L in one of KLU's blocks, without its diagonal of ones: row indices, then values from the next
 // multiple of eight bytes (klu_internal.h).
@@ -36,11 +43,35 @@ void for_each_column(const klu_symbolic& symbolic, const Visit& visit) {
 
 }  // namespace
 
-bool KluFactors::analyze(const SparsePattern& pattern) {
+bool KluFactors::analyze(const SparsePattern& pattern, bool ordering_given) {
   pattern_ = pattern;
   numeric_.reset();
+  if (!order()) return false;
+  if (ordering_given || common_.ordering != kAmd || pattern.rows() < kFewRows || !needs_other_pivots())
+    return true;
+  common_.ordering = kColamd;
+  return order();
+}
+
+bool KluFactors::order() {
   symbolic_.reset(klu_analyze(pattern_.rows(), pattern_.row_start.data(), pattern_.column.data(), &common_));
   return symbolic_ != nullptr;
+}
+
+// Whether the order has many a weak diagonal before all other entries of its row, when nothing has been added
+// to it.
+bool KluFactors::needs_other_pivots() const {
+  if (pattern_.first_weak_diagonal < 0) return false;
+  std::vector<int> place(static_cast<std::size_t>(pattern_.rows()));
+  for (int k = 0; k < pattern_.rows(); ++k) place[static_cast<std::size_t>(symbolic_->Q[k])] = k;
+  const auto place_of = [&](int row) { return place[static_cast<std::size_t>(row)]; };
+  int bare = 0;
+  for (int row = pattern_.first_weak_diagonal; row < pattern_.rows(); ++row) {
+    const auto begin = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row)],
+               end = pattern_.column.begin() + pattern_.row_start[static_cast<std::size_t>(row) + 1];
+    bare += std::none_of(begin, end, [&](int column) { return place_of(column) < place_of(row); });
+  }
+  return bare > kBareShare * (pattern_.rows() - pattern_.first_weak_diagonal);
 }
 
 // KLU wants columns and gets rows: what it factors is the transpose.

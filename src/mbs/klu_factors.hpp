@@ -28,9 +28,12 @@ class KluFactors {
   // KLU's ordering, scaling and pivot tolerance are set here, before analyze().
   klu_common& options() { return common_; }
 
-  // Orders the rows and columns of matrices with this pattern; false if they cannot be ordered. options()
-  // stay as they are from here on.
-  bool analyze(const SparsePattern& pattern);
+  // Orders the rows and columns of matrices with this pattern; false if they cannot be ordered. The order is
+  // KLU's by AMD where that is not given otherwise and its pivots can be on the diagonal, else that by
+  // COLAMD: AMD counts on the diagonal, and where its order has a weak one before all else in its row, pivots
+  // are taken from elsewhere and the factors fill with entries that nothing has counted. options() stay as
+  // they are from here on.
+  bool analyze(const SparsePattern& pattern, bool ordering_given = false);
   // values: [entries of the pattern]. After `singular` or `out_of_memory` there are no factors.
   Result factor(std::span<const Real> values);
   // Solves in place, with the matrix or its transpose; vector: [rows]. Needs factors. False where KLU fails.
@@ -44,6 +47,8 @@ class KluFactors {
     void operator()(klu_numeric* numeric) const { klu_free_numeric(&numeric, common); }
   };
 
+  bool order();
+  bool needs_other_pivots() const;
   Result factor_anew(double* values);
   bool refactor(double* values);
   void remember_pivots();

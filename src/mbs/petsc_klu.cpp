@@ -16,9 +16,12 @@ PetscErrorCode factors_of(Mat factor, KluFactors** factors) {
   PetscFunctionReturn(kSuccess);
 }
 
+// The name under which a matrix has its pattern.
+constexpr const char* kPattern = "scree_pattern";
+
 // KLU's numbers for the words of PETSc's options; a scaling of -1 is none and no check of the pattern,
 // either.
-PetscErrorCode read_options(const char* prefix, klu_common& options) {
+PetscErrorCode read_options(const char* prefix, klu_common& options, PetscBool* ordered) {
   const char* const orderings[] = {"AMD", "COLAMD"};
   const char* const scalings[] = {"NONE", "SUM", "MAX"};
   PetscInt ordering = 0, scaling = 0, btf = options.btf;
@@ -26,7 +29,7 @@ PetscErrorCode read_options(const char* prefix, klu_common& options) {
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetReal(nullptr, prefix, "-mat_klu_pivot_tol", &tolerance, nullptr));
   PetscCall(PetscOptionsGetInt(nullptr, prefix, "-mat_klu_use_btf", &btf, nullptr));
-  PetscCall(PetscOptionsGetEList(nullptr, prefix, "-mat_klu_ordering", orderings, 2, &ordering, nullptr));
+  PetscCall(PetscOptionsGetEList(nullptr, prefix, "-mat_klu_ordering", orderings, 2, &ordering, ordered));
   PetscCall(PetscOptionsGetEList(nullptr, prefix, "-mat_klu_row_scale", scalings, 3, &scaling, nullptr));
   options.tol = tolerance;
   options.btf = static_cast<int>(btf);
@@ -40,16 +43,25 @@ PetscErrorCode factor_symbolic(Mat factor, Mat matrix, IS, IS, const MatFactorIn
   const char* prefix = nullptr;
   const PetscInt *row_start = nullptr, *column = nullptr;
   PetscInt rows = 0;
-  PetscBool done = PETSC_FALSE;
+  PetscBool done = PETSC_FALSE, ordered = PETSC_FALSE;
+  PetscObject attached = nullptr;
+  void* given = nullptr;
   PetscFunctionBegin;
   PetscCall(factors_of(factor, &factors));
   PetscCall(MatGetOptionsPrefix(factor, &prefix));
-  PetscCall(read_options(prefix, factors->options()));
+  PetscCall(read_options(prefix, factors->options(), &ordered));
+  PetscCall(PetscObjectQuery(reinterpret_cast<PetscObject>(matrix), kPattern, &attached));
+  if (attached != nullptr)
+    PetscCall(PetscContainerGetPointer(reinterpret_cast<PetscContainer>(attached), &given));
   PetscCall(MatGetRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &rows, &row_start, &column, &done));
   PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_SUP, "KLU: the matrix is not one of compressed rows");
-  const SparsePattern pattern{{row_start, row_start + rows + 1}, {column, column + row_start[rows]}};
+  const SparsePattern pattern{
+      {row_start, row_start + rows + 1},
+      {column, column + row_start[rows]},
+      given == nullptr ? -1 : static_cast<const SparsePattern*>(given)->first_weak_diagonal};
   PetscCall(MatRestoreRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &rows, &row_start, &column, &done));
-  PetscCheck(factors->analyze(pattern), PETSC_COMM_SELF, PETSC_ERR_LIB, "KLU finds no ordering");
+  PetscCheck(factors->analyze(pattern, ordered == PETSC_TRUE), PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "KLU finds no ordering");
   PetscFunctionReturn(kSuccess);
 }
 
@@ -128,6 +140,17 @@ PetscErrorCode make_factor(Mat matrix, MatFactorType type, Mat* factor) {
 }
 
 }  // namespace
+
+PetscErrorCode attach_pattern(Mat matrix, const SparsePattern& pattern) {
+  PetscContainer container = nullptr;
+  PetscFunctionBegin;
+  PetscCall(PetscContainerCreate(PETSC_COMM_SELF, &container));
+  PetscCall(PetscContainerSetPointer(container, const_cast<SparsePattern*>(&pattern)));
+  PetscCall(PetscObjectCompose(reinterpret_cast<PetscObject>(matrix), kPattern,
+                               reinterpret_cast<PetscObject>(container)));
+  PetscCall(PetscContainerDestroy(&container));  // the matrix has it now
+  PetscFunctionReturn(kSuccess);
+}
 
 PetscErrorCode register_klu_refactor() {
   PetscFunctionBegin;

@@ -177,6 +177,9 @@ void PetscSolver::Impl::create() {
   // PETSc works in these arrays; nothing is copied.
   check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, pattern.row_start.data(), pattern.column.data(),
                                   values.data(), &matrix));
+#if SCREE_REFACTORS
+  check(attach_pattern(matrix, pattern));
+#endif
   check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, rhs.data(), &rhs_vector));
   check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, solution.data(), &solution_vector));
   check(KSPCreate(PETSC_COMM_SELF, &solver));

@@ -50,16 +50,20 @@ class SpatialBodies final : public RigidBodies {
   SpatialBodies(const Model& model, const BodyLayout& layout) : gravity_(model.gravity) {
     for (int b = 0; b < layout.bodies(); ++b) {
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
-      if (body.kind == BodyKind::spatial)
-        bodies_.push_back({body, {b, layout.position(b), layout.column(b)}, full(body.inertia_tensor)});
+      if (body.kind != BodyKind::spatial) continue;
+      bodies_.push_back({{b, layout.position(b), layout.column(b)},
+                         body.mass,
+                         full(body.inertia_tensor),
+                         !body.shapes.empty()});
+      given_.push_back(body);
     }
   }
 
   void start(std::vector<Real>& position, std::vector<Real>& velocity) const override {
-    for (const Placed& b : bodies_) {
-      Real *q = b.at.in(position), *v = b.at.of(velocity);
-      write(b.body.position, q), write(b.body.orientation, q + 3);
-      write(b.body.velocity, v), write(b.body.spin, v + 3);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      Real *q = bodies_[i].at.in(position), *v = bodies_[i].at.of(velocity);
+      write(given_[i].position, q), write(given_[i].orientation, q + 3);
+      write(given_[i].velocity, v), write(given_[i].spin, v + 3);
     }
   }
   void set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
@@ -80,7 +84,7 @@ class SpatialBodies final : public RigidBodies {
         throw SimulationError(
             fmt::format("mbs_correct, rank 0: body '{}' (id {}) turns by more than half a turn in a step; "
                         "time.step is too long",
-                        b.body.name, b.at.body));
+                        given_[static_cast<std::size_t>(&b - bodies_.data())].name, b.at.body));
       Real* to = b.at.in(position);
       write(vec3(from) + vec3(u), to);
       write(normalized(quaternion(from + 3) * exponential(turn)), to + 3);
@@ -105,22 +109,22 @@ class SpatialBodies final : public RigidBodies {
   }
   void add_mass(SparseTerm& mass) const override {
     for (const Placed& b : bodies_) {
-      for (int k = 0; k < 3; ++k) mass.add(b.at.column + k, b.at.column + k, b.body.mass);
+      for (int k = 0; k < 3; ++k) mass.add(b.at.column + k, b.at.column + k, b.mass);
       add_block(mass, b.turning(), b.turning(), b.inertia);
     }
   }
   void add_inverse_mass(SparseTerm& inverse) const override {
     for (const Placed& b : bodies_) {
-      for (int k = 0; k < 3; ++k) inverse.add(b.at.column + k, b.at.column + k, 1 / b.body.mass);
+      for (int k = 0; k < 3; ++k) inverse.add(b.at.column + k, b.at.column + k, 1 / b.mass);
       add_block(inverse, b.turning(), b.turning(), scree::inverse(b.inertia));
     }
   }
   void set_weight(std::vector<Real>& force) const override {
-    for (const Placed& b : bodies_) write(b.body.mass * gravity_, b.at.of(force));
+    for (const Placed& b : bodies_) write(b.mass * gravity_, b.at.of(force));
   }
   Real weight_scale(Real length) const override {
     Real largest = 0;
-    for (const Placed& b : bodies_) largest = std::max(largest, length * b.body.mass * norm(gravity_));
+    for (const Placed& b : bodies_) largest = std::max(largest, length * b.mass * norm(gravity_));
     return largest;
   }
 
@@ -174,7 +178,7 @@ class SpatialBodies final : public RigidBodies {
                                SystemDerivatives& derivatives) const override {
     static const WrenchStiffness none;
     for (const Placed& b : bodies_) {
-      if (b.body.shapes.empty()) continue;
+      if (!b.has_shapes) continue;
       const SpatialPose& pose = poses.spatial[b.at.body];
       const auto found = touched_.find(b.at.body);
       const WrenchStiffness& contact = found == touched_.end() ? none : found->second;
@@ -217,7 +221,7 @@ class SpatialBodies final : public RigidBodies {
     for (const Placed& b : bodies_) {
       const Real *q0 = b.at.in(start.position), *q1 = b.at.in(end.position), *v0 = b.at.of(start.velocity),
                  *v1 = b.at.of(end.velocity), *f0 = b.at.of(start.applied), *f1 = b.at.of(end.applied);
-      loss += integrator_loss(b.body.mass, vec3(q1) - vec3(q0), vec3(v0), vec3(v1), vec3(f0), vec3(f1));
+      loss += integrator_loss(b.mass, vec3(q1) - vec3(q0), vec3(v0), vec3(v1), vec3(f0), vec3(f1));
       const Vec3 turn = rotation_vector(conjugate(quaternion(q0 + 3)) * quaternion(q1 + 3));
       const Vec3 w0 = vec3(v0 + 3), w1 = vec3(v1 + 3);
       loss += rotation_loss(b.inertia, turn, w0, w1, vec3(f0 + 3) - gyroscopic_torque(b.inertia, w0),
@@ -227,8 +231,8 @@ class SpatialBodies final : public RigidBodies {
   void add_energies(const MultibodyState& state, MultibodyEnergies& energies) const override {
     for (const Placed& b : bodies_) {
       const Real* v = b.at.of(state.velocity);
-      energies.kinetic += kinetic_energy(b.body.mass, vec3(v)) + rotational_energy(b.inertia, vec3(v + 3));
-      energies.gravitational += gravitational_energy(b.body.mass, gravity_, vec3(b.at.in(state.position)));
+      energies.kinetic += kinetic_energy(b.mass, vec3(v)) + rotational_energy(b.inertia, vec3(v + 3));
+      energies.gravitational += gravitational_energy(b.mass, gravity_, vec3(b.at.in(state.position)));
     }
   }
 
@@ -251,16 +255,19 @@ class SpatialBodies final : public RigidBodies {
   }
 
  private:
+  // Of a body, what every step walks along: the model's holds names and shapes, too.
   struct Placed {
-    Body body;
     BodyPlace at;
+    Real mass;
     Mat3 inertia;  // J
+    bool has_shapes;
 
     int turning() const { return at.column + 3; }
   };
 
   Vec3 gravity_;
   std::vector<Placed> bodies_;
+  std::vector<Body> given_;                 // the same, as the model has them
   std::map<int, WrenchStiffness> touched_;  // by body
 };
 

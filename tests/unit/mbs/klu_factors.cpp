@@ -111,6 +111,39 @@ TEST_CASE("kept pivots give the bits of pivots chosen anew, and are given up whe
   }
 }
 
+// Rows whose diagonal is zero and that touch few columns are the first that AMD eliminates.
+TEST_CASE("an order that counts on zero diagonals is given up for one that does not") {
+  constexpr int kLinks = 200;
+  SparsePattern pattern;
+  std::vector<std::vector<int>> columns(3 * kLinks);
+  const auto connect = [&](int row, int column) {
+    columns[static_cast<std::size_t>(row)].push_back(column);
+    columns[static_cast<std::size_t>(column)].push_back(row);
+  };
+  for (int i = 0; i < kLinks; ++i) {  // coordinates i and kLinks + i, a constraint on the first of neighbours
+    for (const int row : {i, kLinks + i, 2 * kLinks + i})
+      columns[static_cast<std::size_t>(row)].push_back(row);
+    connect(i, kLinks + i);
+    connect(2 * kLinks + i, i);
+    if (i > 0) connect(2 * kLinks + i, i - 1), connect(i, i - 1), connect(kLinks + i, kLinks + i - 1);
+  }
+  pattern.row_start.push_back(0);
+  for (std::vector<int>& row : columns) {
+    std::sort(row.begin(), row.end());
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.row_start.push_back(static_cast<int>(pattern.column.size()));
+  }
+  const auto ordering = [&](int first_weak, bool given) {
+    pattern.first_weak_diagonal = first_weak;
+    KluFactors factors;
+    REQUIRE(factors.analyze(pattern, given));
+    return factors.options().ordering;
+  };
+  CHECK(ordering(2 * kLinks, false) == 1);  // COLAMD
+  CHECK(ordering(2 * kLinks, true) == 0);
+  CHECK(ordering(-1, false) == 0);
+}
+
 TEST_CASE("a matrix that cannot be factored leaves no trace in the next one's factors") {
   const SparsePattern pattern = chain_pattern(3);
   const std::vector<Real> sound = chain_values(pattern, {0.1, 0.2, 0.3}, 1e-3, 0.05);
