@@ -144,16 +144,20 @@ bool KluFactors::pivots_stay() const {
   for_each_column(*symbolic_, [&](int block, int first, int k) {
     const Column column = column_of_l(*numeric_, block, k);
     const int diagonal = diagonal_[static_cast<std::size_t>(k)];
+    if (diagonal == k) {  // most columns: without branches
+      bool small = true;
+      for (std::size_t i = 0; i < column.row.size(); ++i) small &= std::abs(column.value[i]) <= most;
+      stay &= small;
+      entry += column.row.size();
+      while (tie < ties_.size() && ties_[tie] < entry) ++tie;
+      return;
+    }
     for (std::size_t i = 0; i < column.row.size(); ++i, ++entry) {
       const double size = std::abs(column.value[i]);
       const bool was_tie = tie < ties_.size() && ties_[tie] == entry;
       tie += was_tie;
-      if (diagonal == k) {
-        stay = stay && size <= most;
-      } else {
-        stay = stay && (size < 1 || (size == 1 && was_tie)) &&
-               (column.row[i] + first != diagonal || size <= least);
-      }
+      stay = stay && (size < 1 || (size == 1 && was_tie)) &&
+             (column.row[i] + first != diagonal || size <= least);
     }
   });
   return stay;

@@ -25,11 +25,10 @@ std::array<Real, 9> planar_block(const std::array<Real, 21>& packed) {
   return block;
 }
 
-BodyMotion body_motion(const Real* q, const Real* v, Real z) {
-  BodyMotion motion;
+// What is of bodies in space stays as it is.
+void write_motion(const Real* q, const Real* v, Real z, BodyMotion& motion) {
   motion.position = {q[0], q[1], z}, motion.velocity = {v[0], v[1], 0};
   motion.angle = q[2], motion.angular_velocity = v[2];
-  return motion;
 }
 
 class PlanarBodies final : public RigidBodies {
@@ -121,7 +120,7 @@ class PlanarBodies final : public RigidBodies {
       f[0] += w.force.x;
       f[1] += w.force.y;
       f[2] += w.torque.z;
-      const std::array<Real, 9>& block = contact_[static_cast<std::size_t>(b.at.body)].stiffness;
+      const std::array<Real, 9>& block = contact_of(b.at.body).stiffness;
       const Real stiffness = std::max(block[0], block[4]);
       largest = std::max(largest, length * std::max(norm(w.force), kElasticFloor * stiffness * length));
     }
@@ -132,7 +131,7 @@ class PlanarBodies final : public RigidBodies {
     for (const Placed& b : bodies_) {
       if (!b.body.has_shapes) continue;
       const int coordinate[3] = {b.at.column, b.at.column + 1, b.at.column + 2};
-      const ContactBlock& block = contact_[static_cast<std::size_t>(b.at.body)];
+      const ContactBlock& block = contact_of(b.at.body);
       derivatives.stiffness.add_block(
           coordinate, [&](std::size_t i, std::size_t j) { return block.stiffness[3 * i + j]; });
       derivatives.damping.add_block(coordinate,
@@ -174,8 +173,8 @@ class PlanarBodies final : public RigidBodies {
   void motion(const std::vector<Real>& position, const std::vector<Real>& velocity,
               std::vector<BodyMotion>& out) const override {
     for (const Placed& b : bodies_)
-      out[static_cast<std::size_t>(b.at.body)] =
-          body_motion(b.at.in(position), b.at.of(velocity), b.body.position.z);
+      write_motion(b.at.in(position), b.at.of(velocity), b.body.position.z,
+                   out[static_cast<std::size_t>(b.at.body)]);
   }
   void motion_after(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const override {
     for (const Placed& b : bodies_) {
@@ -186,7 +185,7 @@ class PlanarBodies final : public RigidBodies {
         q[k] = q0[k] + tau * v0[k] + tau * tau / 2 * a0[k];
         v[k] = v0[k] + tau * a0[k];
       }
-      out[static_cast<std::size_t>(b.at.body)] = body_motion(q, v, b.body.position.z);
+      write_motion(q, v, b.body.position.z, out[static_cast<std::size_t>(b.at.body)]);
     }
   }
 
@@ -209,6 +208,11 @@ class PlanarBodies final : public RigidBodies {
     std::array<Real, 9> stiffness{}, damping{};
   };
 
+  // One block for all where nothing touches any: the walk along the bodies then leaves the others alone.
+  const ContactBlock& contact_of(int body) const {
+    static const ContactBlock none;
+    return touched_.empty() ? none : contact_[static_cast<std::size_t>(body)];
+  }
   static Vec3 shift(const Real* v) { return {v[0], v[1], 0}; }
   static Vec3 turn(const Real* v) { return {0, 0, v[2]}; }
 

@@ -23,11 +23,11 @@ void write(Vec3 v, Real* out) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
 Quaternion quaternion(const Real* p) { return {p[0], p[1], p[2], p[3]}; }
 void write(const Quaternion& p, Real* out) { out[0] = p.w, out[1] = p.x, out[2] = p.y, out[3] = p.z; }
 
-BodyMotion body_motion(Vec3 position, const Quaternion& orientation, Vec3 velocity, Vec3 spin) {
-  BodyMotion motion;
+// What is of planar bodies stays as it is.
+void write_motion(Vec3 position, const Quaternion& orientation, Vec3 velocity, Vec3 spin,
+                  BodyMotion& motion) {
   motion.position = position, motion.velocity = velocity;
   motion.kind = BodyKind::spatial, motion.orientation = orientation, motion.spin = spin;
-  return motion;
 }
 
 // Of a packed symmetric 6x6 block, the 3x3 block (i, j) of forces (0) and torques (1).
@@ -240,17 +240,17 @@ class SpatialBodies final : public RigidBodies {
               std::vector<BodyMotion>& out) const override {
     for (const Placed& b : bodies_) {
       const Real *q = b.at.in(position), *v = b.at.of(velocity);
-      out[static_cast<std::size_t>(b.at.body)] =
-          body_motion(vec3(q), quaternion(q + 3), vec3(v), vec3(v + 3));
+      write_motion(vec3(q), quaternion(q + 3), vec3(v), vec3(v + 3),
+                   out[static_cast<std::size_t>(b.at.body)]);
     }
   }
   void motion_after(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const override {
     for (const Placed& b : bodies_) {
       const Real *q = b.at.in(state.position), *v = b.at.of(state.velocity), *a = b.at.of(state.acceleration);
       const auto moved = [&](int k) { return tau * vec3(v + k) + (tau * tau / 2) * vec3(a + k); };
-      out[static_cast<std::size_t>(b.at.body)] =
-          body_motion(vec3(q) + moved(0), normalized(quaternion(q + 3) * exponential(moved(3))),
-                      vec3(v) + tau * vec3(a), vec3(v + 3) + tau * vec3(a + 3));
+      write_motion(vec3(q) + moved(0), normalized(quaternion(q + 3) * exponential(moved(3))),
+                   vec3(v) + tau * vec3(a), vec3(v + 3) + tau * vec3(a + 3),
+                   out[static_cast<std::size_t>(b.at.body)]);
     }
   }
 
