@@ -1,9 +1,6 @@
 // Redundant constraints that share the load: the motion is that of a mechanism without redundant ones, the
 // reactions are the least, and singular positions are passed.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wuninitialized"  // GCC 12 sees it in its own AVX-512 header
 #include <Eigen/Dense>
-#pragma GCC diagnostic pop
 #include <cmath>
 #include <functional>
 #include <string>
