@@ -52,7 +52,7 @@ BushingElement::BushingElement(const Bushing& bushing, const BodyLayout& layout)
 BushingElement::Deflection BushingElement::deflection(const BodyPoses& poses) const {
   Deflection x;
   for (std::size_t a = 0; a < measures_.size(); ++a) {
-    x.gradient.push_back(measures_[a]->gradient(poses.spatial));
+    x.gradient[a] = measures_[a]->gradient(poses.spatial);
     x.value[a] = measures_[a]->value(poses.spatial);
     x.rate[a] = rate_of(x.gradient[a], poses.spatial, measures_[a]->pair());
   }
@@ -105,9 +105,9 @@ void BushingElement::add_derivatives(const BodyPoses& poses, Real, SparseTerm& s
   const SpatialPair& pair = measures_.front()->pair();
   const Deflection x = deflection(poses);
   const std::size_t n = measures_.size();
-  PairHessian bend{};                      // s_a H_a
-  std::vector<PairGradient> turning(n);    // H_b^T v
-  std::vector<PairGradient> displaced(n);  // T^-T g_b
+  PairHessian bend{};                       // s_a H_a
+  std::array<PairGradient, 6> turning{};    // H_b^T v
+  std::array<PairGradient, 6> displaced{};  // T^-T g_b
   for (std::size_t b = 0; b < n; ++b) {
     PairHessian own{};
     measures_[b]->add_hessian(motion, 1, own);

@@ -1,6 +1,7 @@
 // Bushings: six-dimensional springs with dampers between the frames of two spatial bodies.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,7 +38,7 @@ class BushingElement final : public ForceElement {
 
  private:
   struct Deflection {
-    std::vector<PairGradient> gradient;
+    std::array<PairGradient, 6> gradient{};
     std::array<Real, 6> value{}, rate{}, tension{};  // x, x', s
   };
   Deflection deflection(const BodyPoses& poses) const;
