@@ -234,7 +234,7 @@ const TableKeys& bushing_keys() {
       "frame back onto the first one's. x: the displacement of the second point along the first frame's "
       "axes, then the rotation vector from the first frame to the second, for turns of up to 2.6 rad.",
       {vector("point", "m")
-           .left_out("local_points is given")
+           .left_out("local_points or markers is given")
            .about("The bushing's point at t = 0 in the global frame."),
        local_points(),
        vector("axis", "")

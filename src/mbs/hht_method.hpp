@@ -34,8 +34,7 @@ class HhtMethod {
 
   // At the current iterate: e1 (Eq. 16) in the first `coordinates` places, e2 (Eq. 17) in the other ones.
   //   e1 = M a / (1 + alpha) + (Phi_q^T lambda - Q)_{n+1} - alpha / (1 + alpha) (Phi_q^T lambda - Q)_n
-  //   e2 = Phi / (beta h^2); where rows share, the solver takes it as P e2 - C lambda, with P
-  //   NewtonSolver::drop_misfit
+  //   e2 = Phi / (beta h^2)
   void evaluate_residual();
   const std::vector<Real>& residual() const { return residual_; }
   // Eqs. 14, 15 at the iterate of the last evaluate_residual(). values: [entries of pattern()]. The unknown
@@ -80,11 +79,6 @@ class HhtMethod {
   // the step's first evaluation.
   bool shares() const { return !compliance_.empty(); }
   const std::vector<Real>& compliance() const { return compliance_.of_row(); }
-  // Of a row at the iterate: what its constraint is off, without what it yields, Phi - beta h^2 C lambda.
-  Real gap(std::size_t row) const {
-    return shares() ? terms_.constraint[row] - position_gain() * compliance()[row] * multipliers_[row]
-                    : terms_.constraint[row];
-  }
 
   // Change of the position per change of the acceleration, beta h^2 [s^2].
   Real position_gain() const { return newmark_position_gain(coefficients_, step_); }

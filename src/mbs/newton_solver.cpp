@@ -17,6 +17,9 @@ namespace {
 constexpr Real kReuseContraction = 1e-2;
 // Each leaves of a misfit its round-off, over the rows' share.
 constexpr int kMisfitPasses = 2;
+// Each leaves of what rows yield, or of what is no misfit, its part that eps S is of the rows' mobility in
+// that direction: little, but where one of the bodies is far lighter than others.
+constexpr int kSharePasses = 2;
 
 }  // namespace
 
@@ -47,7 +50,7 @@ Real NewtonSolver::scaled_residual() const {
     dynamic = std::max(dynamic, std::abs(residual[i]) * scale[i]);
   }
   for (std::size_t j = 0; j < method_.terms().constraint.size(); ++j) {
-    const Real gap = method_.gap(j);
+    const Real gap = method_.terms().constraint[j];
     if (!std::isfinite(gap)) {
       throw SimulationError(fmt::format("mbs_correct, rank 0: the residual of {} is not finite at t = {} s",
                                         system_.constraint_name(static_cast<int>(j)), method_.end_time()));
@@ -81,7 +84,7 @@ void NewtonSolver::solve_acceleration_level() {
   has_acceleration_factors_ = false;  // should this fail
   if (refactor) std::copy(acceleration_matrix_.begin(), acceleration_matrix_.end(), factored.begin());
   refactor = drop_misfit(acceleration_solver_, refactor);
-  solve_linear(acceleration_solver_, refactor);
+  solve_sharing(acceleration_solver_, refactor, {});
   has_acceleration_factors_ = true;
 }
 
@@ -95,16 +98,34 @@ bool NewtonSolver::drop_misfit(PetscSolver& solver, bool refactor) {
   forces_.assign(forces.begin(), forces.end());
   std::fill(forces.begin(), forces.end(), 0);
   for (int pass = 0; pass < kMisfitPasses; ++pass) {
-    solve_linear(solver, refactor);
-    refactor = false;
+    gaps_.assign(gaps.begin(), gaps.end());
+    for (int share = 0; share < kSharePasses; ++share) {
+      solve_linear(solver, refactor);
+      refactor = false;
+      for (std::size_t j = 0; j < gaps.size(); ++j) gaps[j] = -compliance[j] * solver.solution()[n + j];
+    }
     for (std::size_t j = 0; j < gaps.size(); ++j) {
-      const Real misfit = -compliance[j] * solver.solution()[n + j];
-      misfit_[j] += misfit;
-      gaps[j] -= misfit;
+      misfit_[j] += gaps[j];
+      gaps[j] = gaps_[j] - gaps[j];
     }
   }
   std::copy(forces_.begin(), forces_.end(), forces.begin());
   return refactor;
+}
+
+void NewtonSolver::solve_sharing(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers) {
+  if (!method_.shares()) return solve_linear(solver, refactor);
+  const std::vector<Real>& compliance = method_.compliance();
+  const std::size_t n = system_.coordinate_scale().size();
+  const std::span<Real> gaps = solver.rhs().subspan(n);
+  gaps_.assign(gaps.begin(), gaps.end());
+  for (std::size_t j = 0; j < multipliers.size(); ++j) gaps[j] -= compliance[j] * multipliers[j];
+  solve_linear(solver, refactor);
+  for (int pass = 0; pass < kSharePasses; ++pass) {
+    for (std::size_t j = 0; j < gaps.size(); ++j)
+      gaps[j] = gaps_[j] - compliance[j] * solver.solution()[n + j];
+    solve_linear(solver, false);
+  }
 }
 
 void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {
@@ -142,10 +163,7 @@ IterationNorms NewtonSolver::iterate() {
   if (refactor) method_.newton_matrix(solver_.values());
   std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
   refactor = drop_misfit(solver_, refactor);
-  const std::span<Real> gaps = solver_.rhs().subspan(system_.coordinate_scale().size());
-  for (std::size_t j = 0; j < method_.compliance().size(); ++j)
-    gaps[j] -= method_.compliance()[j] * method_.multipliers()[j];
-  solve_linear(solver_, refactor);
+  solve_sharing(solver_, refactor, method_.multipliers());
   norms.correction = scaled_correction();
   method_.apply_correction(solver_.solution());
   last_residual_ = norms.residual;

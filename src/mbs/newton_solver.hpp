@@ -52,9 +52,14 @@ class NewtonSolver {
   void solve_acceleration_level();
   // Where rows share the load: takes from the constraints' part g of the right-hand side what no motion can
   // satisfy, as round-off and the digits of a deck leave it in rows that repeat each other. Their multipliers
-  // would grow by it over C. g += C mu with [A, Phi_q^T; Phi_q, -C] (x, mu) = (0, g). Returns whether the
-  // matrix has yet to be factored.
+  // would grow by it over C. It is -C mu with [A, Phi_q^T; Phi_q, -C] (x, mu) = (0, g), and of that the same
+  // again. Returns whether the matrix has yet to be factored.
   bool drop_misfit(PetscSolver& solver, bool refactor);
+  // Solves [A, Phi_q^T; Phi_q, -C]; where rows share the load, so that none yields: what one has yielded by,
+  // C times its multiplier, goes back to the right-hand side. Of the multipliers those with the same forces
+  // and the least C-norm remain. multipliers: those that the solution is the change of; none where it has all
+  // of them.
+  void solve_sharing(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers);
   Real scaled_residual() const;
   Real scaled_correction() const;
   void solve_linear(PetscSolver& solver, bool refactor);
@@ -66,7 +71,7 @@ class NewtonSolver {
   PetscSolver acceleration_solver_;
   std::vector<Real> acceleration_matrix_;  // [entries of the pattern]
   bool has_acceleration_factors_ = false;  // of acceleration_solver_.values()
-  std::vector<Real> misfit_, forces_;
+  std::vector<Real> misfit_, forces_, gaps_;
   Real last_residual_ = 0;
   bool first_ = true;  // iteration of its step
 };

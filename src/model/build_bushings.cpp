@@ -15,17 +15,6 @@ constexpr Real kSquare = 1e-9;  // cosine of axes that must be perpendicular
 // Round-off that a matrix may have in its symmetry and below the energy 0, over the roots of its diagonal.
 constexpr Real kRounding = 1e-9;
 
-void place_points(const DeckTable& table, const Model& model, const Connection& connection,
-                  Bushing& bushing) {
-  if (table.has("point") == table.has("local_points"))
-    table.fail("point", "exactly one of the keys point and local_points must be given");
-  if (table.has("point")) check_single(table, "point");
-  for (std::size_t side = 0; side < 2; ++side)
-    bushing.point[side] = table.has("point")
-                              ? to_body_point(model, connection.body[side], table.vector("point"))
-                              : table.vectors("local_points")[side];
-}
-
 // Rows x, y, z at t = 0.
 Mat3 start_frame(const DeckTable& table) {
   if (table.has("axis") != table.has("second_axis"))
@@ -45,12 +34,15 @@ Mat3 start_frame(const DeckTable& table) {
   return {x, cross(z, x), z};
 }
 
-void place_frames(const DeckTable& table, const Model& model, Bushing& bushing) {
-  const Mat3 frame = start_frame(table);
-  for (int side = 0; side < 2; ++side) {
-    const auto own = [&](Vec3 axis) { return to_body_direction(model, bushing.body[side], axis); };
-    bushing.marker[side] = quaternion_of(transposed({own(frame.x), own(frame.y), own(frame.z)}));
-  }
+// Of the deck's markers, or of its point and axes.
+void place_ends(const DeckTable& table, const Model& model, const Connection& connection, Bushing& bushing) {
+  check_without_markers(table, {"point", "local_points", "axis", "second_axis"});
+  if (!connection.markers && table.has("point") == table.has("local_points"))
+    table.fail("point", "exactly one of the keys point, local_points and markers must be given");
+  const Mat3 frame = start_frame(table), frames[2] = {frame, frame};
+  const Ends ends = find_ends(table, model, connection, frames);
+  for (std::size_t side = 0; side < 2; ++side)
+    bushing.point[side] = ends[side].point, bushing.marker[side] = ends[side].orientation;
 }
 
 // Over the roots of the diagonal, with a unit diagonal: so that units do not matter.
@@ -105,8 +97,7 @@ Bushing build_bushing(const DeckTable& table, const Model& model, const Connecti
   if (between(model, bushing.body) == BodyKind::planar)
     table.fail(table.has("bodies") ? "bodies" : "name",
                "bushings are between spatial bodies, or one and the ground; these are planar (bodies.kind)");
-  place_points(table, model, connection, bushing);
-  place_frames(table, model, bushing);
+  place_ends(table, model, connection, bushing);
   bushing.stiffness = read_matrix(table, "stiffness");
   bushing.damping = read_matrix(table, "damping");
   if (table.has("preload"))

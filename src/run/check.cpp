@@ -106,8 +106,10 @@ std::string multibody_lines(const Model& model) {
     lines += fmt::format("               {} no shapes: {} through walls and touch{} nothing\n",
                          counted(bare, "body has", "bodies have"), bare == 1 ? "it passes" : "they pass",
                          bare == 1 ? "es" : "");
-  return lines + fmt::format("unknowns       {} coordinates, {} constraints: {}\n", coordinates, constraints,
-                             counted(coordinates - constraints, "degree of freedom", "degrees of freedom"));
+  lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
+  // Of rows that may repeat each other the rank counts, which the bodies' solver reports.
+  if (model.integrator.redundant == RedundantRows::share) return lines + "some may repeat others\n";
+  return lines + counted(coordinates - constraints, "degree of freedom", "degrees of freedom") + "\n";
 }
 
 // What resists rolling and twisting; "" where nothing does.

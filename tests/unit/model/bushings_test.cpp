@@ -82,6 +82,33 @@ TEST_CASE("a bushing has its point and axes in both bodies, and its matrices") {
   CHECK(b.preload[5] == 6);
 }
 
+TEST_CASE("a bushing between markers is the one at their point and axes") {
+  // On the body from an origin beside its centre of mass, whose axes the marker's are.
+  const std::string markers =
+      kDeck +
+      "[[bodies]]\nname = \"arm\"\nkind = \"spatial\"\nmass = 1.0\nposition = [1.0, 0.0, 0.0]\n"
+      "inertia_tensor = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]\ncenter_of_mass = [0.0, 0.2, 0.0]\n"
+      "rotation_axis = [0.0, 0.0, 1.0]\nrotation_angle = 1.5707963267948966\n"
+      "[[markers]]\nname = \"frame\"\nbody = \"ground\"\nlocal_point = [1.0, 0.0, 0.5]\n"
+      "z_axis = [0.0, 1.0, 0.0]\nx_axis = [0.0, 0.0, 1.0]\n"
+      "[[markers]]\nname = \"foot\"\nbody = \"arm\"\nlocal_point = [0.0, 0.0, 0.5]\n"
+      "z_axis = [1.0, 0.0, 0.0]\nx_axis = [0.0, 0.0, 1.0]\n[[bushings]]\nname = \"b\"\n" +
+      kSoft;
+  const Bushing a = model_of(markers + "markers = [\"frame\", \"foot\"]\n").bushings.at(0);
+  const Bushing b = model_of(markers +
+                             "bodies = [\"ground\", \"arm\"]\npoint = [1.0, 0.0, 0.5]\n"
+                             "axis = [0.0, 1.0, 0.0]\nsecond_axis = [0.0, 0.0, 1.0]\n")
+                        .bushings.at(0);
+  CHECK(a.body[1] == b.body[1]);
+  for (int side = 0; side < 2; ++side) {
+    CHECK(near(a.point[side], b.point[side], {.absolute = 1e-15}));
+    const Mat3 one = rotation_matrix(a.marker[side]), other = rotation_matrix(b.marker[side]);
+    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      CHECK(near(one * axis, other * axis, {.absolute = 1e-15}));
+  }
+  CHECK(near(a.point[1], Vec3{0, -0.2, 0.5}, {.absolute = 1e-15}));  // from the centre of mass
+}
+
 TEST_CASE("a row of bushings is counted and keeps its bodies from touching") {
   const std::string row =
       bushing("chain = \"link\"\nlocal_points = [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]]\n" + kSoft);
@@ -108,6 +135,7 @@ TEST_CASE("what a bushing must not be is refused with the key and what is allowe
   refused("bodies = [\"link.0\", \"flat\"]\npoint = [0, 1, 0]\n" + kSoft, "bushings.b.bodies",
           "both must be of one kind");
   refused("chain = \"link\"\npoint = [0, 1, 0]\n" + kSoft, "bushings.b.point", "not used with chain or each");
+  refused("markers = [\"a\", \"b\"]\n" + kSoft, "bushings.b.markers", "marker");
   refused(kPlaced + kSoft + "axis = [1, 0, 0]\n", "bushings.b.axis", "belong together");
   refused(kPlaced + kSoft + "axis = [1, 0, 0]\nsecond_axis = [0.1, 1, 0]\n", "bushings.b.second_axis",
           "must be perpendicular to axis");

@@ -84,9 +84,10 @@ TEST_CASE("friction on joints has the lever of its surfaces") {
     CHECK(contains(message, text));
   };
   refused(slide, "name", "friction needs effort or friction_coefficient, above 0");
-  refused(pin + "friction_coefficient = 0.2\n", "radius", "missing; joint \"hinge.0\" is revolute");
+  refused(pin + "friction_coefficient = 0.2\n", "radius",
+          "missing; the coordinate of joint \"hinge.0\" is an angle");
   refused(pin + "effort = 1.0\nradius = 0.1\n", "radius", "not used without friction_coefficient");
-  refused(slide + "friction_coefficient = 0.2\nradius = 0.1\n", "radius", "is translational");
+  refused(slide + "friction_coefficient = 0.2\nradius = 0.1\n", "radius", "not used; joint \"rail\" slides");
   refused(slide + "effort = 1.0\nstatic_ratio = 1.5\n", "stribeck_rate", "belong together");
   refused(slide + "effort = 1.0\nstribeck_rate = 1.5\n", "stribeck_rate", "belong together");
   refused(slide + "effort = 1.0\nstatic_ratio = 0.5\n", "static_ratio", "at least 1");

@@ -162,58 +162,6 @@ std::vector<T> values_of(const CheckpointRows<T>& rows) {
 
 }  // namespace
 
-// A version that did not count the turns of joints in space wrote no angles.
-TEST_CASE("a checkpoint without counted angles goes on, and counts from its pose") {
-  const std::string deck = R"(
-[space]
-dimension = 3
-min = [-1.0, -1.0, -1.0]
-max = [1.0, 1.0, 1.0]
-[time]
-end = 0.02
-control = "fixed"
-step = 1e-3
-[integrator]
-hht_alpha = -0.1
-[[bodies]]
-name = "wheel"
-kind = "spatial"
-position = [0.0, 0.0, 0.0]
-mass = 1.0
-inertia_tensor = [0.01, 0.02, 0.01, 0.0, 0.0, 0.0]
-body_angular_velocity = [0.0, 100.0, 0.0]
-[[joints]]
-name = "axle"
-type = "revolute"
-bodies = ["ground", "wheel"]
-axis = [0.0, 1.0, 0.0]
-)";
-  const ScratchDirectory folder;
-  Case old({}, deck);
-  REQUIRE(old.run(folder.path()) == "");
-  Checkpoint checkpoint = read_checkpoint(folder / "checkpoint_end.h5");
-  const std::vector<Real> counted = checkpoint.reals.at("bodies/counted_angles");
-  REQUIRE(counted.size() == 1);
-  CHECK(counted[0] == Approx(2).epsilon(1e-12));
-  checkpoint.reals.erase("bodies/counted_angles");
-  write_checkpoint(folder / "old.h5", checkpoint);
-  const MultibodyState read = old.read(folder / "old.h5").state.bodies;
-  CHECK(read.counted_angles == 1);
-  CHECK(read.position.size() == 8);
-  const ScratchDirectory whole, parts;
-  Case longer({"time.end=0.03"}, deck);
-  REQUIRE(longer.run(whole.path()) == "");
-  REQUIRE(longer.run(parts.path(), folder / "old.h5") == "");
-  const auto last = [](const ScratchDirectory& results) {
-    return read_checkpoint(results / "checkpoint_end.h5").reals.at("bodies/counted_angles");
-  };
-  CHECK(last(parts) == last(whole));
-  checkpoint.reals["bodies/counted_angles"] = {1, 2};
-  write_checkpoint(folder / "old.h5", checkpoint);
-  CHECK(contains(old.refusal(folder / "old.h5"),
-                 "/reals/bodies/counted_angles has 2 values; the deck's model has 1"));
-}
-
 TEST_CASE("a checkpoint with any dataset too short, too long, missing or unknown is refused by its name") {
   const Model model = Case().model;
   const Checkpoint whole = read_checkpoint(written().path);

@@ -1,0 +1,78 @@
+// Keys of what a run writes.
+#include "deck/choices.hpp"
+#include "deck/keys.hpp"
+
+namespace scree {
+
+const TableKeys& output_keys() {
+  static const TableKeys keys{
+      "What is written, and how often.",
+      {text("directory")
+           .otherwise("\"\"")
+           .about("Folder of the results; empty: results/ and the deck's name. --output goes before it."),
+       real("snapshot_interval", "s")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Simulated time between snapshots; 0: only the first and the last state."),
+       texts("fields")
+           .otherwise("[\"radius\", \"velocity\", \"force\", \"contacts\"]")
+           .about("What snapshots hold of each particle beside its position and its global id; the fields "
+                  "that there are stand at the end of this manual."),
+       real("history_interval", "s")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Simulated time between history samples; 0: every step."),
+       real("checkpoint_interval", "s")
+           .at_least(0)
+           .otherwise("0.0")
+           .about("Simulated time between checkpoints; 0: none of these."),
+       real("checkpoint_wall_interval", "s")
+           .at_least(0)
+           .otherwise("600.0")
+           .about(
+               "Time on the clock on the wall after which a checkpoint is written where there was none; 0: "
+               "none of these. On failure and on a signal there is one in any case."),
+       integer("compression")
+           .within(0, 9)
+           .otherwise("0")
+           .about("Of snapshots and checkpoints: 0, none; 1 to 9, deflate from fast to small."),
+       boolean("history_csv").otherwise("false").about("Whether the history is also written as CSV."),
+       texts("history_bodies").otherwise("[]").about("Bodies, or rows of bodies, whose motion is recorded."),
+       texts("history_contacts")
+           .otherwise("[]")
+           .about(
+               "Bodies, rows of bodies, walls and sides that are walls (\"x_min\") on which the contact "
+               "force is "
+               "recorded, with its torque and the number of contacts. Torques are about a body's centre, a "
+               "wall's "
+               "point (a side's: space.min or space.max), and for a row, whose bodies are summed, about the "
+               "origin."),
+       integer("history_reactions")
+           .at_least(0)
+           .otherwise("100")
+           .about(
+               "Joints, drivers and couplers whose reactions are recorded: the first so many of the deck."),
+       integer("history_efforts")
+           .at_least(0)
+           .otherwise("100")
+           .about(
+               "Motors, springs, limits and friction on joints whose coordinate, rate, effort and power are "
+               "recorded: the first so many of the deck, in this order."),
+       integer("history_coordinates")
+           .at_least(0)
+           .otherwise("0")
+           .about("Joints whose coordinates and their rates are recorded: the first so many of the deck that "
+                  "have coordinates (angle, displacement, length), with or without an effort on them."),
+       integer("history_bushings")
+           .at_least(0)
+           .otherwise("100")
+           .about("Bushings whose deflection and load are recorded: the first so many of the deck."),
+       integers("history_particles")
+           .at_least(0)
+           .otherwise("[]")
+           .about("Particles whose motion is recorded: numbers in the deck's order, from 0.")},
+      ""};
+  return keys;
+}
+
+}  // namespace scree
