@@ -73,7 +73,7 @@ std::string differing(const Coupled& a, const Coupled& b) {
     state.bodies = side.bodies;
     state.particles = side.backend->particles().records(),
     state.shapes = side.backend->particles().shape_losses();
-    return pack(state);
+    return with_rows_as_arrays(pack(state));  // pack() refers to the state
   };
   return differing_arrays(packed(a), packed(b));
 }
