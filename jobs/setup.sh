@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
 #
-#     jobs/setup.sh [--paraview] [--slurm] [--cuda]
+#     jobs/setup.sh [--paraview] [--slurm] [--cuda] [--ccache]
 #     jobs/setup.sh --pictures
 #
 # --pictures installs what postprocess/draw needs and no more.
 # --paraview adds Debian's ParaView, for the reader test that opens the .xdmf files in it.
 # --slurm adds SLURM, for the test that starts one on this machine and submits the sbatch files to it. Its services are
 # not configured and do not run by themselves.
+# --ccache adds ccache; with CMAKE_CXX_COMPILER_LAUNCHER=ccache in the environment builds keep what they have compiled.
 # --cuda adds nvcc of CUDA 13.0 from PyPI, in .venv, for machines without a CUDA toolkit. The driver is not among it.
 # With nothing to install it changes nothing; what it must not install it names.
 set -euo pipefail
@@ -76,8 +77,9 @@ for argument in "$@"; do
     --paraview) packages+=("${paraview_packages[@]}") ;;
     --slurm) packages+=("${slurm_packages[@]}") ;;
     --cuda) with_cuda=true ;;
+    --ccache) packages+=(ccache) ;;
     --pictures) packages=("${picture_packages[@]}") ;;
-    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda, --pictures" ;;
+    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda, --ccache, --pictures" ;;
   esac
 done
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
