@@ -128,7 +128,7 @@ void HhtMethod::acceleration_system(const MultibodyState& state, Real t, std::sp
 void HhtMethod::velocity_system(const MultibodyState& state, Real t, std::span<Real> values,
                                 std::span<Real> rhs) {
   evaluate_at(state, t, values);
-  const std::vector<Real> rate = constraint_rate(state, t);
+  const std::vector<Real>& rate = constraint_rate(state, t);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t j = 0; j < rate.size(); ++j) rhs[state.velocity.size() + j] = -rate[j];
 }
@@ -142,8 +142,9 @@ void HhtMethod::constraint_system(const MultibodyState& state, Real t, const std
   std::copy(rate.begin(), rate.end(), rhs.begin() + system_.coordinates());
 }
 
-std::vector<Real> HhtMethod::constraint_rate(const MultibodyState& state, Real t) const {
-  std::vector<Real> rate(count(system_.constraints()));
+const std::vector<Real>& HhtMethod::constraint_rate(const MultibodyState& state, Real t) {
+  std::vector<Real>& rate = constraint_rate_;
+  rate.assign(count(system_.constraints()), 0);
   system_.velocity_rhs({t, state.position, state.velocity}, rate);
   for (Real& r : rate) r = -r;
   terms_.constraint_jacobian.multiply(1, state.velocity, rate);

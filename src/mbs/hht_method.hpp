@@ -66,7 +66,7 @@ class HhtMethod {
 
   // Phi_q v - velocity_rhs, the rate of Phi, of a state at time t. The Jacobian is that of the last
   // evaluation, which was at this state.
-  std::vector<Real> constraint_rate(const MultibodyState& state, Real t) const;
+  const std::vector<Real>& constraint_rate(const MultibodyState& state, Real t);
 
   // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
   // change dQ changes the reactions too,
@@ -115,7 +115,7 @@ class HhtMethod {
   std::vector<Real> start_position_, start_velocity_, start_acceleration_, start_force_;
   std::vector<Real> displacement_, position_, velocity_, acceleration_, multipliers_;
   std::vector<Real> change_;  // of the acceleration
-  std::vector<Real> inertia_force_, constraint_force_, residual_;
+  std::vector<Real> inertia_force_, constraint_force_, residual_, constraint_rate_;
 };
 
 }  // namespace scree

@@ -31,14 +31,15 @@ class ReactionWatch {
   Real gap_share() const { return fastest_ > 0 ? largest_gap_ / fastest_ : 0; }
 
  private:
-  bool alternates(const std::vector<Real>& change, Real applied_change, const std::vector<Real>& gap) const;
+  bool alternates(Real applied_change) const;
 
   const std::vector<Real>&coordinate_scale_, &constraint_scale_;
   Real worst_share_ = 0, largest_gap_ = 0, fastest_ = 0;
-  std::vector<Real> change_, gap_;   // of the last step, scaled
-  Real alternating_ = 0, mean_ = 0;  // A of the last step, largest S [J]
-  Real first_ = 0;                   // A of the first of the steps that alternate [J]
-  int steps_ = 0;                    // that alternate, in sequence
+  std::vector<Real> change_, gap_;            // of the last step, scaled
+  std::vector<Real> next_change_, next_gap_;  // of the one observed
+  Real alternating_ = 0, mean_ = 0;           // A of the last step, largest S [J]
+  Real first_ = 0;                            // A of the first of the steps that alternate [J]
+  int steps_ = 0;                             // that alternate, in sequence
 };
 
 }  // namespace scree
