@@ -151,13 +151,17 @@ inline constexpr auto kWords<JointKind> =
 enum class JointCoordinate {
   angle,         // of body 2 less that of body 1, about the axis
   displacement,  // of body 2's point along body 1's axis
-  length         // from body 1's point to body 2's
+  length,        // from body 1's point to body 2's
+  angle_1,       // of a universal joint: of its cross against body 1, about body 1's arm
+  angle_2        // of body 2 against the cross, about body 2's arm
 };
 template <>
 inline constexpr auto kWords<JointCoordinate> =
     std::to_array<Word<JointCoordinate>>({{"angle", JointCoordinate::angle},
                                           {"displacement", JointCoordinate::displacement},
-                                          {"length", JointCoordinate::length}});
+                                          {"length", JointCoordinate::length},
+                                          {"angle_1", JointCoordinate::angle_1},
+                                          {"angle_2", JointCoordinate::angle_2}});
 
 // What makes the effort of a motor.
 enum class MotorKind {

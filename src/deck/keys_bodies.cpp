@@ -195,7 +195,9 @@ const TableKeys& driver_keys() {
            .about(
                "Function of time of the coordinate: the angle of the second body minus that of the first (in "
                "space about the axis, 0 where the joint was placed by point and axis, and counted on over "
-               "whole turns), the displacement along the axis, or the length of a distance joint.")},
+               "whole turns), the displacement along the axis, the length of a distance joint, or an angle "
+               "of a "
+               "universal one.")},
       ""};
   return keys;
 }

@@ -8,7 +8,8 @@ namespace {
 
 Key joint_key() {
   return text("joint").required().about(
-      "The joint (revolute, translational, cylindrical or screw), or a row of joints: one for each, named "
+      "The joint (revolute, translational, cylindrical, screw or universal), or a row of joints: one for "
+      "each, named "
       "NAME.0, NAME.1, ... Its coordinate c: the angle of its second body minus that of the first [rad], in "
       "space about the axis and counted on over whole turns, or the displacement along its axis [m]. An "
       "effort above 0 pushes c up.");
@@ -146,13 +147,16 @@ const TableKeys& coupler_keys() {
            "c1 + (r2/r1) c2 (internal: -); belt, c1 - (r2/r1) c2; rack and pinion, the pinion first, c2 - "
            "radius c1; "
            "differential, the carrier last, c1 + c2 - 2 c3; sum, the sum of coefficients times coordinates."),
-       texts("joints").required().about("The joints (revolute, translational, cylindrical or screw); gears, "
-                                        "belts, differentials and pinions take their angles, a rack its "
-                                        "displacement."),
+       texts("joints").required().about(
+           "The joints (revolute, translational, cylindrical, screw or universal); gears, "
+           "belts, differentials and pinions take their angles, a rack its "
+           "displacement."),
        texts("coordinates")
            .only_for({Kind::sum})
            .left_out("of each joint the only one, of a screw the angle")
-           .about("Per joint \"angle\" or \"displacement\"."),
+           .about("Per joint what the key coordinate says elsewhere: \"angle\", \"displacement\", "
+                  "\"angle_1\" or "
+                  "\"angle_2\"."),
        reals("radii", "m")
            .only_for({Kind::gear, Kind::belt})
            .entries(2)

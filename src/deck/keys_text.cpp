@@ -21,8 +21,7 @@ constexpr const char* kLeftOut =
     "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
     "meshes. Bodies are rigid. Planar ones move along x and y and turn about z, in 3D too, and forces "
     "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
-    "universal and all the other usual joints (`input/README.md`), of which universal ones have no driver, "
-    "motor or spring. Joints have motors, "
+    "universal and all the other usual joints (`input/README.md`). Joints have motors, "
     "springs, stops and dry friction, but no play. All particles are there at the start: none flow in, "
     "bond or break. There is no fluid and no heat.";
 

@@ -36,8 +36,10 @@ class JointParts {
   virtual void advance(Real lead, Real start) = 0;
 
   // A coordinate of the joint is f: the angle of the second body less that of the first [rad], the
-  // displacement of the second point along the axis, the distance of the two points [m].
+  // displacement of the second point along the axis, the distance of the two points [m]; in space alone
+  // angle_1 or angle_2 of a universal joint.
   virtual void angle(ScalarFunction f) = 0;
+  virtual void arm_angle(JointCoordinate angle, ScalarFunction f) = 0;
   virtual void displacement(ScalarFunction f) = 0;
   virtual void length(ScalarFunction f) = 0;
 
@@ -54,7 +56,10 @@ class JointParts {
 std::unique_ptr<JointParts> joint_parts(const Model& model, int joint, const BodyLayout& layout);
 std::unique_ptr<JointParts> planar_parts(const Joint& joint, const BodyLayout& layout);
 std::unique_ptr<JointParts> spatial_parts(const Joint& joint, int number, const BodyLayout& layout);
-// The angle of a joint in space. number: as of joint_parts.
-std::unique_ptr<Measure> joint_twist(const Joint& joint, int number, const BodyLayout& layout);
+// An angle of a joint in space. number: of the joint, as of joint_parts.
+std::unique_ptr<Measure> joint_angle(const Joint& joint, int number, JointCoordinate angle,
+                                     const BodyLayout& layout);
+// By which SpatialMotion::counted_angle knows it: a joint has two at most.
+int angle_number(int joint, JointCoordinate angle);
 
 }  // namespace scree

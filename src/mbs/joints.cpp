@@ -76,6 +76,9 @@ void add_driver(JointCoordinate coordinate, ScalarFunction motion, JointParts& p
   switch (coordinate) {
     case JointCoordinate::angle:
       return parts.angle(std::move(motion));
+    case JointCoordinate::angle_1:
+    case JointCoordinate::angle_2:
+      return parts.arm_angle(coordinate, std::move(motion));
     case JointCoordinate::displacement:
       return parts.displacement(std::move(motion));
     case JointCoordinate::length:

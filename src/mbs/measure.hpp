@@ -54,10 +54,10 @@ std::unique_ptr<Measure> dot1_measure(const SpatialPair& pair, Vec3 a, Vec3 b);
 std::unique_ptr<Measure> dot2_measure(const SpatialPair& pair, Vec3 a);
 //   distance: |d| [m]; undefined where the points coincide
 std::unique_ptr<Measure> distance_measure(const SpatialPair& pair);
-//   twist: angle of the second body's x2 from the first one's x1 towards its y1, with whole turns [rad]; of
-//   the joint `joint` of the model, by which SpatialMotion::counted_angle knows the turns; undefined where x2
-//   is across both
-std::unique_ptr<Measure> twist_measure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint);
+//   twist: the angle that has this cosine and sine, either the dot1 of axes of the two bodies, with whole
+//   turns [rad]; number: by which SpatialMotion::counted_angle knows the turns; undefined where both are 0
+std::unique_ptr<Measure> twist_measure(std::unique_ptr<Measure> cosine, std::unique_ptr<Measure> sine,
+                                       int number);
 
 //   turn: component k of the rotation vector from the first of two frames fixed to the bodies to the second
 //   one, along the axes of either, in which it has the same components [rad]; frame: its orientation in the

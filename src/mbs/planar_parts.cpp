@@ -28,6 +28,7 @@ class PlanarParts final : public JointParts {
   void equal_spins() override { refuse(); }
   void advance(Real, Real) override { refuse(); }
   void angle(ScalarFunction f) override { add(angle_constraint(pair_, std::move(f))); }
+  void arm_angle(JointCoordinate, ScalarFunction) override { refuse(); }
   void displacement(ScalarFunction f) override { add(axis_constraint(pair_, axis_, std::move(f))); }
   void length(ScalarFunction f) override { add(length_constraint(pair_, std::move(f))); }
 

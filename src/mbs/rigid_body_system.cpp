@@ -206,20 +206,21 @@ void RigidBodySystem::pull_back(const std::vector<Real>& displacement, std::vect
 
 void RigidBodySystem::add_counted_angles(const Model& model) {
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j)
-    if (counts_turns(model, model.joints[static_cast<std::size_t>(j)]))
-      counted_.push_back({j, joint_twist(model.joints[static_cast<std::size_t>(j)], j, layout_)});
+    for (const Joint& joint = model.joints[static_cast<std::size_t>(j)];
+         const JointCoordinate angle : turning_coordinates(model, joint))
+      counted_.push_back({angle_number(j, angle), joint_angle(joint, j, angle, layout_)});
 }
 
 void RigidBodySystem::count_turns(const BodyPoses& poses, std::vector<Real>& position) const {
   auto angle = position.begin() + layout_.positions();
-  for (const CountedAngle& counted : counted_) *angle++ = counted.twist->value(poses.spatial);
+  for (const CountedAngle& counted : counted_) *angle++ = counted.angle->value(poses.spatial);
 }
 
 void RigidBodySystem::set_poses(const std::vector<Real>& position, const std::vector<Real>& velocity,
                                 BodyPoses& poses) const {
   for (const auto& kind : kinds_) kind->set_poses(position, velocity, poses);
   auto angle = position.begin() + layout_.positions();
-  for (const CountedAngle& counted : counted_) poses.spatial.set_counted_angle(counted.joint, *angle++);
+  for (const CountedAngle& counted : counted_) poses.spatial.set_counted_angle(counted.number, *angle++);
 }
 
 SparseTerm RigidBodySystem::inverse_mass() const {

@@ -102,8 +102,8 @@ class RigidBodySystem final : public MechanicalSystem {
 
  private:
   struct CountedAngle {
-    int joint;  // of the model
-    std::unique_ptr<Measure> twist;
+    int number;
+    std::unique_ptr<Measure> angle;
   };
 
   void add_counted_angles(const Model& model);

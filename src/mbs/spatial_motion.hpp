@@ -32,20 +32,20 @@ class SpatialMotion {
   const SpatialPose& operator[](int body) const { return poses_[static_cast<std::size_t>(body + 1)]; }
 
   // Angle of a joint at the last accepted step, whole turns included [rad]: of the branches of an angle the
-  // one nearest to it is meant. 0 where none was set.
-  Real counted_angle(int joint) const {
-    const auto j = static_cast<std::size_t>(joint);
-    return j < counted_.size() ? counted_[j] : 0;
+  // one nearest to it is meant. 0 where none was set. number: angle_number (mbs/joint_parts.hpp).
+  Real counted_angle(int number) const {
+    const auto k = static_cast<std::size_t>(number);
+    return k < counted_.size() ? counted_[k] : 0;
   }
-  void set_counted_angle(int joint, Real angle) {
-    const auto j = static_cast<std::size_t>(joint);
-    if (j >= counted_.size()) counted_.resize(j + 1, 0);
-    counted_[j] = angle;
+  void set_counted_angle(int number, Real angle) {
+    const auto k = static_cast<std::size_t>(number);
+    if (k >= counted_.size()) counted_.resize(k + 1, 0);
+    counted_[k] = angle;
   }
 
  private:
   std::vector<SpatialPose> poses_;  // the ground first
-  std::vector<Real> counted_;       // by joint of the model
+  std::vector<Real> counted_;       // by number
 };
 
 // Two bodies, a point fixed to each and the first column of each.

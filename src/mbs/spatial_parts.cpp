@@ -44,15 +44,22 @@ class SpatialParts final : public JointParts {
   void advance(Real lead, Real start) override {
     std::vector<WeightedMeasure> terms;
     terms.push_back({1, dot2_measure(pair_, axis(0, 2))});
-    terms.push_back({-lead / (2 * M_PI), twist()});
+    terms.push_back({-lead / (2 * M_PI), measured(JointCoordinate::angle)});
     add(measure_constraint(sum_of_measures(std::move(terms)), ScalarFunction(start)));
   }
-  void angle(ScalarFunction f) override { add(measure_constraint(twist(), std::move(f))); }
+  void angle(ScalarFunction f) override { arm_angle(JointCoordinate::angle, std::move(f)); }
+  void arm_angle(JointCoordinate angle, ScalarFunction f) override {
+    add(measure_constraint(measured(angle), std::move(f)));
+  }
   void displacement(ScalarFunction f) override { displaced(2, std::move(f)); }
   void length(ScalarFunction f) override { add(measure_constraint(distance_measure(pair_), std::move(f))); }
 
-  std::unique_ptr<Measure> twist() const {
-    return twist_measure(pair_, axis(0, 0), axis(0, 1), axis(1, 0), number_);
+  std::unique_ptr<Measure> measured(JointCoordinate angle) const {
+    const auto between = [&](int i, int j) { return dot1_measure(pair_, axis(0, i), axis(1, j)); };
+    const int number = angle_number(number_, angle);
+    if (angle == JointCoordinate::angle_1) return twist_measure(between(1, 1), between(2, 1), number);
+    if (angle == JointCoordinate::angle_2) return twist_measure(between(0, 0), between(0, 2), number);
+    return twist_measure(between(0, 0), between(1, 0), number);
   }
 
  private:
@@ -76,8 +83,13 @@ std::unique_ptr<JointParts> spatial_parts(const Joint& joint, int number, const 
   return std::make_unique<SpatialParts>(joint, number, layout);
 }
 
-std::unique_ptr<Measure> joint_twist(const Joint& joint, int number, const BodyLayout& layout) {
-  return SpatialParts(joint, number, layout).twist();
+std::unique_ptr<Measure> joint_angle(const Joint& joint, int number, JointCoordinate angle,
+                                     const BodyLayout& layout) {
+  return SpatialParts(joint, number, layout).measured(angle);
+}
+
+int angle_number(int joint, JointCoordinate angle) {
+  return 2 * joint + (angle == JointCoordinate::angle_2 ? 1 : 0);
 }
 
 }  // namespace scree

@@ -91,7 +91,9 @@ void check_start_gaps(const Model& model, const RigidBodySystem& system, std::ve
 // Rows that keep two axes parallel hold for axes that point against each other, too; an angle does not.
 void check_senses(const Model& model) {
   for (const Joint& joint : model.joints) {
-    if (!counts_turns(model, joint)) continue;
+    if (!has_coordinate(joint.kind, JointCoordinate::angle) ||
+        between(model, joint.body) != BodyKind::spatial)
+      continue;
     Vec3 axis[2];
     for (int i = 0; i < 2; ++i)
       axis[i] = to_global_direction(model, joint.body[i], rotation_matrix(joint.marker[i]) * Vec3{0, 0, 1});

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "mbs/measure.hpp"
 
@@ -7,25 +8,22 @@ namespace scree {
 
 namespace {
 
-// theta    = atan2(s, c), s = y_1.x_2, c = x_1.x_2: the rotation of frame 2 against frame 1 about their z
-// gradient = f_c c_q + f_s s_q; where the axes are parallel 0, -u, 0, A_2^T A_1 u, u = z_1 in body 1
+// theta    = atan2(s, c); where s = y_1.x_2, c = x_1.x_2 the rotation of frame 2 against frame 1 about their
+// z gradient = f_c c_q + f_s s_q; where the axes are parallel 0, -u, 0, A_2^T A_1 u, u = z_1 in body 1
 // Hessian  = f_c c_qq + f_s s_qq + f_cc c_q c_q^T + f_ss s_q s_q^T + f_cs (c_q s_q^T + s_q c_q^T)
 // second   = f_c c''_0 + f_s s''_0 + f_cc c'^2 + f_ss s'^2 + 2 f_cs c' s'
 // with f_c = -s / r, f_s = c / r, f_cc = -f_ss = 2 s c / r^2, f_cs = (s^2 - c^2) / r^2, r = s^2 + c^2: exact
 // also where the axes are not parallel yet, in Newton's iterations.
 class TwistMeasure final : public Measure {
  public:
-  TwistMeasure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint)
-      : Measure(pair),
-        cosine_(dot1_measure(pair, x1, x2)),
-        sine_(dot1_measure(pair, y1, x2)),
-        joint_(joint) {}
+  TwistMeasure(std::unique_ptr<Measure> cosine, std::unique_ptr<Measure> sine, int number)
+      : Measure(cosine->pair()), cosine_(std::move(cosine)), sine_(std::move(sine)), number_(number) {}
 
   bool is_angle() const override { return true; }
   // The branch nearest to the angle of the last accepted step.
   Real value(const SpatialMotion& motion) const override {
     const Real wrapped = std::atan2(sine_->value(motion), cosine_->value(motion));
-    return wrapped + 2 * M_PI * std::round((motion.counted_angle(joint_) - wrapped) / (2 * M_PI));
+    return wrapped + 2 * M_PI * std::round((motion.counted_angle(number_) - wrapped) / (2 * M_PI));
   }
   PairGradient gradient(const SpatialMotion& motion) const override {
     const Slopes f = slopes(motion);
@@ -63,13 +61,14 @@ class TwistMeasure final : public Measure {
   }
 
   std::unique_ptr<Measure> cosine_, sine_;
-  int joint_;
+  int number_;
 };
 
 }  // namespace
 
-std::unique_ptr<Measure> twist_measure(const SpatialPair& pair, Vec3 x1, Vec3 y1, Vec3 x2, int joint) {
-  return std::make_unique<TwistMeasure>(pair, x1, y1, x2, joint);
+std::unique_ptr<Measure> twist_measure(std::unique_ptr<Measure> cosine, std::unique_ptr<Measure> sine,
+                                       int number) {
+  return std::make_unique<TwistMeasure>(std::move(cosine), std::move(sine), number);
 }
 
 }  // namespace scree

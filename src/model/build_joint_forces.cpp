@@ -1,6 +1,8 @@
 // Motors, springs, limits and friction on joints, and couplers.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -20,14 +22,14 @@ std::string kinds_with(const Model& model, int joint, std::optional<JointCoordin
   const std::string both = spatial ? ", cylindrical or screw" : "";
   if (coordinate == JointCoordinate::angle) return "revolute" + both;
   if (coordinate == JointCoordinate::displacement) return "translational" + both;
-  return (spatial ? "revolute, translational" : "revolute or translational") + both;
+  return spatial ? "revolute, translational, cylindrical, screw or universal" : "revolute or translational";
 }
 
 int moving_joint(const DeckTable& table, const Model& model, const ModelNames& names, const std::string& name,
                  const std::string& key) {
   const int joint = find_name(names.joints, name, table, key, "joint");
   const JointKind kind = joint_at(model, joint).kind;
-  if (!has_coordinate(kind, JointCoordinate::angle) && !has_coordinate(kind, JointCoordinate::displacement))
+  if (coordinates_of(kind).empty() || kind == JointKind::distance)
     table.fail(key, fmt::format("joint \"{}\" is a {} joint; it must be {}", name, word_of(kind),
                                 kinds_with(model, joint, {})));
   return joint;
@@ -172,11 +174,11 @@ void read_coordinates(const DeckTable& table, const Model& model, Coupler& coupl
   if (!table.has("coordinates")) {
     for (const int joint : coupler.joints) {
       const Joint& one = joint_at(model, joint);
-      if (one.kind == JointKind::cylindrical)
+      if (needs_choice(one.kind))
         fail(
-            fmt::format("missing; joint \"{}\" is a cylindrical joint and has an angle and a displacement: "
-                        "give a list with one of them, and one for each of the others",
-                        one.name));
+            fmt::format("missing; joint \"{}\" is a {} joint and has {}: give a list with one of them, and "
+                        "one for each of the others",
+                        one.name, word_of(one.kind), listed(coordinates_of(one.kind))));
       coupler.coordinates.push_back(coordinates_of(one.kind).front());
     }
     return;
@@ -185,8 +187,8 @@ void read_coordinates(const DeckTable& table, const Model& model, Coupler& coupl
   if (words.size() != coupler.joints.size())
     fail(fmt::format("must have {} entries, as joints", coupler.joints.size()));
   for (std::size_t k = 0; k < words.size(); ++k) {
-    if (words[k] != word_of(JointCoordinate::angle) && words[k] != word_of(JointCoordinate::displacement))
-      fail(fmt::format("\"{}\" must be \"angle\" or \"displacement\"", words[k]));
+    if (const auto known = words_of<JointCoordinate>(); !std::ranges::count(known, words[k]))
+      fail(fmt::format("\"{}\" must be one of \"{}\"", words[k], fmt::join(known, "\", \"")));
     const Joint& joint = joint_at(model, coupler.joints[k]);
     coupler.coordinates.push_back(value_of<JointCoordinate>(words[k]));
     if (!has_coordinate(joint.kind, coupler.coordinates.back()))

@@ -249,7 +249,7 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
     const Joint& driven = model.joints[static_cast<std::size_t>(joint)];
     if (coordinates_of(driven.kind).empty())
       table.fail("joint", fmt::format("a {} joint cannot be driven; it must be revolute, translational, "
-                                      "cylindrical, screw or distance",
+                                      "cylindrical, screw, universal or distance",
                                       word_of(driven.kind)));
     const JointCoordinate coordinate = read_coordinate(table, driven);
     model.drivers.push_back({table.text("name"), joint, build_motion(table.table("motion")), coordinate});

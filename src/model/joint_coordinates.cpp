@@ -12,13 +12,6 @@ namespace scree {
 
 namespace {
 
-// "an angle and a displacement"
-std::string listed(const std::vector<JointCoordinate>& coordinates) {
-  std::vector<std::string> words;
-  for (const JointCoordinate c : coordinates) words.push_back((is_angle(c) ? "an " : "a ") + word_of(c));
-  return fmt::format("{}", fmt::join(words, " and "));
-}
-
 std::string missing(const Joint& joint, JointCoordinate wanted) {
   const std::vector<JointCoordinate> own = coordinates_of(joint.kind);
   return fmt::format("joint \"{}\" is a {} joint and has no {}{}", joint.name, word_of(joint.kind),
@@ -38,6 +31,8 @@ std::vector<JointCoordinate> coordinates_of(JointKind kind) {
       return {JointCoordinate::angle, JointCoordinate::displacement};
     case JointKind::distance:
       return {JointCoordinate::length};
+    case JointKind::universal:
+      return {JointCoordinate::angle_1, JointCoordinate::angle_2};
     default:
       return {};
   }
@@ -47,13 +42,25 @@ bool has_coordinate(JointKind kind, JointCoordinate coordinate) {
   return std::ranges::count(coordinates_of(kind), coordinate) > 0;
 }
 
+bool is_angle(JointCoordinate coordinate) {
+  return coordinate != JointCoordinate::displacement && coordinate != JointCoordinate::length;
+}
+
+std::string listed(const std::vector<JointCoordinate>& coordinates) {
+  std::vector<std::string> words;
+  for (const JointCoordinate c : coordinates) words.push_back((is_angle(c) ? "an " : "a ") + word_of(c));
+  return fmt::format("{}", fmt::join(words, " and "));
+}
+
+bool needs_choice(JointKind kind) { return coordinates_of(kind).size() > 1 && kind != JointKind::screw; }
+
 JointCoordinate coordinate_of(const std::string& title, const Joint& joint,
                               std::optional<JointCoordinate> wanted) {
   const std::vector<JointCoordinate> own = coordinates_of(joint.kind);
   if (own.empty())
     throw InputError(
         fmt::format("{}: joint '{}' is {} and has no coordinate; allowed are revolute, "
-                    "translational, cylindrical, screw and distance joints",
+                    "translational, cylindrical, screw, universal and distance joints",
                     title, joint.name, word_of(joint.kind)));
   if (wanted && !has_coordinate(joint.kind, *wanted))
     throw InputError(fmt::format("{}: {}", title, missing(joint, *wanted)));
@@ -67,20 +74,23 @@ JointCoordinate read_coordinate(const DeckTable& table, const Joint& joint) {
     if (!has_coordinate(joint.kind, wanted)) table.fail("coordinate", missing(joint, wanted));
     return wanted;
   }
-  if (own.size() > 1 && joint.kind != JointKind::screw)
+  if (needs_choice(joint.kind))
     table.fail("coordinate", fmt::format("missing; joint \"{}\" is a {} joint and has {}: name one of them",
                                          joint.name, word_of(joint.kind), listed(own)));
   return own.front();
 }
 
-bool counts_turns(const Model& model, const Joint& joint) {
-  return between(model, joint.body) == BodyKind::spatial &&
-         has_coordinate(joint.kind, JointCoordinate::angle);
+std::vector<JointCoordinate> turning_coordinates(const Model& model, const Joint& joint) {
+  if (between(model, joint.body) != BodyKind::spatial) return {};
+  std::vector<JointCoordinate> angles = coordinates_of(joint.kind);
+  std::erase_if(angles, [](JointCoordinate c) { return !is_angle(c); });
+  return angles;
 }
 
 int counted_angles(const Model& model) {
-  return static_cast<int>(
-      std::ranges::count_if(model.joints, [&](const Joint& joint) { return counts_turns(model, joint); }));
+  std::size_t count = 0;
+  for (const Joint& joint : model.joints) count += turning_coordinates(model, joint).size();
+  return static_cast<int>(count);
 }
 
 }  // namespace scree

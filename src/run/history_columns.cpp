@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "model/joint_coordinates.hpp"
+
 namespace scree {
 namespace {
 
@@ -171,14 +173,28 @@ void effort_columns(Group effort, bool is_angle, std::size_t k) {
   effort.add("power", "W", "effort times rate", [k](const Sample& s) { return s.efforts[k].power; });
 }
 
+const char* coordinate_text(JointCoordinate coordinate) {
+  switch (coordinate) {
+    case JointCoordinate::angle:
+      return "angle of the joint's second body less that of the first";
+    case JointCoordinate::displacement:
+      return "displacement along the joint's axis";
+    case JointCoordinate::length:
+      return "distance of the joint's two points";
+    case JointCoordinate::angle_1:
+      return "angle of the joint's cross against the first body, about that body's arm";
+    case JointCoordinate::angle_2:
+      return "angle of the joint's second body against the cross, about the second body's arm";
+  }
+  return "";
+}
+
 // k: number of the coordinate.
 void coordinate_columns(Group joint, JointCoordinate coordinate, std::size_t k) {
-  const bool angle = coordinate == JointCoordinate::angle;
+  const bool angle = is_angle(coordinate);
   const std::string name = word_of(coordinate);
-  const char* text = angle ? "angle of the joint's second body less that of the first"
-                     : coordinate == JointCoordinate::displacement ? "displacement along the joint's axis"
-                                                                   : "distance of the joint's two points";
-  joint.add(name, angle ? "rad" : "m", text, [k](const Sample& s) { return s.coordinates[k].value; });
+  joint.add(name, angle ? "rad" : "m", coordinate_text(coordinate),
+            [k](const Sample& s) { return s.coordinates[k].value; });
   joint.add(name + "_rate", angle ? "rad/s" : "m/s", "its rate",
             [k](const Sample& s) { return s.coordinates[k].rate; });
 }

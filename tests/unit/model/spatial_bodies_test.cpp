@@ -113,7 +113,8 @@ TEST_CASE("which coordinate of a joint in space is meant") {
                     spring = "[[joint_springs]]\n" + head,
                     limit = "[[joint_limits]]\n" + head + "upper = 1.0\nstiffness = 1.0\n",
                     turn = "coordinate = \"angle\"\n", slide = "coordinate = \"displacement\"\n",
-                    length = "coordinate = \"length\"\n", screw = "screw\"\nlead = \"0.1";
+                    length = "coordinate = \"length\"\n",
+                    cross = "universal\"\nsecond_axis = [1.0, 0.0, 0.0]#", screw = "screw\"\nlead = \"0.1";
   CHECK(model_of(deck("revolute", drive)).drivers[0].coordinate == JointCoordinate::angle);
   CHECK(model_of(deck("translational", drive)).drivers[0].coordinate == JointCoordinate::displacement);
   for (const std::string& element : {drive, motor, spring, limit}) {
@@ -125,6 +126,11 @@ TEST_CASE("which coordinate of a joint in space is meant") {
     CHECK(contains(model_error(deck("revolute", element + slide)),
                    "joint \"j\" is a revolute joint and has no displacement, but an angle"));
     CHECK(contains(model_error(deck("cylindrical", element + length)), "has no length"));
+    CHECK(contains(model_error(deck(cross, element)),
+                   "is a universal joint and has an angle_1 and an angle_2: name one of them"));
+    CHECK(model_error(deck(cross, element + "coordinate = \"angle_2\"\n")).empty());
+    CHECK(contains(model_error(deck("revolute", element + "coordinate = \"angle_2\"\n")),
+                   "has no angle_2, but an angle"));
     CHECK(contains(model_error(deck("planar", element)), "a planar joint"));
     CHECK(contains(model_error(deck("planar", element)), "cylindrical"));
   }

@@ -112,14 +112,74 @@ TEST_CASE("a double Hooke shaft turns as its closed form says") {
     run.step(1e-3);
     const std::vector<JointReading> c = readings(run);
     const Real a = kRate * run.time;
-    REQUIRE(c.size() == 3);
+    REQUIRE(c.size() == 7);
     REQUIRE(near(c[0].value, a, {.absolute = 1e-10}));
-    REQUIRE(c[1].coordinate == JointCoordinate::angle);
-    REQUIRE(near(c[1].value, a, {.absolute = 1e-9}));
-    REQUIRE(near(c[2].value, 0, {.absolute = 1e-10}));
+    REQUIRE(c[5].coordinate == JointCoordinate::angle);
+    REQUIRE(near(c[5].value, a, {.absolute = 1e-9}));
+    REQUIRE(near(c[6].value, 0, {.absolute = 1e-10}));
     const Vec3 arm = rotation_matrix(run.multibody.motion(run.state)[1].orientation) * across;
     const Real b = std::atan2(dot(arm, up), dot(arm, across));
     REQUIRE(near(std::sin(b) * std::cos(a), std::cos(b) * std::sin(a) * std::cos(kBend), {.absolute = 1e-9}));
+    // Against either shaft the first joint's cross leans by the angle whose sine the other shaft's arm has
+    // along it; against the first one by kBend at the start, where its angle is 0.
+    const Vec3 first = rotation_matrix(exponential(Vec3{a, 0, 0})) * up;
+    REQUIRE(near(c[1].value, std::asin(-dot(arm, {1, 0, 0})) - kBend, {.absolute = 1e-9}));
+    REQUIRE(near(c[2].value, std::asin(-dot(first, along)), {.absolute = 1e-9}));
+  }
+}
+
+// Frame 2 is frame 1 turned about its x by angle_1, then about its own y by angle_2, also past whole turns.
+TEST_CASE("the angles of a universal joint place its second body") {
+  Model model = wheel(JointKind::universal);
+  model.drivers = {{"roll", 0, ramp(9), JointCoordinate::angle_1},
+                   {"pitch", 0, ramp(-7), JointCoordinate::angle_2}};
+  model.time.end = 2;
+  const Mat3 frame = rotation_matrix(model.joints[0].marker[0]);
+  MultibodyRun run(model, 1e-12);
+  MultibodyState left;
+  for (int i = 0; i < 2000; ++i) {
+    run.step(1e-3);
+    if (i == 999) left = run.state;
+    const Real roll = 9 * run.time, pitch = -7 * run.time;
+    const std::vector<JointReading> c = readings(run);
+    REQUIRE(c.size() == 2);
+    REQUIRE(near(c[0].value, roll, {.absolute = 1e-9}));
+    REQUIRE(near(c[1].value, pitch, {.absolute = 1e-9}));
+    REQUIRE(near(c[0].rate, 9, {.absolute = 1e-2}));
+    const Mat3 turned = rotation_matrix(exponential(Vec3{roll, 0, 0}) * exponential(Vec3{0, pitch, 0}));
+    const Mat3 body = rotation_matrix(run.multibody.motion(run.state)[0].orientation);
+    for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+      REQUIRE(near(body * (frame * axis), frame * (turned * axis), {.absolute = 1e-9}));
+  }
+  MultibodyRun again(model, 1e-12);
+  again.state = left, again.time = 1;
+  for (int i = 1000; i < 2000; ++i) {
+    again.step(1e-3);
+    again.time = (i + 1) * 1e-3;
+  }
+  CHECK(same_bits(again.state.position, run.state.position));
+}
+
+// A wheel on the cross's second arm with a spring about either arm: small turns about the two are free of
+// each other, each with its own frequency.
+TEST_CASE("springs on the angles of a universal joint have their frequencies") {
+  Model model = wheel(JointKind::universal);
+  model.bodies[0].inertia_tensor.xy = model.bodies[0].inertia_tensor.yz = 0;
+  model.joints[0].marker[0] = model.joints[0].marker[1] = {};
+  JointSpring spring;
+  spring.joint = 0, spring.name = "one", spring.stiffness = 2, spring.coordinate = JointCoordinate::angle_1;
+  model.joint_springs = {spring};
+  spring.name = "two", spring.stiffness = 12, spring.coordinate = JointCoordinate::angle_2;
+  model.joint_springs.push_back(spring);
+  for (JointSpring& s : model.joint_springs) s.free = 0;
+  constexpr Real kTurn = 1e-4;
+  model.bodies[0].orientation = exponential(Vec3{kTurn, 0, 0}) * exponential(Vec3{0, kTurn, 0});
+  MultibodyRun run(model, 1e-12);
+  for (int i = 0; i < 1000; ++i) {
+    run.step(1e-3);
+    const std::vector<JointReading> c = readings(run);
+    REQUIRE(near(c.at(0).value, kTurn * std::cos(10 * run.time), {.absolute = 1e-4 * kTurn}));
+    REQUIRE(near(c.at(1).value, kTurn * std::cos(20 * run.time), {.absolute = 1e-3 * kTurn}));
   }
 }
 
