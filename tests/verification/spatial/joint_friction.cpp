@@ -193,3 +193,35 @@ TEST_CASE("an unbalanced wheel is braked by the force that it needs to go round,
     CHECK(ratio < 4.2);
   }
 }
+
+// J c'' = T - (lever + p) F with p the lead per radian and F = m (g + p c'') on the thread: what friction
+// does to the motion changes the load that it follows by more than itself.
+TEST_CASE("a heavy jack on a thread that locks itself rises evenly and keeps its books") {
+  constexpr Real kLoad = 1e5, kSpindle = 0.1, kPitch = 1.6e-3, kLever = 3e-3, kTorque = 6000;
+  static_assert(kLever * kLoad * kPitch > kSpindle + kLoad * kPitch * kPitch);
+  Model model = spatial_model(-0.05);
+  model.bodies = {spatial_body("nut", kLoad, {1, 1, kSpindle}, {})};
+  model.joints = {joint_at(JointKind::screw, "thread", kGround, 0, {}, {})};
+  model.joints[0].lead = 2 * M_PI * kPitch;
+  model.joint_frictions.resize(1);
+  JointFriction& friction = model.joint_frictions[0];
+  friction.name = "friction", friction.coordinate = JointCoordinate::angle;
+  friction.lever = kLever, friction.stiffness = 1e7;
+  Motor motor;
+  motor.name = "motor", motor.coordinate = JointCoordinate::angle, motor.effort.value = kTorque;
+  model.motors = {motor};
+  const Real rise =
+      (kTorque - (kLever + kPitch) * kLoad * 9.81) / (kSpindle + (kLever + kPitch) * kLoad * kPitch);
+  const Real rub = kLever * kLoad * (9.81 + kPitch * rise);
+  MultibodyRun run(model);
+  wind(run, rub);
+  const Real start = energy(run);
+  for (int i = 0; i < 200; ++i) {
+    run.step(2e-3);
+    const auto samples = run.multibody.joint_efforts(run.state, run.time);
+    REQUIRE(near(samples[1].rate, rise * run.time, {.relative = 1e-10}));
+    REQUIRE(near(samples[1].effort, -rub, {.relative = 1e-10}));
+  }
+  CHECK(run.state.dissipated > 5e5);
+  CHECK(near(energy(run), start, {.absolute = 1e-12 * run.state.driver_work}));
+}
