@@ -195,9 +195,10 @@ TEST_CASE("an unbalanced wheel is braked by the force that it needs to go round,
 }
 
 // J c'' = T - (lever + p) F with p the lead per radian and F = m (g + p c'') on the thread: what friction
-// does to the motion changes the load that it follows by more than itself.
+// does to the motion changes the load that it follows by more than itself, as the assertion says.
 TEST_CASE("a heavy jack on a thread that locks itself rises evenly and keeps its books") {
-  constexpr Real kLoad = 1e5, kSpindle = 0.1, kPitch = 1.6e-3, kLever = 3e-3, kTorque = 6000;
+  constexpr Real kLoad = 1e5, kSpindle = 0.1, kPitch = 1.6e-3, kLever = 3e-3;
+  constexpr Real kTorque = 6000, kFade = 2000;  // [N m], [N m/s]
   static_assert(kLever * kLoad * kPitch > kSpindle + kLoad * kPitch * kPitch);
   Model model = spatial_model(-0.05);
   model.bodies = {spatial_body("nut", kLoad, {1, 1, kSpindle}, {})};
@@ -208,20 +209,40 @@ TEST_CASE("a heavy jack on a thread that locks itself rises evenly and keeps its
   friction.name = "friction", friction.coordinate = JointCoordinate::angle;
   friction.lever = kLever, friction.stiffness = 1e7;
   Motor motor;
-  motor.name = "motor", motor.coordinate = JointCoordinate::angle, motor.effort.value = kTorque;
+  motor.name = "motor", motor.coordinate = JointCoordinate::angle;
+  motor.effort.kind = TimeFunctionKind::ramp, motor.effort.value = kTorque, motor.effort.rate = -kFade;
   model.motors = {motor};
-  const Real rise =
-      (kTorque - (kLever + kPitch) * kLoad * 9.81) / (kSpindle + (kLever + kPitch) * kLoad * kPitch);
-  const Real rub = kLever * kLoad * (9.81 + kPitch * rise);
+  const Real divisor = kSpindle + (kLever + kPitch) * kLoad * kPitch;
+  const auto rise = [&](Real t, Real push = 0) {
+    return (kTorque - kFade * t - (kLever + kPitch) * (kLoad * 9.81 + push)) / divisor;
+  };
+  const auto rub = [&](Real t, Real push = 0) {
+    return kLever * (kLoad * (9.81 + kPitch * rise(t, push)) + push);
+  };
   MultibodyRun run(model);
-  wind(run, rub);
+  wind(run, rub(0));
   const Real start = energy(run);
+  Real first = 0;  // the error of the start, which stays
   for (int i = 0; i < 200; ++i) {
     run.step(2e-3);
-    const auto samples = run.multibody.joint_efforts(run.state, run.time);
-    REQUIRE(near(samples[1].rate, rise * run.time, {.relative = 1e-10}));
-    REQUIRE(near(samples[1].effort, -rub, {.relative = 1e-10}));
+    const Real t = run.time;
+    const auto samples = run.multibody.joint_efforts(run.state, t);
+    const Real error = samples[1].rate - (rise(0) * t - kFade * t * t / 2 / divisor);
+    if (i == 0) first = error;
+    REQUIRE(std::abs(first) < 1e-3);
+    REQUIRE(near(error, first, {.absolute = 1e-8}));
+    REQUIRE(near(samples[1].effort, -rub(t), {.relative = 1e-9}));
   }
-  CHECK(run.state.dissipated > 5e5);
+  CHECK(run.state.dissipated > 4e5);
   CHECK(near(energy(run), start, {.absolute = 1e-12 * run.state.driver_work}));
+  // A contact that pushes it down at the end of a step loads the thread at once.
+  constexpr Real kPush = 2e5;
+  std::vector<BodyWrench> push(1);
+  push[0].force.z = -kPush;
+  run.multibody.predict(run.state, run.time, 2e-3);
+  for (int i = 0; i < 4; ++i) run.multibody.correct({std::vector<BodyWrench>(1), {}});
+  run.multibody.accept(run.state, push);
+  const Real t = run.time + 2e-3;
+  CHECK(near(run.multibody.joint_efforts(run.state, t)[1].effort, -rub(t, kPush), {.relative = 1e-9}));
+  CHECK(rub(t, kPush) > rub(t) + 50);
 }
