@@ -152,10 +152,13 @@ const std::vector<Real>& HhtMethod::constraint_rate(const MultibodyState& state,
 }
 
 bool HhtMethod::change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs) {
-  system_.evaluate({end_time(), state.position, state.velocity}, terms_);
+  const SystemInstant at{end_time(), state.position, state.velocity, &state.multipliers};
+  system_.evaluate(at, terms_);
   if (terms_.applied_force == state.applied) return false;
   compliance_.update(terms_.constraint_jacobian);
-  kkt_.assemble(terms_, derivatives_, KktWeights{}, compliance(), values);
+  if (is_loaded())
+    system_.differentiate(at, {displacement_, state.acceleration, state.multipliers}, derivatives_);
+  kkt_.assemble(terms_, derivatives_, {.reaction = 1}, compliance(), values);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];
   return true;
@@ -171,6 +174,8 @@ void HhtMethod::apply_change(std::span<const Real> solution, MultibodyState& sta
   for (std::size_t j = 0; j < change.size(); ++j) state.multipliers[j] += change[j];
   terms_.constraint_jacobian.multiply_transposed(-1, change, state.force);
   state.applied = terms_.applied_force;
+  for (std::vector<Real>* force : {&state.force, &state.applied})
+    derivatives_.reaction.multiply_transposed(-1, change, *force);
 }
 
 void HhtMethod::set_acceleration(std::span<const Real> solution, MultibodyState& state) const {

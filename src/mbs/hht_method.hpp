@@ -69,11 +69,15 @@ class HhtMethod {
   const std::vector<Real>& constraint_rate(const MultibodyState& state, Real t);
 
   // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
-  // change dQ changes the reactions too,
-  //   [M, Phi_q^T; Phi_q, -C] (d, d_lambda) = (dQ, 0),  a += (1 + alpha) d,  lambda += d_lambda.
-  // Returns false, with nothing to solve, where the forces are the same.
+  // change dQ changes the reactions too, and these the forces that they load,
+  //   [M, Phi_q^T - Q_lambda; Phi_q, -C] (d, d_lambda) = (dQ, 0),  a += (1 + alpha) d,  lambda += d_lambda,
+  // one step of Newton's method for Q(lambda). Returns false, with nothing to solve, where the forces are the
+  // same.
   bool change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs);
   void apply_change(std::span<const Real> solution, MultibodyState& state) const;
+
+  // Whether forces depend on the reactions.
+  bool is_loaded() const { return derivatives_.reaction.size() > 0; }
 
   // Whether rows share the load, and C of the open step or of the last system [constraints]. It is that of
   // the step's first evaluation.

@@ -8,6 +8,10 @@ namespace scree {
 
 namespace {
 
+// A spring that slides holds the limit but for round-off; its effort follows the load, and so must the
+// derivative.
+constexpr Real kHeld = 1 - 1e-12;
+
 // Remembered: the effort z of the spring, which c stretches. T = -(z + d c'), no larger than
 //   T_max = s(c') (T_0 + lever F),  s(c') = 1 + (ratio - 1) exp(-(c'/v_s)^2).
 // Over a step the mean M of z + d c' by the return mapping of step_spring(), its limit that of the mean load
@@ -20,7 +24,7 @@ class FrictionLaw final : public JointLaw {
   JointEffort effort(const CoordinateInstant& at, Real memory) const override {
     const Real pull = memory + p_.damping * at.rate, level = level_at(at.rate);
     const Real limit = level * bound(at.load);
-    if (std::abs(pull) <= limit) return {-pull, 0, -p_.damping, std::abs(pull), 0};
+    if (std::abs(pull) < kHeld * limit) return {-pull, 0, -p_.damping, std::abs(pull), 0};
     const Real sign = pull > 0 ? -1 : 1;
     return {sign * limit, 0, sign * slope_at(at.rate) * bound(at.load), limit, sign * level * p_.lever};
   }

@@ -73,6 +73,7 @@ struct Multibody::Impl {
     open_step(state, t, h);
     method.predict(state, t, h);
   }
+  void follow_load();
   void watch_reactions(const MultibodyState& state, Real error);
   std::string oscillation(Real share) const;
   [[noreturn]] void fail_for_oscillation() const;
@@ -219,8 +220,19 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   if (efforts_differ || !impl.system.has_forces_of(end_wrench)) {
     impl.system.set_forces(end_wrench);
     impl.newton.change_end_forces(impl.end);
+    impl.follow_load();
   }
   std::swap(state, impl.end);
+}
+
+// The spring of friction that slides holds the limit under the reactions that the step ends with. What it
+// gives or takes by that is friction's.
+void Multibody::Impl::follow_load() {
+  const JointForces& forces = system.joint_forces();
+  if (!forces.are_loaded()) return;
+  const Real t = method.end_time(), stored = forces.elastic_energy(system.poses(), t, end.memory);
+  end.memory = forces.memory();
+  end.dissipated += stored - forces.elastic_energy(system.poses(), t, end.memory);
 }
 
 void Multibody::check_reactions() const {

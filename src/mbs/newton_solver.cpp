@@ -20,6 +20,9 @@ constexpr int kMisfitPasses = 2;
 // Each leaves of what rows yield, or of what is no misfit, its part that eps S is of the rows' mobility in
 // that direction: little, but where one of the bodies is far lighter than others.
 constexpr int kSharePasses = 2;
+// Forces that the reactions load are found at a step's end in two or three passes.
+constexpr int kLoadPasses = 10;
+constexpr Real kLoadRoundOff = 1e-14;
 
 }  // namespace
 
@@ -149,10 +152,25 @@ std::vector<Real> NewtonSolver::constrained_part(const MultibodyState& state,
   return {solution, solution + static_cast<std::ptrdiff_t>(motion.size())};
 }
 
+// Forces that the reactions load must end the step as the next one begins with them, or the difference's work
+// is nowhere in the books.
 void NewtonSolver::change_end_forces(MultibodyState& state) {
-  if (!method_.change_system(state, acceleration_matrix_, acceleration_solver_.rhs())) return;
-  solve_acceleration_level();
-  method_.apply_change(acceleration_solver_.solution(), state);
+  for (int pass = 0; pass < kLoadPasses; ++pass) {
+    if (!method_.change_system(state, acceleration_matrix_, acceleration_solver_.rhs())) return;
+    if (pass > 0 && scaled_change() <= kLoadRoundOff) return;
+    solve_acceleration_level();
+    method_.apply_change(acceleration_solver_.solution(), state);
+    if (!method_.is_loaded()) return;
+  }
+}
+
+// Of the forces on the right-hand side, over the largest one that takes part.
+Real NewtonSolver::scaled_change() {
+  const std::vector<Real>& scale = system_.coordinate_scale();
+  Real largest = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    largest = std::max(largest, std::abs(acceleration_solver_.rhs()[i]) * scale[i]);
+  return largest / std::max(method_.terms().force_scale, std::numeric_limits<Real>::min());
 }
 
 IterationNorms NewtonSolver::iterate() {

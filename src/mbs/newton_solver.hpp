@@ -62,6 +62,7 @@ class NewtonSolver {
   void solve_sharing(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers);
   Real scaled_residual() const;
   Real scaled_correction() const;
+  Real scaled_change();
   void solve_linear(PetscSolver& solver, bool refactor);
 
   const MechanicalSystem& system_;

@@ -248,8 +248,10 @@ class SpatialBodies final : public RigidBodies {
     for (const Placed& b : bodies_) {
       const Real *q = b.at.in(state.position), *v = b.at.of(state.velocity), *a = b.at.of(state.acceleration);
       const auto moved = [&](int k) { return tau * vec3(v + k) + (tau * tau / 2) * vec3(a + k); };
-      write_motion(vec3(q) + moved(0), normalized(quaternion(q + 3) * exponential(moved(3))),
-                   vec3(v) + tau * vec3(a), vec3(v + 3) + tau * vec3(a + 3),
+      // Another normalization can change the last bit, by which a restart would differ.
+      const Quaternion p = quaternion(q + 3),
+                       orientation = tau == 0 ? p : normalized(p * exponential(moved(3)));
+      write_motion(vec3(q) + moved(0), orientation, vec3(v) + tau * vec3(a), vec3(v + 3) + tau * vec3(a + 3),
                    out[static_cast<std::size_t>(b.at.body)]);
     }
   }

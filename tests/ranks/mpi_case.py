@@ -1,5 +1,6 @@
 """What the tests of the program under mpirun share."""
 
+import csv
 import ctypes
 import json
 import os
@@ -118,6 +119,11 @@ class RanksTest(unittest.TestCase):
 
     def bytes_of(self, output, name):
         return (self.folder / output / name).read_bytes()
+
+    def columns(self, output):
+        """Numbers of the history by column, e.g. "time [s]"."""
+        names, *rows = csv.reader((self.folder / output / "history.csv").open())
+        return {name: [float(row[k]) for row in rows] for k, name in enumerate(names)}
 
     def datasets(self, output, name):
         """Contents and layout of an HDF5 file, without the times of day that are in it; None without h5py or file."""

@@ -1,12 +1,15 @@
 // The step interface: Newton's convergence, motion, error estimate, repeated steps; and the HHT core on a
 // system of another kind.
+#include <array>
 #include <cmath>
+#include <tuple>
 
 #include "mbs/newton_solver.hpp"
 #include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/multibody_run.hpp"
 #include "support/near.hpp"
+#include "support/spatial_run.hpp"
 
 using namespace scree;
 
@@ -205,6 +208,25 @@ TEST_CASE("motion, extrapolation and the error estimate") {
   run.multibody.correct({wrench, {}});
   CHECK(
       near(run.multibody.error(), hht_coefficients(0).error_constant * 0.25 * 200, {.relative = kRoundOff}));
+}
+
+// Surfaces are placed by the open step's motion, and by the state's after a restart or a rejected step.
+TEST_CASE("the motion of a state in space is that of the step that led there, bit for bit") {
+  const Model model = double_spherical(-0.1);
+  MultibodyRun run(model);
+  std::size_t same = 0;
+  constexpr std::size_t kSteps = 300;  // unit quaternions that another normalization changes are among them
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    run.step(1e-3);
+    const std::vector<BodyMotion>& last = run.multibody.motion();
+    const std::vector<BodyMotion> again = run.multibody.motion(run.state);
+    const auto numbers = [](const BodyMotion& m) {
+      const auto& [x, v, q, w] = std::tie(m.position, m.velocity, m.orientation, m.spin);
+      return std::array{x.x, x.y, x.z, v.x, v.y, v.z, q.w, q.x, q.y, q.z, w.x, w.y, w.z};
+    };
+    for (std::size_t b = 0; b < 2; ++b) same += same_bits(numbers(last[b]), numbers(again[b]));
+  }
+  CHECK(same == 2 * kSteps);
 }
 
 TEST_CASE("another wrench at the step's end changes accelerations and reactions, not the motion") {
