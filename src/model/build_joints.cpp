@@ -199,7 +199,7 @@ void read_screw(const DeckTable& table, const Model& model, Joint& joint) {
 
 Joint build_joint(const DeckTable& table, const Model& model, const Connection& connection) {
   Joint joint;
-  joint.name = connection.name;
+  joint.name = connection.name, joint.deck_label = table.label();
   joint.kind = table.choice<JointKind>("type");
   for (int side = 0; side < 2; ++side) joint.body[side] = connection.body[side];
   check_same_kind(table, model, connection);
@@ -252,7 +252,8 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
                                       "cylindrical, screw, universal or distance",
                                       word_of(driven.kind)));
     const JointCoordinate coordinate = read_coordinate(table, driven);
-    model.drivers.push_back({table.text("name"), joint, build_motion(table.table("motion")), coordinate});
+    model.drivers.push_back(
+        {table.text("name"), joint, build_motion(table.table("motion")), coordinate, table.label()});
   }
 }
 

@@ -110,6 +110,10 @@ BodyKind between(const Model& model, const int (&body)[2]) {
   return one == kGround ? BodyKind::planar : model.bodies[static_cast<std::size_t>(one)].kind;
 }
 
+std::string with_label(const std::string& deck_label, const std::string& text) {
+  return deck_label.empty() ? text : deck_label + ": " + text;
+}
+
 Vec3 start_position(const Model& model, int body) {
   return body == kGround ? Vec3{} : model.bodies[static_cast<std::size_t>(body)].position;
 }
