@@ -40,9 +40,9 @@ std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>
       const Real size = std::sqrt(square);
       if (size <= worst * scale) continue;
       worst = size / scale;
-      trouble =
-          with_label(group.deck_label, fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what,
-                                                   size, angle ? "rad" : "m", per, limit * scale));
+      trouble = with_label(group.deck_label,
+                           fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}", group.title,
+                                       what, size, angle ? "rad" : "m", per, limit * scale));
     }
   return trouble;
 }
@@ -86,7 +86,7 @@ void check_joints_meet(const Model& model) {
       throw InputError(with_label(
           joint.deck_label,
           fmt::format(
-              "joint '{}': its two sides do not meet at t = 0, they miss by {:.6g} m, allowed is {:.3g}",
+              "joint '{}': its two sides do not meet at t = 0, they miss by {:.6g} m, allowed is {:.3g} m",
               joint.name, ends.size, ends.allowed)));
 }
 

@@ -77,8 +77,9 @@ void check_aligned(const DeckTable& table, const std::string& must, Real wrong) 
   if (wrong <= kAligned) return;
   const std::string against =
       wrong > std::numbers::pi_v<Real> / 2 ? "; turn one of them by half a turn about its x axis" : "";
-  table.fail("markers", fmt::format("{} at t = 0; they are off by {:.6g} degrees, allowed is {:.2g}{}", must,
-                                    wrong * kDegrees, kAligned * kDegrees, against));
+  table.fail("markers",
+             fmt::format("{} at t = 0; they are off by {:.6g} degrees, allowed are {:.2g} degrees{}", must,
+                         wrong * kDegrees, kAligned * kDegrees, against));
 }
 
 // The second frame, turned to what the joint keeps.
@@ -157,7 +158,7 @@ void check_planar(const DeckTable& table, const Joint& joint) {
 }
 
 std::string body_name(const Model& model, int body) {
-  return body == kGround ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
+  return body == kGround ? kGroundName : model.bodies[static_cast<std::size_t>(body)].name;
 }
 
 std::string shown_point(const Model& model, const Joint& joint, Vec3 p) {

@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "mbs/hht_method.hpp"
+#include "mbs/start_checks.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "unit/mbs/refusals.hpp"
@@ -129,4 +131,21 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
     model.joints.push_back(ground_pin("nowhere", kGround, {1, 2, 0}, {1, 2, 0}));
     CHECK(contains(refusal(model), "joint 'nowhere' has a condition that no motion of its bodies changes"));
   }
+}
+
+TEST_CASE("a matrix that is singular for its constraints alone says that the position is") {
+  Model model = closed_chain();
+  model.joints.push_back(model.joints[1]);
+  model.joints[3].name = "again";
+  RigidBodySystem system(model);
+  MultibodyState state;
+  state.position.resize(6), state.velocity.resize(6);
+  for (const auto& kind : system.kinds()) kind->start(state.position, state.velocity);
+  HhtMethod method(system, -0.1, state.position, state.velocity);
+  std::vector<Real> values(method.pattern().column.size()), rhs(14);
+  method.acceleration_system(state, 0, values, rhs);
+  CHECK(contains(
+      matrix_failure(system, method.pattern(), values),
+      "is singular: joint 'middle', joint 'again' repeat each other in this position, or nearly so: it "
+      "is singular; integrator.redundant = \"share\" passes it"));
 }

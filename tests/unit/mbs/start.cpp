@@ -28,7 +28,7 @@ TEST_CASE("joints whose sides do not meet are named with their gap") {
   CHECK(contains(refusal(model), "joint 'pivot'"));
   CHECK(contains(refusal(model), "0.03 m"));
   model.joints[0].point[0] = {0, 3e-9, 0};
-  CHECK(contains(refusal(model), "miss by 3e-09 m, allowed is 1e-09"));
+  CHECK(contains(refusal(model), "miss by 3e-09 m, allowed is 1e-09 m"));
   model.joints[0].point[0] = {0, 9e-10, 0};  // what a deck is refused for is refused here, and nothing else
   CHECK(refusal(model) == "nothing was refused");
   model = hanging_disc();
@@ -61,10 +61,11 @@ TEST_CASE("the refusal of start velocities says which keys to set to what, with 
   Model model = hanging_disc();
   model.space.dimension = 2;
   model.drivers.push_back({"motor", 0, ramp(1.85)});
-  CHECK(contains(refusal(model),
-                 "driver 'motor': the velocities at t = 0 contradict it by 1.85 rad/s, allowed is 1e-08; set "
-                 "bodies.bob.velocity = [0.0, 0.92500000000000004], bodies.bob.angular_velocity = "
-                 "1.8500000000000001, or velocities = \"consistent\" at the top of the deck"));
+  CHECK(contains(
+      refusal(model),
+      "driver 'motor': the velocities at t = 0 contradict it by 1.85 rad/s, allowed is 1e-08 rad/s; set "
+      "bodies.bob.velocity = [0.0, 0.92500000000000004], bodies.bob.angular_velocity = "
+      "1.8500000000000001, or velocities = \"consistent\" at the top of the deck"));
   // What it says is what passes.
   model.bodies[0].velocity = {0, 0.92500000000000004, 0};
   CHECK(contains(refusal(model), "set bodies.bob.angular_velocity = 1.8500000000000001, or"));
