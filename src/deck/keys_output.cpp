@@ -21,7 +21,9 @@ const TableKeys& output_keys() {
        real("history_interval", "s")
            .at_least(0)
            .otherwise("0.0")
-           .about("Simulated time between history samples; 0: every step."),
+           .about("Simulated time between history samples, at its multiples; the start and the end of a run "
+                  "have "
+                  "one, too. 0: every step."),
        real("checkpoint_interval", "s")
            .at_least(0)
            .otherwise("0.0")
