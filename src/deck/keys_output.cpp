@@ -53,7 +53,8 @@ const TableKeys& output_keys() {
            .at_least(0)
            .otherwise("100")
            .about(
-               "Joints, drivers and couplers whose reactions are recorded: the first so many of the deck."),
+               "Joints, drivers and couplers whose reactions are recorded: the first so many of the deck. A "
+               "coupler's is that on the second body of its first joint."),
        integer("history_efforts")
            .at_least(0)
            .otherwise("100")

@@ -171,5 +171,40 @@ class ContradictionTest(CommandLineTest):
         self.expect(DONE, "run", deck, "--output", self.folder / "shared", "--set", "integrator.redundant=share")
 
 
+SOLIDS = """
+[[bodies]]
+name = "{}"
+kind = "spatial"
+position = [{}, 2.0, 0.0]
+solids = [{{ kind = "box", size = [0.1, 0.2, 0.3], offset = [0.5, 0.0, 0.0], density = 1000.0 }}]
+{}"""
+
+
+class CheckTest(CommandLineTest):
+    def report(self, deck, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        return self.expect(DONE, "check", self.write("check.toml", deck), *words).stdout
+
+    def test_bodies_of_solids_are_weighed(self):
+        row = "count = 3\nspacing = [0.0, 0.0, 0.5]\n"
+        report = self.report(CRANK + SOLIDS.format("block", 0.0, "") + SOLIDS.format("row", 2.0, row))
+        weight = ("6 kg, centre of mass (0.5, 0, 0) m, inertia there principal 0.025, 0.05, 0.065 kg m^2\n")
+        self.assertIn(f'\nsolids         body "block": {weight}', report)
+        self.assertIn(f'\nsolids         row "row", each: {weight}', report)
+        self.assertEqual(report.count("\nsolids "), 2)  # not the crank, and the row once
+        planar = self.report(
+            four_bar(0.5, 0.5).replace("mass = 1.0\ninertia = 0.1", 'solids = [{ kind = "cylinder", radius = 0.1, '
+                                       "length = 0.5, density = 100.0 }]"))
+        self.assertIn('solids         body "crank": 1.5708 kg, centre of mass (0, 0) m, inertia there 0.00785398 kg '
+                      "m^2 about z\n", planar)
+
+    def test_what_the_history_leaves_out(self):
+        deck = CRANK + DRIVEN.format("drive", RAMP.format(0.0, TURN))
+        self.assertNotIn("\nhistory ", self.report(deck))
+        self.assertIn("\nhistory        without 1 of the 2 joints, drivers and couplers: output.history_reactions = "
+                      "1\n", self.report(deck, "output.history_reactions=1"))
+        self.assertNotIn("\nhistory ", self.report(deck, "output.history_reactions=0"))  # they are not wanted
+
+
 if __name__ == "__main__":
     unittest.main()
