@@ -49,6 +49,17 @@ void BodyLink::check_reactions() {
   if (has_bodies()) ranks_.on_root([&] { multibody_->check_reactions(); });
 }
 
+std::string BodyLink::trouble() {
+  std::string text;
+  if (!has_bodies()) return text;
+  ranks_.on_root([&] { text = multibody_->trouble(); });
+  std::size_t length = text.size();
+  ranks_.broadcast(length);
+  text.resize(length);
+  ranks_.broadcast(std::span<char>(text));
+  return text;
+}
+
 void BodyLink::broadcast(RankList& list) {
   ranks_.broadcast(std::span<BodyMotion>(motion_));
   list.place_bodies(motion_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "dem/backend.hpp"
@@ -30,6 +31,7 @@ class BodyLink {
   Real error() const;                   // on every rank
   void accept(MultibodyState& bodies);  // with end_wrench()
   void check_reactions();
+  std::string trouble();  // on every rank
 
   // Rank 0 -> all: motion at the current iterate of the open step, handed to the bodies' shapes on the list.
   void broadcast_motion(RankList& list);

@@ -216,10 +216,11 @@ std::string CoupledStep::trouble_of(ImplicitStep& step, const Iteration& last, i
                    fmt::format("the largest residual, {:.2e} of the largest force, is that of particle {}",
                                last.residual, step.worst_particle()));
   if (!(last.bodies.residual <= limits.residual_tolerance))
-    return trouble("mbs_correct", fmt::format("the bodies' scaled residual is {:.2e}", last.bodies.residual));
+    return trouble("mbs_correct", fmt::format("the bodies' scaled residual is {:.2e}{}", last.bodies.residual,
+                                              link_.trouble()));
   if (!(last.bodies.correction <= limits.correction_tolerance))
-    return trouble("mbs_correct",
-                   fmt::format("the bodies' last scaled correction is {:.2e}", last.bodies.correction));
+    return trouble("mbs_correct", fmt::format("the bodies' last scaled correction is {:.2e}{}",
+                                              last.bodies.correction, link_.trouble()));
   return trouble("particle_correct",
                  fmt::format("the last correction of the particles' positions is {:.2e} of a radius",
                              last.judged_correction));
@@ -321,8 +322,8 @@ void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, Real t,
     do {
       if (++iteration > limits.max_iterations)
         throw SimulationError(
-            fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations",
-                        limits.max_iterations));
+            fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations{}",
+                        limits.max_iterations, link_.trouble()));
       ++counts_.newton_iterations;
       norms = link_.correct();
     } while (

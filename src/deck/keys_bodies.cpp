@@ -163,7 +163,11 @@ const TableKeys& joint_keys() {
            .left_out("[1, 0] or [1, 0, 0] of translational joints of planar bodies; others need it, but "
                      "revolute joints "
                      "of planar bodies, which have none")
-           .about("Direction of the axis at t = 0 in the global frame, of any length but 0."),
+           .about("Direction of the axis at t = 0 in the global frame, of any length but 0. Of spatial "
+                  "bodies it "
+                  "is z of the joint's marker on either body, whose x is the direction across it that is "
+                  "nearest "
+                  "to a global axis, the first of x, y and z where several are."),
        vector("second_axis", "")
            .only_for(with_two)
            .left_out("markers are given")

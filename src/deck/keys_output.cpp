@@ -21,7 +21,9 @@ const TableKeys& output_keys() {
        real("history_interval", "s")
            .at_least(0)
            .otherwise("0.0")
-           .about("Simulated time between history samples; 0: every step."),
+           .about("Simulated time between history samples, at its multiples; the start and the end of a run "
+                  "have "
+                  "one, too. 0: every step."),
        real("checkpoint_interval", "s")
            .at_least(0)
            .otherwise("0.0")
@@ -51,7 +53,8 @@ const TableKeys& output_keys() {
            .at_least(0)
            .otherwise("100")
            .about(
-               "Joints, drivers and couplers whose reactions are recorded: the first so many of the deck."),
+               "Joints, drivers and couplers whose reactions are recorded: the first so many of the deck. A "
+               "coupler's is that on the second body of its first joint."),
        integer("history_efforts")
            .at_least(0)
            .otherwise("100")

@@ -10,20 +10,33 @@ namespace scree {
 
 namespace {
 
-// Levenshtein's distance: letters to insert, delete or replace.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+// Letters to insert, delete or replace, or two neighbours to exchange; capitals count as small letters.
+std::size_t edit_distance(const std::string& one, const std::string& other) {
+  const std::string a = lower(one), b = lower(other);
+  std::vector<std::size_t> row(b.size() + 1), above(b.size() + 1), next(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
+    next[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      next[j] = std::min({row[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1), row[j] + 1, next[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        next[j] = std::min(next[j], above[j - 2] + 1);
     }
+    above.swap(row), row.swap(next);
   }
   return row[b.size()];
+}
+
+// A letter, or a quarter of them; of two single letters neither is meant for the other.
+bool is_close(const std::string& a, const std::string& b) {
+  const std::size_t letters = std::max(a.size(), b.size()), edits = edit_distance(a, b);
+  return edits < letters && edits <= std::max<std::size_t>(1, letters / 4);
 }
 
 }  // namespace
@@ -33,8 +46,7 @@ std::string suggestion(const std::string& misspelt, const std::vector<std::strin
   const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
     return edit_distance(misspelt, a) < edit_distance(misspelt, b);
   });
-  const std::size_t close = std::max<std::size_t>(2, misspelt.size() / 3);
-  if (edit_distance(misspelt, *nearest) <= close) return fmt::format("; did you mean \"{}\"?", *nearest);
+  if (is_close(misspelt, *nearest)) return fmt::format("; did you mean \"{}\"?", *nearest);
   constexpr std::size_t kMost = 30;
   const auto last = names.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, names.size()));
   return fmt::format("; known: {}{}", fmt::join(names.begin(), last, ", "),

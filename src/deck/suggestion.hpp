@@ -6,8 +6,8 @@
 
 namespace scree {
 
-// "; did you mean \"step\"?" where a name is within a few letters, otherwise "; known: a, b, c" ("" without
-// names).
+// "; did you mean \"step\"?" where a name differs by a letter or a quarter of them, or in capitals, otherwise
+// "; known: a, b, c" ("" without names).
 std::string suggestion(const std::string& misspelt, const std::vector<std::string>& names);
 
 }  // namespace scree

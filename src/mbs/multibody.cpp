@@ -29,8 +29,7 @@ constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
 // The bodies' error, over the tolerance, from which they decide on the step's length.
 constexpr Real kGoverns = 0.3;
 
-// redundancy: what is to be said of constraints that share the load.
-MultibodyState checked_start(const Model& model, RigidBodySystem& system, std::string& redundancy) {
+MultibodyState checked_start(const Model& model, RigidBodySystem& system, StartFindings& findings) {
   MultibodyState state;
   state.position.resize(static_cast<std::size_t>(system.positions()));
   state.velocity.resize(static_cast<std::size_t>(system.coordinates()));
@@ -38,7 +37,7 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system, std::s
   state.multipliers.assign(static_cast<std::size_t>(system.constraints()), 0);
   state.counted_angles = static_cast<std::size_t>(system.counted_angles());
   system.count_turns(system.poses_at({0, state.position, state.velocity}), state.position);
-  redundancy = check_start(model, system, state.position, state.velocity);
+  findings = check_start(model, system, state.position, state.velocity);
   return state;
 }
 
@@ -47,7 +46,7 @@ MultibodyState checked_start(const Model& model, RigidBodySystem& system, std::s
 struct Multibody::Impl {
   explicit Impl(const Model& model)
       : system(model),
-        start(checked_start(model, system, redundancy)),
+        start(checked_start(model, system, findings)),
         method(system, model.integrator.hht_alpha, start.position, start.velocity,
                model.integrator.redundant == RedundantRows::share ? system.inverse_mass() : SparseTerm{}),
         newton(system, method),
@@ -83,7 +82,7 @@ struct Multibody::Impl {
   }
 
   RigidBodySystem system;
-  std::string redundancy;
+  StartFindings findings;
   MultibodyState start;  // q of the model, and its v or those nearest to them that are consistent
   std::string start_change;
   HhtMethod method;
@@ -93,8 +92,9 @@ struct Multibody::Impl {
   TimeControl time_control;
   bool corrects_start;
   std::vector<BodyMotion> motion;
-  MultibodyState end;  // of the step that accept() closes; its arrays change places with the caller's
-  Real time = 0;       // of the open step's start [s]
+  MultibodyState end;    // of the step that accept() closes; its arrays change places with the caller's
+  Real time = 0;         // of the open step's start [s]
+  IterationNorms norms;  // of the last correct()
 };
 
 // Efforts that the reactions load: by those found without them.
@@ -118,6 +118,7 @@ void Multibody::Impl::settle_velocities(const Model& model) {
       throw InputError(conflict + ", and no velocities satisfy it and the others that fix the same motion");
   }
   if (model.consistent_velocities) {
+    check_repeated_accelerations(system, findings.repeated, start.position, start.velocity);
     start_change = largest_change(system, given, start.velocity);
     return;
   }
@@ -195,9 +196,24 @@ void Multibody::predict(const MultibodyState& state, Real t, Real h) {
 
 IterationNorms Multibody::correct(const ContactWrenches& contacts) {
   impl_->system.set_contacts(contacts);
-  const IterationNorms norms = impl_->newton.iterate();
+  impl_->norms = impl_->newton.iterate();
   impl_->update_motion();
-  return norms;
+  return impl_->norms;
+}
+
+std::string Multibody::trouble() {
+  Impl& impl = *impl_;
+  const std::vector<Real>&gap = impl.method.terms().constraint, &scale = impl.system.constraint_scale();
+  Real largest = 0;
+  for (std::size_t i = 0; i < gap.size(); ++i) largest = std::max(largest, std::abs(gap[i]) / scale[i]);
+  std::string text;
+  if (largest > 0 && largest >= impl.norms.residual / 2)
+    text = "; the largest gaps are those of " + largest_gaps(impl.system, gap);
+  if (impl.method.shares())
+    return text.empty() ? ""
+                        : text + ": constraints that share their reactions must not contradict each other";
+  const std::string near = near_singular(impl.system, impl.method.start_position(), impl.time);
+  return near.empty() ? text : text + "; " + near + kSingularPosition;
 }
 
 Real Multibody::error() const {
@@ -329,7 +345,7 @@ std::vector<BushingSample> Multibody::bushings(const MultibodyState& state, Real
 int Multibody::coordinates() const { return impl_->system.coordinates(); }
 int Multibody::constraints() const { return impl_->system.constraints(); }
 const std::string& Multibody::start_change() const { return impl_->start_change; }
-const std::string& Multibody::redundancy() const { return impl_->redundancy; }
+const std::string& Multibody::redundancy() const { return impl_->findings.redundancy; }
 std::string Multibody::solver_description() const { return impl_->newton.description(); }
 
 }  // namespace scree

@@ -90,6 +90,9 @@ class Multibody {
   // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError
   // naming the joint or body on a singular matrix or a non-finite residual.
   IterationNorms correct(const ContactWrenches& contacts);
+  // What is to be said of a step that does not converge: which joints and drivers are not kept, and whether
+  // the position is near a singular one; empty where neither tells why. Of the last correct().
+  std::string trouble();
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
   // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:

@@ -13,7 +13,6 @@ namespace scree {
 namespace {
 
 constexpr Real kSuspect = 1e-8;      // pivot of A^T A, the squared distance of a column from those before it
-constexpr Real kDependent = 1e-9;    // distance itself, computed from the columns
 constexpr Real kTakesPart = 1e-6;    // coefficient of a dependency, relative to the largest
 constexpr Real kPivotShift = 1e-14;  // keeps the factorization going past a pivot that vanishes
 
@@ -21,7 +20,9 @@ using Matrix = Eigen::SparseMatrix<Real>;
 using RowMajorMatrix = Eigen::SparseMatrix<Real, Eigen::RowMajor>;
 using Vector = Eigen::VectorXd;
 
-Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
+// lengths: what the columns are divided by.
+Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entries,
+                    std::vector<Real>& lengths) {
   std::vector<Eigen::Triplet<Real>> triplets;
   triplets.reserve(entries.size());
   for (const MatrixEntry& entry : entries) triplets.emplace_back(entry.row, entry.column, entry.value);
@@ -29,7 +30,8 @@ Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entri
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   for (int j = 0; j < columns; ++j) {
     const Real length = matrix.col(j).norm();
-    if (length > 0) matrix.col(j) /= length;
+    lengths.push_back(length > 0 ? length : 1);
+    matrix.col(j) /= lengths.back();
   }
   return matrix;
 }
@@ -71,13 +73,14 @@ Real length_of(const Matrix& a, const std::vector<int>& column_at, const Combina
 
 }  // namespace
 
-std::vector<std::vector<int>> column_dependencies(int rows, int columns,
-                                                  const std::vector<MatrixEntry>& entries) {
+std::vector<Dependency> column_dependencies(int rows, int columns, const std::vector<MatrixEntry>& entries,
+                                            Real distance) {
   for (const MatrixEntry& entry : entries) {
     if (!std::isfinite(entry.value)) return {};
   }
   if (columns == 0) return {};
-  const Matrix a = unit_columns(rows, columns, entries);
+  std::vector<Real> lengths;
+  const Matrix a = unit_columns(rows, columns, entries, lengths);
   const Matrix normal = Matrix(a.transpose()) * a;
   Eigen::SimplicialLDLT<Matrix> factors;
   factors.setShift(kPivotShift);
@@ -87,28 +90,29 @@ std::vector<std::vector<int>> column_dependencies(int rows, int columns,
   std::vector<int> column_at(static_cast<std::size_t>(columns));  // by place in the order of elimination
   for (int j = 0; j < columns; ++j)
     column_at[static_cast<std::size_t>(factors.permutationP().indices()[j])] = j;
-  std::vector<std::vector<int>> dependencies;
+  std::vector<Dependency> dependencies;
   std::vector<bool> depends(static_cast<std::size_t>(columns), false);
   for (int k = 0; k < columns; ++k) {
-    if (pivots[k] > kSuspect) continue;
+    if (pivots[k] > std::max(kSuspect, distance * distance)) continue;
     const Combination c = combination(l, k, depends);
     Real largest = 0;
     for (const auto& [place, weight] : c) largest = std::max(largest, std::abs(weight));
-    if (length_of(a, column_at, c) > kDependent * largest) continue;
+    if (length_of(a, column_at, c) > distance * largest) continue;
     depends[static_cast<std::size_t>(k)] = true;
-    std::vector<int>& dependency = dependencies.emplace_back();
+    Dependency& dependency = dependencies.emplace_back();
     for (const auto& [place, weight] : c) {
-      if (std::abs(weight) > kTakesPart * largest)
-        dependency.push_back(column_at[static_cast<std::size_t>(place)]);
+      const int column = column_at[static_cast<std::size_t>(place)];
+      dependency.weight.emplace_back(column, weight / lengths[static_cast<std::size_t>(column)]);
+      if (std::abs(weight) > kTakesPart * largest) dependency.columns.push_back(column);
     }
-    std::sort(dependency.begin(), dependency.end());
+    std::sort(dependency.columns.begin(), dependency.columns.end());
   }
   return dependencies;
 }
 
 std::vector<int> dependent_columns(int rows, int columns, const std::vector<MatrixEntry>& entries) {
-  const std::vector<std::vector<int>> dependencies = column_dependencies(rows, columns, entries);
-  return dependencies.empty() ? std::vector<int>{} : dependencies.front();
+  const std::vector<Dependency> dependencies = column_dependencies(rows, columns, entries);
+  return dependencies.empty() ? std::vector<int>{} : dependencies.front().columns;
 }
 
 }  // namespace scree

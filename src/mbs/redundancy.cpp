@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/error.hpp"
-#include "mbs/rank_check.hpp"
 #include "model/connections.hpp"
 #include "physics/spatial_rotation.hpp"
 
@@ -20,20 +20,11 @@ constexpr int kRowsPerLoop = 3;   // that repeat others in a planar loop of hing
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-std::vector<std::vector<int>> dependent_rows(const RigidBodySystem& system, const SparseTerm& jacobian) {
-  std::vector<MatrixEntry> transposed;
-  for (std::size_t i = 0; i < jacobian.size(); ++i) {
-    const Real scale = system.coordinate_scale()[at(jacobian.column(i))];
-    transposed.push_back({jacobian.column(i), jacobian.row(i), jacobian.value(i) * scale});
-  }
-  return column_dependencies(system.coordinates(), system.constraints(), transposed);
-}
-
 // Joints, drivers and couplers that take part, by their numbers among the system's groups.
-std::set<int> groups_of(const RigidBodySystem& system, const std::vector<std::vector<int>>& dependencies) {
+std::set<int> groups_of(const RigidBodySystem& system, const std::vector<Dependency>& repeated) {
   std::set<int> groups;
-  for (const std::vector<int>& rows : dependencies)
-    for (const int row : rows) groups.insert(system.group_of(row));
+  for (const Dependency& dependency : repeated)
+    for (const int row : dependency.columns) groups.insert(system.group_of(row));
   return groups;
 }
 
@@ -66,7 +57,74 @@ std::string remedy_of_loops(const Model& model, const std::set<int>& groups, std
       model.joints[at(*groups.begin())].name, model.joints[at(*groups.rbegin())].name);
 }
 
+// In other positions rows need not repeat each other if their bodies have as many coordinates as rows.
+// Two rows alone are the same one twice, wherever the bodies are.
+std::string remedy_of_position(const RigidBodySystem& system, const SparseTerm& jacobian,
+                               const std::vector<Dependency>& repeated) {
+  if (std::ranges::all_of(repeated, [](const Dependency& d) { return d.columns.size() <= 2; })) return "";
+  std::set<int> rows, bodies, outside;
+  for (const Dependency& dependency : repeated)
+    rows.insert(dependency.columns.begin(), dependency.columns.end());
+  const auto body = [&](std::size_t i) { return system.layout().body_of_column(jacobian.column(i)); };
+  for (std::size_t i = 0; i < jacobian.size(); ++i)
+    if (rows.contains(jacobian.row(i))) bodies.insert(body(i));
+  for (std::size_t i = 0; i < jacobian.size(); ++i)
+    if (!bodies.contains(body(i))) outside.insert(jacobian.row(i));
+  int coordinates = 0;
+  for (int column = 0; column < system.coordinates(); ++column)
+    coordinates += bodies.contains(system.layout().body_of_column(column));
+  if (system.constraints() - static_cast<int>(outside.size()) > coordinates) return "";
+  return "; where they do so in this position alone, as a linkage that lies flat, it is singular: share, or "
+         "start elsewhere";
+}
+
+constexpr const char* word_of(Asked asked) {
+  return asked == Asked::positions    ? "positions"
+         : asked == Asked::velocities ? "velocities"
+                                      : "accelerations";
+}
+
+constexpr const char* per_of(Asked asked) {
+  return asked == Asked::positions ? "" : asked == Asked::velocities ? "/s" : "/s^2";
+}
+
+// By how much the row that is easiest to change, a driver's where there is one, differs from what the others
+// leave for it.
+struct Difference {
+  int row = 0;
+  Real size = 0;  // [m, rad and their rates]
+};
+
+Difference difference_of(const RigidBodySystem& system, const Dependency& dependency,
+                         const std::vector<Real>& wanted) {
+  const auto drives = [&](int row) { return system.groups()[at(system.group_of(row))].drives; };
+  Real sum = 0, weight = 0;
+  Difference out{dependency.columns.front(), 0};
+  for (const int row : dependency.columns)
+    if (drives(row) >= drives(out.row)) out.row = row;
+  for (const auto& [row, w] : dependency.weight) {
+    sum += w * wanted[at(row)];
+    if (row == out.row) weight = w;
+  }
+  out.size = std::abs(sum / weight);
+  return out;
+}
+
 }  // namespace
+
+std::vector<Dependency> repeated_rows(const RigidBodySystem& system, const SparseTerm& jacobian,
+                                      Real distance) {
+  std::vector<MatrixEntry> transposed;
+  for (std::size_t i = 0; i < jacobian.size(); ++i) {
+    const Real scale = system.coordinate_scale()[at(jacobian.column(i))];
+    transposed.push_back({jacobian.column(i), jacobian.row(i), jacobian.value(i) * scale});
+  }
+  return column_dependencies(system.coordinates(), system.constraints(), transposed, distance);
+}
+
+std::string names_of(const RigidBodySystem& system, const std::vector<Dependency>& repeated) {
+  return names_of(system, groups_of(system, repeated));
+}
 
 std::string list_names(const std::vector<std::string>& names) {
   std::vector<std::string> once;
@@ -80,23 +138,71 @@ std::string list_names(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string check_redundancy(const Model& model, const RigidBodySystem& system, const SparseTerm& jacobian) {
-  const std::vector<std::vector<int>> dependencies = dependent_rows(system, jacobian);
-  for (const std::vector<int>& rows : dependencies)
-    if (rows.size() == 1)
-      throw InputError(fmt::format("{} has a condition that no motion of its bodies changes; remove it",
-                                   system.constraint_name(rows.front())));
-  if (dependencies.empty()) return "";
-  const std::set<int> groups = groups_of(system, dependencies);
-  const int rows = system.constraints(), rank = rows - static_cast<int>(dependencies.size());
+std::string check_redundancy(const Model& model, const RigidBodySystem& system, const SparseTerm& jacobian,
+                             const std::vector<Dependency>& repeated) {
+  const auto label = [&](int group) { return system.groups()[at(group)].deck_label; };
+  for (const Dependency& dependency : repeated)
+    if (dependency.columns.size() == 1) {
+      const int row = dependency.columns.front();
+      throw InputError(with_label(
+          label(system.group_of(row)),
+          system.constraint_name(row) + " has a condition that no motion of its bodies changes; remove it"));
+    }
+  if (repeated.empty()) return "";
+  const std::set<int> groups = groups_of(system, repeated);
+  const int rows = system.constraints(), rank = rows - static_cast<int>(repeated.size());
   if (model.integrator.redundant == RedundantRows::share)
     return fmt::format("{} rows of rank {}: {}", rows, rank, names_of(system, groups));
-  throw InputError(fmt::format(
-      "redundant constraints: {} fix the same motion more than once, {} rows have rank {}; the motion is "
-      "unique, "
-      "the reactions of these are not. Remove or change one; or set integrator.redundant = \"share\" for the "
-      "least reactions{}",
-      names_of(system, groups), rows, rank, remedy_of_loops(model, groups, dependencies.size())));
+  throw InputError(with_label(
+      label(*groups.rbegin()),
+      fmt::format("redundant constraints: {} fix the same motion more than once, {} rows have rank {}; the "
+                  "motion is unique, the reactions of these are not. Remove or change one; or set "
+                  "integrator.redundant = \"share\" for the least reactions{}{}",
+                  names_of(system, groups), rows, rank, remedy_of_loops(model, groups, repeated.size()),
+                  remedy_of_position(system, jacobian, repeated))));
+}
+
+void check_contradictions(const RigidBodySystem& system, const std::vector<Dependency>& repeated,
+                          const std::vector<Real>& wanted, Real limit, Asked asked, Real t) {
+  const Dependency* worst = nullptr;
+  Difference most;
+  Real ratio = limit;
+  for (const Dependency& dependency : repeated) {
+    const Difference difference = difference_of(system, dependency, wanted);
+    const Real scaled = difference.size / system.constraint_scale()[at(difference.row)];
+    if (scaled > ratio) worst = &dependency, most = difference, ratio = scaled;
+  }
+  if (worst == nullptr) return;
+  const ConstraintGroup& group = system.groups()[at(system.group_of(most.row))];
+  const std::string apart =
+      fmt::format("the {} that they ask for at t = {:.9g}{} are {:.6g} {}{} apart", word_of(asked), t,
+                  t > 0 ? " s" : "", most.size, system.is_angle(most.row) ? "rad" : "m", per_of(asked));
+  const std::string names = names_of(system, {*worst});
+  if (asked == Asked::accelerations && !group.drives)
+    throw InputError(with_label(
+        group.deck_label,
+        fmt::format("{} repeat each other in the position at t = 0, which is singular, and no motion goes on "
+                    "from the velocities there: {}. Give those of a motion that does, or start elsewhere",
+                    names, apart)));
+  throw InputError(with_label(
+      group.deck_label,
+      fmt::format("{} contradict each other: {}, and no motion has them all. Change or "
+                  "remove one{}",
+                  names, apart,
+                  worst->columns.size() > 2 ? "; or, where the position at t = 0 is singular, start elsewhere"
+                                            : "")));
+}
+
+std::string largest_gaps(const RigidBodySystem& system, const std::vector<Real>& gap) {
+  int largest = 0;
+  const auto scaled = [&](int row) { return std::abs(gap[at(row)]) / system.constraint_scale()[at(row)]; };
+  for (int row = 1; row < system.constraints(); ++row)
+    if (scaled(row) > scaled(largest)) largest = row;
+  std::vector<std::string> names;
+  for (int row = 0; row < system.constraints(); ++row)
+    if (scaled(row) >= scaled(largest) / 2) names.push_back(system.constraint_name(row));
+  return fmt::format("{}, by {:.3g} {}", list_names(names), std::abs(gap[at(largest)]),
+                     system.is_angle(largest) ? "rad" : "m");
 }
 
 }  // namespace scree

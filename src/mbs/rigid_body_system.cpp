@@ -63,7 +63,7 @@ void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start
     const Joint& joint = model.joints[i];
     const std::unique_ptr<JointParts> parts = joint_parts(model, static_cast<int>(i), layout_);
     add_joint(joint, driven[i], *parts);
-    add_group(fmt::format("joint '{}'", joint.name), joint.name, parts->take(), joint,
+    add_group({fmt::format("joint '{}'", joint.name), joint.name, joint.deck_label}, parts->take(), joint,
               between(model, joint.body));
   }
   for (const Driver& driver : model.drivers) {
@@ -72,14 +72,15 @@ void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start
     const std::unique_ptr<JointParts> parts = joint_parts(model, driver.joint, layout_);
     add_driver(coordinate_of(title, joint, driver.coordinate),
                ScalarFunction(driver.motion, title, model.time.end), *parts);
-    add_group(title, driver.name, parts->take(), joint, between(model, joint.body));
+    add_group({title, driver.name, driver.deck_label, true}, parts->take(), joint,
+              between(model, joint.body));
   }
   for (const Coupler& coupler : model.couplers) {
     std::vector<std::unique_ptr<Constraint>> rows;
     rows.push_back(make_coupler(coupler, model, layout_, start));
     const Joint& first = model.joints[static_cast<std::size_t>(coupler.joints.front())];
-    add_group(fmt::format("coupler '{}'", coupler.name), coupler.name, std::move(rows), first,
-              between(model, first.body));
+    add_group({fmt::format("coupler '{}'", coupler.name), coupler.name, coupler.deck_label}, std::move(rows),
+              first, between(model, first.body));
   }
 }
 
@@ -117,11 +118,9 @@ std::vector<std::vector<int>> RigidBodySystem::load_rows(const Model& model) con
   return rows;
 }
 
-void RigidBodySystem::add_group(const std::string& title, const std::string& name,
-                                std::vector<std::unique_ptr<Constraint>> parts, const Joint& joint,
-                                BodyKind kind) {
-  ConstraintGroup group{title, name, kind};
-  group.body = joint.body[0], group.marker = joint.marker[0];
+void RigidBodySystem::add_group(ConstraintGroup group, std::vector<std::unique_ptr<Constraint>> parts,
+                                const Joint& joint, BodyKind kind) {
+  group.kind = kind, group.body = joint.body[0], group.marker = joint.marker[0];
   group.first = static_cast<int>(constraints_.size()), group.first_row = constraints();
   for (std::unique_ptr<Constraint>& part : parts) {
     first_row_.push_back(constraints());

@@ -18,10 +18,12 @@
 
 namespace scree {
 
-// A joint or a driver and its rows of Phi.
+// A joint, driver or coupler and its rows of Phi.
 struct ConstraintGroup {
-  std::string title;  // "joint 'pin'", "driver 'crank'"
-  std::string name;   // "pin"
+  std::string title;       // "joint 'pin'", "driver 'crank'"
+  std::string name;        // "pin"
+  std::string deck_label;  // as of a joint of the model
+  bool drives = false;     // it is a driver
   BodyKind kind = BodyKind::planar;
   int body = kGround;              // the joint's first one
   Quaternion marker{};             // of the joint on it
@@ -115,9 +117,9 @@ class RigidBodySystem final : public MechanicalSystem {
   void add_elements(const Model& model, const BodyPoses& start);
   // Of every joint.
   std::vector<std::vector<int>> load_rows(const Model& model) const;
-  // joint: whose the rows are; of a coupler's, the first one.
-  void add_group(const std::string& title, const std::string& name,
-                 std::vector<std::unique_ptr<Constraint>> parts, const Joint& joint, BodyKind kind);
+  // The group's names are given, the rest follows. joint: whose the rows are; of a coupler's, the first one.
+  void add_group(ConstraintGroup group, std::vector<std::unique_ptr<Constraint>> parts, const Joint& joint,
+                 BodyKind kind);
 
   std::vector<Body> bodies_;
   BodyLayout layout_;

@@ -7,7 +7,6 @@
 
 #include "base/error.hpp"
 #include "mbs/rank_check.hpp"
-#include "mbs/redundancy.hpp"
 #include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
 #include "physics/spatial_rotation.hpp"
@@ -18,42 +17,50 @@ namespace {
 
 constexpr Real kPositionGap = 1e-10;     // of the constraint's scale
 constexpr Real kKeptGap = 1e-6;          // the same on the way, where steps have kept it to their tolerance
+constexpr Real kContradiction = 1e-6;    // the same of rows that repeat each other: a deck's digits
 constexpr Real kVelocityGap = 1e-8;      // of the largest velocity plus the constraint's scale per second
 constexpr Real kAccelerationGap = 1e-3;  // the same of accelerations
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// Of a group's gap [m, rad], or its rate with per = "/s": what is wrong with the length of its length rows or
-// of its angle rows, or nothing.
-std::string row_trouble(const RigidBodySystem& system, const ConstraintGroup& group,
-                        const std::vector<Real>& gap, Real limit, const char* what, const char* per) {
-  for (const bool angle : {false, true}) {
-    Real square = 0, scale = 1;
-    for (int row = group.first_row; row < group.end_row; ++row) {
-      if (system.is_angle(row) != angle) continue;
-      square += gap[at(row)] * gap[at(row)];
-      scale = system.constraint_scale()[at(row)];
+// Of all groups the one whose gap [m, rad], or its rate with per = "/s", is the farthest above the limit:
+// what is wrong with the length of its length rows or of its angle rows, or nothing.
+std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit,
+                          const std::string& what, const char* per) {
+  std::string trouble;
+  Real worst = limit;
+  for (const ConstraintGroup& group : system.groups())
+    for (const bool angle : {false, true}) {
+      Real square = 0, scale = 1;
+      for (int row = group.first_row; row < group.end_row; ++row) {
+        if (system.is_angle(row) != angle) continue;
+        square += gap[at(row)] * gap[at(row)];
+        scale = system.constraint_scale()[at(row)];
+      }
+      const Real size = std::sqrt(square);
+      if (size <= worst * scale) continue;
+      worst = size / scale;
+      trouble = with_label(group.deck_label,
+                           fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}", group.title,
+                                       what, size, angle ? "rad" : "m", per, limit * scale));
     }
-    const Real size = std::sqrt(square);
-    if (size <= limit * scale) continue;
-    return fmt::format("{}: {} {:.6g} {}{}, allowed is {:.3g}", group.title, what, size, angle ? "rad" : "m",
-                       per, limit * scale);
-  }
-  return "";
+  return trouble;
 }
 
-// The same of the rates of all groups, the limit times the largest rate of the coordinates plus one scale.
-std::string rate_trouble(const RigidBodySystem& system, const std::vector<Real>& gap,
-                         const std::vector<Real>& rate, Real limit, const char* what, const char* per) {
+// 1 and the largest rate of a coordinate over its scale.
+Real rate_scale(const RigidBodySystem& system, const std::vector<Real>& rate) {
   Real fastest = 0;
-  for (std::size_t i = 0; i < rate.size(); ++i) {
+  for (std::size_t i = 0; i < rate.size(); ++i)
     fastest = std::max(fastest, std::abs(rate[i]) / system.coordinate_scale()[i]);
-  }
-  for (const ConstraintGroup& group : system.groups()) {
-    const std::string trouble = row_trouble(system, group, gap, limit * (1 + fastest), what, per);
-    if (!trouble.empty()) return trouble;
-  }
-  return "";
+  return 1 + fastest;
+}
+
+// The same of what rows ask for.
+Real asked_scale(const RigidBodySystem& system, const std::vector<Real>& wanted) {
+  Real fastest = 0;
+  for (std::size_t j = 0; j < wanted.size(); ++j)
+    fastest = std::max(fastest, std::abs(wanted[j]) / system.constraint_scale()[j]);
+  return 1 + fastest;
 }
 
 SystemTerms terms_at(RigidBodySystem& system, const std::vector<Real>& position,
@@ -69,19 +76,22 @@ SystemTerms terms_at(RigidBodySystem& system, const std::vector<Real>& position,
 void check_gaps(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit, Real t) {
   const std::string what =
       fmt::format("its two sides do not meet at t = {:.9g}{}, they miss by", t, t > 0 ? " s" : "");
-  for (const ConstraintGroup& group : system.groups()) {
-    const std::string trouble = row_trouble(system, group, gap, limit, what.c_str(), "");
-    if (!trouble.empty()) throw InputError(trouble);
-  }
+  const std::string trouble = group_trouble(system, gap, limit, what, "");
+  if (!trouble.empty()) throw InputError(trouble);
+}
+
+void check_joints_meet(const Model& model) {
+  for (const Joint& joint : model.joints)
+    if (const JointGap ends = joint_gap(model, joint); !ends.meets())
+      throw InputError(with_label(
+          joint.deck_label,
+          fmt::format(
+              "joint '{}': its two sides do not meet at t = 0, they miss by {:.6g} m, allowed is {:.3g} m",
+              joint.name, ends.size, ends.allowed)));
 }
 
 // Whether a joint's points meet at t = 0 the model's rule says; of angles and drivers the rows of Phi.
 void check_start_gaps(const Model& model, const RigidBodySystem& system, std::vector<Real> gap) {
-  for (const Joint& joint : model.joints)
-    if (const JointGap ends = joint_gap(model, joint); !ends.meets())
-      throw InputError(fmt::format(
-          "joint '{}': its two sides do not meet at t = 0, they miss by {:.6g} m, allowed is {:.3g}",
-          joint.name, ends.size, ends.allowed));
   for (std::size_t k = 0; k < model.joints.size(); ++k)  // the first groups are the joints'
     for (int row = system.groups()[k].first_row; row < system.groups()[k].end_row; ++row)
       if (!system.is_angle(row)) gap[at(row)] = 0;
@@ -99,9 +109,10 @@ void check_senses(const Model& model) {
       axis[i] = to_global_direction(model, joint.body[i], rotation_matrix(joint.marker[i]) * Vec3{0, 0, 1});
     if (dot(axis[0], axis[1]) < 0)
       throw InputError(
-          fmt::format("joint '{}': its axes on the two bodies point against each other at t = 0; "
-                      "they must point the same way",
-                      joint.name));
+          with_label(joint.deck_label,
+                     fmt::format("joint '{}': its axes on the two bodies point against each other at t = 0; "
+                                 "they must point the same way",
+                                 joint.name)));
   }
 }
 
@@ -125,34 +136,88 @@ void check_directions(const Model& model, const RigidBodySystem& system, const B
   }
 }
 
+// Two drivers of one coordinate repeat each other wherever the bodies are: they must agree for the whole run.
+void check_driven_twice(const Model& model, const RigidBodySystem& system,
+                        const std::vector<Dependency>& repeated) {
+  constexpr int kInstants = 200;
+  std::vector<Dependency> twice;
+  const auto driven = [&](int row) {  // the drivers' groups follow the joints'
+    const std::size_t group = at(system.group_of(row));
+    return system.groups()[group].drives ? model.drivers[group - model.joints.size()].joint : -1;
+  };
+  for (const Dependency& d : repeated)
+    if (d.columns.size() == 2 && driven(d.columns[0]) >= 0 && driven(d.columns[0]) == driven(d.columns[1]))
+      twice.push_back(d);
+  std::vector<Real> rate(at(system.constraints()), 0);
+  for (int k = 1; k <= kInstants && !twice.empty(); ++k) {
+    const Real t = model.time.end * k / kInstants;
+    system.velocity_rhs({t, {}, {}}, rate);
+    check_contradictions(system, twice, rate, kContradiction * asked_scale(system, rate), Asked::velocities,
+                         t);
+  }
+}
+
 }  // namespace
 
-std::string check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
-                        const std::vector<Real>& velocity) {
+StartFindings check_start(const Model& model, RigidBodySystem& system, const std::vector<Real>& position,
+                          const std::vector<Real>& velocity) {
   check_senses(model);
   check_directions(model, system, system.poses_at({0, position, velocity}));
   const SystemTerms terms = terms_at(system, position, velocity, 0);
+  check_joints_meet(model);
+  StartFindings findings{"", repeated_rows(system, terms.constraint_jacobian)};
+  check_contradictions(system, findings.repeated, terms.constraint, kContradiction, Asked::positions);
   check_start_gaps(model, system, terms.constraint);
-  return check_redundancy(model, system, terms.constraint_jacobian);
+  std::vector<Real> rate(at(system.constraints()), 0);
+  system.velocity_rhs({0, position, velocity}, rate);
+  check_contradictions(system, findings.repeated, rate, kVelocityGap * asked_scale(system, rate),
+                       Asked::velocities);
+  for (Real& asked : rate) asked = -asked;
+  const SparseTerm& jacobian = terms.constraint_jacobian;
+  for (std::size_t i = 0; i < jacobian.size(); ++i)
+    rate[at(jacobian.row(i))] += jacobian.value(i) * velocity[at(jacobian.column(i))];
+  if (velocity_trouble(system, rate, velocity).empty())
+    check_repeated_accelerations(system, findings.repeated, position, velocity);
+  check_driven_twice(model, system, findings.repeated);
+  findings.redundancy = check_redundancy(model, system, jacobian, findings.repeated);
+  return findings;
+}
+
+void check_repeated_accelerations(RigidBodySystem& system, const std::vector<Dependency>& repeated,
+                                  const std::vector<Real>& position, const std::vector<Real>& velocity) {
+  if (repeated.empty()) return;
+  terms_at(system, position, velocity, 0);  // for the poses
+  std::vector<Real> asked(at(system.constraints()), 0);
+  system.acceleration_rhs({0, position, velocity}, asked);
+  check_contradictions(system, repeated, asked, kAccelerationGap * asked_scale(system, asked),
+                       Asked::accelerations);
 }
 
 std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity) {
-  return rate_trouble(system, gap_rate, velocity, kVelocityGap, "the velocities at t = 0 contradict it by",
-                      "/s");
+  return group_trouble(system, gap_rate, kVelocityGap * rate_scale(system, velocity),
+                       "the velocities at t = 0 contradict it by", "/s");
 }
 
 void check_start_accelerations(const RigidBodySystem& system, const std::vector<Real>& misfit,
                                const std::vector<Real>& acceleration) {
   const std::string trouble =
-      rate_trouble(system, misfit, acceleration, kAccelerationGap,
-                   "no accelerations at t = 0 satisfy it and the others, they miss by", "/s^2");
+      group_trouble(system, misfit, kAccelerationGap * rate_scale(system, acceleration),
+                    "no accelerations at t = 0 satisfy it and the others, they miss by", "/s^2");
   if (!trouble.empty()) throw InputError(trouble);
 }
 
 void check_joints_hold(RigidBodySystem& system, const std::vector<Real>& position,
                        const std::vector<Real>& velocity, Real t) {
   check_gaps(system, terms_at(system, position, velocity, t).constraint, kKeptGap, t);
+}
+
+std::string near_singular(RigidBodySystem& system, const std::vector<Real>& position, Real t) {
+  constexpr Real kNear = 1e-3;  // of rows of length 1
+  const std::vector<Real> rest(at(system.coordinates()), 0);
+  const SystemTerms terms = terms_at(system, position, rest, t);
+  const std::vector<Dependency> repeated = repeated_rows(system, terms.constraint_jacobian, kNear);
+  return repeated.empty() ? "" : names_of(system, repeated);
 }
 
 std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& pattern,
@@ -169,11 +234,13 @@ std::string matrix_failure(const MechanicalSystem& system, const SparsePattern& 
     }
   }
   std::vector<std::string> names;
+  bool bodies = false;
   for (const int column : dependent_columns(pattern.rows(), pattern.rows(), entries)) {
     names.push_back(name(column));
+    bodies = bodies || column < system.coordinates();
   }
   if (names.empty()) return "could not be solved, though it is not singular";
-  return fmt::format("is singular: {}", list_names(names));
+  return fmt::format("is singular: {}{}", list_names(names), bodies ? "" : kSingularPosition);
 }
 
 }  // namespace scree

@@ -66,6 +66,7 @@ struct Joint {
   // Between spatial bodies, in place of axis and angle_offset: orientation of the joint's frame in each
   // body's, its axis along z; universal: the first body's arm along x, the second one's along y.
   Quaternion marker[2];
+  std::string deck_label;  // of its table, for messages: "deck.toml:38:1: joints.hinge"; empty without a deck
 };
 
 // A scalar function of time with two continuous derivatives where a driver needs them.
@@ -90,6 +91,7 @@ struct Driver {
   int joint = 0;
   TimeFunction motion;
   std::optional<JointCoordinate> coordinate{};  // empty: the only one, or the first
+  std::string deck_label{};                     // as of a joint
 };
 
 // Spring-damper-actuator between two points: tension = k (l - free_length) + c dl/dt + actuator(t).

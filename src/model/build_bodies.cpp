@@ -162,7 +162,7 @@ Vec3 turned_at_start(const DeckTable& body, Vec3 local) {
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names) {
   for (const DeckTable& table : deck.tables("bodies")) {
     const std::string& name = table.text("name");
-    if (name == "ground") table.fail("name", "\"ground\" is the fixed frame; choose another name");
+    if (name == kGroundName) table.fail("name", "\"ground\" is the fixed frame; choose another name");
     const Body first = body_of(table, names, model.space.dimension);
     const bool row = table.has("count");
     const Vec3 spacing = table.vector("spacing");

@@ -235,7 +235,7 @@ std::vector<Real> coefficients_of(const DeckTable& table, const Model& model, Co
 
 Coupler build_coupler(const DeckTable& table, const Model& model, const ModelNames& names) {
   Coupler coupler;
-  coupler.name = table.text("name");
+  coupler.name = table.text("name"), coupler.deck_label = table.label();
   for (const std::string& name : table.texts("joints"))
     add_once(coupler.joints, moving_joint(table, model, names, name, "joints"), table, "joints",
              fmt::format("\"{}\"", name));

@@ -77,8 +77,9 @@ void check_aligned(const DeckTable& table, const std::string& must, Real wrong) 
   if (wrong <= kAligned) return;
   const std::string against =
       wrong > std::numbers::pi_v<Real> / 2 ? "; turn one of them by half a turn about its x axis" : "";
-  table.fail("markers", fmt::format("{} at t = 0; they are off by {:.6g} degrees, allowed is {:.2g}{}", must,
-                                    wrong * kDegrees, kAligned * kDegrees, against));
+  table.fail("markers",
+             fmt::format("{} at t = 0; they are off by {:.6g} degrees, allowed are {:.2g} degrees{}", must,
+                         wrong * kDegrees, kAligned * kDegrees, against));
 }
 
 // The second frame, turned to what the joint keeps.
@@ -157,7 +158,7 @@ void check_planar(const DeckTable& table, const Joint& joint) {
 }
 
 std::string body_name(const Model& model, int body) {
-  return body == kGround ? "ground" : model.bodies[static_cast<std::size_t>(body)].name;
+  return body == kGround ? kGroundName : model.bodies[static_cast<std::size_t>(body)].name;
 }
 
 std::string shown_point(const Model& model, const Joint& joint, Vec3 p) {
@@ -199,7 +200,7 @@ void read_screw(const DeckTable& table, const Model& model, Joint& joint) {
 
 Joint build_joint(const DeckTable& table, const Model& model, const Connection& connection) {
   Joint joint;
-  joint.name = connection.name;
+  joint.name = connection.name, joint.deck_label = table.label();
   joint.kind = table.choice<JointKind>("type");
   for (int side = 0; side < 2; ++side) joint.body[side] = connection.body[side];
   check_same_kind(table, model, connection);
@@ -252,7 +253,8 @@ void build_joints(const DeckTable& deck, Model& model, ModelNames& names) {
                                       "cylindrical, screw, universal or distance",
                                       word_of(driven.kind)));
     const JointCoordinate coordinate = read_coordinate(table, driven);
-    model.drivers.push_back({table.text("name"), joint, build_motion(table.table("motion")), coordinate});
+    model.drivers.push_back(
+        {table.text("name"), joint, build_motion(table.table("motion")), coordinate, table.label()});
   }
 }
 

@@ -9,12 +9,12 @@ void build_markers(const DeckTable& deck, const Model& model, ModelNames& names)
   for (const DeckTable& table : deck.tables("markers")) {
     const std::string& body = table.text("body");
     NamedMarker marker;
-    if (body == "ground") {
+    if (body == kGroundName) {
       marker.bodies = {kGround};
     } else if (const auto single = names.bodies.find(body); single != names.bodies.end()) {
       marker.bodies = {single->second};
     } else {
-      marker.bodies = find_row(names, body, table, "body");
+      marker.bodies = find_row(names, body, table, "body", {kGroundName});
       marker.row = true;
     }
     const int first = marker.bodies.front();

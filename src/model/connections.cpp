@@ -29,16 +29,12 @@ Connection named_pair(const DeckTable& table, const ModelNames& names) {
   Connection connection{table.text("name"), {}, {}};
   const std::vector<std::string>& bodies = table.texts("bodies");
   for (std::size_t side = 0; side < 2; ++side) {
-    if (bodies[side] == "ground") {
-      connection.body[side] = kGround;
-      continue;
-    }
     const auto row = names.rows.find(bodies[side]);
     if (row != names.rows.end() && !names.bodies.contains(bodies[side])) {
       table.fail("bodies", fmt::format("\"{0}\" is a row; name one of its bodies, \"{0}.0\" to \"{0}.{1}\"",
                                        bodies[side], row->second.size() - 1));
     }
-    connection.body[side] = find_name(names.bodies, bodies[side], table, "bodies", "body");
+    connection.body[side] = find_body(names, bodies[side], table, "bodies");
   }
   if (connection.body[0] == connection.body[1]) table.fail("bodies", "must be two different bodies");
   return connection;
@@ -108,6 +104,10 @@ std::vector<Connection> find_connections(const DeckTable& table, const ModelName
 BodyKind between(const Model& model, const int (&body)[2]) {
   const int one = body[1] == kGround ? body[0] : body[1];
   return one == kGround ? BodyKind::planar : model.bodies[static_cast<std::size_t>(one)].kind;
+}
+
+std::string with_label(const std::string& deck_label, const std::string& text) {
+  return deck_label.empty() ? text : deck_label + ": " + text;
 }
 
 Vec3 start_position(const Model& model, int body) {

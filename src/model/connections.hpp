@@ -31,6 +31,9 @@ std::vector<Connection> find_connections(const DeckTable& table, const ModelName
 // is of either kind.
 BodyKind between(const Model& model, const int (&body)[2]);
 
+// For messages: the text behind the label of the deck's table that it is about, where there is one.
+std::string with_label(const std::string& deck_label, const std::string& text);
+
 // Position at t = 0 of a body's centre; the origin for the ground [m].
 Vec3 start_position(const Model& model, int body);
 Real start_angle(const Model& model, int body);  // of a planar body [rad]

@@ -73,6 +73,7 @@ struct Coupler {
   std::vector<int> joints;
   std::vector<Real> coefficients;
   std::vector<JointCoordinate> coordinates{};  // per joint; empty: of each the only one, or the first
+  std::string deck_label{};                    // as of a joint
 };
 
 }  // namespace scree

@@ -25,16 +25,31 @@ std::string elements_of_row(const NameMap& names, const std::string& name) {
   return fmt::format("; \"{0}\" has {0}.0 to {0}.{1}", row, last);
 }
 
+// known: names that are none of the map, but would do.
+[[noreturn]] void fail_for_name(const NameMap& names, const std::string& name, const DeckTable& table,
+                                const std::string& key, const std::string& what,
+                                std::vector<std::string> known) {
+  const std::string row = elements_of_row(names, name);
+  for (const std::string& of_map : names_of(names)) known.push_back(of_map);
+  table.fail(key, fmt::format("there is no {} named \"{}\"{}", what, name,
+                              row.empty() ? suggestion(name, known) : row));
+}
+
 }  // namespace
 
 int find_name(const NameMap& names, const std::string& name, const DeckTable& table, const std::string& key,
               const std::string& what) {
   const auto found = names.find(name);
-  if (found != names.end()) return found->second;
-  const std::string row = elements_of_row(names, name);
-  if (!row.empty()) table.fail(key, fmt::format("there is no {} named \"{}\"{}", what, name, row));
-  table.fail(key,
-             fmt::format("there is no {} named \"{}\"{}", what, name, suggestion(name, names_of(names))));
+  if (found == names.end()) fail_for_name(names, name, table, key, what, {});
+  return found->second;
+}
+
+int find_body(const ModelNames& names, const std::string& name, const DeckTable& table,
+              const std::string& key) {
+  if (name == kGroundName) return kGround;
+  const auto found = names.bodies.find(name);
+  if (found == names.bodies.end()) fail_for_name(names.bodies, name, table, key, "body", {kGroundName});
+  return found->second;
 }
 
 int find_name(const NameMap& names, const DeckTable& table, const std::string& key, const std::string& what) {
@@ -42,11 +57,12 @@ int find_name(const NameMap& names, const DeckTable& table, const std::string& k
 }
 
 const std::vector<int>& find_row(const ModelNames& names, const std::string& name, const DeckTable& table,
-                                 const std::string& key) {
+                                 const std::string& key, std::vector<std::string> known) {
   const auto found = names.rows.find(name);
   if (found != names.rows.end()) return found->second;
-  table.fail(key, fmt::format("there is no body or row of bodies named \"{}\"{}", name,
-                              suggestion(name, names_of(names.rows))));
+  for (const std::string& row : names_of(names.rows)) known.push_back(row);
+  table.fail(key,
+             fmt::format("there is no body or row of bodies named \"{}\"{}", name, suggestion(name, known)));
 }
 
 const NamedMarker& find_marker(const ModelNames& names, const std::string& name, const DeckTable& table,

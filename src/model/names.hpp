@@ -12,6 +12,8 @@
 
 namespace scree {
 
+inline constexpr const char* kGroundName = "ground";
+
 using NameMap = std::map<std::string, int>;
 
 // A marker of the deck: on a body, on each body of a row, or on the ground.
@@ -34,9 +36,12 @@ int find_name(const NameMap& names, const DeckTable& table, const std::string& k
 // The same for a name that stands in a list.
 int find_name(const NameMap& names, const std::string& name, const DeckTable& table, const std::string& key,
               const std::string& what);
-// Bodies of the row that `name` means. Throws InputError.
+// The same of a body, or kGround for "ground".
+int find_body(const ModelNames& names, const std::string& name, const DeckTable& table,
+              const std::string& key);
+// Bodies of the row that `name` means. known: names that would do, too. Throws InputError.
 const std::vector<int>& find_row(const ModelNames& names, const std::string& name, const DeckTable& table,
-                                 const std::string& key);
+                                 const std::string& key, std::vector<std::string> known = {});
 // Throws InputError.
 const NamedMarker& find_marker(const ModelNames& names, const std::string& name, const DeckTable& table,
                                const std::string& key);

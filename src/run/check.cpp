@@ -17,6 +17,7 @@
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
+#include "run/check_bodies.hpp"
 #include "run/step_trials.hpp"
 
 namespace scree {
@@ -86,30 +87,6 @@ std::string space_lines(const Model& model, int ranks) {
                      "thickness      {}, of discs whose mass follows from a density; assumed: 1 m, where "
                      "particles.thickness is left out\n",
                      range(model.disc_thickness.smallest, model.disc_thickness.largest, "m"));
-}
-
-std::string multibody_lines(const Model& model) {
-  if (model.bodies.empty()) return "bodies         none\n";
-  std::int64_t shapes = 0, bare = 0;
-  for (const Body& body : model.bodies) shapes += std::ssize(body.shapes), bare += body.shapes.empty();
-  const int coordinates = BodyLayout(model.bodies).columns(), constraints = constraint_count(model);
-  const std::int64_t elements =
-      std::ssize(model.spring_dampers) + std::ssize(model.torsional_spring_dampers) +
-      std::ssize(model.bushings) + std::ssize(model.applied_forces) + std::ssize(model.motors) +
-      std::ssize(model.joint_springs) + std::ssize(model.joint_limits) + std::ssize(model.joint_frictions);
-  std::string lines =
-      fmt::format("bodies         {} with {}, {}, {}, {}\n", model.bodies.size(),
-                  counted(shapes, "shape", "shapes"), counted(std::ssize(model.joints), "joint", "joints"),
-                  counted(std::ssize(model.drivers), "driver", "drivers"),
-                  counted(elements, "force element", "force elements"));
-  if (bare > 0 && !model.walls.empty())
-    lines += fmt::format("               {} no shapes: {} through walls and touch{} nothing\n",
-                         counted(bare, "body has", "bodies have"), bare == 1 ? "it passes" : "they pass",
-                         bare == 1 ? "es" : "");
-  lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
-  // Of rows that may repeat each other the rank counts, which the bodies' solver reports.
-  if (model.integrator.redundant == RedundantRows::share) return lines + "some may repeat others\n";
-  return lines + counted(coordinates - constraints, "degree of freedom", "degrees of freedom") + "\n";
 }
 
 // What resists rolling and twisting; "" where nothing does.
@@ -242,7 +219,8 @@ std::string output_lines(const Model& model) {
   return fmt::format("snapshots      {:.0f} of about {}, {} together{}\n", snapshots, megabytes(size),
                      megabytes(snapshots * size),
                      model.output.compression > 0 ? ", before compression" : "") +
-         fmt::format("checkpoints    {}, about {} each\n", checkpoints, megabytes(state));
+         fmt::format("checkpoints    {}, about {} each\n", checkpoints, megabytes(state)) +
+         history_limit_lines(model);
 }
 
 // Rank 0 has all unknowns, and its share of the particles.

@@ -353,12 +353,17 @@ void Simulation::summarize() const {
                           n.frozen_steps));
   const std::int64_t outside = bodies_outside(model_, state_.bodies).count;
   log_.info(
-      fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged; {} left the space{}",
-                  balance_error(b), b.exchanged, counted(state_.carried_out.left, "particle", "particles"),
+      fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged, {:.2e} J taken out by the time "
+                  "integration; {} left the space{}",
+                  balance_error(b), b.exchanged, b.last.dissipated_integrator,
+                  counted(state_.carried_out.left, "particle", "particles"),
                   outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
   log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,
                         options_.output_directory));
-  if (const std::string warning = balance_warning(b, model_); !warning.empty()) log_.warning(warning);
+  const Multibody* const bodies = link_.multibody();
+  const BodiesBook book =
+      bodies == nullptr ? BodiesBook{} : bodies_book(*bodies, state_.bodies, state_.clock.time);
+  if (const std::string warning = balance_warning(b, book, model_); !warning.empty()) log_.warning(warning);
 }
 
 }  // namespace

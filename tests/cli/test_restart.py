@@ -190,6 +190,27 @@ class RestartTest(CommandLineTest):
         self.run_deck(DONE, "whole", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
         self.assert_same_history("out", "whole")
 
+    def test_an_end_between_two_rows_has_a_row_and_the_next_ones_stay_where_they_were(self):
+        def rows(output):
+            return {line.split(",")[0]: line for line in self.history(output) if line[0] in "0123456789"}
+
+        for name, words in (("fixed", ()), ("explicit", EXPLICIT),
+                            ("adaptive", ("--set", "time.control=adaptive", "--set", "time.max_step=1e-4"))):
+            with self.subTest(name=name):
+                words = (*words, "--set", "output.history_interval=0.003")
+                self.run_deck(DONE, "whole", *words, "--set", "time.end=0.02")
+                self.run_deck(DONE, "parts", *words, "--set", "time.end=0.01")
+                for end in ("0.01", "0.02", "0.02"):  # without a step, on, without a step
+                    self.run_deck(DONE, "parts", *words, "--set", f"time.end={end}", "--restart",
+                                  self.folder / "parts/checkpoint_end.h5")
+                whole, parts = rows("whole"), rows("parts")
+                self.assertEqual([round(float(time), 9) for time in whole],
+                                 [0, 0.003, 0.006, 0.009, 0.012, 0.015, 0.018, 0.02])
+                self.assertEqual(len(self.history("parts")), len(self.history("whole")) + 1)
+                self.assertEqual(sorted({*whole, "0.01"}, key=float), list(parts))
+                for time in list(whole)[:4]:
+                    self.assertEqual(parts[time], whole[time])
+
     def test_checkpoints_that_cannot_be_read(self):
         self.run_deck(DONE, "out", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
         whole = (self.folder / "out" / "checkpoint.h5").read_bytes()

@@ -28,16 +28,23 @@ TEST_CASE("all dependencies are found, as many as columns less the rank") {
   // Columns 0 and 1; 2 = 3 + 4; 5 is zero; 6 = 2 - 3 = 4 again.
   const std::vector<MatrixEntry> entries = {{0, 0, 1}, {0, 1, 2}, {1, 2, 1}, {2, 2, 1},
                                             {1, 3, 1}, {2, 4, 1}, {2, 6, 3}, {3, 7, 1}};
-  const std::vector<std::vector<int>> found = column_dependencies(4, 8, entries);
+  const std::vector<Dependency> found = column_dependencies(4, 8, entries);
   REQUIRE(found.size() == 4);
   std::vector<bool> takes_part(8, false);
-  for (const std::vector<int>& columns : found) {
-    CHECK(std::is_sorted(columns.begin(), columns.end()));
-    for (const int column : columns) takes_part[static_cast<std::size_t>(column)] = true;
+  std::vector<std::vector<int>> parts;
+  for (const Dependency& dependency : found) {
+    CHECK(std::is_sorted(dependency.columns.begin(), dependency.columns.end()));
+    for (const int column : dependency.columns) takes_part[static_cast<std::size_t>(column)] = true;
+    parts.push_back(dependency.columns);
+    std::vector<Real> sum(4, 0);
+    for (const auto& [column, weight] : dependency.weight)
+      for (const MatrixEntry& entry : entries)
+        if (entry.column == column) sum[static_cast<std::size_t>(entry.row)] += weight * entry.value;
+    for (const Real value : sum) CHECK(std::abs(value) < 1e-14);
   }
   CHECK(takes_part == std::vector<bool>{true, true, true, true, true, true, true, false});
-  CHECK(std::count(found.begin(), found.end(), std::vector<int>{5}) == 1);
-  CHECK(std::count(found.begin(), found.end(), std::vector<int>{0, 1}) == 1);
+  CHECK(std::count(parts.begin(), parts.end(), std::vector<int>{5}) == 1);
+  CHECK(std::count(parts.begin(), parts.end(), std::vector<int>{0, 1}) == 1);
 }
 
 TEST_CASE("a long chain is checked in linear time") {

@@ -38,8 +38,12 @@ TEST_CASE("unknown names of materials, bodies and joints") {
                  "particles.0.material: missing; it must name a material, as the deck has more than one"));
   const std::string joint = joint_with("type = \"revolute\"\nbodies = [\"ground\", \"b\"]\n");
   CHECK(model_error(kSmallDeck + kBodies + joint) ==
-        "deck.toml:25:10: joints.pin.bodies = [\"ground\", \"b\"]: there is no body named \"b\"; did you "
-        "mean \"a\"?");
+        "deck.toml:25:10: joints.pin.bodies = [\"ground\", \"b\"]: there is no body named \"b\"; known: "
+        "ground, a, row.0, row.1, row.2");
+  for (const std::string ground : {"Ground", "GROUND", "grund"})
+    CHECK(contains(model_error(kSmallDeck + kBodies +
+                               joint_with("type = \"revolute\"\nbodies = [\"" + ground + "\", \"a\"]\n")),
+                   "there is no body named \"" + ground + "\"; did you mean \"ground\"?"));
   CHECK(contains(
       model_error(kSmallDeck + kBodies + joint_with("type = \"revolute\"\nbodies = [\"a\", \"row\"]\n")),
       "\"row\" is a row; name one of its bodies, \"row.0\" to \"row.2\""));

@@ -172,10 +172,10 @@ TEST_CASE("markers that do not meet are refused with their gap") {
   CHECK(contains(model_error(marked(along_x + "local_point = [0, 0, 0.5]\n", same) + joint("revolute")),
                  "joints.j.markers = [\"m\", \"n\"]: the two sides of joint \"j\" do not meet"));
   // Parallel, but against each other: the rows of Phi would hold.
-  CHECK(contains(
-      model_error(marked(along_x, "z_axis = [0, 1, 0]\n") + joint("cylindrical")),
-      "must point in the same direction at t = 0; they are off by 180 degrees, allowed is 5.7e-05; turn "
-      "one of them by half a turn"));
+  CHECK(contains(model_error(marked(along_x, "z_axis = [0, 1, 0]\n") + joint("cylindrical")),
+                 "must point in the same direction at t = 0; they are off by 180 degrees, allowed are "
+                 "5.7e-05 degrees; turn "
+                 "one of them by half a turn"));
   CHECK(contains(model_error(marked(along_x, "z_axis = [0, -1, 0.01]\n") + joint("revolute")),
                  "they are off by 0.572939 degrees"));
   CHECK(contains(model_error(marked(along_x, "z_axis = [0, 1, 0]\n") +
@@ -226,6 +226,7 @@ TEST_CASE("markers on rows, and where they cannot be") {
   CHECK(contains(model_error(links + marker("wall", "ground", "")), "repeated"));
   CHECK(contains(model_error(links + marker("x", "lunk", "")),
                  "there is no body or row of bodies named \"lunk\""));
+  CHECK(contains(model_error(links + marker("x", "Ground", "")), "did you mean \"ground\"?"));
 }
 
 TEST_CASE("keys that say the same as markers are refused beside them") {

@@ -1,0 +1,210 @@
+"""What the program says of joints and drivers: contradictions, redundancy, energy. Usage: as test_cli.py"""
+
+import json
+import math
+import unittest
+
+from test_cli import BAD_INPUT, DONE, FAILED, CommandLineTest
+
+# Turned once in a second.
+CRANK = """\
+gravity = [0.0, 0.0, 0.0]
+
+[space]
+dimension = 3
+min = [-3.0, -3.0, -3.0]
+max = [3.0, 3.0, 3.0]
+leaving = "drift"
+
+[time]
+end = 1.0
+
+[output]
+history_interval = 1e-2
+
+[[bodies]]
+name = "crank"
+kind = "spatial"
+position = [0.25, 0.0, 0.0]
+mass = 2.0
+inertia_tensor = [0.01, 0.05, 0.05, 0.0, 0.0, 0.0]
+velocity = [0.0, 1.5707963267948966, 0.0]
+body_angular_velocity = [0.0, 0.0, 6.283185307179586]
+
+[[joints]]
+name = "hinge"
+type = "revolute"
+bodies = ["ground", "crank"]
+point = [0.0, 0.0, 0.0]
+axis = [0.0, 0.0, 1.0]
+"""
+DRIVEN = '\n[[drivers]]\nname = "{}"\njoint = "hinge"\nmotion = {}\n'
+RAMP = '{{ kind = "ramp", value = {}, rate = {} }}'
+TURN = "6.283185307179586"
+FIRST = CRANK + DRIVEN.format("first", RAMP.format(0.0, TURN))
+
+
+class EnergyTest(CommandLineTest):
+    def warnings(self, deck, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        result = self.expect(DONE, "run", self.write("crank.toml", deck), "--output", self.folder / "out",
+                             "--overwrite", *words)
+        record = json.loads((self.folder / "out/run_record.json").read_text())
+        self.assertRegex(result.stdout, r"J exchanged, [-+.0-9e]+ J taken out by the time integration; ")
+        return record["warnings"], record["measures"]
+
+    def test_a_crank_at_constant_speed_exchanges_next_to_nothing(self):
+        for steps in ((), ("time.control=fixed", "time.step=5e-3")):
+            warnings, measures = self.warnings(CRANK + DRIVEN.format("drive", RAMP.format(0.0, TURN)), *steps)
+            self.assertGreater(abs(measures["energy_taken_by_integrator"]), 0.01 * measures["energy_exchanged"])
+            self.assertEqual(warnings, [])
+
+    def test_steps_that_are_too_long_for_it(self):
+        warnings, _ = self.warnings(CRANK, "time.control=fixed", "time.step=0.05", "output.history_interval=0.05",
+                                    "time.end=5", "integrator.hht_alpha=-0.3")
+        self.assertIn("the time integration has changed the energy by ", warnings[0])
+
+
+# A parallelogram of bars of 1 and 2 m, its cranks at an angle that a driver turns at 1 rad/s.
+FOUR_BAR = """\
+gravity = [0.0, 0.0]
+
+[space]
+dimension = 2
+min = [-3.0, -3.0]
+max = [3.0, 3.0]
+leaving = "drift"
+
+[time]
+end = 1.0
+step = 0.01
+control = "fixed"
+
+[output]
+history_interval = 0.0
+"""
+
+
+def four_bar(angle, start):
+    """With the velocities of the driver, which starts at `start`."""
+    x, y = math.cos(angle), math.sin(angle)
+    bodies = (("crank", x / 2, y / 2, 0.5, angle), ("coupler", 1 + x, y, 1, None),
+              ("rocker", 2 + x / 2, y / 2, 0.5, angle))
+    joints = (("foot", "ground", "crank", 0.0, 0.0), ("left", "crank", "coupler", x, y),
+              ("right", "coupler", "rocker", 2 + x, y), ("end", "rocker", "ground", 2.0, 0.0))
+    deck = FOUR_BAR
+    for name, px, py, reach, turned in bodies:
+        deck += (f'\n[[bodies]]\nname = "{name}"\nposition = [{px}, {py}]\nvelocity = [{-reach * y}, {reach * x}]\n'
+                 "mass = 1.0\ninertia = 0.1\n")
+        deck += "" if turned is None else f"angle = {turned}\nangular_velocity = 1.0\n"
+    for name, one, two, px, py in joints:
+        deck += f'\n[[joints]]\nname = "{name}"\ntype = "revolute"\nbodies = ["{one}", "{two}"]\npoint = [{px}, {py}]\n'
+    return deck + f'\n[[drivers]]\nname = "drive"\njoint = "foot"\nmotion = {RAMP.format(start, 1.0)}\n'
+
+
+class ContradictionTest(CommandLineTest):
+    """With the line of the deck's table and its name, by check and run alike, however rows may repeat each other."""
+
+    def refusals(self, deck, *settings):
+        path = self.write("bad.toml", deck)
+        words = [word for setting in settings for word in ("--set", setting)]
+        for command in ("check", "run"):
+            yield self.expect(BAD_INPUT, command, path, *words).stderr.removeprefix("error: ")
+
+    def line(self, deck, name):
+        """Of the table with this name."""
+        lines = deck.splitlines()
+        return max(i for i in range(1, lines.index(f'name = "{name}"') + 1) if lines[i - 1].startswith("[["))
+
+    def test_two_drivers_of_one_joint(self):
+        for second, what in (((0.1, TURN), "positions that they ask for at t = 0 are 0.1 rad apart"),
+                             ((0.0, 6.0), "velocities that they ask for at t = 0 are 0.283185 rad/s apart")):
+            deck = FIRST + DRIVEN.format("second", RAMP.format(*second))
+            place = f"{self.folder / 'bad.toml'}:{self.line(deck, 'second')}:1: drivers.second: "
+            for redundant in ("error", "share"):
+                for text in self.refusals(deck, f"integrator.redundant={redundant}"):
+                    self.assertEqual(text, f"{place}driver 'first', driver 'second' contradict each other: the {what}, "
+                                           "and no motion has them all. Change or remove one\n")
+
+    def test_two_drivers_that_agree_are_redundant_and_may_share(self):
+        deck = FIRST + DRIVEN.format("second", RAMP.format(0.0, TURN))
+        for text in self.refusals(deck):
+            self.assertIn(f"bad.toml:{self.line(deck, 'second')}:1: drivers.second: redundant constraints: ", text)
+            self.assertIn('set integrator.redundant = "share"', text)
+            self.assertNotIn("singular", text)
+        self.expect(DONE, "check", self.write("good.toml", deck), "--set", "integrator.redundant=share")
+
+    def test_a_driver_of_a_joint_that_another_one_holds(self):
+        weld = '\n[[joints]]\nname = "weld"\ntype = "fixed"\nbodies = ["ground", "crank"]\npoint = [0.0, 0.0, 0.0]\n'
+        for text in self.refusals(CRANK + weld + DRIVEN.format("drive", RAMP.format(0.0, TURN))):
+            self.assertIn(": drivers.drive: joint 'weld', driver 'drive' contradict each other: the velocities", text)
+            self.assertIn("6.28319 rad/s apart", text)
+
+    def test_start_velocities_and_where_a_driver_starts(self):
+        deck = CRANK + DRIVEN.format("drive", RAMP.format(0.0, 6.0))
+        for text in self.refusals(deck):
+            self.assertIn(f"bad.toml:{self.line(deck, 'drive')}:1: drivers.drive: driver 'drive': the velocities at "
+                          "t = 0 contradict it by 0.283185 rad/s", text)
+        for text in self.refusals(CRANK.replace("1.5707963267948966", "1.5")):
+            self.assertIn(f"bad.toml:{self.line(CRANK, 'hinge')}:1: joints.hinge: joint 'hinge': the velocities", text)
+        for text in self.refusals(CRANK + DRIVEN.format("drive", RAMP.format(0.2, TURN))):
+            self.assertIn(": drivers.drive: driver 'drive': its two sides do not meet at t = 0, they miss by 0.2 rad",
+                          text)
+
+    def test_a_linkage_that_lies_flat(self):
+        deck = four_bar(0.0, 0.0)
+        for text in self.refusals(deck):
+            self.assertIn("as a linkage that lies flat, it is singular: share, or start elsewhere", text)
+        share = ("--set", "integrator.redundant=share")
+        self.expect(DONE, "check", self.write("flat.toml", deck), *share)
+        # The velocities with the least energy: the rocker's are not the crank's, and no motion goes on from there.
+        resting = "".join(line for line in deck.splitlines(True) if "velocity" not in line)
+        for text in self.refusals('velocities = "consistent"\n' + resting, share[1]):
+            self.assertIn("no motion goes on from the velocities there", text)
+
+    def test_a_linkage_that_comes_to_lie_flat(self):
+        deck = self.write("flat.toml", four_bar(-0.5, -0.5))
+        text = self.expect(FAILED, "run", deck, "--output", self.folder / "out").stderr
+        self.assertIn("no convergence in 50 iterations", text)
+        self.assertIn('it is singular; integrator.redundant = "share" passes it', text)
+        self.assertIn("driver 'drive' repeat each other in this position", text)
+        self.expect(DONE, "run", deck, "--output", self.folder / "shared", "--set", "integrator.redundant=share")
+
+
+SOLIDS = """
+[[bodies]]
+name = "{}"
+kind = "spatial"
+position = [{}, 2.0, 0.0]
+solids = [{{ kind = "box", size = [0.1, 0.2, 0.3], offset = [0.5, 0.0, 0.0], density = 1000.0 }}]
+{}"""
+
+
+class CheckTest(CommandLineTest):
+    def report(self, deck, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        return self.expect(DONE, "check", self.write("check.toml", deck), *words).stdout
+
+    def test_bodies_of_solids_are_weighed(self):
+        row = "count = 3\nspacing = [0.0, 0.0, 0.5]\n"
+        report = self.report(CRANK + SOLIDS.format("block", 0.0, "") + SOLIDS.format("row", 2.0, row))
+        weight = ("6 kg, centre of mass (0.5, 0, 0) m, inertia there principal 0.025, 0.05, 0.065 kg m^2\n")
+        self.assertIn(f'\nsolids         body "block": {weight}', report)
+        self.assertIn(f'\nsolids         row "row", each: {weight}', report)
+        self.assertEqual(report.count("\nsolids "), 2)  # not the crank, and the row once
+        planar = self.report(
+            four_bar(0.5, 0.5).replace("mass = 1.0\ninertia = 0.1", 'solids = [{ kind = "cylinder", radius = 0.1, '
+                                       "length = 0.5, density = 100.0 }]"))
+        self.assertIn('solids         body "crank": 1.5708 kg, centre of mass (0, 0) m, inertia there 0.00785398 kg '
+                      "m^2 about z\n", planar)
+
+    def test_what_the_history_leaves_out(self):
+        deck = CRANK + DRIVEN.format("drive", RAMP.format(0.0, TURN))
+        self.assertNotIn("\nhistory ", self.report(deck))
+        self.assertIn("\nhistory        without 1 of the 2 joints, drivers and couplers: output.history_reactions = "
+                      "1\n", self.report(deck, "output.history_reactions=1"))
+        self.assertNotIn("\nhistory ", self.report(deck, "output.history_reactions=0"))  # they are not wanted
+
+
+if __name__ == "__main__":
+    unittest.main()
