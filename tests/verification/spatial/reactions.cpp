@@ -189,8 +189,10 @@ void compare_step(const Model& model, const MultibodyState& state, const Balance
   }
 }
 
-// Of the driver's reaction: its component on the coordinate times the coordinate's rate.
-Real drive_power(const Model& model, const Wrench& driver, const Mat3& marker, Vec3 apart, Real t) {
+// Of the driver's reaction: its component on the coordinate times the coordinate's rate. second: the second
+// body's arm, where the joint is universal.
+Real drive_power(const Model& model, const Wrench& driver, const Mat3& marker, Vec3 second, Vec3 apart,
+                 Real t) {
   if (model.drivers.empty()) return 0;
   switch (*model.drivers[0].coordinate) {
     case JointCoordinate::angle:
@@ -199,6 +201,10 @@ Real drive_power(const Model& model, const Wrench& driver, const Mat3& marker, V
       return (marker * driver.force).z * driven_rate(t);
     case JointCoordinate::length:
       return dot(driver.force, apart) / norm(apart) * driven_rate(t);
+    case JointCoordinate::angle_1:
+      return (marker * driver.torque).x * driven_rate(t);
+    case JointCoordinate::angle_2:
+      return dot(driver.torque, second) * driven_rate(t);
   }
   return 0;
 }
@@ -213,7 +219,8 @@ void look_at_reaction(const Model& model, const Balance& b, Real t, Gaps& gaps) 
   const Vec3 w1 = a1 * one.spin, w2 = a2 * two.spin;
   const Vec3 slip = two.velocity + cross(w2, arm) - one.velocity - cross(w1, reach);
   const Mat3 marker = transposed(a1 * rotation_matrix(model.joints[1].marker[0]));
-  const Real drive = drive_power(model, b.driver, marker, reach - a1 * model.joints[1].point[0], t);
+  const Vec3 second = a2 * (rotation_matrix(model.joints[1].marker[1]) * Vec3{0, 1, 0});
+  const Real drive = drive_power(model, b.driver, marker, second, reach - a1 * model.joints[1].point[0], t);
   gaps.power = std::max(gaps.power, std::abs(dot(force, slip) + dot(torque, w2 - w1) - drive));
   if (!model.drivers.empty()) return;
   const auto& carried = *std::find_if(std::begin(kCarried), std::end(kCarried),
