@@ -291,5 +291,5 @@ TEST_CASE("with a driver they balance it, too, and their power is its own") {
       check_gaps(model);
       ++drivers;
     }
-  CHECK(drivers == 7);
+  CHECK(drivers == 9);
 }
