@@ -96,9 +96,9 @@ Key coordinate_key() {
       .left_out("the joint's only one; of a screw the angle")
       .about(
           "Which coordinate of the joint: revolute joints have an angle, translational ones a displacement, "
-          "cylindrical joints and screws both, distance joints a length, universal joints angle_1 of the "
-          "cross "
-          "against the first body about that body's arm, and angle_2 of the second body against the cross.");
+          "cylindrical joints and screws both, distance joints a length; universal joints have angle_1, of "
+          "the cross against the first body about that body's arm, and angle_2, of the second body against "
+          "the cross.");
 }
 Key name_key() { return make_key("name", ValueType::name); }
 Key file(const std::string& name) { return make_key(name, ValueType::file); }

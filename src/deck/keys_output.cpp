@@ -65,7 +65,9 @@ const TableKeys& output_keys() {
            .at_least(0)
            .otherwise("0")
            .about("Joints whose coordinates and their rates are recorded: the first so many of the deck that "
-                  "have coordinates (angle, displacement, length), with or without an effort on them."),
+                  "have coordinates (angle, displacement, length, angle_1, angle_2), with or without an "
+                  "effort on "
+                  "them."),
        integer("history_bushings")
            .at_least(0)
            .otherwise("100")

@@ -12,17 +12,6 @@ namespace scree {
 
 namespace {
 
-constexpr Real kMostTurn = 2.6;  // as far below pi as no step turns two bodies against each other [rad]
-
-bool resists_turning(const Bushing& bushing) {
-  for (std::size_t a = 3; a < 6; ++a) {
-    if (bushing.preload[a] != 0) return true;
-    for (std::size_t b = 0; b < 6; ++b)
-      if (bushing.stiffness[a][b] != 0 || bushing.damping[a][b] != 0) return true;
-  }
-  return false;
-}
-
 const SpatialPose& pose(const SpatialMotion& motion, const SpatialPair& pair, std::size_t block) {
   return motion[pair.body[block / 2]];
 }
@@ -45,7 +34,7 @@ BushingElement::BushingElement(const Bushing& bushing, const BodyLayout& layout)
   const SpatialPair pair = spatial_pair(layout, bushing.body, bushing.point);
   const Mat3 axes = transposed(rotation_matrix(bushing.marker[0]));
   for (int k = 0; k < 3; ++k) measures_.push_back(dot2_measure(pair, row_of(axes, k)));
-  if (!resists_turning(bushing)) return;
+  if (!bushing.resists_turning()) return;
   for (int k = 0; k < 3; ++k) measures_.push_back(turn_measure(pair, bushing.marker, k));
 }
 
@@ -78,11 +67,11 @@ BushingLoad BushingElement::load(const BodyPoses& poses) const {
 Real BushingElement::add_force(const BodyPoses& poses, Real, Real length, std::vector<Real>& force) {
   const Deflection x = deflection(poses);
   const Real turned = norm(three(x.value, 3));
-  if (!(turned < kMostTurn))
+  if (!(turned < kMostBushingTurn))
     throw SimulationError(
         fmt::format("mbs_correct, rank 0: bushing '{}' has turned by {:.4g} rad; its angles hold up to {} "
                     "rad, as the rotation vector jumps at half a turn",
-                    bushing_.name, turned, kMostTurn));
+                    bushing_.name, turned, kMostBushingTurn));
   Real largest = 0;
   for (std::size_t a = 0; a < measures_.size(); ++a) {
     Real size = std::abs(bushing_.preload[a]);

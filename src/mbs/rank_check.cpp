@@ -5,8 +5,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
+#include <numeric>
 
 namespace scree {
 
@@ -14,11 +13,22 @@ namespace {
 
 constexpr Real kSuspect = 1e-8;      // pivot of A^T A, the squared distance of a column from those before it
 constexpr Real kTakesPart = 1e-6;    // coefficient of a dependency, relative to the largest
+constexpr Real kRoundOff = 1e-12;    // coefficients below, likewise
 constexpr Real kPivotShift = 1e-14;  // keeps the factorization going past a pivot that vanishes
+constexpr int kPasses = 2;           // of projections, each leaves their round-off
 
 using Matrix = Eigen::SparseMatrix<Real>;
-using RowMajorMatrix = Eigen::SparseMatrix<Real, Eigen::RowMajor>;
 using Vector = Eigen::VectorXd;
+
+// Eigen's own sums over dense vectors make GCC 12 warn of its AVX-512 header.
+Real dot(const Vector& a, const Vector& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), Real(0));
+}
+Real largest(const Vector& a) {
+  Real size = 0;
+  for (const Real value : a) size = std::max(size, std::abs(value));
+  return size;
+}
 
 // lengths: what the columns are divided by.
 Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entries,
@@ -36,39 +46,76 @@ Matrix unit_columns(int rows, int columns, const std::vector<MatrixEntry>& entri
   return matrix;
 }
 
-using Combination = std::map<int, Real, std::greater<>>;  // coefficient by place in the order of elimination
-
-// With P A^T A P^T = L D L^T and l the part of L's row k left of the diagonal, the first k columns of A P^T
-// combine by L_11^-T l to what is nearest to column k. The combination minus column k; without columns that
-// depend on others themselves.
-Combination combination(const RowMajorMatrix& l, int k, const std::vector<bool>& depends) {
-  Combination c, left;
-  const auto subtract = [&](int row, Real scale) {
-    for (RowMajorMatrix::InnerIterator it(l, row); it; ++it) {
-      const int i = static_cast<int>(it.col());
-      if (i < row && !depends[static_cast<std::size_t>(i)]) left[i] -= scale * it.value();
-    }
-  };
-  subtract(k, -1);
-  while (!left.empty()) {
-    const auto [i, value] = *left.begin();
-    left.erase(left.begin());
-    c[i] = value;
-    subtract(i, value);
-  }
-  c[k] = -1;
-  return c;
+Matrix selected(const Matrix& a, const std::vector<int>& columns) {
+  std::vector<Eigen::Triplet<Real>> triplets;
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    for (Matrix::InnerIterator it(a, columns[j]); it; ++it)
+      triplets.emplace_back(static_cast<int>(it.row()), static_cast<int>(j), it.value());
+  Matrix b(a.rows(), static_cast<int>(columns.size()));
+  b.setFromTriplets(triplets.begin(), triplets.end());
+  return b;
 }
 
-// Largest component of A P^T c.
-Real length_of(const Matrix& a, const std::vector<int>& column_at, const Combination& c) {
-  std::map<int, Real> sum;
-  for (const auto& [place, weight] : c)
-    for (Matrix::InnerIterator it(a, column_at[static_cast<std::size_t>(place)]); it; ++it)
-      sum[static_cast<int>(it.row())] += weight * it.value();
-  Real largest = 0;
-  for (const auto& [row, value] : sum) largest = std::max(largest, std::abs(value));
-  return largest;
+// Columns of A that are far from combinations of each other, and the others, which may be near them.
+class Basis {
+ public:
+  // A column close to those before it spoils the pivots of those behind it, so that what is left is factored
+  // again until nothing in it is suspect. suspect: of a pivot.
+  Basis(const Matrix& a, Real suspect) : columns_(static_cast<std::size_t>(a.cols())) {
+    std::iota(columns_.begin(), columns_.end(), 0);
+    factors_.setShift(kPivotShift);
+    for (bool found = true; found;) {
+      b_ = selected(a, columns_);
+      factors_.compute(Matrix(b_.transpose()) * b_);
+      const Vector pivots = factors_.vectorD();
+      std::vector<bool> stays(columns_.size(), true);
+      for (Eigen::Index k = 0; k < pivots.size(); ++k)
+        if (const int j = factors_.permutationPinv().indices()[k]; !(pivots[k] > suspect)) {
+          stays[static_cast<std::size_t>(j)] = false;
+          suspects_.push_back(columns_[static_cast<std::size_t>(j)]);
+        }
+      std::vector<int> left;
+      for (std::size_t j = 0; j < stays.size(); ++j)
+        if (stays[j]) left.push_back(columns_[j]);
+      found = left.size() < columns_.size();
+      columns_ = std::move(left);
+    }
+  }
+
+  const std::vector<int>& suspects() const { return suspects_; }
+  // Takes from `rest` its combination of the basis, and from `weight` the coefficients of that, by column of
+  // A.
+  void project(Vector& rest, Vector& weight) const {
+    if (columns_.empty()) return;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const Vector c = factors_.solve(Vector(b_.transpose() * rest));
+      rest -= b_ * c;
+      for (std::size_t j = 0; j < columns_.size(); ++j)
+        weight[columns_[j]] -= c[static_cast<Eigen::Index>(j)];
+    }
+  }
+
+ private:
+  std::vector<int> columns_, suspects_;  // of A
+  Matrix b_;
+  Eigen::SimplicialLDLT<Matrix> factors_;
+};
+
+// A suspect that is no combination of others: A weight is of length one.
+struct Independent {
+  Vector direction, weight;
+};
+
+Dependency dependency_of(const Vector& weight, const std::vector<Real>& lengths) {
+  const Real most = largest(weight);
+  Dependency dependency;
+  for (int j = 0; j < static_cast<int>(weight.size()); ++j) {
+    const Real size = std::abs(weight[j]);
+    if (size > kRoundOff * most)
+      dependency.weight.emplace_back(j, weight[j] / lengths[static_cast<std::size_t>(j)]);
+    if (size > kTakesPart * most) dependency.columns.push_back(j);
+  }
+  return dependency;
 }
 
 }  // namespace
@@ -81,31 +128,22 @@ std::vector<Dependency> column_dependencies(int rows, int columns, const std::ve
   if (columns == 0) return {};
   std::vector<Real> lengths;
   const Matrix a = unit_columns(rows, columns, entries, lengths);
-  const Matrix normal = Matrix(a.transpose()) * a;
-  Eigen::SimplicialLDLT<Matrix> factors;
-  factors.setShift(kPivotShift);
-  factors.compute(normal);
-  const Vector pivots = factors.vectorD();
-  const RowMajorMatrix l = Matrix(factors.matrixL());
-  std::vector<int> column_at(static_cast<std::size_t>(columns));  // by place in the order of elimination
-  for (int j = 0; j < columns; ++j)
-    column_at[static_cast<std::size_t>(factors.permutationP().indices()[j])] = j;
+  const Basis basis(a, std::max(kSuspect, distance * distance));
   std::vector<Dependency> dependencies;
-  std::vector<bool> depends(static_cast<std::size_t>(columns), false);
-  for (int k = 0; k < columns; ++k) {
-    if (pivots[k] > std::max(kSuspect, distance * distance)) continue;
-    const Combination c = combination(l, k, depends);
-    Real largest = 0;
-    for (const auto& [place, weight] : c) largest = std::max(largest, std::abs(weight));
-    if (length_of(a, column_at, c) > distance * largest) continue;
-    depends[static_cast<std::size_t>(k)] = true;
-    Dependency& dependency = dependencies.emplace_back();
-    for (const auto& [place, weight] : c) {
-      const int column = column_at[static_cast<std::size_t>(place)];
-      dependency.weight.emplace_back(column, weight / lengths[static_cast<std::size_t>(column)]);
-      if (std::abs(weight) > kTakesPart * largest) dependency.columns.push_back(column);
-    }
-    std::sort(dependency.columns.begin(), dependency.columns.end());
+  std::vector<Independent> independent;
+  for (const int column : basis.suspects()) {
+    Vector rest = a.col(column), weight = Vector::Zero(columns);
+    weight[column] = 1;
+    basis.project(rest, weight);
+    for (int pass = 0; pass < kPasses; ++pass)
+      for (const Independent& other : independent) {
+        const Real part = dot(other.direction, rest);
+        rest -= part * other.direction, weight -= part * other.weight;
+      }
+    if (largest(rest) <= distance * largest(weight))
+      dependencies.push_back(dependency_of(weight, lengths));
+    else
+      independent.push_back({rest / std::sqrt(dot(rest, rest)), weight / std::sqrt(dot(rest, rest))});
   }
   return dependencies;
 }

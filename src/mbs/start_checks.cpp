@@ -24,9 +24,10 @@ constexpr Real kAccelerationGap = 1e-3;  // the same of accelerations
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Of all groups the one whose gap [m, rad], or its rate with per = "/s", is the farthest above the limit:
-// what is wrong with the length of its length rows or of its angle rows, or nothing.
+// what is wrong with the length of its length rows or of its angle rows, or nothing. driven: what of a
+// driver.
 std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit,
-                          const std::string& what, const char* per) {
+                          const std::string& what, const std::string& driven, const char* per) {
   std::string trouble;
   Real worst = limit;
   for (const ConstraintGroup& group : system.groups())
@@ -40,9 +41,9 @@ std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>
       const Real size = std::sqrt(square);
       if (size <= worst * scale) continue;
       worst = size / scale;
-      trouble = with_label(group.deck_label,
-                           fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}", group.title,
-                                       what, size, angle ? "rad" : "m", per, limit * scale));
+      trouble = with_label(group.deck_label, fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}",
+                                                         group.title, group.drives ? driven : what, size,
+                                                         angle ? "rad" : "m", per, limit * scale));
     }
   return trouble;
 }
@@ -74,9 +75,10 @@ SystemTerms terms_at(RigidBodySystem& system, const std::vector<Real>& position,
 
 // gap: per row of Phi [m, rad].
 void check_gaps(const RigidBodySystem& system, const std::vector<Real>& gap, Real limit, Real t) {
-  const std::string what =
-      fmt::format("its two sides do not meet at t = {:.9g}{}, they miss by", t, t > 0 ? " s" : "");
-  const std::string trouble = group_trouble(system, gap, limit, what, "");
+  const std::string when = fmt::format("t = {:.9g}{}", t, t > 0 ? " s" : "");
+  const std::string trouble =
+      group_trouble(system, gap, limit, "its two sides do not meet at " + when + ", they miss by",
+                    "its motion and the joint's coordinate at " + when + " are apart by", "");
   if (!trouble.empty()) throw InputError(trouble);
 }
 
@@ -195,15 +197,15 @@ void check_repeated_accelerations(RigidBodySystem& system, const std::vector<Dep
 
 std::string velocity_trouble(const RigidBodySystem& system, const std::vector<Real>& gap_rate,
                              const std::vector<Real>& velocity) {
-  return group_trouble(system, gap_rate, kVelocityGap * rate_scale(system, velocity),
-                       "the velocities at t = 0 contradict it by", "/s");
+  const std::string what = "the velocities at t = 0 contradict it by";
+  return group_trouble(system, gap_rate, kVelocityGap * rate_scale(system, velocity), what, what, "/s");
 }
 
 void check_start_accelerations(const RigidBodySystem& system, const std::vector<Real>& misfit,
                                const std::vector<Real>& acceleration) {
+  const std::string what = "no accelerations at t = 0 satisfy it and the others, they miss by";
   const std::string trouble =
-      group_trouble(system, misfit, kAccelerationGap * rate_scale(system, acceleration),
-                    "no accelerations at t = 0 satisfy it and the others, they miss by", "/s^2");
+      group_trouble(system, misfit, kAccelerationGap * rate_scale(system, acceleration), what, what, "/s^2");
   if (!trouble.empty()) throw InputError(trouble);
 }
 

@@ -129,7 +129,11 @@ struct Bushing {
   Matrix6 stiffness{};            // K [N/m, N/rad; N m/m, N m/rad]
   Matrix6 damping{};              // C, likewise times s
   std::array<Real, 6> preload{};  // [N, N m]
+
+  bool resists_turning() const;
 };
+// As far below pi as no step turns two bodies against each other: at half a turn the rotation vector jumps.
+inline constexpr Real kMostBushingTurn = 2.6;  // [rad]
 
 // Force at a point of a body, and a torque. The direction is global, or turns with the body: of a spatial
 // body that of the torque too.

@@ -89,6 +89,20 @@ Matrix6 read_matrix(const DeckTable& table, const std::string& key) {
   return a;
 }
 
+// Only markers can be turned against each other at t = 0.
+void check_start_turn(const DeckTable& table, const Model& model, const Bushing& bushing) {
+  Quaternion frame[2];
+  for (int side = 0; side < 2; ++side)
+    frame[side] = quaternion_of(transposed(global_frame(model, bushing.body[side], bushing.marker[side])));
+  const Real turn = norm(rotation_vector(conjugate(frame[0]) * frame[1]));
+  if (bushing.resists_turning() && turn > kMostBushingTurn)
+    table.fail(
+        "markers",
+        fmt::format("their frames are turned by {:.6g} rad against each other at t = 0; a bushing holds "
+                    "up to {:g} rad",
+                    turn, kMostBushingTurn));
+}
+
 Bushing build_bushing(const DeckTable& table, const Model& model, const Connection& connection) {
   Bushing bushing;
   bushing.name = connection.name;
@@ -102,10 +116,20 @@ Bushing build_bushing(const DeckTable& table, const Model& model, const Connecti
   bushing.damping = read_matrix(table, "damping");
   if (table.has("preload"))
     for (std::size_t k = 0; k < 6; ++k) bushing.preload[k] = table.reals("preload")[k];
+  check_start_turn(table, model, bushing);
   return bushing;
 }
 
 }  // namespace
+
+bool Bushing::resists_turning() const {
+  for (std::size_t a = 3; a < 6; ++a) {
+    if (preload[a] != 0) return true;
+    for (std::size_t b = 0; b < 6; ++b)
+      if (stiffness[a][b] != 0 || damping[a][b] != 0) return true;
+  }
+  return false;
+}
 
 void build_bushings(const DeckTable& deck, Model& model, const ModelNames& names) {
   NameMap taken;

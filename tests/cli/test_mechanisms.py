@@ -148,7 +148,8 @@ class ContradictionTest(CommandLineTest):
         for text in self.refusals(CRANK.replace("1.5707963267948966", "1.5")):
             self.assertIn(f"bad.toml:{self.line(CRANK, 'hinge')}:1: joints.hinge: joint 'hinge': the velocities", text)
         for text in self.refusals(CRANK + DRIVEN.format("drive", RAMP.format(0.2, TURN))):
-            self.assertIn(": drivers.drive: driver 'drive': its two sides do not meet at t = 0, they miss by 0.2 rad",
+            self.assertIn(": drivers.drive: driver 'drive': its motion and the joint's coordinate at t = 0 "
+                          "are apart by 0.2 rad",
                           text)
 
     def test_a_linkage_that_lies_flat(self):

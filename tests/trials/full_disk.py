@@ -75,7 +75,8 @@ def check_beginning(folder, whole):
         require(have.keys() == all_of_it.keys(), name, "lacks datasets")
         for dataset, values in have.items():
             expected = all_of_it[dataset][:len(values)]
-            require(numpy.array_equal(values, expected, equal_nan=True), name, dataset, "is not what was written")
+            same = numpy.array_equal(values, expected, equal_nan=values.dtype.kind == "f")  # names have none
+            require(same, name, dataset, "is not what was written")
         if name == "history.h5":
             require(len({len(values) for values in have.values()}) == 1, name, "has columns of different length")
         else:

@@ -47,6 +47,17 @@ TEST_CASE("all dependencies are found, as many as columns less the rank") {
   CHECK(std::count(parts.begin(), parts.end(), std::vector<int>{0, 1}) == 1);
 }
 
+TEST_CASE("a column near others hides no dependency, nor counts as one") {
+  // Column 2 is 0 + 1 but for a little, 3 is 2 + 0, and 5 is 4 + 3.
+  for (const Real little : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    const std::vector<MatrixEntry> entries = {{0, 0, 1}, {1, 1, 1}, {0, 2, 1},      {1, 2, 1}, {2, 2, little},
+                                              {0, 3, 2}, {1, 3, 1}, {2, 3, little}, {3, 4, 1}, {3, 5, 1},
+                                              {0, 5, 2}, {1, 5, 1}, {2, 5, little}};
+    CAPTURE(little);
+    CHECK(column_dependencies(4, 6, entries).size() == 2);
+  }
+}
+
 TEST_CASE("a long chain is checked in linear time") {
   // Differences of neighbours, and one more column from the first to the last.
   constexpr int kLinks = 20000;

@@ -67,8 +67,8 @@ TEST_CASE("constraints that share the load may repeat each other, but not contra
     model.drivers[1].motion.value = 0.1;
     contradict("positions that they ask for at t = 0 are 0.1 rad");
     model.drivers[0].motion.value = 0.1;  // both say the same, but the bodies stand elsewhere
-    CHECK(
-        contains(refusal(model), "driver 'first': its two sides do not meet at t = 0, they miss by 0.1 rad"));
+    CHECK(contains(refusal(model),
+                   "driver 'first': its motion and the joint's coordinate at t = 0 are apart by 0.1 rad"));
   }
   SECTION("velocities") {
     model.drivers[1].motion.rate = 2.5;

@@ -109,6 +109,26 @@ TEST_CASE("a bushing between markers is the one at their point and axes") {
   CHECK(near(a.point[1], Vec3{0, -0.2, 0.5}, {.absolute = 1e-15}));  // from the centre of mass
 }
 
+TEST_CASE("markers of a bushing that are turned by more than it holds are refused") {
+  const auto deck = [](Real angle, const std::string& stiffness) {
+    return kDeck +
+           fmt::format(
+               "[[markers]]\nname = \"frame\"\nbody = \"ground\"\nrotation_axis = [1.0, 1.0, 0.0]\n"
+               "rotation_angle = {}\n[[bodies]]\nname = \"arm\"\nkind = \"spatial\"\nmass = 1.0\n"
+               "position = [1.0, 0.0, 0.0]\ninertia_tensor = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]\n"
+               "[[markers]]\nname = \"foot\"\nbody = \"arm\"\n[[bushings]]\nname = \"b\"\n"
+               "markers = [\"frame\", \"foot\"]\n",
+               angle) +
+           stiffness;
+  };
+  CHECK(
+      contains(input_error([&] { model_of(deck(2.7, kSoft)); }),
+               "bushings.b.markers = [\"frame\", \"foot\"]: their frames are turned by 2.7 rad against each "
+               "other at t = 0; a bushing holds up to 2.6 rad"));
+  CHECK(model_of(deck(2.5, kSoft)).bushings.size() == 1);
+  CHECK(model_of(deck(2.7, "stiffness = [1, 2, 3, 0, 0, 0]\n")).bushings.size() == 1);
+}
+
 TEST_CASE("a row of bushings is counted and keeps its bodies from touching") {
   const std::string row =
       bushing("chain = \"link\"\nlocal_points = [[0.1, 0.0, 0.0], [-0.1, 0.0, 0.0]]\n" + kSoft);
