@@ -24,7 +24,7 @@ picture_packages=( # animations and reader tests, too
   python3 python3-venv ffmpeg
   libegl1 libgl1 libxrender1      # what PyPI's vtk draws with, off screen
 )
-paraview_packages=(paraview xvfb xauth python3-h5py)
+paraview_packages=(paraview python3-paraview xvfb xauth python3-h5py)
 slurm_packages=(slurmctld slurmd slurm-client munge)
 requirements=postprocess/requirements.txt
 cuda_packages=("cuda-toolkit[nvcc,cudart,cccl]==13.0.2" "nvidia-nvvm==13.0.*" "nvidia-cuda-crt==13.0.*")
