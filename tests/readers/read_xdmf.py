@@ -3,8 +3,8 @@
 
     xvfb-run -a pvbatch tests/readers/read_xdmf.py RESULT_DIR PICTURE.png
 
-Needs Debian's paraview, python3-paraview, xvfb, xauth and python3-h5py. Each of the three XDMF readers that ParaView offers
-must give, at every time step, the raw HDF5 data. Exits with 1 at the first mismatch, which it names.
+Needs Debian's paraview, python3-paraview, xvfb, xauth and python3-h5py. Each of the three XDMF readers that ParaView
+offers must give, at every time step, the raw HDF5 data. Exits with 1 at the first mismatch, which it names.
 """
 
 import os
