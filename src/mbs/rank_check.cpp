@@ -140,10 +140,12 @@ std::vector<Dependency> column_dependencies(int rows, int columns, const std::ve
         const Real part = dot(other.direction, rest);
         rest -= part * other.direction, weight -= part * other.weight;
       }
-    if (largest(rest) <= distance * largest(weight))
+    if (largest(rest) <= distance * largest(weight)) {
       dependencies.push_back(dependency_of(weight, lengths));
-    else
-      independent.push_back({rest / std::sqrt(dot(rest, rest)), weight / std::sqrt(dot(rest, rest))});
+    } else {
+      const Real length = std::sqrt(dot(rest, rest));
+      independent.push_back({rest / length, weight / length});
+    }
   }
   return dependencies;
 }

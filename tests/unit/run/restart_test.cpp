@@ -12,9 +12,9 @@
 #include "run/checkpoint_datasets.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
-#include "support/petsc_run.hpp"
 #include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"
+#include "unit/run/restart_case.hpp"
 
 namespace scree {
 
@@ -73,45 +73,8 @@ velocity = [0.1, -0.5]
 history_interval = 5e-3
 )";
 
-struct Case {
-  explicit Case(const std::vector<std::string>& overrides = {}, const std::string& text = kDeck)
-      : deck(parse_deck(text, "deck.toml", overrides)) {
-    petsc();
-    Log log(true);
-    model = build_model(deck, log);
-    options.backend = "cpu", options.overwrite = true;
-    options.resolved_deck = deck.resolved_text(), options.fingerprint = deck.fingerprint();
-  }
-  // Into a folder; what a failed one says.
-  std::string run(const std::string& directory, const std::string& restart = "", bool allow_changes = false) {
-    options.output_directory = directory, options.restart = restart, options.allow_changes = allow_changes;
-    log = Log(true);
-    try {
-      if (run_simulation(model, options, log) != ExitCode::done) return "failed";
-    } catch (const InputError& error) {
-      return std::string("input: ") + error.what();
-    } catch (const IoError& error) {
-      return std::string("file: ") + error.what();
-    }
-    return "";
-  }
-  Restart read(const std::string& path) {
-    options.restart = path;
-    return read_restart(model, options, log);
-  }
-  std::string refusal(const std::string& path) {
-    try {
-      read(path);
-    } catch (const IoError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  Deck deck;
-  Model model;
-  RunOptions options;
-  Log log{true};
+struct Case : RestartCase {
+  explicit Case(const std::vector<std::string>& overrides = {}) : RestartCase(kDeck, overrides) {}
 };
 
 const std::string kLongerTable =

@@ -1,0 +1,57 @@
+// A deck that tests of restarts run, read checkpoints of, and have refused.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "deck/deck.hpp"
+#include "model/build.hpp"
+#include "run/restart.hpp"
+#include "run/simulation.hpp"
+#include "support/petsc_run.hpp"
+
+namespace scree {
+
+struct RestartCase {
+  explicit RestartCase(const std::string& text, const std::vector<std::string>& overrides = {})
+      : deck(parse_deck(text, "deck.toml", overrides)) {
+    petsc();
+    Log log(true);
+    model = build_model(deck, log);
+    options.backend = "cpu", options.overwrite = true;
+    options.resolved_deck = deck.resolved_text(), options.fingerprint = deck.fingerprint();
+  }
+  // Into a folder; what a failed one says.
+  std::string run(const std::string& directory, const std::string& restart = "", bool allow_changes = false) {
+    options.output_directory = directory, options.restart = restart, options.allow_changes = allow_changes;
+    log = Log(true);
+    try {
+      if (run_simulation(model, options, log) != ExitCode::done) return "failed";
+    } catch (const InputError& error) {
+      return std::string("input: ") + error.what();
+    } catch (const IoError& error) {
+      return std::string("file: ") + error.what();
+    }
+    return "";
+  }
+  Restart read(const std::string& path) {
+    options.restart = path;
+    return read_restart(model, options, log);
+  }
+  std::string refusal(const std::string& path) {
+    try {
+      read(path);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  Deck deck;
+  Model model;
+  RunOptions options;
+  Log log{true};
+};
+
+}  // namespace scree
