@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """What a snapshot asks of the file system: system calls and bytes, counted by strace, and the disk space of a run.
 
     output_calls.py SCREE [--snapshots N] [--particles N] [--spread]

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Table 4 and Fig. 15 of Jung, Jun, Sohn (2013), and the same case scaled to a million particles.
 
     table4.py SCREE --out DIR [--backends cpu cuda] [--sizes N ...] [--budget SECONDS]

@@ -140,3 +140,14 @@ def missing_paths(root):
                 if is_path and not is_there:
                     findings.append(f"{readme}: `{word}` is not there")
     return findings
+
+
+def wrong_commands(root):
+    """Scripts that a README runs by their own names and that are not executable."""
+    command = re.compile(r"(?:^ {4}|`)((?:tests|jobs|postprocess)/[\w/]+\.(?:py|sh)) +[^\s#]", re.M)
+    findings = []
+    for readme in files(root, {".md"}):
+        for script in sorted(set(command.findall((root / readme).read_text()))):
+            if (root / script).exists() and not os.access(root / script, os.X_OK):
+                findings.append(f"{readme}: {script} is not executable")
+    return findings

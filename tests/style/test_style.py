@@ -50,6 +50,9 @@ class Project(unittest.TestCase):
     def test_paths_in_readmes_are_there(self):
         self.assert_none(checks.missing_paths(ROOT))
 
+    def test_commands_in_readmes_are_executable(self):
+        self.assert_none(checks.wrong_commands(ROOT))
+
 
 class Checks(unittest.TestCase):
     """The checks themselves."""
@@ -112,6 +115,14 @@ class Checks(unittest.TestCase):
                       "[jobs](jobs/none.md)"):
             with self.subTest(wrong=wrong), tree(README_DOT_md=f"See {wrong}.\n", **sources) as root:
                 self.assertEqual(len(checks.missing_paths(root)), 1)
+
+    def test_commands(self):
+        text = "Run `tests/a.py PROGRAM` or\n    tests/b.sh --fast\n    python3 tests/c.py IT\n`tests/c.py` is it.\n"
+        with tree(README_DOT_md=text, tests__a_DOT_py="", tests__b_DOT_sh="", tests__c_DOT_py="") as root:
+            self.assertEqual(len(checks.wrong_commands(root)), 2)
+            for name in ("a.py", "b.sh"):
+                (root / "tests" / name).chmod(0o755)
+            self.assertEqual(checks.wrong_commands(root), [])
 
 
 if __name__ == "__main__":
