@@ -48,7 +48,11 @@ Vec3 place_over(const TriangleMesh& mesh, MeshRandom& random) {
   return p;
 }
 
-bool inside_border(Vec3 p, Real size) { return p.x > 0 && p.x < size && p.y > 0 && p.y < size; }
+// At the border itself round-off decides between face and edge.
+bool inside_border(Vec3 p, Real size) {
+  const Real margin = 1e-9 * size;
+  return std::min(p.x, p.y) > margin && std::max(p.x, p.y) < size - margin;
+}
 
 }  // namespace
 
