@@ -63,7 +63,7 @@ TEST_CASE("an axis-aligned flat mesh has the bits of the plane everywhere") {
     const SurfaceMesh surface = sheet_mesh(mapped(mesh, [&](Vec3 v) { return v + Vec3{0, 0, offset}; }));
     REQUIRE(surface.parts.size() == 1);
     int wrong = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 100000; ++i) {
       const Vec3 p = place_over(mesh, random);
       if (!inside_border(p, size)) continue;
       const Vec3 c = p + Vec3{0, 0, offset + random.in(0.001, 0.01)};
@@ -88,7 +88,7 @@ TEST_CASE("a tilted flat mesh is the plane but for round-off") {
     REQUIRE(surface.parts.size() == 1);
     int wrong = 0;
     Real error = 0;
-    for (int i = 0; i < 10000; ++i) {
+    for (int i = 0; i < 30000; ++i) {
       Vec3 c = place_over(mesh, random);
       if (!inside_border(c, size)) continue;
       const Real height = random.in(0.001, 0.01);
