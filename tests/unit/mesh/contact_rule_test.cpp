@@ -82,7 +82,7 @@ std::vector<MeshContact> contacts_by_rule(const SurfaceMesh& mesh, Vec3 c, Real 
   };
   for (Index t = 0; t < view.triangle_count; ++t) {
     const MeshTriangle& triangle = mesh.triangles[t];
-    if (!seen[triangle.part] && over_triangle(view, triangle, mesh.parts[triangle.part].normal, c)) {
+    if (!seen[triangle.part] && edges_passed(view, triangle, mesh.parts[triangle.part].normal, c) == 0) {
       seen[triangle.part] = true;
       const MeshPart& part = mesh.parts[triangle.part];
       const bool behind = dot(c - part.point, part.normal) < 0;
