@@ -70,21 +70,35 @@ SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const Mes
   return of_a != of_b ? of_a < of_b : a.feature < b.feature;
 }
 
-// Past which edges of a triangle c lies, seen along the normal of its part: bit k for edge k; 0: c is over
-// the triangle. Across an edge to the same plane round-off counts for both sides: it is the same contact.
-// There is no branch that a processor could guess wrongly.
+// How far c lies to the inside of edge k of a triangle, seen along the normal of its part, times the length
+// of the edge; and what its round-off can be [m^2].
+struct EdgeSide {
+  Real inside, round_off;
+};
+
+SCREE_HD EdgeSide side_of_edge(const MeshView& mesh, const MeshTriangle& triangle, int k, Vec3 normal,
+                               Vec3 c) {
+  const Index from = triangle.vertex[k], to = triangle.vertex[k < 2 ? k + 1 : 0];
+  const bool reversed = triangle.flags & (kReversed << k);
+  const Vec3 low = mesh.vertices[reversed ? to : from], d = c - low,
+             e = mesh.vertices[reversed ? from : to] - low;
+  const Real left = left_of_edge(d, e, normal);
+  return {reversed ? -left : left, kSideRoundOff * rough_length(d) * rough_length(e)};
+}
+
+// Past which edges of a triangle c lies: bit k for edge k; 0: c is over the triangle. Across an edge to the
+// same plane round-off counts for both sides: it is the same contact.
 SCREE_HD unsigned edges_passed(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
-  unsigned past = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Index from = triangle.vertex[k], to = triangle.vertex[k < 2 ? k + 1 : 0];
-    const bool reversed = triangle.flags & (kReversed << k), inner = triangle.flags & (kInnerEdge << k);
-    const Vec3 low = mesh.vertices[reversed ? to : from], d = c - low,
-               e = mesh.vertices[reversed ? from : to] - low;
-    const Real left = left_of_edge(d, e, normal), inside = reversed ? -left : left;
-    const Real least = -kSideRoundOff * rough_length(d) * rough_length(e);
-    past |= static_cast<unsigned>(inner ? inside < least : inside <= 0) << k;
+  unsigned passed = 0;
+  for (int k = 0; k < 3; ++k)
+    passed |= static_cast<unsigned>(side_of_edge(mesh, triangle, k, normal, c).inside <= 0) << k;
+  const unsigned inner = passed & triangle.flags;
+  for (int k = 0; k < 3 && inner != 0; ++k) {
+    if (!(inner & (kInnerEdge << k))) continue;
+    const EdgeSide side = side_of_edge(mesh, triangle, k, normal, c);
+    if (side.inside >= -side.round_off) passed &= ~(1u << k);
   }
-  return past;
+  return passed;
 }
 
 // From the nearest point of an edge to c, if c lies in the edge's normal cone.
@@ -214,8 +228,8 @@ class MeshContactSearch {
     const Real height = dot(c_ - part.point, part.normal);
     if (!(std::abs(height) < reach_ + mesh_.flatness)) return;
     if (triangle.features == 0 && (weak_pass_ || known(triangle.part, t))) return;
-    const unsigned past = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
-    if (past != 0) return look_at_features(t, triangle, past);
+    const unsigned passed = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
+    if (passed != 0) return look_at_features(t, triangle, passed);
     // Over a triangle no cone of its edges and vertices can be.
     if (!weak_pass_ && std::abs(height) < reach_) add_face(t, triangle.part, part, height);
   }
@@ -238,12 +252,12 @@ class MeshContactSearch {
       behind_.triangle = t;
   }
 
-  // past: the triangle's edges that c lies past; in the cones of others it is not.
-  SCREE_HD void look_at_features(Index t, const MeshTriangle& triangle, unsigned past) {
+  // passed: the triangle's edges that c lies past; in the cones of others it is not.
+  SCREE_HD void look_at_features(Index t, const MeshTriangle& triangle, unsigned passed) {
     Index row = triangle.first_feature;
     for (int k = 0; k < 3; ++k) {
       if (!(triangle.flags & (kOwnsEdge << k))) continue;
-      if (!weak_pass_ && past & (1u << k)) look_at_edge(t, row);
+      if (!weak_pass_ && passed & (1u << k)) look_at_edge(t, row);
       ++row;
     }
     for (const Index end = triangle.first_feature + triangle.features; row < end; ++row)
