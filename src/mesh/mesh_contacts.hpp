@@ -35,7 +35,7 @@ SCREE_HD Real rough_length(Vec3 a) { return std::abs(a.x) + std::abs(a.y) + std:
 namespace mesh_detail {
 
 inline constexpr Real kSideRoundOff = 0x1p-49;   // of left_of_edge, relative to rough lengths
-inline constexpr Real kWeakRoundOff = 0x1p-40;   // of corners of slivers, where regions meet at small angles
+inline constexpr Real kWeakRoundOff = 0x1p-36;   // of corners of slivers, where regions meet at small angles
 inline constexpr Real kLeastSquare = 0x1p-1000;  // of a distance that has a direction [m^2]
 
 // Patches that a feature adjoins.
@@ -125,7 +125,7 @@ SCREE_HD Cone cone_of_vertex(const MeshView& mesh, const MeshFeature& vertex, Ve
     const Vec3 e = mesh.vertices[mesh.tests[i]] - v;
     const Real along = dot(d, e);
     if (along <= 0) continue;
-    if (along > kWeakRoundOff * rough_length(d) * rough_length(e)) return Cone::outside;
+    if (along > rough_length(d) * (kWeakRoundOff * rough_length(e) + 8 * mesh.flatness)) return Cone::outside;
     cone = Cone::weak;
   }
   return cone;
