@@ -150,6 +150,27 @@ TEST_CASE("the nearest point of a closed mesh is a contact from outside, from in
   }
 }
 
+TEST_CASE("a convex body is touched in one place, wherever the sphere is") {
+  MeshRandom random(49);
+  for (const TriangleMesh& mesh :
+       {icosphere(0, 1), icosphere(3, 1), tetrahedron(), block({0, 0, 0}, {1, 1, 1}, 3)}) {
+    const SurfaceMesh body = closed_mesh(turned(mesh, random.turn()));
+    int wrong = 0, outside = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 c = place_near(body, 0.3, random);
+      const Real distance = distance_from(body, c);
+      if (distance < 1e-12) continue;
+      const auto contacts = contacts_at(body, c, 0.5);
+      wrong += contacts.size() > 1;
+      if (contacts.empty() || contacts[0].distance < 0) continue;
+      ++outside;
+      wrong += std::abs(contacts[0].distance - distance) > 1e-14;
+    }
+    CHECK(wrong == 0);
+    CHECK(outside > 5000);
+  }
+}
+
 TEST_CASE("where sides are flat but for noise, edges count from outside and never from inside") {
   MeshRandom random(48);
   for (const Real noise : {1e-8, 1e-10, 1e-11, 3e-12, 1e-12, 3e-13, 1e-13}) {

@@ -104,4 +104,26 @@ TEST_CASE("a tilted flat mesh is the plane but for round-off") {
   }
 }
 
+TEST_CASE("a flat mesh far from its origin, or very small, is one plane") {
+  MeshRandom random(10);
+  for (const Real size : {1e-6, 1.0})
+    for (const Real away : {0.0, 1e6 * size}) {
+      const Mat3 turn = random.turn();
+      const TriangleMesh mesh = jittered_grid(12, 7);
+      const auto placed = [&](Vec3 v) { return turn * (size * v + Vec3{away, away, 0}); };
+      const SurfaceMesh surface = sheet_mesh(mapped(mesh, placed));
+      REQUIRE(surface.parts.size() == 1);
+      int wrong = 0;
+      for (int i = 0; i < 10000; ++i) {
+        Vec3 c = place_over(mesh, random);
+        if (std::min(c.x, c.y) < 1e-6 || std::max(c.x, c.y) > 1 - 1e-6) continue;
+        c.z = 0.05;
+        const auto contacts = contacts_at(surface, placed(c), 0.1 * size);
+        wrong +=
+            contacts.size() != 1 || std::abs(contacts[0].distance - 0.05 * size) > 4 * kUlp * (away + size);
+      }
+      CHECK(wrong == 0);
+    }
+}
+
 }  // namespace scree
