@@ -202,12 +202,12 @@ SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index co
 class MeshContactSearch {
  public:
   SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real reach, MeshContact* out)
-      : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), behind_{-1, -1, reach, {}, {}}, out_(out) {}
+      : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), depth_(reach), out_(out) {}
 
   SCREE_HD int contacts_of(const Index* triangles, Index count) {
     look(triangles, count);
     const Real nearest = found_ > 0 && out_[0].distance < nearest_weak_ ? out_[0].distance : nearest_weak_;
-    if (behind_.feature >= 0 && behind_.distance < nearest) return inside();
+    if (behind_ >= 0 && depth_ < nearest) return inside();
     const bool any_weak = nearest_weak_ < reach_;
     keep();
     for (; left_out_ && kept_ < kMeshSlots; keep()) look(triangles, count);
@@ -244,12 +244,10 @@ class MeshContactSearch {
   SCREE_HD void add_face(Index t, Index id, const MeshPart& part, Real height) {
     if (height >= 0) return add({id, t, height, part.point, part.normal});
     if (mesh_.sheet) return add({id, t, -height, part.point, opposite(part.normal)});
-    const Real depth = -height;
-    const bool nearer = depth != behind_.distance ? depth < behind_.distance : id < behind_.feature;
-    if (nearer)
-      behind_ = {id, t, depth, part.point, part.normal};
-    else if (id == behind_.feature && t < behind_.triangle)
-      behind_.triangle = t;
+    if (-height < depth_ || (-height == depth_ && id < behind_))
+      depth_ = -height, behind_ = id, behind_triangle_ = t;
+    else if (id == behind_ && t < behind_triangle_)
+      behind_triangle_ = t;
   }
 
   // passed: the triangle's edges that c lies past; in the cones of others it is not.
@@ -312,7 +310,9 @@ class MeshContactSearch {
     for (int i = kept_; i < found_; ++i) {
       bool one = false;
       for (int j = 0; j < kept_ && !one; ++j) one = same_cluster(mesh_, out_[i], out_[j]);
-      if (!one) out_[kept_++] = out_[i];
+      if (one) continue;
+      if (kept_ != i) out_[kept_] = out_[i];
+      ++kept_;
     }
     found_ = kept_;
   }
@@ -336,17 +336,18 @@ class MeshContactSearch {
 
   // The centre is in a closed mesh: the nearest face alone pushes it out.
   SCREE_HD int inside() {
-    out_[0] = behind_;
-    out_[0].distance = -behind_.distance;
+    const MeshPart& part = mesh_.parts[behind_];
+    out_[0] = {behind_, behind_triangle_, -depth_, part.point, part.normal};
     return 1;
   }
 
   const MeshView& mesh_;
   Vec3 c_;
   Real reach_;
-  Real nearest_weak_;   // of the vertices that hold but for round-off [m]
-  MeshContact behind_;  // the nearest face of a closed mesh seen from behind, with its depth
-  MeshContact* out_;    // kept ones, then candidates, each in order
+  Real nearest_weak_;  // of the vertices that hold but for round-off [m]
+  Real depth_;         // of c behind the nearest face of a closed mesh that it is over from behind [m]
+  Index behind_ = -1, behind_triangle_ = -1;
+  MeshContact* out_;  // kept ones, then candidates, each in order
   int kept_ = 0, found_ = 0;
   bool left_out_ = false;  // candidates, for want of slots
   bool weak_pass_ = false;
@@ -354,7 +355,8 @@ class MeshContactSearch {
 
 // The contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and feature; the
 // nearest kMeshSlots, if there are more. triangles: all that are within reach of c; others change nothing.
-// Returns their number. Inside a closed mesh it is the nearest face alone, with a negative distance.
+// Returns their number; what stands behind them in `out` is no contact. Inside a closed mesh it is the
+// nearest face alone, with a negative distance.
 SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real reach, const Index* triangles, Index count,
                                 MeshContact out[kMeshSlots]) {
   return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count);
