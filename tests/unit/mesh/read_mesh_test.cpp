@@ -10,8 +10,8 @@
 #include "mesh/mesh_checks.hpp"
 #include "mesh/mesh_mass.hpp"
 #include "mesh/weld.hpp"
-#include "unit/mesh/mesh_files.hpp"
 #include "support/catch.hpp"
+#include "unit/mesh/mesh_files.hpp"
 
 namespace scree {
 
