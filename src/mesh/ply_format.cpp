@@ -93,7 +93,7 @@ class BinaryBody {
 template <class Body>
 class PlyReader {
  public:
-  explicit PlyReader(Body body) : body_(std::move(body)) {}
+  PlyReader(Body body, const std::string& file) : body_(std::move(body)), file_(file) {}
 
   TriangleMesh mesh(const PlyHeader& header) {
     for (const PlyElement& element : header.elements) {
@@ -170,16 +170,19 @@ class PlyReader {
     std::vector<Index> corners;
     for (std::size_t k = first; k < first + sizes_[row]; ++k) {
       if (!(corners_[k] >= 0 && corners_[k] < static_cast<Real>(mesh_.vertices.size())))
-        body_.fail(fmt::format("face {} (from 0): vertex {}: must be 0 to {}", row, corners_[k],
-                               static_cast<std::int64_t>(mesh_.vertices.size()) - 1));
+        fail_face(row, fmt::format("vertex {}: must be 0 to {}", corners_[k],
+                                   static_cast<std::int64_t>(mesh_.vertices.size()) - 1));
       corners.push_back(static_cast<Index>(corners_[k]));
     }
     const std::string trouble = add_polygon(mesh_, corners);
-    if (!trouble.empty())
-      body_.fail(fmt::format("face {} (from 0) cannot be cut into triangles: {}", row, trouble));
+    if (!trouble.empty()) fail_face(row, "cannot be cut into triangles: " + trouble);
+  }
+  [[noreturn]] void fail_face(std::size_t row, const std::string& trouble) const {
+    throw InputError(fmt::format("{}: face {} (from 0): {}", file_, row, trouble));
   }
 
   Body body_;
+  const std::string& file_;
   TriangleMesh mesh_;
   std::vector<Real> corners_;       // vertex numbers of all faces, not checked yet
   std::vector<std::size_t> sizes_;  // of the faces
@@ -190,10 +193,10 @@ class PlyReader {
 TriangleMesh parse_ply(std::string_view bytes, const std::string& file) {
   Words words(bytes, file);
   const PlyHeader header = read_ply_header(words);
-  if (header.form == PlyForm::ascii) return PlyReader(TextBody(words, bytes)).mesh(header);
+  if (header.form == PlyForm::ascii) return PlyReader(TextBody(words, bytes), file).mesh(header);
   if (words.position() == bytes.size()) words.fail("ends after the header: the file is cut");
   const bool turned = header.form == PlyForm::high_byte_first;
-  return PlyReader(BinaryBody(bytes, words.position() + 1, turned, file)).mesh(header);
+  return PlyReader(BinaryBody(bytes, words.position() + 1, turned, file), file).mesh(header);
 }
 
 }  // namespace scree

@@ -68,7 +68,8 @@ class AsciiStl {
     const std::string_view word = words_.next();
     if (lower(word) == "endsolid") return false;
     check(word, "facet", "facet or endsolid");
-    words_.skip_line();  // the normal, which follows from the corners
+    expect("normal");
+    for (int k = 0; k < 3; ++k) words_.next();  // follow from the corners
     expect("outer");
     expect("loop");
     for (int k = 0; k < 3; ++k) {
