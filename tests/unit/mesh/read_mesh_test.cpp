@@ -243,7 +243,7 @@ TEST_CASE("what is said of broken PLY") {
         "a.ply:2: format \"text\": must be ascii, binary_little_endian or binary_big_endian");
   CHECK(changed(text, "1.0", "2.0") == "a.ply:2: format version \"2.0\": must be 1.0");
   CHECK(refusal(text.substr(0, text.find("property double z")), "a.ply") ==
-        "a.ply:6: ends before end_header: the file is cut");
+        "a.ply:7: ends before end_header: the file is cut");
   CHECK(changed(text, "double y", "double w") == "a.ply:10: element vertex must have a property y");
   CHECK(changed(text, "double y", "real y").starts_with("a.ply:6: type \"real\": must be char, uchar"));
   CHECK(changed(text, "double y", "double x") == "a.ply:6: property \"x\" is repeated");
