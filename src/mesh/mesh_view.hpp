@@ -28,21 +28,22 @@ struct MeshTriangle {
   Index first_feature, features;  // those that it owns: rows of MeshView::features
 };
 
-// An edge or a vertex that a sphere may touch, owned by one of its triangles. `tests`: of an edge the parts of
-// its faces (~part where the face runs from b to a), of a vertex the other ends of its edges.
+// An edge or a vertex that a sphere may touch, owned by the lowest of its triangles. `tests`: of an edge the
+// parts of its faces (~part where the face runs from b to a), of a vertex the other ends of its edges.
 struct MeshFeature {
   Index a, b;  // vertices, a < b; b = -1: a vertex
   Index first_test, tests;
   Index first_patch, patches;  // that it adjoins, increasing
+  Vec3f outward;               // unit: the mean normal of its faces, at a vertex weighted by their angles
 };
 
-// A box of the tree, or a leaf's triangles.
+// A box of the tree, or of the whole mesh.
 struct MeshBox {
   Vec3 min, max;  // [m]
 };
 
-// Boxes of a tree in which a node has up to kTreeWidth children: level 0 are groups of kTreeWidth triangles in
-// their order, level l + 1 groups of kTreeWidth boxes of level l; the last level is one box.
+// Boxes of a tree in which a node has up to kTreeWidth children: level 0 are groups of kTreeWidth triangles
+// in their order, level l + 1 groups of kTreeWidth boxes of level l; the last level is one box.
 inline constexpr Index kTreeWidth = 4;
 inline constexpr int kMostLevels = 16;
 
@@ -52,14 +53,17 @@ struct MeshView {
   const MeshPart* parts;
   const MeshFeature* features;
   const Index* tests;
-  const Index* patches;
+  const Index* patches;          // of the features
+  const Index* first_neighbour;  // of each patch, and the end: into neighbours
+  const Index* neighbours;       // of a patch, increasing: those that it meets along an edge
   const MeshBox* boxes;
   Index triangle_count, part_count;
   Index level_start[kMostLevels + 1];  // into boxes
   int levels;
-  bool sheet;           // two sides; else closed, with an outside
-  Real cosine;          // of the feature angle
-  Real round_off;       // a few units in the last place of the largest coordinate [m]
+  bool sheet;      // two sides; else closed, with an outside
+  Real cosine;     // of the feature angle
+  Real round_off;  // a few units in the last place of the largest coordinate [m]
+  Real flatness;   // how far the vertices of a part may be from its plane [m]
 };
 
 }  // namespace scree

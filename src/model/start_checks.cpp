@@ -168,6 +168,7 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
   const std::int64_t first_wall = ItemNames(model).first_wall();
   for (std::size_t w = 0; w < model.walls.size(); ++w) {
     const Wall& wall = model.walls[w];
+    if (wall.mesh >= 0) continue;
     for (const StartItem& item : items) {
       const Real overlap = item.radius - dot(wall.normal, item.position - wall.point);
       worst.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));

@@ -1,0 +1,333 @@
+// What a sphere touches on a mesh: the local minima of its distance, of which near-equal ones on one smooth
+// patch count once. Host and device, with the same bits: no result depends on the order in which triangles
+// are looked at.
+#pragma once
+
+#include <cmath>
+
+#include "base/hd.hpp"
+#include "base/root.hpp"
+#include "base/vec3.hpp"
+#include "mesh/mesh_view.hpp"
+
+namespace scree {
+
+// The most contacts of one sphere with one mesh: the nearest count.
+inline constexpr int kMeshSlots = 8;
+
+// In the frame of the mesh.
+struct MeshContact {
+  Index feature;   // part of a face; part_count + row of MeshView::features of an edge or a vertex
+  Index triangle;  // the lowest that has it; -1 where it was not looked for
+  Real distance;   // of the centre from the surface, negative inside [m]
+  Vec3 point;      // of the plane of the part; else the nearest one [m]
+  Vec3 normal;     // unit, from the surface to the centre; inside a closed mesh outwards
+};
+
+// Twice the area between an edge e and a point d from its lower vertex, seen along the normal of a face:
+// above 0 to the left of the edge, where the face is that runs along it [m^2]. Faces and edges ask this
+// function alone, so that each place belongs to one of them.
+SCREE_HD Real left_of_edge(Vec3 d, Vec3 e, Vec3 normal) { return dot(d, cross(normal, e)); }
+
+// |x| + |y| + |z|: not less than the length, without a root.
+SCREE_HD Real rough_length(Vec3 a) { return std::abs(a.x) + std::abs(a.y) + std::abs(a.z); }
+
+namespace mesh_detail {
+
+inline constexpr Real kSideRoundOff = 0x1p-49;   // of left_of_edge, relative to rough lengths
+inline constexpr Real kWeakRoundOff = 0x1p-40;   // of corners of slivers, where regions meet at small angles
+inline constexpr Real kLeastSquare = 0x1p-1000;  // of a distance that has a direction [m^2]
+
+// Patches that a feature adjoins.
+struct PatchList {
+  const Index* first;
+  Index count;
+};
+
+SCREE_HD PatchList patches_of(const MeshView& mesh, Index feature) {
+  if (feature < mesh.part_count) return {&mesh.parts[feature].patch, 1};
+  const MeshFeature& f = mesh.features[feature - mesh.part_count];
+  return {mesh.patches + f.first_patch, f.patches};
+}
+
+SCREE_HD bool share_patch(const MeshView& mesh, Index a, Index b) {
+  const PatchList of_a = patches_of(mesh, a), of_b = patches_of(mesh, b);
+  for (Index i = 0; i < of_a.count; ++i)
+    for (Index j = 0; j < of_b.count; ++j)
+      if (of_a.first[i] == of_b.first[j]) return true;
+  return false;
+}
+
+// Face 0, edge 1, vertex 2.
+SCREE_HD int feature_type(const MeshView& mesh, Index feature) {
+  return feature < mesh.part_count ? 0 : mesh.features[feature - mesh.part_count].b < 0 ? 2 : 1;
+}
+
+// The order in which contacts count.
+SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const MeshContact& b) {
+  if (a.distance != b.distance) return a.distance < b.distance;
+  const int of_a = feature_type(mesh, a.feature), of_b = feature_type(mesh, b.feature);
+  return of_a != of_b ? of_a < of_b : a.feature < b.feature;
+}
+
+// Whether c is over a triangle, seen along the normal of its part. Across an edge to the same plane round-off
+// counts for both sides: it is the same contact.
+SCREE_HD bool over_triangle(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 from = mesh.vertices[triangle.vertex[k]],
+               to = mesh.vertices[triangle.vertex[k < 2 ? k + 1 : 0]];
+    const bool reversed = triangle.flags & (kReversed << k);
+    const Vec3 low = reversed ? to : from, e = (reversed ? from : to) - low, d = c - low;
+    const Real left = left_of_edge(d, e, normal), inside = reversed ? -left : left;
+    if (inside > 0) continue;
+    if (!(triangle.flags & (kInnerEdge << k))) return false;
+    if (inside < -kSideRoundOff * rough_length(d) * rough_length(e)) return false;
+  }
+  return true;
+}
+
+// From the nearest point of an edge to c, if c lies in the edge's normal cone.
+SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec3 c, Vec3& from) {
+  const Vec3 a = mesh.vertices[edge.a], b = mesh.vertices[edge.b], d = c - a, e = b - a;
+  const Real along = dot(d, e);
+  if (!(along > 0 && dot(c - b, a - b) > 0)) return false;
+  for (Index i = edge.first_test; i < edge.first_test + edge.tests; ++i) {
+    const Index test = mesh.tests[i];
+    const Real left = left_of_edge(d, e, mesh.parts[test < 0 ? ~test : test].normal);
+    if ((test < 0 ? -left : left) > 0) return false;
+  }
+  from = d - (along / dot(e, e)) * e;
+  return true;
+}
+
+enum class Cone { outside, weak, inside };
+
+// Where d from a vertex lies to its normal cone; weak: outside by what may be round-off.
+SCREE_HD Cone cone_of_vertex(const MeshView& mesh, const MeshFeature& vertex, Vec3 d) {
+  const Vec3 v = mesh.vertices[vertex.a];
+  Cone cone = Cone::inside;
+  for (Index i = vertex.first_test; i < vertex.first_test + vertex.tests; ++i) {
+    const Vec3 e = mesh.vertices[mesh.tests[i]] - v;
+    const Real along = dot(d, e);
+    if (along <= 0) continue;
+    if (along > kWeakRoundOff * rough_length(d) * rough_length(e)) return Cone::outside;
+    cone = Cone::weak;
+  }
+  return cone;
+}
+
+// Contact with the edge or vertex in this row, whose nearest point is c - from.
+SCREE_HD MeshContact contact_from(const MeshView& mesh, Index row, Vec3 c, Vec3 from) {
+  const Real square = dot(from, from);
+  if (!(square > kLeastSquare)) {
+    const Vec3 outward = in_double(mesh.features[row].outward);
+    return {mesh.part_count + row, -1, 0, c, root_and_inverse(dot(outward, outward)).inverse * outward};
+  }
+  const RootAndInverse<Real> distance = root_and_inverse(square);
+  return {mesh.part_count + row, -1, distance.root, c - from, distance.inverse * from};
+}
+
+}  // namespace mesh_detail
+
+// Whether two contacts are one to a sphere: they share a patch, and their normals differ by no more than the
+// feature angle.
+SCREE_HD bool same_cluster(const MeshView& mesh, const MeshContact& a, const MeshContact& b) {
+  return dot(a.normal, b.normal) >= mesh.cosine && mesh_detail::share_patch(mesh, a.feature, b.feature);
+}
+
+// Whether two features share a patch, or adjoin patches that meet along an edge.
+SCREE_HD bool on_neighbouring_patches(const MeshView& mesh, Index feature_a, Index feature_b) {
+  if (mesh_detail::share_patch(mesh, feature_a, feature_b)) return true;
+  const auto of_a = mesh_detail::patches_of(mesh, feature_a), of_b = mesh_detail::patches_of(mesh, feature_b);
+  for (Index i = 0; i < of_a.count; ++i) {
+    const Index end = mesh.first_neighbour[of_a.first[i] + 1];
+    for (Index n = mesh.first_neighbour[of_a.first[i]]; n < end; ++n)
+      for (Index j = 0; j < of_b.count; ++j)
+        if (mesh.neighbours[n] == of_b.first[j]) return true;
+  }
+  return false;
+}
+
+// A feature seen from c wherever that is: the plane of a part, the line of an edge, a vertex. Its normal does
+// not point against `side`; the distance is negative where c is on the other side.
+SCREE_HD MeshContact mesh_feature_at(const MeshView& mesh, Index feature, Vec3 c, Vec3 side) {
+  MeshContact contact;
+  if (feature < mesh.part_count) {
+    const MeshPart& part = mesh.parts[feature];
+    contact = {feature, -1, dot(c - part.point, part.normal), part.point, part.normal};
+  } else {
+    const Index row = feature - mesh.part_count;
+    const MeshFeature& f = mesh.features[row];
+    const Vec3 a = mesh.vertices[f.a], d = c - a;
+    const Vec3 e = f.b < 0 ? Vec3{} : mesh.vertices[f.b] - a;
+    contact = mesh_detail::contact_from(mesh, row, c, f.b < 0 ? d : d - (dot(d, e) / dot(e, e)) * e);
+  }
+  if (dot(contact.normal, side) < 0) {
+    contact.normal = opposite(contact.normal);
+    contact.distance = -contact.distance;
+  }
+  return contact;
+}
+
+// How many contacts, at most kMeshSlots, could come of these triangles.
+SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index count) {
+  int needed = 0, parts = 0;
+  Index part[kMeshSlots];
+  for (Index i = 0; i < count && needed < kMeshSlots; ++i) {
+    const MeshTriangle& triangle = mesh.triangles[triangles[i]];
+    int seen = 0;
+    while (seen < parts && part[seen] != triangle.part) ++seen;
+    if (seen == parts) part[parts++] = triangle.part, ++needed;
+    needed += triangle.features;
+  }
+  return needed < kMeshSlots ? needed : kMeshSlots;
+}
+
+// Looks at the triangles of a row once or, where there are more contacts than slots, several times.
+class MeshContactSearch {
+ public:
+  SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real reach, MeshContact* out)
+      : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), behind_{-1, -1, reach, {}, {}}, out_(out) {}
+
+  SCREE_HD int contacts_of(const Index* triangles, Index count) {
+    look(triangles, count);
+    const Real nearest = found_ > 0 && out_[0].distance < nearest_weak_ ? out_[0].distance : nearest_weak_;
+    if (behind_.feature >= 0 && behind_.distance < nearest) return inside();
+    const bool any_weak = nearest_weak_ < reach_;
+    keep();
+    for (; left_out_ && kept_ < kMeshSlots; keep()) look(triangles, count);
+    if (any_weak && kept_ < kMeshSlots) add_weak(triangles, count);
+    return kept_;
+  }
+
+ private:
+  // Finds the nearest candidates for the slots that are free, in order.
+  SCREE_HD void look(const Index* triangles, Index count) {
+    left_out_ = false;
+    for (Index i = 0; i < count; ++i) look_at(triangles[i]);
+  }
+
+  SCREE_HD void look_at(Index t) {
+    const MeshTriangle& triangle = mesh_.triangles[t];
+    const MeshPart& part = mesh_.parts[triangle.part];
+    const Real height = dot(c_ - part.point, part.normal);
+    if (!(std::abs(height) < reach_ + mesh_.flatness)) return;
+    if (!weak_pass_ && std::abs(height) < reach_ && !known(triangle.part, t) &&
+        mesh_detail::over_triangle(mesh_, triangle, part.normal, c_))
+      add_face(t, triangle.part, part, height);
+    for (Index row = triangle.first_feature; row < triangle.first_feature + triangle.features; ++row)
+      look_at_feature(t, row);
+  }
+
+  // Whether this triangle could tell nothing new of its part.
+  SCREE_HD bool known(Index part, Index t) const {
+    for (int i = 0; i < found_; ++i)
+      if (out_[i].feature == part && out_[i].triangle <= t) return true;
+    return false;
+  }
+
+  SCREE_HD void add_face(Index t, Index id, const MeshPart& part, Real height) {
+    if (height >= 0) return add({id, t, height, part.point, part.normal});
+    if (mesh_.sheet) return add({id, t, -height, part.point, opposite(part.normal)});
+    const Real depth = -height;
+    const bool nearer = depth != behind_.distance ? depth < behind_.distance : id < behind_.feature;
+    if (nearer)
+      behind_ = {id, t, depth, part.point, part.normal};
+    else if (id == behind_.feature && t < behind_.triangle)
+      behind_.triangle = t;
+  }
+
+  SCREE_HD void look_at_feature(Index t, Index row) {
+    using mesh_detail::Cone;
+    const MeshFeature& feature = mesh_.features[row];
+    Vec3 from = c_ - mesh_.vertices[feature.a];
+    Cone cone = Cone::inside;
+    if (feature.b >= 0) {
+      if (weak_pass_ || !mesh_detail::in_cone_of_edge(mesh_, feature, c_, from)) return;
+    } else {
+      if (!(dot(from, from) < reach_ * reach_)) return;
+      cone = mesh_detail::cone_of_vertex(mesh_, feature, from);
+    }
+    if (cone == Cone::outside || (cone == Cone::inside && weak_pass_)) return;
+    if (!mesh_.sheet && dot(from, in_double(feature.outward)) < 0) return;
+    MeshContact contact = mesh_detail::contact_from(mesh_, row, c_, from);
+    contact.triangle = t;
+    if (!(contact.distance < reach_)) return;
+    if (cone == Cone::inside || weak_pass_)
+      add(contact);
+    else if (contact.distance < nearest_weak_)
+      nearest_weak_ = contact.distance;
+  }
+
+  SCREE_HD void add(const MeshContact& contact) {
+    for (int i = 0; i < found_; ++i) {
+      if (i < kept_ && same_cluster(mesh_, contact, out_[i])) return;
+      if (out_[i].feature != contact.feature) continue;
+      if (contact.triangle < out_[i].triangle) out_[i].triangle = contact.triangle;
+      return;
+    }
+    if (found_ == kMeshSlots) {
+      left_out_ = true;
+      if (!mesh_detail::comes_before(mesh_, contact, out_[found_ - 1])) return;
+      --found_;
+    }
+    int place = found_++;
+    for (; place > kept_ && mesh_detail::comes_before(mesh_, contact, out_[place - 1]); --place)
+      out_[place] = out_[place - 1];
+    out_[place] = contact;
+  }
+
+  // Of those found keeps the ones that are not one with a nearer one.
+  SCREE_HD void keep() {
+    for (int i = kept_; i < found_; ++i) {
+      bool one = false;
+      for (int j = 0; j < kept_ && !one; ++j) one = same_cluster(mesh_, out_[i], out_[j]);
+      if (!one) out_[kept_++] = out_[i];
+    }
+    found_ = kept_;
+  }
+
+  // Vertices between all regions by round-off count where nothing else does.
+  SCREE_HD void add_weak(const Index* triangles, Index count) {
+    weak_pass_ = true;
+    const int strict = kept_;
+    do {
+      look(triangles, count);
+      keep();
+    } while (left_out_ && kept_ < kMeshSlots);
+    for (int i = strict; i < kept_; ++i) {
+      const MeshContact contact = out_[i];
+      int place = i;
+      for (; place > 0 && mesh_detail::comes_before(mesh_, contact, out_[place - 1]); --place)
+        out_[place] = out_[place - 1];
+      out_[place] = contact;
+    }
+  }
+
+  // The centre is in a closed mesh: the nearest face alone pushes it out.
+  SCREE_HD int inside() {
+    out_[0] = behind_;
+    out_[0].distance = -behind_.distance;
+    return 1;
+  }
+
+  const MeshView& mesh_;
+  Vec3 c_;
+  Real reach_;
+  Real nearest_weak_;   // of the vertices that hold but for round-off [m]
+  MeshContact behind_;  // the nearest face of a closed mesh seen from behind, with its depth
+  MeshContact* out_;    // kept ones, then candidates, each in order
+  int kept_ = 0, found_ = 0;
+  bool left_out_ = false;  // candidates, for want of slots
+  bool weak_pass_ = false;
+};
+
+// The contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and feature; the
+// nearest kMeshSlots, if there are more. triangles: all that are within reach of c; others change nothing.
+// Returns their number. Inside a closed mesh it is the nearest face alone, with a negative distance.
+SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real reach, const Index* triangles, Index count,
+                                MeshContact out[kMeshSlots]) {
+  return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count);
+}
+
+}  // namespace scree

@@ -1,0 +1,60 @@
+// Which triangles, edges and vertices of a mesh adjoin each other, with the triangles along a curve that
+// keeps neighbours together.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "mesh/triangle_mesh.hpp"
+
+namespace scree {
+
+// A side of a triangle: from corner to corner + 1.
+struct EdgeUse {
+  Index triangle;
+  int corner;
+  bool reversed;  // runs from the higher vertex to the lower one
+};
+
+struct MeshEdge {
+  Index low, high;        // vertices
+  Index first_use, uses;  // into MeshTopology::uses, by increasing triangle
+};
+
+// Lists of different lengths in one array: list i is items[first[i]] to items[first[i + 1]].
+struct IndexLists {
+  std::vector<Index> first, items;
+
+  std::span<const Index> of(Index i) const {
+    return std::span(items).subspan(first[i], static_cast<std::size_t>(first[i + 1] - first[i]));
+  }
+};
+
+struct MeshTopology {
+  TriangleMesh mesh;            // triangles along the Morton curve of their centres, vertices by first use
+  std::vector<Index> original;  // number of each triangle before
+  std::vector<MeshEdge> edges;
+  std::vector<EdgeUse> uses;
+  std::vector<std::array<Index, 3>> edges_of;  // of each triangle, from corner k on
+  IndexLists triangles_at;                     // each vertex, increasing
+
+  std::span<const EdgeUse> uses_of(const MeshEdge& edge) const {
+    return std::span(uses).subspan(edge.first_use, edge.uses);
+  }
+  // Whether two triangles meet there, both with the same side up.
+  bool joins_two(const MeshEdge& edge) const {
+    return edge.uses == 2 && uses[edge.first_use].reversed != uses[edge.first_use + 1].reversed;
+  }
+  // The triangle across an edge that joins two.
+  Index across(const MeshEdge& edge, Index triangle) const {
+    const Index first = uses[edge.first_use].triangle;
+    return first != triangle ? first : uses[edge.first_use + 1].triangle;
+  }
+};
+
+MeshTopology mesh_topology(const TriangleMesh& mesh);
+
+}  // namespace scree

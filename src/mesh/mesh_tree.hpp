@@ -1,0 +1,69 @@
+// Which triangles lie near a point: the tree of boxes that a mesh is searched by. Host and device.
+#pragma once
+
+#include "base/hd.hpp"
+#include "base/vec3.hpp"
+#include "mesh/mesh_view.hpp"
+
+namespace scree {
+
+// Of a point from a box: 0 inside [m^2].
+SCREE_HD Real squared_distance(const MeshBox& box, Vec3 p) {
+  const auto outside = [](Real low, Real x, Real high) {
+    return x < low ? low - x : x > high ? x - high : 0;
+  };
+  const Vec3 d{outside(box.min.x, p.x, box.max.x), outside(box.min.y, p.y, box.max.y),
+               outside(box.min.z, p.z, box.max.z)};
+  return dot(d, d);
+}
+
+// Of a point from the segment from a to b [m^2].
+SCREE_HD Real squared_distance(Vec3 a, Vec3 b, Vec3 p) {
+  const Vec3 e = b - a, d = p - a;
+  const Real along = dot(d, e), length = dot(e, e);
+  const Vec3 from = along <= 0 ? d : along >= length ? p - b : d - (along / length) * e;
+  return dot(from, from);
+}
+
+// Of a point from a triangle [m^2].
+SCREE_HD Real squared_distance(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
+  const Vec3 normal = cross(b - a, c - a);
+  if (dot(p - a, cross(normal, b - a)) >= 0 && dot(p - b, cross(normal, c - b)) >= 0 &&
+      dot(p - c, cross(normal, a - c)) >= 0) {
+    const Real height = dot(p - a, normal);
+    return height * height / dot(normal, normal);
+  }
+  const Real ab = squared_distance(a, b, p), bc = squared_distance(b, c, p), ca = squared_distance(c, a, p);
+  const Real nearer = ab < bc ? ab : bc;
+  return nearer < ca ? nearer : ca;
+}
+
+// Calls visit(triangle) for every triangle less than `reach` from c [m], but for round-off, in increasing
+// order. The place in the tree is a level and a number, so that it needs no stack.
+SCREE_HD_CALLER
+template <class Visit>
+SCREE_HD void for_each_triangle_near(const MeshView& mesh, Vec3 c, Real reach, const Visit& visit) {
+  const Real limit = (reach + mesh.round_off) * (reach + mesh.round_off);
+  const int top = mesh.levels - 1;
+  int level = top;
+  Index node = 0;
+  while (level < top || node == 0) {
+    if (squared_distance(mesh.boxes[mesh.level_start[level] + node], c) < limit) {
+      if (level > 0) {
+        --level, node *= kTreeWidth;
+        continue;
+      }
+      for (Index t = kTreeWidth * node; t < kTreeWidth * (node + 1) && t < mesh.triangle_count; ++t) {
+        const Index* v = mesh.triangles[t].vertex;
+        if (squared_distance(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]], c) < limit)
+          visit(t);
+      }
+    }
+    ++node;
+    while (level < top &&
+           (node % kTreeWidth == 0 || node == mesh.level_start[level + 1] - mesh.level_start[level]))
+      node = (node + kTreeWidth - 1) / kTreeWidth, ++level;
+  }
+}
+
+}  // namespace scree

@@ -1,0 +1,36 @@
+// A mesh with all that contacts ask of it, made once from its triangles.
+#pragma once
+
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "mesh/mesh_view.hpp"
+#include "mesh/triangle_mesh.hpp"
+
+namespace scree {
+
+// Holds the arrays of a MeshView.
+struct SurfaceMesh {
+  std::vector<Vec3> vertices;  // those that triangles use, by first use [m]
+  std::vector<MeshTriangle> triangles;
+  std::vector<MeshPart> parts;
+  std::vector<MeshFeature> features;
+  std::vector<Index> tests, patches, first_neighbour, neighbours;
+  std::vector<MeshBox> boxes;
+  std::vector<Index> level_start;  // into boxes, and the end
+  std::vector<Index> original;     // number of each triangle in the mesh that it was made from
+  MeshBox box;                     // of all vertices [m]
+  bool sheet = false;
+  Real cosine = 1, round_off = 0, flatness = 0;
+
+  // Valid while this lives where it is.
+  MeshView view() const;
+};
+
+// mesh: sound, that is with welded vertices, consistent winding, without degenerate triangles, and closed
+// unless it is a sheet. feature_angle [rad]: edges that turn by less are smooth. The result depends on the
+// mesh alone, not on the machine's number of threads or the like.
+SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, Real feature_angle, bool sheet);
+
+}  // namespace scree
