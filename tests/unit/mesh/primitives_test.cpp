@@ -7,6 +7,7 @@
 
 #include "mesh/mesh_checks.hpp"
 #include "mesh/mesh_mass.hpp"
+#include "mesh/mesh_shells.hpp"
 #include "mesh/weld.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -132,7 +133,6 @@ TEST_CASE("primitives are closed") {
   check_sound(plate_mesh({{2, 1, 0.1}, 0.3, 24}));
   check_sound(pipe_mesh({0.8, 1, 3, 12}));
   check_sound(rectangle_mesh(2, 3), true);
-  check_sound(extruded_line_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, true, 0.3), true);
   for (const Index lifters : {0, 1, 2, 3, 8})
     for (const Real end_wall : {0., 0.1})  // closed, it has a cavity
       check_sound(drum_mesh({1, 0.05, 2, end_wall, lifters, 0.2, 0.1, 36}), false, end_wall > 0 ? 2 : 1);
@@ -186,6 +186,18 @@ TEST_CASE("a planar line is drawn out to a power of two") {
   const auto& [a, b, c] = mesh.triangles[0];
   const Vec3 normal = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
   CHECK((normal.x == 0 && normal.y < 0 && normal.z == 0));
+}
+
+TEST_CASE("a closed planar line bounds a solid") {
+  const std::vector<Vec3> l{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+  const TriangleMesh mesh = extruded_line_mesh(l, true, 1);
+  check_sound(mesh);
+  CHECK(mesh_volume(mesh) == 6);
+  CHECK(mesh.triangles.size() == 20);
+  const TriangleMesh clockwise = extruded_line_mesh({l.rbegin(), l.rend()}, true, 1);
+  CHECK(mesh_troubles(clockwise, false).at(0).starts_with("its volume is -6 m^3, below 0"));
+  CHECK_THROWS_WITH(extruded_line_mesh({l[0], l[2], l[1], l[5]}, true, 1),
+                    "the closed line is no outline: it crosses itself or has no area");
 }
 
 TEST_CASE("shapes that cannot be") {
