@@ -99,7 +99,7 @@ class Checker {
                                    text_of(mesh_.vertices[first->high]), last - first > 1 ? "s" : "",
                                    number(first->triangle));
     for (const Side* side = first + 1; side < last; ++side)
-      text += fmt::format(" {} {}", side + 1 == last ? "and" : ",", number(side->triangle));
+      text += fmt::format("{} {}", side + 1 == last ? " and" : ",", number(side->triangle));
     return text;
   }
 

@@ -3,6 +3,8 @@
 // Their middle is at the origin and their axis z unless said otherwise. Sizes [m].
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -65,6 +67,18 @@ struct ScrewShape {
   Index segments;
 };
 
+// What the numbers of a shape, all finite, must not be, or "".
+std::string shape_trouble(const BoxShape& shape);
+std::string shape_trouble(const CylinderShape& shape);
+std::string shape_trouble(const ConeShape& shape);
+std::string shape_trouble(const SphereShape& shape);
+std::string shape_trouble(const CapsuleShape& shape);
+std::string shape_trouble(const PlateShape& shape);
+std::string shape_trouble(const PipeShape& shape);
+std::string shape_trouble(const DrumShape& shape);
+std::string shape_trouble(const ScrewShape& shape);
+
+// Of shapes without trouble.
 TriangleMesh box_mesh(const BoxShape& shape);
 TriangleMesh cylinder_mesh(const CylinderShape& shape);
 TriangleMesh cone_mesh(const ConeShape& shape);
