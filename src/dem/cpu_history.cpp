@@ -13,13 +13,18 @@ std::int64_t CpuHistory::surface_key(const Listed& at, Vec3 p, Index entry, Inde
   const SurfaceRows& rows = at.list.surfaces;
   const Index s = rows.surfaces[entry];
   if (at.numbers.at_rest(s)) return row_key(surface_id(s));
-  return row_key(surface_id(s, feature),
-                 box_.image_beside(p, at.placed[at.numbers.placed(s)].point, rows.images[entry]));
+  const PlacedSurface& surface = at.places.placed[static_cast<std::size_t>(at.numbers.placed(s))];
+  const PeriodicBox box =
+      surface.kind == SurfaceKind::mesh
+          ? box_.without(at.places.frames[static_cast<std::size_t>(surface.frame)].spanned)
+          : box_;
+  return row_key(surface_id(s, feature), box.image_beside(p, surface.point, rows.images[entry]));
 }
 
 bool CpuHistory::is_mesh(const Listed& at, Index entry) const {
   const Index s = at.list.surfaces.surfaces[entry];
-  return !at.numbers.at_rest(s) && at.placed[at.numbers.placed(s)].kind == SurfaceKind::mesh;
+  return !at.numbers.at_rest(s) &&
+         at.places.placed[static_cast<std::size_t>(at.numbers.placed(s))].kind == SurfaceKind::mesh;
 }
 
 HistoryViews CpuHistory::views() {

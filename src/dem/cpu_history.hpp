@@ -32,7 +32,7 @@ class CpuHistory {
   struct Listed {
     const ParticleStore& store;
     const NeighborList& list;
-    std::span<const PlacedSurface> placed;
+    SurfacePlaces places;
     SurfaceNumbers numbers;
   };
   // Of the owned particles, in their order.

@@ -117,6 +117,8 @@ struct PeriodicBox {
     wrap(min, period, p, count);
     return count;
   }
+  // The same with images along the other axes alone.
+  SCREE_HD PeriodicBox without(Vec3 spanned) const { return {min, period - spanned}; }
   // Number of the image of what lies at q and `image` periods on, beside p.
   SCREE_HD std::int8_t image_beside(Vec3 p, Vec3 q, std::int8_t image = kNoShift) const {
     const ImageCount a = periods_at(p), b = periods_at(q);

@@ -111,7 +111,7 @@ struct MeshTouchItem {
     const SurfaceFrame& frame = in.frames[surface.frame];
     const MeshView& mesh = in.meshes.meshes[frame.mesh];
     const Vec4 p = in.position[i];
-    const Vec3 from_point = (xyz(p) - in.shift_of(group.entry)) - surface.point;
+    const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
     const Vec3 c = transposed_times(frame.axes, from_point);
     MeshContact found[kMeshSlots];
     const int count = min_of(
@@ -202,10 +202,11 @@ struct MeshStepTouchItem {
     const PlacedSurface &surface = in.placed[s], &surface0 = start_placed[s];
     const SurfaceFrame& frame = in.frames[surface.frame];
     const MeshView& mesh = in.meshes.meshes[frame.mesh];
-    const Vec4 p = in.position[i], p0 = start_position[i];
-    const Vec3 shift = in.shift_of(group.entry);
-    const Sight end{frame.axes, transposed_times(frame.axes, (xyz(p) - shift) - surface.point), p.w},
-        start{frame.before, transposed_times(frame.before, (xyz(p0) - shift) - surface0.point), p.w};
+    const Vec4 p = in.position[i];
+    const Vec3 place = place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry),
+               place0 = place - (xyz(p) - xyz(start_position[i]));
+    const Sight end{frame.axes, transposed_times(frame.axes, place - surface.point), p.w},
+        start{frame.before, transposed_times(frame.before, place0 - surface0.point), p.w};
     const Index* const triangles = in.meshes.triangles + group.first_triangle;
     MeshContact now[kMeshSlots];
     RememberedTouches old;

@@ -32,7 +32,7 @@ class EntryFinder {
 
   std::vector<Entry> find() {
     for (Index s = 0; s < search_.surfaces.placed(); ++s)
-      for_each_shift(search_.period, [&](Vec3 shift, std::int8_t image) {
+      for_each_shift(images_of(s), [&](Vec3 shift, std::int8_t image) {
         const Entry entry{0, search_.surfaces.number_of(s), image};
         switch (search_.places.placed[static_cast<std::size_t>(s)].kind) {
           case SurfaceKind::sphere:
@@ -47,6 +47,11 @@ class EntryFinder {
   }
 
  private:
+  // Along which it has images [m].
+  Vec3 images_of(Index s) const {
+    if (placed(s).kind == SurfaceKind::sphere) return search_.period;
+    return search_.period - search_.places.frames[static_cast<std::size_t>(placed(s).frame)].spanned;
+  }
   void add_near_sphere(Index s, Vec3 shift, Entry entry) {
     const PlacedSurface& surface = placed(s);
     const Real reach = surface.radius + sorted_.largest_radius + search_.skin;
@@ -132,7 +137,7 @@ const MeshView& triangles_near(const SurfacePlaces& places, Index s, Vec4 p, Vec
   const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
   const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
-  const Vec3 c = transposed_times(frame.axes, (xyz(p) - shift) - surface.point);
+  const Vec3 c = transposed_times(frame.axes, (place_beside(surface, frame, xyz(p)) - shift) - surface.point);
   for_each_triangle_near(mesh, c, p.w + skin, [&](Index t) { triangles.push_back(t); });
   return mesh;
 }

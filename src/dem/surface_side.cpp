@@ -27,7 +27,25 @@ SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const R
     if (surface.kind == SurfaceKind::sphere) continue;
     placed_[s].frame = static_cast<Index>(frames_.size());
     frames_.push_back({identity3(), identity3(), surface.normal, surface.mesh});
+    if (surface.kind == SurfaceKind::mesh) span(surface, frames_.back());
   }
+}
+
+// A mesh as long as the periodic space goes on for ever there.
+void SurfaceSide::span(const Surface& surface, SurfaceFrame& frame) const {
+  const MeshBox& box = boxes_[static_cast<std::size_t>(surface.mesh)];
+  const auto carrier = static_cast<std::size_t>(surface.carrier);
+  const Mat3 axes = carrier < model_.bodies.size()
+                        ? rotation_matrix(orientation(start_motion(model_.bodies[carrier])))
+                        : identity3();
+  const auto length = [](Vec3 row, Vec3 size) {
+    return std::abs(row.x) * size.x + std::abs(row.y) * size.y + std::abs(row.z) * size.z;
+  };
+  const Vec3 size = box.max - box.min, period = subdomain_.period();
+  frame.middle = Real(0.5) * (box.min + box.max);
+  frame.spanned = {length(axes.x, size) >= period.x ? period.x : 0,
+                   length(axes.y, size) >= period.y ? period.y : 0,
+                   length(axes.z, size) >= period.z ? period.z : 0};
 }
 
 void SurfaceSide::bring_into_box() {

@@ -99,6 +99,7 @@ class SurfaceSide {
   Real displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const;
   std::vector<Mat3> axes() const;  // of the frames
   void turn_frames();
+  void span(const Surface& surface, SurfaceFrame& frame) const;
   // Whether something asks how far the surfaces have come since a step began.
   bool keeps_travel() const { return model_.rotates() || !frames_.empty(); }
   template <class Sums>

@@ -94,6 +94,9 @@ struct SurfaceFrame {
   Mat3 before;  // the same where the explicit step began
   Vec3 normal;  // of a plane, in the carrier's frame
   Index mesh;   // index into the meshes
+  // Of a mesh: the periods along which it goes on past its ends, as the space does. There it has no images,
+  // and particles are where they are beside its middle.
+  Vec3 spanned{}, middle{};  // [m], the latter in the carrier's frame
 
   // How far the place at `from_point` from the surface's point has come since, beside that.
   SCREE_HD Vec3 travel_about(Vec3 from_point) const {
@@ -101,6 +104,14 @@ struct SurfaceFrame {
     return axes * local - before * local;
   }
 };
+
+// A particle's place beside the mesh [m].
+SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p) {
+  const Vec3 period = frame.spanned;
+  if (period == Vec3{}) return p;
+  ImageCount unused;
+  return wrap(surface.point + frame.axes * frame.middle - Real(0.5) * period, period, p, unused);
+}
 
 // All placed surfaces at one instant; on the host.
 struct SurfacePlaces {
