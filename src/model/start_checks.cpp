@@ -124,7 +124,7 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
   const TouchRule rule(model);
   const Box box = box_around(items);
   const SortedBins bins(PointCells(box.min, box.max, reach, items.size()), items);
-  for (const Vec3 shift : image_shifts(model.space)) {
+  for (const Vec3 shift : image_shifts(periods_of(model.space))) {
     for (const StartItem& item : bins.items()) {
       const Vec3 p = item.position + shift;
       if (!box.reaches(p, reach)) continue;
@@ -162,7 +162,7 @@ void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items,
     const std::int64_t number = mesh.wall < 0 ? of_bodies++ : names.first_wall() + mesh.wall;
     for (const StartItem& item : items)
       if (item.number < model.particles.totals.count)
-        worst.meet(meshes.overlap(mesh, item.position, item.radius) / item.radius, item.number, number);
+        worst.meet(mesh.overlap(item.position, item.radius) / item.radius, item.number, number);
   }
 }
 

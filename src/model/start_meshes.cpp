@@ -10,8 +10,10 @@
 
 namespace scree {
 
-Real StartMesh::overlap(Vec3 p, Real radius) const {
-  const Vec3 c = axes * (p - point);
+namespace {
+
+// c: the centre in the frame of the mesh.
+Real overlap_at(const MeshView& mesh, Vec3 c, Real radius) {
   const MeshBox& around = mesh.boxes[mesh.level_start[mesh.levels - 1]];
   if (!(squared_distance(around, c) < radius * radius)) return 0;
   Real nearest = radius * radius;
@@ -22,6 +24,32 @@ Real StartMesh::overlap(Vec3 p, Real radius) const {
   });
   const Real distance = std::min(std::sqrt(nearest), radius);
   return is_inside(mesh, c) ? radius + distance : radius - distance;
+}
+
+// What of `periods` a mesh with this box and these axes (rows) is as long as.
+Vec3 spanned_by(const MeshBox& box, const Mat3& axes, Vec3 periods) {
+  const Vec3 size = box.max - box.min;
+  const auto along = [&](Real x, Real y, Real z, Real period) {
+    return std::abs(x) * size.x + std::abs(y) * size.y + std::abs(z) * size.z >= period ? period : 0;
+  };
+  return {along(axes.x.x, axes.y.x, axes.z.x, periods.x), along(axes.x.y, axes.y.y, axes.z.y, periods.y),
+          along(axes.x.z, axes.y.z, axes.z.z, periods.z)};
+}
+
+// The image of x that is the nearest to `middle`.
+Real beside(Real middle, Real x, Real period) {
+  return period > 0 ? x - std::floor((x - middle) / period + Real(0.5)) * period : x;
+}
+
+}  // namespace
+
+Real StartMesh::overlap(Vec3 p, Real radius) const {
+  const Vec3 q{beside(middle.x, p.x, spanned.x), beside(middle.y, p.y, spanned.y),
+               beside(middle.z, p.z, spanned.z)};
+  Real largest = 0;
+  for (const Vec3 shift : shifts)
+    largest = std::max(largest, overlap_at(mesh, axes * (q + shift - point), radius));
+  return largest;
 }
 
 Vec3 in_periodic_box(const Space& space, Vec3 p) {
@@ -36,45 +64,48 @@ Vec3 in_periodic_box(const Space& space, Vec3 p) {
   return p;
 }
 
-std::vector<Vec3> image_shifts(const Space& space) {
+Vec3 periods_of(const Space& space) {
   const Vec3 extent = space.max - space.min;
-  const auto periods = [&](int side, Vec3 period) {
-    return space.boundary[side] == Boundary::periodic ? std::vector{-period, Vec3{}, period}
-                                                      : std::vector{Vec3{}};
+  const auto period = [&](int side, Real length) {
+    return space.boundary[side] == Boundary::periodic ? length : 0;
+  };
+  return {period(kXMin, extent.x), period(kYMin, extent.y), period(kZMin, extent.z)};
+}
+
+std::vector<Vec3> image_shifts(Vec3 periods) {
+  const auto along = [&](Vec3 period) {
+    return period == Vec3{} ? std::vector{period} : std::vector{-period, Vec3{}, period};
   };
   std::vector<Vec3> shifts;
-  for (const Vec3 x : periods(kXMin, {extent.x, 0, 0})) {
-    for (const Vec3 y : periods(kYMin, {0, extent.y, 0})) {
-      for (const Vec3 z : periods(kZMin, {0, 0, extent.z})) shifts.push_back(x + y + z);
-    }
-  }
+  for (const Vec3 x : along({periods.x, 0, 0}))
+    for (const Vec3 y : along({0, periods.y, 0}))
+      for (const Vec3 z : along({0, 0, periods.z})) shifts.push_back(x + y + z);
   return shifts;
 }
 
-StartMeshes::StartMeshes(const Model& model) : space_(model.space), shifts_(image_shifts(model.space)) {
-  const auto view = [&](int mesh) { return model.meshes[static_cast<std::size_t>(mesh)].surface->view(); };
+StartMeshes::StartMeshes(const Model& model) : space_(model.space) {
+  const Vec3 periods = periods_of(space_);
+  const auto add = [&](int number, int body, int wall, Vec3 point, const Mat3& axes) {
+    const SurfaceMesh& mesh = *model.meshes[static_cast<std::size_t>(number)].surface;
+    const Vec3 place = in_periodic_box(space_, point),
+               middle = transposed_times(axes, Real(0.5) * (mesh.box.min + mesh.box.max));
+    const Vec3 spanned = spanned_by(mesh.box, axes, periods);
+    meshes_.push_back(
+        {mesh.view(), body, wall, place, axes, place + middle, spanned, image_shifts(periods - spanned)});
+  };
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     for (const MeshShape& shape : model.bodies[static_cast<std::size_t>(b)].meshes)
-      meshes_.push_back({view(shape.mesh), b, -1,
-                         in_periodic_box(space_, to_global_point(model, b, shape.offset)),
-                         global_frame(model, b, {})});
+      add(shape.mesh, b, -1, to_global_point(model, b, shape.offset), global_frame(model, b, {}));
   for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
     const Wall& wall = model.walls[static_cast<std::size_t>(w)];
-    if (wall.mesh >= 0)
-      meshes_.push_back({view(wall.mesh), kGround, w, in_periodic_box(space_, wall.point), identity3()});
+    if (wall.mesh >= 0) add(wall.mesh, kGround, w, wall.point, identity3());
   }
 }
 
-Real StartMeshes::overlap(const StartMesh& mesh, Vec3 p, Real radius) const {
-  const Vec3 q = in_periodic_box(space_, p);
-  Real largest = 0;
-  for (const Vec3 shift : shifts_) largest = std::max(largest, mesh.overlap(q + shift, radius));
-  return largest;
-}
-
 bool StartMeshes::is_clear(Vec3 p, Real radius, Real gap) const {
+  const Vec3 q = in_periodic_box(space_, p);
   return std::ranges::all_of(meshes_,
-                             [&](const StartMesh& mesh) { return !(overlap(mesh, p, radius + gap) > 0); });
+                             [&](const StartMesh& mesh) { return !(mesh.overlap(q, radius + gap) > 0); });
 }
 
 }  // namespace scree

@@ -14,16 +14,22 @@ struct StartMesh {
   int body = kGround, wall = -1;  // what carries it: index into Model::bodies or Model::walls
   Vec3 point;                     // of its origin, in the periodic box [m]
   Mat3 axes;                      // rows: its axes in the global frame
+  // As in a run: along an axis on which it is as long as the periodic space it goes on for ever, and a sphere
+  // is where it lies beside its middle; along others it has images.
+  Vec3 middle, spanned;      // [m], the latter 0 along the other axes
+  std::vector<Vec3> shifts;  // of its images, itself included [m]
 
-  // Of a sphere at p, but for periodic images [m]; 0: none. Where the centre is inside, the radius and its
-  // depth, which is not looked for beyond a radius: at most the diameter.
+  // Of a sphere at p in the periodic box, with the images of either [m]; 0: none. Where the centre is inside,
+  // the radius and its depth, which is not looked for beyond a radius: at most the diameter.
   Real overlap(Vec3 p, Real radius) const;
 };
 
 // A point many periods outside the space at its place in the periodic box.
 Vec3 in_periodic_box(const Space& space, Vec3 p);
-// Displacements of the images across periodic sides, that of the thing itself included [m].
-std::vector<Vec3> image_shifts(const Space& space);
+// Periods of the space; 0 along axes without [m].
+Vec3 periods_of(const Space& space);
+// Displacements of the images, that of the thing itself included [m].
+std::vector<Vec3> image_shifts(Vec3 periods);
 
 // Lives no longer than the model that it is made of.
 class StartMeshes {
@@ -32,14 +38,11 @@ class StartMeshes {
 
   // Those of bodies in their order, then those of walls.
   const std::vector<StartMesh>& all() const { return meshes_; }
-  // Of a sphere, with the images that a run looks at, too.
-  Real overlap(const StartMesh& mesh, Vec3 p, Real radius) const;
-  // Whether it keeps `gap` from all.
+  // Whether a sphere keeps `gap` from all.
   bool is_clear(Vec3 p, Real radius, Real gap) const;
 
  private:
   const Space& space_;
-  std::vector<Vec3> shifts_;
   std::vector<StartMesh> meshes_;
 };
 

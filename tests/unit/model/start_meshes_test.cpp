@@ -1,6 +1,8 @@
 // Overlaps with meshes at the start, and random groups that keep clear of them.
 #include "model/start_meshes.hpp"
 
+#include <fmt/format.h>
+
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
@@ -97,9 +99,22 @@ TEST_CASE("overlaps with meshes of bodies that are turned, moved, and across per
   CHECK(model_error(moved, sides).empty());
   std::vector<std::string> across = sides;
   across.push_back("bodies.crate.position=[0.8, 0.5, 0.5]");
-  CHECK(contains(model_error(moved, across), "particle 0 and body \"crate\" overlap at t = 0 by 1"));
+  CHECK(
+      contains(model_error(moved, across), "particle 0 and body \"crate\" overlap at t = 0 by 0.656854 of"));
   across.back() = "bodies.crate.position=[-9.2, 0.5, 0.5]";
-  CHECK(contains(model_error(moved, across), "particle 0 and body \"crate\" overlap at t = 0 by 1"));
+  CHECK(
+      contains(model_error(moved, across), "particle 0 and body \"crate\" overlap at t = 0 by 0.656854 of"));
+}
+
+TEST_CASE("a mesh as long as the periodic space goes on past its sides") {
+  const std::vector<std::string> overrides{"space.x_min=periodic", "space.x_max=periodic",
+                                           "meshes.floor.size=[2, 1]", "meshes.floor.offset=[0.7, 0, -0.8]"};
+  for (const char* x : {"-0.99", "-0.3", "0.7", "0.99"}) {
+    const std::string message =
+        model_error(kSpace + kRock + at(fmt::format("[[{}, 0, -0.77]]", x)), overrides);
+    CHECK(contains(message, "particle 0 and wall \"floor\" overlap at t = 0 by 0.4 of"));
+    CHECK(model_error(kSpace + kRock + at(fmt::format("[[{}, 0, -0.75]]", x)), overrides).empty());
+  }
 }
 
 TEST_CASE("in 2D: closed lines and open ones, on planar bodies, too") {
