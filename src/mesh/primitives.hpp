@@ -3,6 +3,8 @@
 // Their middle is at the origin and their axis z unless said otherwise. Sizes [m].
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -65,6 +67,18 @@ struct ScrewShape {
   Index segments;
 };
 
+// What the numbers of a shape, all finite, must not be, or "".
+std::string shape_trouble(const BoxShape& shape);
+std::string shape_trouble(const CylinderShape& shape);
+std::string shape_trouble(const ConeShape& shape);
+std::string shape_trouble(const SphereShape& shape);
+std::string shape_trouble(const CapsuleShape& shape);
+std::string shape_trouble(const PlateShape& shape);
+std::string shape_trouble(const PipeShape& shape);
+std::string shape_trouble(const DrumShape& shape);
+std::string shape_trouble(const ScrewShape& shape);
+
+// Of shapes without trouble.
 TriangleMesh box_mesh(const BoxShape& shape);
 TriangleMesh cylinder_mesh(const CylinderShape& shape);
 TriangleMesh cone_mesh(const ConeShape& shape);
@@ -77,10 +91,11 @@ TriangleMesh screw_mesh(const ScrewShape& shape);
 
 // A sheet: the rectangle of this size about the origin in the plane z = 0, seen from +z.
 TriangleMesh rectangle_mesh(Real width, Real depth);
-// A sheet for planar models: segments between points (their z is left out) drawn along z, from -2^k to 2^k,
-// the least power of two that is at least half_depth, so that what is nearest to a point at z = 0 is at z = 0
-// exactly. Seen from the right of the way from point to point: outwards where a closed line runs
-// counterclockwise.
+// For planar models: segments between points (their z is left out) drawn along z, from -2^k to 2^k, the least
+// power of two that is at least half_depth, so that what is nearest to a point at z = 0 is at z = 0 exactly.
+// Seen from the right of the way from point to point. An open line is a sheet; a closed one, which runs
+// counterclockwise around its inside, has ends and is a closed mesh. Throws InputError for one that crosses
+// itself.
 TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Real half_depth);
 
 }  // namespace scree

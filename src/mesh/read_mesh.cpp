@@ -1,65 +1,57 @@
 #include "mesh/read_mesh.hpp"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <assimp/Importer.hpp>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "base/error.hpp"
+#include "mesh/mesh_formats.hpp"
+#include "mesh/words.hpp"
 
 namespace scree {
 
 namespace {
 
-std::string suffix_of(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (suffix == ".stl" || suffix == ".obj" || suffix == ".ply") return suffix.substr(1);
-  throw InputError(path + ": must end with .stl, .obj or .ply");
-}
+// No format has more vertices or triangles than bytes: with this many an Index counts them.
+constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 31;
 
 std::string contents(const std::string& path) {
-  if (std::filesystem::is_directory(path)) throw IoError(path + ": is a directory");
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::is_directory(status)) throw IoError(path + ": is a folder; must be a file");
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(fmt::format("{}: {}", path, std::strerror(errno)));
-  std::string bytes(std::istreambuf_iterator<char>(file), {});
-  if (file.bad()) throw IoError(path + ": cannot be read");
-  if (bytes.empty()) throw InputError(path + ": is empty");
+  if (!file) throw IoError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw IoError(fmt::format("{}: cannot be read: {}", path, error.message()));
+  if (size == 0) throw InputError(path + ": is empty");
+  if (size >= kMostBytes)
+    throw InputError(fmt::format("{}: {} bytes; must be less than {}", path, size, kMostBytes));
+  std::string bytes(size, '\0');
+  if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
+    throw IoError(path + ": cannot be read to its end");
   return bytes;
-}
-
-void append(const aiMesh& from, TriangleMesh& mesh) {
-  const Index first = static_cast<Index>(mesh.vertices.size());
-  for (unsigned i = 0; i < from.mNumVertices; ++i)
-    mesh.vertices.push_back({from.mVertices[i].x, from.mVertices[i].y, from.mVertices[i].z});
-  for (unsigned i = 0; i < from.mNumFaces; ++i) {
-    const aiFace& face = from.mFaces[i];
-    if (face.mNumIndices != 3) continue;
-    mesh.triangles.push_back({first + static_cast<Index>(face.mIndices[0]),
-                              first + static_cast<Index>(face.mIndices[1]),
-                              first + static_cast<Index>(face.mIndices[2])});
-  }
 }
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::string& path) {
-  const std::string suffix = suffix_of(path), bytes = contents(path);
-  Assimp::Importer importer;
-  const aiScene* scene =
-      importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, suffix.c_str());
-  if (scene == nullptr) throw InputError(fmt::format("{}: {}", path, importer.GetErrorString()));
-  TriangleMesh mesh;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(*scene->mMeshes[i], mesh);
+TriangleMesh parse_mesh(std::string_view bytes, const std::string& path) {
+  using Parse = TriangleMesh (*)(std::string_view, const std::string&);
+  const std::string suffix = lower(std::filesystem::path(path).extension().string());
+  const Parse parse = suffix == ".stl"   ? parse_stl
+                      : suffix == ".obj" ? parse_obj
+                      : suffix == ".ply" ? parse_ply
+                                         : nullptr;
+  if (parse == nullptr) throw InputError(path + ": must end with .stl, .obj or .ply");
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // some text begins with it
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+  TriangleMesh mesh = parse(bytes, path);
   if (mesh.triangles.empty()) throw InputError(path + ": has no triangles");
   return mesh;
 }
+
+TriangleMesh read_mesh(const std::string& path) { return parse_mesh(contents(path), path); }
 
 }  // namespace scree
