@@ -156,9 +156,9 @@ std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> wanted
   return found;
 }
 
-std::vector<ContactSum> CudaReports::body_contacts() {
+std::vector<ContactSum> CudaReports::carrier_contacts() {
   need_loads();
-  return bodies_.side().body_contacts();
+  return bodies_.side().carrier_contacts();
 }
 
 std::vector<ContactSum> CudaReports::wall_contacts(std::span<const int> walls) {

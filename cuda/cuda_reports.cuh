@@ -19,7 +19,7 @@ class CudaReports : public Reports {
   ParticleOutput output() override;
   ShapePack pack_shapes() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
-  std::vector<ContactSum> body_contacts() override;
+  std::vector<ContactSum> carrier_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
 
  private:

@@ -18,7 +18,9 @@ class BodyLink {
   // and below, every rank throws.
   explicit BodyLink(const Model& model, const Ranks& ranks = {});
 
-  bool has_bodies() const { return !motion_.empty(); }
+  bool has_bodies() const { return bodies_ > 0; }
+  // Whether there are surfaces that are placed: on bodies, or walls that are no planes at rest.
+  bool has_carriers() const { return !motion_.empty(); }
   Multibody* multibody() { return multibody_.get(); }  // null on ranks other than 0
   const Multibody* multibody() const { return multibody_.get(); }
   const Ranks& ranks() const { return ranks_; }
@@ -33,7 +35,7 @@ class BodyLink {
   void check_reactions();
   std::string trouble();  // on every rank
 
-  // Rank 0 -> all: motion at the current iterate of the open step, handed to the bodies' shapes on the list.
+  // Rank 0 -> all: motion at the current iterate of the open step, handed to the placed surfaces on the list.
   void broadcast_motion(RankList& list);
   // The same for an instant tau [s] after `state`, along rank 0's prediction.
   void broadcast_motion(RankList& list, const MultibodyState& state, Real tau);
@@ -46,15 +48,20 @@ class BodyLink {
   // halved.
   void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
                        int substeps);
+  // Of the bodies, then of the placed walls.
   const std::vector<BodyWrench>& end_wrench() const { return end_wrench_; }
+  std::vector<BodyWrench> wrench_of_bodies() const;
   const std::vector<BodyMotion>& motion() const { return motion_; }
 
  private:
   void broadcast(RankList& list);
+  void place(const std::vector<BodyMotion>& bodies);
 
   Ranks ranks_;
+  std::size_t bodies_;
   std::unique_ptr<Multibody> multibody_;
-  std::vector<BodyMotion> motion_;
+  std::vector<BodyMotion> motion_;     // of the bodies, then of the placed walls
+  std::vector<BodyMotion> of_bodies_;  // scratch
   ContactWrenches step_wrench_;
   std::vector<BodyWrench> end_wrench_;
 };

@@ -61,8 +61,8 @@ void CoupledStep::start(MultibodyState& bodies) {
   backend_.particles().initial_forces();
   // Only now are the contact wrenches at the start known.
   link_.reduce_end_wrench(backend_.particles());
-  link_.set_initial_state(bodies, link_.end_wrench());
-  bodies.wrench = link_.end_wrench();
+  link_.set_initial_state(bodies, link_.wrench_of_bodies());
+  bodies.wrench = link_.wrench_of_bodies();
 }
 
 void CoupledStep::resume(const MultibodyState& bodies) {
@@ -242,11 +242,11 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) 
     }
   }
   bool bodies_done = true;
+  if (link_.has_carriers()) {
+    const auto scope = timers_.time(Stage::reduce_wrench);
+    link_.reduce_wrench(step);
+  }
   if (link_.has_bodies()) {
-    {
-      const auto scope = timers_.time(Stage::reduce_wrench);
-      link_.reduce_wrench(step);
-    }
     {
       const auto scope = timers_.time(Stage::mbs_correct);
       last.bodies = link_.correct();
@@ -292,7 +292,7 @@ bool CoupledStep::explicit_step_with_bodies(ExplicitRun& run, MultibodyState& bo
                                             bool keep_open) {
   const int substeps = model_.integrator.substeps;
   std::vector<BodyWrench>& sum = wrench_sum_;
-  sum.assign(bodies.wrench.size(), BodyWrench{});
+  sum.assign(link_.end_wrench().size(), BodyWrench{});
   add_wrenches(sum, bodies.wrench, 0.5);
   bool open = true;
   for (int s = 1; s <= substeps; ++s) {

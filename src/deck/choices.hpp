@@ -105,12 +105,28 @@ inline constexpr auto kWords<BodyKind> = std::to_array<Word<BodyKind>>({{"planar
                                                                         {"spatial", BodyKind::spatial}});
 
 // Homogeneous solids that a body is made of; axes along z.
-enum class SolidKind { sphere, box, cylinder, capsule };
+enum class SolidKind { sphere, box, cylinder, capsule, mesh };
 template <>
 inline constexpr auto kWords<SolidKind> = std::to_array<Word<SolidKind>>({{"sphere", SolidKind::sphere},
                                                                           {"box", SolidKind::box},
                                                                           {"cylinder", SolidKind::cylinder},
-                                                                          {"capsule", SolidKind::capsule}});
+                                                                          {"capsule", SolidKind::capsule},
+                                                                          {"mesh", SolidKind::mesh}});
+
+enum class MeshKind { file, box, cylinder, cone, sphere, capsule, plate, pipe, drum, screw, rectangle, line };
+template <>
+inline constexpr auto kWords<MeshKind> = std::to_array<Word<MeshKind>>({{"file", MeshKind::file},
+                                                                        {"box", MeshKind::box},
+                                                                        {"cylinder", MeshKind::cylinder},
+                                                                        {"cone", MeshKind::cone},
+                                                                        {"sphere", MeshKind::sphere},
+                                                                        {"capsule", MeshKind::capsule},
+                                                                        {"plate", MeshKind::plate},
+                                                                        {"pipe", MeshKind::pipe},
+                                                                        {"drum", MeshKind::drum},
+                                                                        {"screw", MeshKind::screw},
+                                                                        {"rectangle", MeshKind::rectangle},
+                                                                        {"line", MeshKind::line}});
 
 enum class JointKind {
   revolute,           // the two points coincide, in space the axes are parallel too

@@ -129,6 +129,7 @@ const TableKeys& time_keys();
 const TableKeys& integrator_keys();
 const TableKeys& contact_keys();
 const TableKeys& material_keys();
+const TableKeys& mesh_keys();
 const TableKeys& wall_keys();
 const TableKeys& output_keys();
 const TableKeys& parallel_keys();

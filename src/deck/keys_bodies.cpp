@@ -49,6 +49,11 @@ TableKeys make_body_keys() {
        vector("offset", "m").otherwise("zero").about("Centre in the body's frame."),
        text("material").left_out("the only material").about("Material.")},
       ""};
+  static const TableKeys meshes{
+      "Meshes fixed to the body, which particles touch. They weigh nothing: see solids.",
+      {text("mesh").required().about("Name of one of the meshes; its frame is the body's."),
+       text("material").left_out("the only material").about("Material.")},
+      ""};
   static constexpr auto planar = {BodyKind::planar}, spatial = {BodyKind::spatial};
   TableKeys keys{
       "Rigid bodies, one or a row of equal ones.",
@@ -95,7 +100,7 @@ TableKeys make_body_keys() {
            .only_for(spatial)
            .left_out("body_angular_velocity is given, or zero")
            .about("The same along the global axes."),
-       tables("shapes", shapes), tables("solids", solid_keys())},
+       tables("shapes", shapes), tables("meshes", meshes), tables("solids", solid_keys())},
       "kind"};
   const auto add = [&](const char* before, std::vector<Key> added) {
     for (Key& key : added) key.only_for(spatial);

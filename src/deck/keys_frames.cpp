@@ -38,14 +38,16 @@ std::vector<Key> orientation_keys(const std::string& prefix, const std::string& 
 
 const TableKeys& solid_keys() {
   static constexpr auto round = {SolidKind::sphere, SolidKind::cylinder, SolidKind::capsule},
-                        long_ones = {SolidKind::cylinder, SolidKind::capsule}, boxes = {SolidKind::box};
+                        long_ones = {SolidKind::cylinder, SolidKind::capsule}, boxes = {SolidKind::box},
+                        meshes = {SolidKind::mesh};
   static const TableKeys keys = [] {
     TableKeys solid{
         "Homogeneous solids that the body is made of, in place of its mass, centre of mass and inertia. They "
         "touch nothing; where two overlap, both count.",
         {choice<SolidKind>("kind").required().about("Sphere. Box: along x, y and z of its own frame. "
                                                     "Cylinder, capsule: along z; a capsule ends in two "
-                                                    "half spheres."),
+                                                    "half spheres. Mesh: what a closed mesh encloses."),
+         text("mesh").only_for(meshes).required().about("Name of one of the meshes."),
          real("radius", "m").only_for(round).above(0).required().about("Radius."),
          real("length", "m")
              .only_for(long_ones)

@@ -33,6 +33,7 @@ const TableKeys& deck_keys() {
        table("output", output_keys()),
        table("parallel", parallel_keys()),
        tables("materials", material_keys()),
+       tables("meshes", mesh_keys()),
        tables("walls", wall_keys()),
        tables("bodies", body_keys()),
        tables("markers", marker_keys()),
@@ -319,10 +320,15 @@ const TableKeys& material_keys() {
 
 const TableKeys& wall_keys() {
   static const TableKeys keys{
-      "Plane walls inside the space, solid behind the plane.",
+      "Walls inside the space: planes, solid behind them, or meshes that stand still.",
       {name_key().required().about("Name for messages and output.history_contacts."),
-       vector("point", "m").required().about("Any point of the plane."),
-       vector("normal", "").required().about("Direction into the free side, of any length but 0."),
+       vector("point", "m").left_out("mesh is given").about("Any point of the plane."),
+       vector("normal", "")
+           .left_out("mesh is given")
+           .about("Direction into the free side, of any length but 0."),
+       text("mesh")
+           .left_out("point and normal are given")
+           .about("Name of one of the meshes, in place of a plane; its frame is the global one."),
        text("material").left_out("the only material").about("Material of the wall.")},
       ""};
   return keys;

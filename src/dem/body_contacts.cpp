@@ -17,11 +17,13 @@ SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
   Vec3 min = placed.empty() ? Vec3{} : placed[0].point, max = min;
   Real radius = 0;
   std::vector<StartItem> points;
-  for (const PlacedSurface& s : placed) {
+  for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
+    const PlacedSurface& s = placed[i];
+    if (s.kind != SurfaceKind::sphere) continue;
     min = {std::min(min.x, s.point.x), std::min(min.y, s.point.y), std::min(min.z, s.point.z)};
     max = {std::max(max.x, s.point.x), std::max(max.y, s.point.y), std::max(max.z, s.point.z)};
     radius = std::max(radius, s.radius);
-    points.push_back({s.point, s.radius, std::ssize(points)});
+    points.push_back({s.point, s.radius, i});
   }
   return SortedBins(PointCells(min, max, 2 * radius + skin, points.size()), points);
 }
@@ -48,15 +50,16 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
   if (!rule_.bodies_may_touch()) return partners;
   const SortedBins bins = bins_of(placed, skin);
   for_each_shift(subdomain_.period(), [&](Vec3 shift, std::int8_t image) {
-    for (Index i = 0; i < static_cast<Index>(placed.size()); ++i)
+    for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
+      if (placed[i].kind != SurfaceKind::sphere) continue;
       bins.for_near(placed[i].point - shift, [&](const StartItem& other) {
         const auto j = static_cast<Index>(other.number);
         const Vec3 d = placed[i].point - other.position - shift;
         const Real reach = placed[i].radius + other.radius + skin;
-        if (dot(d, d) < reach * reach &&
-            rule_.may_touch(surfaces_.on_body(i).carrier, surfaces_.on_body(j).carrier))
+        if (dot(d, d) < reach * reach && rule_.may_touch(surfaces_.at(i).carrier, surfaces_.at(j).carrier))
           partners[i].push_back({j, image});
       });
+    }
   });
   for (std::vector<Item>& row : partners) std::sort(row.begin(), row.end());
   return partners;
@@ -68,10 +71,12 @@ void BodyContacts::build(std::span<const PlacedSurface> placed, Real skin) {
   offsets_ = wall_offsets_ = {0};
   std::map<Item, Index> item_of;
   for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
+    const PlacedSurface& s = placed[i];
+    if (s.kind != SurfaceKind::sphere) continue;  // meshes meet particles alone
     const auto before = walls_.size();
     for (Index w = 0; w < static_cast<Index>(planes_.size()); ++w) {
-      const PlacedSurface& s = placed[i];
-      if (wall_pair(vec4(s.point, s.radius), planes_[w]).distance < s.radius + skin) walls_.push_back(w);
+      if (planes_[w].placed < 0 && wall_pair(vec4(s.point, s.radius), planes_[w]).distance < s.radius + skin)
+        walls_.push_back(w);
     }
     if (walls_.size() == before && partners[i].empty()) continue;
     item_of.emplace(Item{i, kNoShift}, static_cast<Index>(items_.size()));
@@ -87,7 +92,7 @@ void BodyContacts::build(std::span<const PlacedSurface> placed, Real skin) {
     }
     offsets_.push_back(countable(neighbors_.size(), "stage neighbors: more neighbours of bodies"));
   }
-  for (const Item& item : items_) material_.push_back(surfaces_.on_body(item.surface).material);
+  for (const Item& item : items_) material_.push_back(surfaces_.at(item.surface).material);
 }
 
 void BodyContacts::place(std::span<const PlacedSurface> placed, std::vector<Vec4>& position,
@@ -96,7 +101,7 @@ void BodyContacts::place(std::span<const PlacedSurface> placed, std::vector<Vec4
   for (const Item& item : items_) {
     const PlacedSurface& s = placed[item.surface];
     position.push_back(vec4(s.point + image_shift(item.image, subdomain_.period()), s.radius));
-    const Body& body = model_.bodies[static_cast<std::size_t>(surfaces_.on_body(item.surface).carrier)];
+    const Body& body = model_.bodies[static_cast<std::size_t>(surfaces_.at(item.surface).carrier)];
     velocity.push_back(vec4(s.velocity_at({}), body.mass));
     arm.push_back(s.arm);
   }
@@ -109,8 +114,7 @@ ContactViews<PackedRows> BodyContacts::views() const {
           {offsets_.data(), neighbors_.data()},
           wall_offsets_.data(),
           walls_.data(),
-          planes_.data(),
-          static_cast<Index>(planes_.size()),
+          {planes_.data(), static_cast<Index>(planes_.size())},
           nullptr,
           nullptr};
 }

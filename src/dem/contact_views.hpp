@@ -76,10 +76,9 @@ struct ContactViews {
   const int* material;
   Rows rows;
   const Index* surface_offsets;  // [particles + 1]
-  const Index* surfaces;         // the first `ground` are planes, on the ground; the others are on bodies
-  const WallPlane* planes;
-  Index ground;
-  const SurfaceLoad* loads;  // per entry of the surfaces: what those on bodies do at this instant,
+  const Index* surfaces;         // numbers
+  SurfaceNumbers numbers;
+  const SurfaceLoad* loads;  // per entry of the surfaces: what placed ones do at this instant,
   const SurfaceStep* steps;  // and over an implicit step
   HistoryViews history{};
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
@@ -89,9 +88,9 @@ struct ContactViews {
 // The same with other rows.
 template <class Rows, class From>
 SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& rows) {
-  return {in.position, in.velocity, in.material, rows,     in.surface_offsets,
-          in.surfaces, in.planes,   in.ground,   in.loads, in.steps,
-          in.history,  in.spin,     in.reach};
+  return {in.position,        in.velocity, in.material, rows,
+          in.surface_offsets, in.surfaces, in.numbers,  in.loads,
+          in.steps,           in.history,  in.spin,     in.reach};
 }
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {

@@ -10,7 +10,7 @@ namespace scree {
 
 // Visits what touches item i: visit(of(law, pair), j) with j the neighbour's item, or the surface's number.
 // `of` is pure: it may be called for neighbours that do not touch, and what it returns for them is dropped.
-// Contacts with surfaces on bodies were evaluated before, once for particle and body: of.stored(in, entry)
+// Contacts with placed surfaces were evaluated before, once for particle and body: of.stored(in, entry)
 // has what `of` would return, null where they do not touch.
 //
 // Where the law remembers something, an `of` that wants to see it is called as of(law, pair, history), and
@@ -65,11 +65,11 @@ struct ContactWalk {
   SCREE_HD void surfaces(const Self& self, const Of& of, const Visit& visit) const {
     for (Index entry = in.surface_offsets[self.i]; entry < in.surface_offsets[self.i + 1]; ++entry) {
       const Index surface = in.surfaces[entry];
-      if (surface >= in.ground) {
+      if (!in.numbers.at_rest(surface)) {
         if (const auto* stored = of.stored(in, entry)) visit(*stored, surface);
         continue;
       }
-      const WallPlane& plane = in.planes[surface];
+      const WallPlane& plane = in.numbers.planes[surface];
       auto pair = look.wall(in, self, plane);
       if constexpr (requires { look.at_entry(pair, entry); }) look.at_entry(pair, entry);
       if (!may_be_closed(pair)) continue;

@@ -9,22 +9,34 @@ std::int64_t CpuHistory::neighbor_key(const Listed& at, Vec3 p, Index slot) cons
   return row_key(id_of(at.store.row_key[j]), box_.image_beside(p, xyz(at.store.position[j])));
 }
 
-std::int64_t CpuHistory::surface_key(const Listed& at, Vec3 p, Index entry) const {
+std::int64_t CpuHistory::surface_key(const Listed& at, Vec3 p, Index entry, Index feature) const {
   const SurfaceRows& rows = at.list.surfaces;
   const Index s = rows.surfaces[entry];
-  if (s < at.ground) return row_key(kFirstSurfaceId + s);
-  return row_key(kFirstSurfaceId + s,
-                 box_.image_beside(p, at.placed[s - at.ground].point, rows.images[entry]));
+  if (at.numbers.at_rest(s)) return row_key(surface_id(s));
+  const PlacedSurface& surface = at.places.placed[static_cast<std::size_t>(at.numbers.placed(s))];
+  const PeriodicBox box =
+      surface.kind == SurfaceKind::mesh
+          ? box_.without(at.places.frames[static_cast<std::size_t>(surface.frame)].spanned)
+          : box_;
+  return row_key(surface_id(s, feature), box.image_beside(p, surface.point, rows.images[entry]));
+}
+
+bool CpuHistory::is_mesh(const Listed& at, Index entry) const {
+  const Index s = at.list.surfaces.surfaces[entry];
+  return !at.numbers.at_rest(s) &&
+         at.places.placed[static_cast<std::size_t>(at.numbers.placed(s))].kind == SurfaceKind::mesh;
 }
 
 HistoryViews CpuHistory::views() {
   if (!exists()) return {};
-  return {neighbors_.data(), ground_.data(), bodies_.data(), ahead_.data(), step_};
+  return {neighbors_.data(), ground_.data(),         bodies_.data(), ahead_.data(),
+          features_.data(),  features_ahead_.data(), step_};
 }
 
 HistoryViews CpuHistory::views_before() {
   if (!exists()) return {};
-  return {nullptr, nullptr, ahead_.data(), bodies_.data(), step_ - 1};
+  return {nullptr,          nullptr,  ahead_.data(), bodies_.data(), features_ahead_.data(),
+          features_.data(), step_ - 1};
 }
 
 KeptContacts CpuHistory::contacts(const Listed& at) const {
@@ -43,9 +55,11 @@ KeptContacts CpuHistory::contacts(const Listed& at) const {
     const Vec3 p = xyz(at.store.position[i]);
     for (Index k = at.list.offsets[i]; k < at.list.offsets[i + 1]; ++k)
       add_if_closed(neighbors_, k, [&] { return neighbor_key(at, p, k); });
+    const auto first = static_cast<std::size_t>(std::ssize(out.keys));
     for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
-      add_if_closed(surfaces.surfaces[entry] < at.ground ? ground_ : bodies_, entry,
-                    [&] { return surface_key(at, p, entry); });
+      add_if_closed(at.numbers.at_rest(surfaces.surfaces[entry]) ? ground_ : bodies_, entry,
+                    [&] { return surface_key(at, p, entry, is_mesh(at, entry) ? features_[entry] : 0); });
+    if (!surfaces.groups.empty()) out.order_from(first);
     out.end_row();
   }
   return out;
@@ -79,8 +93,26 @@ void CpuHistory::take_row(const Listed& at, Index i) {
   for (Index slot = at.list.offsets[i]; slot < at.list.offsets[i + 1]; ++slot)
     take(neighbors_, slot, [&] { return neighbor_key(at, p, slot); });
   for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
-    take(surfaces.surfaces[entry] < at.ground ? ground_ : bodies_, entry,
-         [&] { return surface_key(at, p, entry); });
+    if (!is_mesh(at, entry))
+      take(at.numbers.at_rest(surfaces.surfaces[entry]) ? ground_ : bodies_, entry,
+           [&] { return surface_key(at, p, entry, 0); });
+    else if (entry == surfaces.offsets[i] || !surfaces.alike(entry - 1, entry))
+      take_mesh(at, i, entry);
+}
+
+// What the particle remembers of a mesh goes to the entries of their group, the first of which is given.
+void CpuHistory::take_mesh(const Listed& at, Index i, Index entry) {
+  const SurfaceRows& surfaces = at.list.surfaces;
+  const std::int64_t wanted = surface_key(at, xyz(at.store.position[i]), entry, 0);
+  Index slot = entry;
+  for (std::int64_t k = kept_.offsets[static_cast<std::size_t>(i)];
+       k < kept_.offsets[static_cast<std::size_t>(i) + 1]; ++k) {
+    const std::int64_t key = kept_.keys[static_cast<std::size_t>(k)];
+    if (!is_surface(key) || without_feature(key) != wanted) continue;
+    if (slot == surfaces.offsets[i + 1] || !surfaces.alike(entry, slot)) return;
+    features_[slot] = feature_of(key);
+    put(bodies_, slot++, k);
+  }
 }
 
 void CpuHistory::take_slots(const Listed& at) {
@@ -88,6 +120,8 @@ void CpuHistory::take_slots(const Listed& at) {
   neighbors_.assign(first_record(std::ssize(at.list.neighbors)), {});
   for (std::vector<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->assign(first_record(std::ssize(at.list.surfaces.surfaces)), {});
+  for (std::vector<Index>* of_meshes : {&features_, &features_ahead_})
+    of_meshes->assign(at.list.surfaces.groups.empty() ? 0 : at.list.surfaces.surfaces.size(), 0);
   for (Index i = 0; i < at.store.owned; ++i) take_row(at, i);
   kept_ = no_contacts(numbers_, 0);
   at_slots_ = true;

@@ -18,11 +18,12 @@ class CpuHistory {
   CpuHistory(int numbers, const PeriodicBox& box) : numbers_(numbers), box_(box) {}
 
   bool exists() const { return numbers_ > 0; }
+  int records() const { return records_of(numbers_); }
   bool at_slots() const { return at_slots_; }
   // For walks on the list.
   HistoryViews views();
   // A walk has accepted a step.
-  void accepted() { step_ += 1, bodies_.swap(ahead_); }
+  void accepted() { step_ += 1, bodies_.swap(ahead_), features_.swap(features_ahead_); }
   // For another look at the contacts with bodies over the step that was accepted last: from before it, to be
   // held in place of what the step left.
   HistoryViews views_before();
@@ -31,8 +32,8 @@ class CpuHistory {
   struct Listed {
     const ParticleStore& store;
     const NeighborList& list;
-    std::span<const PlacedSurface> placed;  // the surfaces on bodies
-    Index ground;
+    SurfacePlaces places;
+    SurfaceNumbers numbers;
   };
   // Of the owned particles, in their order.
   KeptContacts contacts(const Listed& at) const;
@@ -50,8 +51,10 @@ class CpuHistory {
  private:
   // Of what stands at a slot, or at an entry of the surfaces, of a particle at p.
   std::int64_t neighbor_key(const Listed& at, Vec3 p, Index slot) const;
-  std::int64_t surface_key(const Listed& at, Vec3 p, Index entry) const;
+  std::int64_t surface_key(const Listed& at, Vec3 p, Index entry, Index feature) const;
+  bool is_mesh(const Listed& at, Index entry) const;
   void take_row(const Listed& at, Index i);
+  void take_mesh(const Listed& at, Index i, Index entry);
   std::size_t first_record(std::int64_t slot) const {
     return static_cast<std::size_t>(slot * records_of(numbers_));
   }
@@ -62,7 +65,8 @@ class CpuHistory {
   bool at_slots_ = false;
   KeptContacts kept_;                                      // of the owned particles, unless at the slots
   std::vector<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews
-  Real step_ = 2;                                          // there is one before the first
+  std::vector<Index> features_, features_ahead_;
+  Real step_ = 2;  // there is one before the first
 };
 
 }  // namespace scree

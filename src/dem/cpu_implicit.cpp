@@ -156,7 +156,9 @@ void CpuImplicitStep::shorten_correction() {
 void CpuImplicitStep::subtract_surface_steps() {
   if (items_.side.size() == 0) return;
   for_each(Serial{}, items_.layout.owned,
-           SurfaceShiftItem<PackedRows>{items_.views(), newton_weights(), items_.side.step().data(),
+           SurfaceShiftItem<PackedRows>{items_.views(),
+                                        newton_weights(),
+                                        {items_.side.step().data(), items_.side.step_turn().data()},
                                         arrays_.residual.data()});
 }
 

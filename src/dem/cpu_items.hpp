@@ -48,7 +48,7 @@ struct CpuItems {
     return pairs;
   }
   // For `history`, while there is a list.
-  CpuHistory::Listed listed() const { return {store, list, side.placed(), side.surfaces().ground()}; }
+  CpuHistory::Listed listed() const { return {store, list, side.places(), surfaces.numbers()}; }
   void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }
   bool any_outside() const;
   // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.

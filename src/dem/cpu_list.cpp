@@ -132,7 +132,7 @@ void CpuList::build(Real skin, StageTimers& timers) {
   }
   const auto scope = timers.time(Stage::neighbors);
   const ParticleStore& store = items_.store;
-  builder_.build(store, items_.layout, cells_, items_.side.placed(), skin, items_.list);
+  builder_.build(store, items_.layout, cells_, items_.side.places(), skin, items_.list);
   items_.pairs.is_current = false;
   items_.side.build_list(skin);
   items_.history.take_slots(items_.listed());

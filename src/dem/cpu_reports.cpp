@@ -80,9 +80,9 @@ std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> wanted)
   return found;
 }
 
-std::vector<ContactSum> CpuReports::body_contacts() {
+std::vector<ContactSum> CpuReports::carrier_contacts() {
   need_loads();
-  return items_.side.body_contacts();
+  return items_.side.carrier_contacts();
 }
 
 std::vector<ContactSum> CpuReports::wall_contacts(std::span<const int> walls) {

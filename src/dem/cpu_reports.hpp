@@ -18,7 +18,7 @@ class CpuReports : public Reports {
   ParticleOutput output() override { return std::move(output_); }
   ShapePack pack_shapes() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
-  std::vector<ContactSum> body_contacts() override;
+  std::vector<ContactSum> carrier_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
 
  private:

@@ -1,15 +1,18 @@
 #include "dem/cpu_surfaces.hpp"
 
+#include "base/for_each.hpp"
+
 namespace scree {
 namespace {
 
 // Per surface that something touches.
 template <class Sums, class Contact>
-std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRows& rows, Index ground) {
+std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRows& rows,
+                          const SurfaceNumbers& numbers) {
   std::vector<Sums> sums;
   for (const Index entry : rows.by_surface) {
     if (!contacts[entry].touches) continue;
-    const Index surface = rows.surfaces[entry] - ground;
+    const Index surface = numbers.placed(rows.surfaces[entry]);
     if (sums.empty() || sums.back().surface != surface) sums.emplace_back().surface = surface;
     sums.back().add_contact(contacts[entry]);
   }
@@ -24,46 +27,77 @@ CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, Surface
 
 SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceRows& rows,
                                       const SurfaceLook& look) const {
-  return {look.position,  look.velocity,         store.material.data(),
-          rows.entries(), side_.placed().data(), side_.surfaces().ground(),
-          period_,        look.history,          look.spin,
+  const SurfacePlaces places = side_.places();
+  return {look.position,
+          look.velocity,
+          store.material.data(),
+          rows.entries(),
+          places.placed.data(),
+          places.frames.data(),
+          numbers(),
+          {rows.groups.data(), rows.triangles.data(), places.meshes.data()},
+          touches_.data(),
+          touches_before_.data(),
+          period_,
+          look.history,
+          records_of(kernels_.history()),
+          look.spin,
           look.h};
 }
 
 void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows, const SurfaceLook& look) {
   if (side_.size() == 0) return;
   loads_.resize(rows.surfaces.size());
+  if (!rows.groups.empty()) {
+    touches_.resize(rows.surfaces.size());
+    for_each(Serial{}, static_cast<Index>(rows.groups.size()),
+             MeshTouchItem<SurfaceViews>{entry_views(store, rows, look), touches_.data()});
+  }
   kernels_.surface_loads(entry_views(store, rows, look), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());
-  side_.take_loads(sums_of<InstantSums>(loads_, rows, side_.surfaces().ground()));
+  side_.take_loads(sums_of<InstantSums>(loads_, rows, numbers()));
+}
+
+void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows,
+                                  const StepStart& start) {
+  for_each(Serial{}, static_cast<Index>(rows.groups.size()),
+           MeshStepTouchItem<SurfaceViews>{views, start.position, side_.start().data(), touches_.data(),
+                                           touches_before_.data()});
+}
+
+void CpuSurfaces::make_room(const SurfaceRows& rows) {
+  if (!rows.groups.empty())
+    touches_.resize(rows.surfaces.size()), touches_before_.resize(rows.surfaces.size());
 }
 
 void CpuSurfaces::find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start) {
   if (side_.size() == 0) return;
-  steps_.resize(rows.surfaces.size());
-  kernels_.surface_steps(
-      entry_views(store, rows, {store.position.data(), store.velocity.data(), nullptr, {}}),
-      static_cast<Index>(rows.by_surface.size()), start, side_.start().data(), steps_.data());
-  side_.take_steps(sums_of<StepSums>(steps_, rows, side_.surfaces().ground()), start.h);
+  steps_.resize(rows.surfaces.size()), make_room(rows);
+  const SurfaceViews views =
+      entry_views(store, rows, {store.position.data(), store.velocity.data(), nullptr, {}});
+  touch_over_step(views, rows, start);
+  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, side_.start().data(),
+                         steps_.data());
+  side_.take_steps(sums_of<StepSums>(steps_, rows, numbers()), start.h);
 }
 
 void CpuSurfaces::find_rubs(const ParticleStore& store, const SurfaceRows& rows, const RubbingStart& start,
                             const HistoryViews& history) {
   if (side_.size() == 0) return;
-  rubs_.resize(rows.surfaces.size());
-  kernels_.surface_rubs(
-      entry_views(store, rows,
-                  {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history}),
-      static_cast<Index>(rows.by_surface.size()), start, side_.start().data(), rubs_.data());
-  side_.take_steps(sums_of<StepSums>(rubs_, rows, side_.surfaces().ground()), start.step.h);
+  rubs_.resize(rows.surfaces.size()), make_room(rows);
+  const SurfaceViews views = entry_views(
+      store, rows, {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
+  touch_over_step(views, rows, start.step);
+  kernels_.surface_rubs(views, static_cast<Index>(rows.by_surface.size()), start, side_.start().data(),
+                        rubs_.data());
+  side_.take_steps(sums_of<StepSums>(rubs_, rows, numbers()), start.step.h);
 }
 
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,
                                             const std::vector<Vec4>& velocity, const PackedRows& neighbors,
                                             const SurfaceRows& rows) const {
-  return {position.data(),     velocity.data(),      store.material.data(), neighbors,
-          rows.offsets.data(), rows.surfaces.data(), planes_.data(),        side_.surfaces().ground(),
-          loads_.data(),       steps_.data()};
+  return {position.data(),      velocity.data(), store.material.data(), neighbors,    rows.offsets.data(),
+          rows.surfaces.data(), numbers(),       loads_.data(),         steps_.data()};
 }
 
 }  // namespace scree

@@ -14,6 +14,7 @@ class CpuSurfaces {
  public:
   CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
               const ContactKernels& kernels);
+  SurfaceNumbers numbers() const { return {planes_.data(), side_.surfaces().ground()}; }
 
   // The surfaces as they are placed, with the particles of the store as `look` has them: for the loads in
   // views(), and for the side's sums.
@@ -33,11 +34,16 @@ class CpuSurfaces {
  private:
   SurfaceViews entry_views(const ParticleStore& store, const SurfaceRows& rows,
                            const SurfaceLook& look) const;
+  void make_room(const SurfaceRows& rows);  // for the contacts with meshes
+  // These, at both ends of a step.
+  void touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start);
 
   SurfaceSide& side_;
   const ContactKernels& kernels_;
   std::vector<WallPlane> planes_;
   Vec3 period_;
+  std::vector<MeshTouch> touches_;  // per entry; empty without meshes
+  std::vector<MeshTouchBefore> touches_before_;
   std::vector<SurfaceLoad> loads_;  // per entry
   std::vector<SurfaceStep> steps_;
   std::vector<SurfaceRub> rubs_;

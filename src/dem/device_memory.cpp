@@ -86,7 +86,7 @@ Sizes sizes_of(const Model& model) {
   const bool periodic = subdomain.period() != Vec3{}, equal = equal_radii(model);
   const Index particles = count_on_rank(model.particles.size(), model.particles.totals);
   Sizes sizes{};
-  sizes.on_bodies = SurfaceSet(model).on_bodies() > 0;
+  sizes.on_bodies = SurfaceSet(model).placed() > 0;
   sizes.particles = static_cast<double>(particles);
   ParticleStore store;  // only where it is needed: it is as large as the model
   if (periodic || !equal) store.load(initial_records(model.particles, subdomain));

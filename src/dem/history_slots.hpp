@@ -7,6 +7,7 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "mesh/surface_numbers.hpp"
 #include "partition/halo_plan.hpp"
 #include "partition/subdomain.hpp"
 
@@ -42,11 +43,13 @@ SCREE_HD void fetch_ahead(const Vec4* record) {
 // Pointers are null where nobody remembers.
 struct HistoryViews {
   Vec4* neighbors = nullptr;  // [slots][records]
-  Vec4* ground = nullptr;     // [entries of the surfaces][records], of those on the ground
-  // Likewise of those on bodies, whose contacts are evaluated before the particles' walk: after the last
+  Vec4* ground = nullptr;     // [entries of the surfaces][records], of planes at rest
+  // Likewise of placed surfaces, whose contacts are evaluated before the particles' walk: after the last
   // step, and after the step that is evaluated, if it is accepted. The latter is null where they are only
   // looked at.
   Vec4 *bodies = nullptr, *ahead = nullptr;
+  // Of these the features of meshes, per entry.
+  Index *features = nullptr, *features_ahead = nullptr;
   Real step = 0;  // number of the last accepted step, above 0
 
   // For a look that leaves no trace.
@@ -67,6 +70,12 @@ struct HistoryViews {
     if (kRecords > 1 && closed) at[1] = records[slot * kRecords + 1];
     return Law::read_history([&](int k) { return closed ? number_of(at, k) : Real(0); });
   }
+  // The same of a contact that goes on from the one at the slot; -1: that has begun.
+  template <class Law>
+  SCREE_HD auto read_from(const Vec4* records, std::int64_t slot) const {
+    if (slot >= 0) return read<Law>(records, slot);
+    return Law::read_history([](int) { return Real(0); });
+  }
   template <class Law, class History>
   SCREE_HD void write(Vec4* records, std::int64_t slot, const History& history) const {
     constexpr int kRecords = records_of(Law::kHistory);
@@ -83,10 +92,21 @@ struct HistoryViews {
 };
 
 // What a contact of a particle is called while there is no list: like a row_key, surfaces counted past all
-// particles. The image is the one that the partner has beside the particle where both are in the periodic
-// box, so that no name depends on when that was last seen to.
+// particles, and of a mesh by the feature that it touches, too. The image is the one that the partner has
+// beside the particle where both are in the periodic box, so that no name depends on when that was last seen
+// to.
 inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48;
+SCREE_HD GlobalId surface_id(Index surface, Index feature = 0) {
+  return kFirstSurfaceId + surface + (GlobalId{feature} << kSurfaceBits);
+}
 SCREE_HD bool is_surface(std::int64_t contact_key) { return contact_key >= 27 * kFirstSurfaceId; }
+// Of a contact with a mesh.
+SCREE_HD Index feature_of(std::int64_t contact_key) {
+  return static_cast<Index>((contact_key / 27 - kFirstSurfaceId) >> kSurfaceBits);
+}
+SCREE_HD std::int64_t without_feature(std::int64_t contact_key) {
+  return contact_key - 27 * (GlobalId{feature_of(contact_key)} << kSurfaceBits);
+}
 
 // Sides of the periodic box.
 struct PeriodicBox {
@@ -97,6 +117,8 @@ struct PeriodicBox {
     wrap(min, period, p, count);
     return count;
   }
+  // The same with images along the other axes alone.
+  SCREE_HD PeriodicBox without(Vec3 spanned) const { return {min, period - spanned}; }
   // Number of the image of what lies at q and `image` periods on, beside p.
   SCREE_HD std::int8_t image_beside(Vec3 p, Vec3 q, std::int8_t image = kNoShift) const {
     const ImageCount a = periods_at(p), b = periods_at(q);

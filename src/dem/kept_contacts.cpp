@@ -1,5 +1,6 @@
 #include "dem/kept_contacts.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "dem/history_slots.hpp"
@@ -11,6 +12,17 @@ void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {
   for (std::int64_t k = from.offsets[row]; k < from.offsets[row + 1]; ++k)
     add(from.keys[static_cast<std::size_t>(k)], from.values_of(k));
   end_row();
+}
+
+void KeptContacts::order_from(std::size_t contact) {
+  const auto n = static_cast<std::size_t>(numbers);
+  for (std::size_t k = contact + 1; k < keys.size(); ++k)
+    for (std::size_t at = k; at > contact && keys[at - 1] > keys[at]; --at) {
+      std::swap(keys[at - 1], keys[at]);
+      std::swap_ranges(values.begin() + static_cast<std::ptrdiff_t>((at - 1) * n),
+                       values.begin() + static_cast<std::ptrdiff_t>(at * n),
+                       values.begin() + static_cast<std::ptrdiff_t>(at * n));
+    }
 }
 
 KeptContacts KeptContacts::rows(std::span<const Index> particles) const {

@@ -35,6 +35,8 @@ struct KeptContacts {
     keys.push_back(key), values.insert(values.end(), of_contact.begin(), of_contact.end());
   }
   void end_row() { offsets.push_back(std::ssize(keys)); }
+  // Orders the contacts of the open row from this one on.
+  void order_from(std::size_t contact);
   // Adds the row of a particle of another set.
   void add_row(const KeptContacts& from, std::int64_t particle);
   // The rows of these particles, in this order.

@@ -11,6 +11,7 @@ namespace scree {
 NeighborBuilder::NeighborBuilder(const Model& model)
     : model_(model),
       period_(Subdomain(model.space).period()),
+      surfaces_(model),
       planes_(wall_planes(model)),
       largest_radius_(model.particles.totals.largest_radius) {}
 
@@ -87,7 +88,7 @@ void NeighborBuilder::collect_row(const ParticleStore& store, Index i, NeighborL
 }
 
 void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
-                            std::span<const PlacedSurface> placed, Real skin, NeighborList& list) {
+                            const SurfacePlaces& places, Real skin, NeighborList& list) {
   list.skin = skin;
   list.neighbors.clear();
   list.offsets.assign(static_cast<std::size_t>(layout.owned) + 1, 0);
@@ -104,7 +105,7 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
   }
   const SortedParticles sorted{near_.grid,     near_.start,   near_.items,
                                store.position, layout.active, largest_radius_};
-  build_rows(sorted, layout.owned, planes_, placed, period_, past_touch(skin), list.surfaces);
+  build_rows(sorted, layout.owned, {surfaces_, planes_, places, period_, past_touch(skin)}, list.surfaces);
 }
 
 }  // namespace scree

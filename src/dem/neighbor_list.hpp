@@ -64,9 +64,9 @@ class NeighborBuilder {
   Real past_touch(Real skin) const { return skin + model_.contact.reach; }
   // Largest radius of a particle [m].
   Real largest_radius() const { return largest_radius_; }
-  // Fills the list from the positions of all items, and of the surfaces on bodies.
+  // Fills the list from the positions of all items, and of the placed surfaces.
   void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
-             std::span<const PlacedSurface> placed, Real skin, NeighborList& list);
+             const SurfacePlaces& places, Real skin, NeighborList& list);
 
  private:
   // Items in the order of their cells.
@@ -84,6 +84,7 @@ class NeighborBuilder {
 
   const Model& model_;
   Vec3 period_;  // of the space [m]
+  SurfaceSet surfaces_;
   std::vector<WallPlane> planes_;
   Real largest_radius_ = 0;
   SortedItems near_;

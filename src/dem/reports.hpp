@@ -83,9 +83,9 @@ class Reports {
   virtual ShapePack pack_shapes() = 0;  // complete on rank 0
   // Those of these particles that this rank owns, where they are now, in any order.
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) = 0;
-  // What touches each body, and each of these walls (indices into Model::walls), where all are now. Complete
-  // on rank 0.
-  virtual std::vector<ContactSum> body_contacts() = 0;
+  // What touches each carrier (bodies, then placed walls), and each of these planes at rest (indices into
+  // Model::walls), where all are now. Complete on rank 0.
+  virtual std::vector<ContactSum> carrier_contacts() = 0;
   virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
 
  protected:

@@ -208,8 +208,9 @@ struct SurfaceRub {
   bool touches;  // else nothing below has a meaning
   RubbingContact contact;
   RubbingBooks books;
-  Vec3 arm;     // from the body's centre to the surface's, at the end [m]
-  Real radius;  // of the surface [m]
+  Vec3 arm;          // from the body's centre to the surface's, or to where they touch, at the end [m]
+  Real radius;       // of the surface; 0 of all but spheres [m]
+  Vec3 contact_arm;  // from the surface's point to where they touch, at the end; of a sphere zero [m]
 };
 
 template <class Views>

@@ -95,8 +95,8 @@ struct RubbingSystemItem {
     Index surfaces = 0;
     walk.surfaces(self, contact_of(), [&](const RubbingContact& c, Index surface) {
       sums += RubbingSums::of(c), sharpen(c, i, total.sharpest);
-      const Index on_body = surface < walk.in.ground ? RubbingPath::kWall : surface - walk.in.ground;
-      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = entry_of(c, on_body);
+      const Index placed = walk.in.numbers.at_rest(surface) ? RubbingPath::kWall : static_cast<Index>(c.slot);
+      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = entry_of(c, placed);
     });
     const Real radius = walk.in.position[i].w;
     matrix.count[i] = total.entries, matrix.surface_count[i] = surfaces;

@@ -13,7 +13,7 @@ namespace scree {
 struct RubbingEntry {
   struct alignas(16) Normal {
     float x, y, z;
-    Index neighbor;  // j; of a surface on a body its number among these; RubbingPath::kWall of the ground
+    Index neighbor;  // j; of a placed surface its entry; RubbingPath::kWall of a plane at rest
   };
   struct alignas(16) Slide {
     float x, y, z;  // its direction, or zero

@@ -15,9 +15,10 @@ SCREE_HD Vec3 moved_by_unit(Vec3 place, int k) {
   return k < 3 ? axis : cross(axis, place);
 }
 
-// The force of friction acts at the surface's centre with a couple about it, as between two spheres. Its
-// part of the blocks is that of the Newton matrix of the particles (RubbingEntry): the slip is minus the
-// motion of the place of contact across the normal, one direction of which is left in a slide.
+// On a sphere the force of friction acts at its centre with a couple about that, as between two spheres, on
+// other surfaces where they touch. Its part of the blocks is that of the Newton matrix of the particles
+// (RubbingEntry): the slip is minus the motion of the place of contact across the normal, one direction of
+// which is left in a slide.
 SCREE_HD Real sum_term(const SurfaceRub& c, int k) {
   const StepContact& normal = c.contact.normal;
   const Vec3 n = normal.normal;
@@ -52,61 +53,67 @@ struct SurfaceRubItem {
     const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
     const PlacedSurface &surface = in.placed[in.surface_of(entry)],
                         &before = start_placed[in.surface_of(entry)];
-    const RubbingPath path = path_of(surface, before, entry, i);
     SurfaceRub& out = rubs[entry];
+    const SurfacePath way = surface_path(in, surface, before, entry, in.position[i], start.step.position[i]);
+    if (surface.kind == SurfaceKind::mesh && !(way.now.touches || way.start.touches)) {
+      out.touches = false;
+      return in.template remember_none<Law>(entry);
+    }
+    const RubbingPath path = path_of(way, surface, before, entry, i);
     out.touches = OverRubbingStep::closed(path);
-    if (!out.touches) return find_none(entry);
+    if (!out.touches) return in.template remember_none<Law>(entry);
     const Law& law = laws.get(in.material[i], surface.material);
     const bool resolve_events = start.step.resolve_events;
-    const ContactHistory old = in.history.template read<Law>(in.history.bodies, entry);
+    const ContactHistory old =
+        in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
     out.contact = rubbing_contact(law, path, old, resolve_events, [&](bool at_end) {
       return path.motion.arm_i * xyz((at_end ? in.spin : start.spin)[i]) +
              path.motion.arm_j * (at_end ? surface : before).spin;
     });
     out.books = rubbing_books(law, path, out.contact, resolve_events);
-    out.arm = surface.arm, out.radius = surface.radius;
-    if (!out.contact.lasts) return find_none(entry);
-    if (in.history.ahead != nullptr)
-      in.history.template write<Law>(in.history.ahead, entry, out.contact.history);
+    out.arm = way.now.is_sphere ? surface.arm : surface.arm + way.now.pair.contact;
+    out.radius = way.now.is_sphere ? surface.radius : 0;
+    out.contact_arm = way.now.is_sphere ? Vec3{} : way.now.pair.contact;
+    if (!out.contact.lasts) return in.template remember_none<Law>(entry);
+    in.template remember<Law>(surface, entry, out.contact.history);
   }
 
  private:
-  SCREE_HD RubbingPath path_of(const PlacedSurface& surface, const PlacedSurface& before, Index entry,
-                               Index i) const {
-    const Vec4 p = in.position[i], p0 = start.step.position[i], w = start.mean_spin[i];
-    const Vec3 shift = in.shift_of(entry);
-    const ContactGeometry end = surface_pair(surface, shift, p).geometry,
-                          begin = surface_pair(before, shift, p0).geometry;
-    const Vec3 travel = (xyz(p) - xyz(p0)) - (surface.point - before.point);
-    const Real h = start.step.h, reach = p.w + surface.radius;
-    const TurningPartner one{xyz(w), p.w, w.w}, other{reciprocal(h) * surface.turn, surface.radius};
+  SCREE_HD RubbingPath path_of(const SurfacePath& way, const PlacedSurface& surface,
+                               const PlacedSurface& before, Index entry, Index i) const {
+    const Vec4 p = in.position[i], w = start.mean_spin[i];
+    const ContactGeometry &end = way.now.pair.geometry, &begin = way.start.pair.geometry;
+    const bool is_sphere = way.now.is_sphere;
+    const Vec3 place = is_sphere ? Vec3{} : way.now.pair.contact,
+               place0 = is_sphere ? Vec3{} : way.start.pair.contact;
+    const Real h = start.step.h, arm = is_sphere ? surface.radius : 0;
+    const TurningPartner one{xyz(w), p.w, w.w}, other{reciprocal(h) * surface.turn, arm};
     RubbingPath out{};
-    out.velocity0 = xyz(start.step.velocity[i]) - before.velocity_at({});
-    out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at({});
+    out.velocity0 = xyz(start.step.velocity[i]) - before.velocity_at(place0);
+    out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(place);
     static_cast<ContactPath&>(out) = OverStep{start.step}.path(
-        end, out.velocity1, begin, out.velocity0, travel, {p.w, surface.radius, in.velocity[i].w, kInfinity});
-    out.motion = sphere_motion(end, travel, one, other, h);
-    out.leverage0 = out.motion.leverage * end.distance / (reach - out.step.overlap0);
+        end, out.velocity1, begin, out.velocity0, way.travel, surface_size(surface, p.w, in.velocity[i].w));
+    if (is_sphere)
+      out.motion = sphere_motion(end, way.travel, one, other, h);
+    else if (way.now.is_face)
+      out.motion = face_motion(end, out.normal0, way.travel, one, other, h);
+    else
+      out.motion = edge_motion(end, out.normal0, way.travel, one, other, h);
+    const Real reach = p.w + arm;
+    out.leverage0 = way.now.is_face ? 1 : out.motion.leverage * end.distance / (reach - out.step.overlap0);
     out.turning = h * (one.arm * one.spin + other.arm * other.spin);
     out.i = i, out.j = RubbingPath::kWall;
     OverRubbingStep{start}.at_entry(out, entry);
     return out;
   }
-  SCREE_HD void find_none(Index entry) const {
-    if (in.history.ahead != nullptr) in.history.template write_none<Law>(in.history.ahead, entry);
-  }
 };
 
-// By the bodies' last correction: of the centres of surfaces, and of the surfaces about them, the turn times
-// the radius [m].
-struct SurfaceMoves {
-  const Vec3 *move, *turn;
-};
-
-// As SurfaceShiftItem.
+// As SurfaceShiftItem. rubs, surfaces, numbers: of the entries.
 struct RubbingShiftItem {
   RubbingMatrix matrix;
-  const Index* surface_offsets;
+  const Index *surface_offsets, *surfaces;
+  SurfaceNumbers numbers;
+  const SurfaceRub* rubs;
   NewtonWeights weights;
   bool with_grip;
   SurfaceMoves moves;
@@ -115,10 +122,13 @@ struct RubbingShiftItem {
   SCREE_HD void operator()(Index i) const {
     const Real scale = 1 / weights.stiffness;
     for (Index k = 0; k < matrix.surface_count[i]; ++k) {
-      const RubbingEntry& entry = matrix.surface_entries[surface_offsets[i] + k];
-      if (entry.normal.neighbor == RubbingPath::kWall) continue;
-      residual[i] -= entry.pull(-scale * moves.move[entry.normal.neighbor],
-                                scale * moves.turn[entry.normal.neighbor], with_grip);
+      const RubbingEntry& of = matrix.surface_entries[surface_offsets[i] + k];
+      if (of.normal.neighbor == RubbingPath::kWall) continue;
+      const SurfaceRub& rub = rubs[of.normal.neighbor];
+      const Index surface = numbers.placed(surfaces[of.normal.neighbor]);
+      const Vec3 move = moves.move[surface], turn = moves.turn[surface];
+      residual[i] -= rub.radius > 0 ? of.pull(-scale * move, scale * turn, with_grip)
+                                    : of.pull(-scale * (move + cross(turn, rub.contact_arm)), {}, with_grip);
     }
   }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dem/contact_items.hpp"
+#include "dem/mesh_touches.hpp"
 #include "dem/surface_sums.hpp"
 #include "dem/surfaces.hpp"
 #include "dem/system_items.hpp"
@@ -17,21 +18,63 @@ struct SurfaceLook {
   Real h = 0;  // of the explicit step that ends there [s]; 0: an instant
 };
 
-// The particles, the surfaces on bodies and the list of those that are near each other.
+// The particles, the placed surfaces and the list of those that are near each other.
 struct SurfaceViews {
   const Vec4 *position, *velocity;  // x, y, z, radius; x, y, z, mass
   const int* material;
   SurfaceEntries entries;
-  const PlacedSurface* placed;  // counts from the first surface on a body
-  Index ground;
+  const PlacedSurface* placed;
+  const SurfaceFrame* frames;
+  SurfaceNumbers numbers;
+  MeshRows meshes;
+  const MeshTouch* touches;  // per entry with a mesh, as they are now
+  const MeshTouchBefore* before;
   Vec3 period;  // [m]
   HistoryViews history{};
+  int records = 0;             // per contact that is remembered
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
   Real h = 0;                  // SurfaceLook
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], period); }
-  SCREE_HD Index surface_of(Index entry) const { return entries.surfaces[entry] - ground; }
+  SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
+  SCREE_HD Index goes_on_from(const PlacedSurface& surface, Index entry) const {
+    return surface.kind == SurfaceKind::mesh ? touches[entry].from : entry;
+  }
+  // What the contact remembers if the step is accepted.
+  template <class Law, class History>
+  SCREE_HD void remember(const PlacedSurface& surface, Index entry, const History& of_contact) const {
+    if (history.ahead == nullptr) return;
+    history.template write<Law>(history.ahead, entry, of_contact);
+    if (surface.kind == SurfaceKind::mesh) history.features_ahead[entry] = touches[entry].feature;
+  }
+  template <class Law>
+  SCREE_HD void remember_none(Index entry) const {
+    if (Law::kHistory > 0 && history.ahead != nullptr) history.template write_none<Law>(history.ahead, entry);
+  }
 };
+
+// How a particle lies to a placed surface.
+struct SurfaceTouch {
+  SurfacePair pair;
+  bool is_sphere;  // contacts act at its centre; else at pair.contact
+  bool is_face;
+  bool touches;
+};
+
+SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface& surface, Index entry,
+                                    Vec4 p) {
+  if (surface.kind == SurfaceKind::mesh) {
+    const MeshTouch& touch = in.touches[entry];
+    return {{touch.geometry, touch.contact}, false, touch.is_face, touch.touches};
+  }
+  const SurfacePair pair = surface_pair(surface, in.shift_of(entry), p);
+  const bool is_sphere = surface.kind == SurfaceKind::sphere;
+  return {pair, is_sphere, !is_sphere, pair.geometry.overlap > 0};
+}
+// Walls, edges and corners have no curvature that Hertz's law knows.
+SCREE_HD PairSize surface_size(const PlacedSurface& surface, Real radius, Real mass) {
+  return {radius, surface.kind == SurfaceKind::sphere ? surface.radius : kInfinity, mass, kInfinity};
+}
 
 // Contacts at one instant or, of laws that move, over the explicit step that ends there; for the k-th of the
 // entries by_surface.
@@ -48,80 +91,105 @@ struct SurfaceLoadItem {
     const PlacedSurface& surface = in.placed[in.surface_of(entry)];
     const Vec4 p = in.position[i], u = in.velocity[i];
     SurfaceLoad& out = loads[entry];
-    const SurfacePair pair = surface_pair(surface, in.shift_of(entry), p);
-    out.touches = pair.geometry.overlap > 0;
-    if (!out.touches) return find_none(entry);
-    const PairState state{
-        pair.geometry, xyz(u) - surface.velocity_at(pair.contact), {p.w, surface.radius, u.w, kInfinity}};
+    const SurfaceTouch touch = surface_touch(in, surface, entry, p);
+    out.touches = touch.touches;
+    if (!out.touches) return in.template remember_none<Law>(entry);
+    const PairState state{touch.pair.geometry, xyz(u) - surface.velocity_at(touch.pair.contact),
+                          surface_size(surface, p.w, u.w)};
     const Law& law = laws.get(in.material[i], surface.material);
     if constexpr (Law::kMoves)
-      find_moving(law, state, surface, entry);
+      find_moving(law, state, touch, surface, entry);
     else
-      find_load(law, state, entry);
-    out.arm = Law::kMoves ? surface.arm : surface.arm + pair.contact;
+      find_load(law, state, surface, entry);
+    out.arm = Law::kMoves && touch.is_sphere ? surface.arm : surface.arm + touch.pair.contact;
     out.particle_arm = contact_arm(state);
   }
 
  private:
-  SCREE_HD void find_load(const Law& law, const PairState& state, Index entry) const {
+  SCREE_HD void find_load(const Law& law, const PairState& state, const PlacedSurface& surface,
+                          Index entry) const {
     SurfaceLoad& out = loads[entry];
     if constexpr (Law::kHistory == 0) {
       out.load = law.load(state);
     } else {
-      const auto load = LoadOf{}(law, state, in.history.template read<Law>(in.history.bodies, entry));
+      const auto load = LoadOf{}(law, state, old(surface, entry));
       out.load = load;
-      remember(load.history, entry);
+      in.template remember<Law>(surface, entry, load.history);
     }
     out.energy = EnergyOf{}(law, state);
   }
+  SCREE_HD auto old(const PlacedSurface& surface, Index entry) const {
+    return in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
+  }
 
-  // As between two spheres that move, of which the surface is one: its force acts at its centre, with a
-  // couple about that.
-  SCREE_HD void find_moving(const Law& law, const PairState& state, const PlacedSurface& surface,
-                            Index entry) const {
-    const ContactHistory old = in.history.template read<Law>(in.history.bodies, entry);
+  SCREE_HD void find_moving(const Law& law, const PairState& state, const SurfaceTouch& touch,
+                            const PlacedSurface& surface, Index entry) const {
+    const ContactHistory before = old(surface, entry);
+    const MovingPair pair = moving_pair(state, touch, surface, entry);
     if (in.h > 0) {
-      const MovingPair pair = over_step(state, surface, in.entries.particles[entry]);
-      const ContactOutcome outcome = law.load(pair, old);
+      const ContactOutcome outcome = law.load(pair, before);
       take(law, pair, outcome, outcome.history, entry);
-      remember(outcome.history, entry);
+      in.template remember<Law>(surface, entry, outcome.history);
     } else {
-      const InstantPair pair = at_rest(state, surface, in.entries.particles[entry]);
-      take(law, pair, law.load(pair, old), old, entry);
+      const InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
+      take(law, at, law.load(at, before), before, entry);
     }
   }
-  SCREE_HD MovingPair over_step(PairState state, const PlacedSurface& surface, Index i) const {
-    const Vec3 travel = in.h * xyz(in.velocity[i]) - surface.travel;
-    state.velocity = reciprocal(in.h) * travel;
-    return {state, sphere_motion(state.geometry, travel, particle(i),
-                                 {reciprocal(in.h) * surface.turn, surface.radius}, in.h)};
-  }
-  SCREE_HD InstantPair at_rest(PairState state, const PlacedSurface& surface, Index i) const {
-    state.velocity = xyz(in.velocity[i]) - surface.velocity_at({});
-    return at_instant(
-        {state, sphere_motion(state.geometry, {}, particle(i), {surface.spin, surface.radius}, 0)},
-        xyz(in.spin[i]), surface.spin);
-  }
-  SCREE_HD TurningPartner particle(Index i) const {
-    return {xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
+  // A sphere of a body moves as another particle does: its force acts at its centre, with a couple about
+  // that. A face acts at the particle's radius below its centre, so that the two turn together without slip;
+  // an edge or a corner where it is.
+  SCREE_HD MovingPair moving_pair(PairState state, const SurfaceTouch& touch, const PlacedSurface& surface,
+                                  Index entry) const {
+    const Index i = in.entries.particles[entry];
+    const TurningPartner one{xyz(in.spin[i]), in.position[i].w, in.spin[i].w};
+    const bool at_rest = !(in.h > 0);
+    const Vec3 turning = at_rest ? surface.spin : reciprocal(in.h) * surface.turn;
+    if (touch.is_sphere) {
+      const Vec3 travel = at_rest ? Vec3{} : in.h * xyz(in.velocity[i]) - surface.travel;
+      state.velocity = at_rest ? xyz(in.velocity[i]) - surface.velocity_at({}) : reciprocal(in.h) * travel;
+      return {state, sphere_motion(state.geometry, travel, one, {turning, surface.radius}, in.h)};
+    }
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const Vec3 place = touch.pair.contact;
+    if (!at_rest)
+      state.velocity = xyz(in.velocity[i]) - reciprocal(in.h) * (surface.travel + frame.travel_about(place));
+    const Vec3 normal0 = surface.kind == SurfaceKind::mesh ? in.touches[entry].normal0
+                         : at_rest                         ? surface.normal
+                                                           : frame.before * frame.normal;
+    const Vec3 travel = in.h * state.velocity;
+    if (touch.is_face) return {state, face_motion(state.geometry, normal0, travel, one, {turning}, in.h)};
+    return {state, edge_motion(state.geometry, normal0, travel, one, {turning}, in.h)};
   }
   SCREE_HD void take(const Law& law, const PairState& state, const ContactOutcome& outcome,
                      const ContactHistory& history, Index entry) const {
     loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();
     loads[entry].energy = EnergyOf{}(law, state, history);
   }
-
-  template <class History>
-  SCREE_HD void remember(const History& history, Index entry) const {
-    if (in.history.ahead != nullptr) in.history.template write<Law>(in.history.ahead, entry, history);
-  }
-  SCREE_HD void find_none(Index entry) const {
-    if constexpr (Law::kHistory > 0)
-      if (in.history.ahead != nullptr) in.history.template write_none<Law>(in.history.ahead, entry);
-  }
 };
 
-// Contacts over an implicit step.
+// How a particle lies to a placed surface at both ends of an implicit step.
+struct SurfacePath {
+  SurfaceTouch now, start;
+  Vec3 travel;  // of the particle's centre relative to the surface where they touch now [m]
+};
+
+SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& surface,
+                                  const PlacedSurface& before, Index entry, Vec4 p, Vec4 p0) {
+  SurfacePath out{surface_touch(in, surface, entry, p), {}, {}};
+  if (surface.kind == SurfaceKind::mesh) {
+    out.start = out.now;
+    if (!out.now.touches) return out;  // at neither end
+    const MeshTouchBefore& at = in.before[entry];
+    out.start.pair = {at.geometry, at.contact};
+    out.start.touches = at.geometry.overlap > 0, out.now.touches = out.now.pair.geometry.overlap > 0;
+  } else {
+    out.start = surface_touch(in, before, entry, p0);
+  }
+  out.travel = (xyz(p) - xyz(p0)) - (surface.point - before.point);
+  if (!out.now.is_sphere) out.travel -= in.frames[surface.frame].travel_about(out.now.pair.contact);
+  return out;
+}
+
 template <class Laws>
 struct SurfaceStepItem {
   SurfaceViews in;
@@ -134,23 +202,29 @@ struct SurfaceStepItem {
     const Index entry = in.entries.by_surface[k], i = in.entries.particles[entry];
     const PlacedSurface &surface = in.placed[in.surface_of(entry)],
                         &before = start_placed[in.surface_of(entry)];
-    const Vec4 p = in.position[i], p0 = start.position[i], u = in.velocity[i];
-    const Vec3 shift = in.shift_of(entry);
-    const SurfacePair pair = surface_pair(surface, shift, p), pair0 = surface_pair(before, shift, p0);
+    const Vec4 p = in.position[i], u = in.velocity[i];
+    const SurfacePath path = surface_path(in, surface, before, entry, p, start.position[i]);
+    const SurfacePair &pair = path.now.pair, &pair0 = path.start.pair;
     SurfaceStep& out = steps[entry];
-    out.touches = pair.geometry.overlap > 0 || pair0.geometry.overlap > 0;
+    out.touches = path.now.touches || path.start.touches;
     if (!out.touches) return;
-    const Vec3 travel = (xyz(p) - xyz(p0)) - (surface.point - before.point);
-    const ContactPath path =
+    const ContactPath over =
         OverStep{start}.path(pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
-                             xyz(start.velocity[i]) - before.velocity_at(pair0.contact), travel,
-                             {p.w, surface.radius, u.w, kInfinity});
+                             xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.travel,
+                             surface_size(surface, p.w, u.w));
     const auto& law = laws.get(in.material[i], surface.material);
     const StepContactOf of{start.resolve_events};
-    out.contact = of(law, path);
-    out.books = StepBooksOf{of}(law, path);
+    out.contact = of(law, over);
+    out.books = StepBooksOf{of}(law, over);
     out.arm = surface.arm + pair.contact;
+    out.contact_arm = pair.contact, out.is_sphere = path.now.is_sphere;
   }
+};
+
+// How the placed surfaces have moved by the bodies' last correction: their points [m], and about these, of
+// spheres times the radius [m], of others [rad].
+struct SurfaceMoves {
+  const Vec3 *move, *turn;
 };
 
 // The bodies have taken their correction: as a known part of the solution it moves to the right-hand side of
@@ -159,15 +233,18 @@ template <class Rows>
 struct SurfaceShiftItem {
   ContactViews<Rows> in;
   NewtonWeights weights;
-  const Vec3* displacement;  // of the surfaces on bodies by the correction [m]
-  Vec3* residual;            // [N]
+  SurfaceMoves moves;
+  Vec3* residual;  // [N]
 
   SCREE_HD void operator()(Index i) const {
     for (Index entry = in.surface_offsets[i]; entry < in.surface_offsets[i + 1]; ++entry) {
-      if (in.surfaces[entry] < in.ground || !in.steps[entry].touches) continue;
-      const StepContact& c = in.steps[entry].contact;
-      const Real along = dot(c.normal, displacement[in.surfaces[entry] - in.ground]) / weights.stiffness;
-      residual[i] += (weights.of(c.step) * along) * c.normal;
+      if (in.numbers.at_rest(in.surfaces[entry]) || !in.steps[entry].touches) continue;
+      const Index surface = in.numbers.placed(in.surfaces[entry]);
+      const SurfaceStep& step = in.steps[entry];
+      const StepContact& c = step.contact;
+      Vec3 moved = moves.move[surface];
+      if (!step.is_sphere) moved += cross(moves.turn[surface], step.contact_arm);
+      residual[i] += (weights.of(c.step) * (dot(c.normal, moved) / weights.stiffness)) * c.normal;
     }
   }
 };

@@ -7,23 +7,28 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "dem/contact_walk.hpp"
+#include "dem/mesh_touches.hpp"
 #include "dem/surfaces.hpp"
 #include "partition/cell_grid.hpp"
 
 namespace scree {
 
-// Row i has every surface that can touch particle i before the list expires: those of the ground first, then
-// those on bodies by surface and image.
+// Row i has every surface that can touch particle i before the list expires, by number and image; a mesh as
+// often as the particle may have contacts with it.
 struct SurfaceRows {
   std::vector<Index> offsets;       // [particles + 1]
   std::vector<Index> surfaces;      // [entries]
   std::vector<std::int8_t> images;  // [entries]
   std::vector<Index> particles;     // [entries]
-  std::vector<Index> by_surface;    // [entries with surfaces on bodies], surface by surface
+  std::vector<Index> by_surface;    // [entries with placed surfaces], surface by surface
+  std::vector<MeshGroup> groups;
+  std::vector<Index> triangles;  // of the groups
 
   SurfaceEntries entries() const {
     return {surfaces.data(), images.data(), particles.data(), by_surface.data()};
   }
+  // Whether two entries of a row are of the same group.
+  bool alike(Index a, Index b) const { return surfaces[a] == surfaces[b] && images[a] == images[b]; }
 };
 
 // Particles in the order of their cells.
@@ -46,8 +51,21 @@ SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real reach) {
           grid.nearest_place(p + Vec3{reach, reach, reach})};
 }
 
+// What a row may hold.
+struct SurfaceSearch {
+  const SurfaceSet& surfaces;
+  std::span<const WallPlane> planes;
+  SurfacePlaces places;
+  Vec3 period;  // [m]
+  Real skin;    // how far past touch surfaces are looked for [m]
+};
+
+// Adds the triangles of the mesh of the placed surface s, moved by the shift, that come within skin of the
+// particle at p (x, y, z, radius). Returns the mesh.
+const MeshView& triangles_near(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin,
+                               std::vector<Index>& triangles);
+
 // owned: particles that have a row, of which the first `active` are in the search.
-void build_rows(const SortedParticles& sorted, Index owned, std::span<const WallPlane> planes,
-                std::span<const PlacedSurface> placed, Vec3 period, Real skin, SurfaceRows& rows);
+void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch& search, SurfaceRows& rows);
 
 }  // namespace scree

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/mat3.hpp"
+
 namespace scree {
 
 SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const Ranks& ranks)
@@ -11,17 +13,44 @@ SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const R
       ranks_(ranks),
       surfaces_(model),
       bodies_(model, surfaces_, subdomain),
-      motion_(model.bodies.size()),
+      motion_(surfaces_.carriers()),
       step_start_(motion_),
       start_before_(motion_),
       image_(static_cast<std::size_t>(size())),
       placed_(static_cast<std::size_t>(size())),
       step_(static_cast<std::size_t>(size())),
-      step_turn_(step_) {}
+      step_turn_(step_) {
+  for (const ModelMesh& mesh : model.meshes)
+    meshes_.push_back(mesh.surface->view()), boxes_.push_back(mesh.surface->box);
+  for (Index s = 0; s < size(); ++s) {
+    const Surface& surface = surfaces_.at(s);
+    if (surface.kind == SurfaceKind::sphere) continue;
+    placed_[s].frame = static_cast<Index>(frames_.size());
+    frames_.push_back({identity3(), identity3(), surface.normal, surface.mesh});
+    if (surface.kind == SurfaceKind::mesh) span(surface, frames_.back());
+  }
+}
+
+// A mesh as long as the periodic space goes on for ever there.
+void SurfaceSide::span(const Surface& surface, SurfaceFrame& frame) const {
+  const MeshBox& box = boxes_[static_cast<std::size_t>(surface.mesh)];
+  const auto carrier = static_cast<std::size_t>(surface.carrier);
+  const Mat3 axes = carrier < model_.bodies.size()
+                        ? rotation_matrix(orientation(start_motion(model_.bodies[carrier])))
+                        : identity3();
+  const auto length = [](Vec3 row, Vec3 size) {
+    return std::abs(row.x) * size.x + std::abs(row.y) * size.y + std::abs(row.z) * size.z;
+  };
+  const Vec3 size = box.max - box.min, period = subdomain_.period();
+  frame.middle = Real(0.5) * (box.min + box.max);
+  frame.spanned = {length(axes.x, size) >= period.x ? period.x : 0,
+                   length(axes.y, size) >= period.y ? period.y : 0,
+                   length(axes.z, size) >= period.z ? period.z : 0};
+}
 
 void SurfaceSide::bring_into_box() {
   for (Index s = 0; s < size(); ++s) {
-    const Surface& surface = surfaces_.on_body(s);
+    const Surface& surface = surfaces_.at(s);
     const Vec3 p = point_motion(motion_[surface.carrier], surface.point).position;
     image_[s] = {};
     subdomain_.wrap(snap(p, subdomain_.snap_constant()), image_[s]);
@@ -29,59 +58,110 @@ void SurfaceSide::bring_into_box() {
 }
 
 void SurfaceSide::build_list(Real skin) {
-  listed_ = placed_;
+  listed_ = placed_, listed_axes_ = axes();
   if (ranks_.is_root()) bodies_.build(placed_, skin);
 }
 
-Real SurfaceSide::place() {
-  Real squared = 0;
+void SurfaceSide::keep_start() {
+  start_ = placed_, start_axes_ = axes();
+  close_step();
+}
+
+std::vector<Mat3> SurfaceSide::axes() const {
+  std::vector<Mat3> axes;
+  for (const SurfaceFrame& frame : frames_) axes.push_back(frame.axes);
+  return axes;
+}
+
+void SurfaceSide::turn_frames() {
   for (Index s = 0; s < size(); ++s) {
-    const Surface& surface = surfaces_.on_body(s);
+    if (placed_[s].kind == SurfaceKind::sphere) continue;
+    SurfaceFrame& frame = frames_[static_cast<std::size_t>(placed_[s].frame)];
+    const int carrier = surfaces_.at(s).carrier;
+    frame.axes = rotation_matrix(orientation(motion_[carrier]));
+    frame.before = rotation_matrix(orientation(step_start_[carrier]));
+    placed_[s].normal = frame.axes * frame.normal;
+  }
+}
+
+Real SurfaceSide::place() {
+  Real largest = 0;
+  const std::vector<Mat3> before = axes();
+  for (Index s = 0; s < size(); ++s) {
+    const Surface& surface = surfaces_.at(s);
     const BodyMotion& body = motion_[surface.carrier];
     const Vec3 arm = body_arm(body, surface.point);
     const ImageCount image = image_[s];
     const Vec3 with_body = snap(body.position + arm, subdomain_.snap_constant());
     const Vec3 point = moved_by_periods(with_body, {-image.x, -image.y, -image.z}, subdomain_.period());
-    step_[s] = point - placed_[s].point;
-    squared = std::max(squared, dot(step_[s], step_[s]));
-    const Vec3 turned = placed_[s].turn;
-    placed_[s] = {surface.kind, surface.material, surface.radius,    point, surface.normal,
-                  arm,          body.velocity,    global_spin(body), {},    {}};
-    if (!model_.rotates()) continue;
-    placed_[s].travel = with_body - point_with(step_start_, s);
-    placed_[s].turn = turn_between(step_start_[surface.carrier], body);
-    step_turn_[s] = surface.radius * (placed_[s].turn - turned);
+    PlacedSurface& placed = placed_[s];
+    step_[s] = point - placed.point;
+    const Vec3 turned = placed.turn;
+    placed = {surface.kind, surface.material, surface.radius,    point, surface.normal,
+              arm,          body.velocity,    global_spin(body), {},    {},
+              placed.frame};
+    if (!keeps_travel()) continue;
+    placed.travel = with_body - point_with(step_start_, s);
+    placed.turn = turn_between(step_start_[surface.carrier], body);
+    step_turn_[s] = (surface.kind == SurfaceKind::sphere ? surface.radius : 1) * (placed.turn - turned);
   }
-  return std::sqrt(squared);
+  turn_frames();
+  for (Index s = 0; s < size(); ++s) {
+    const bool turns = placed_[s].kind != SurfaceKind::sphere;
+    const Real moved =
+        turns ? displacement_of(placed_[s], step_[s], before[placed_[s].frame]) : norm(step_[s]);
+    if (!(moved <= largest)) largest = moved;  // a NaN stays
+  }
+  return largest;
+}
+
+// The corners of a mesh's box go farthest: displacements are linear in the place.
+Real SurfaceSide::displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const {
+  const SurfaceFrame& frame = frames_[static_cast<std::size_t>(surface.frame)];
+  if (surface.kind == SurfaceKind::plane) return norm(moved);
+  const MeshBox& box = boxes_[static_cast<std::size_t>(frame.mesh)];
+  Real largest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at{corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                  corner & 4 ? box.max.z : box.min.z};
+    const Real size = norm(moved + (frame.axes * at - from * at));
+    if (!(size <= largest)) largest = size;
+  }
+  return largest;
 }
 
 Vec3 SurfaceSide::point_with(const std::vector<BodyMotion>& motion, Index s) const {
-  const Surface& surface = surfaces_.on_body(s);
+  const Surface& surface = surfaces_.at(s);
   const BodyMotion& body = motion[surface.carrier];
   return snap(body.position + body_arm(body, surface.point), subdomain_.snap_constant());
 }
 
 void SurfaceSide::close_step() {
-  if (!model_.rotates()) return;
+  if (!keeps_travel()) return;
   start_before_ = step_start_, step_start_ = motion_;
   for (PlacedSurface& surface : placed_) surface.travel = surface.turn = {};
+  for (SurfaceFrame& frame : frames_) frame.before = frame.axes;
 }
 
 void SurfaceSide::reopen_step() {
-  if (!model_.rotates()) return;
+  if (!keeps_travel()) return;
   step_start_ = start_before_;
   place();
 }
 
-Real SurfaceSide::largest_displacement(const std::vector<PlacedSurface>& from) const {
-  Real squared = 0;
+Real SurfaceSide::largest_displacement(const std::vector<PlacedSurface>& from,
+                                       const std::vector<Mat3>& axes) const {
+  Real largest = 0;
   for (std::size_t s = 0; s < placed_.size(); ++s) {
-    const Vec3 d = placed_[s].point - from[s].point;
-    const Real value = dot(d, d);
-    if (!(value <= squared)) squared = value;  // a NaN stays
-    if (std::isnan(squared)) break;
+    const Vec3 moved = placed_[s].point - from[s].point;
+    const Real size =
+        placed_[s].kind == SurfaceKind::sphere
+            ? norm(moved)
+            : displacement_of(placed_[s], moved, axes[static_cast<std::size_t>(placed_[s].frame)]);
+    if (!(size <= largest)) largest = size;  // a NaN stays
+    if (std::isnan(largest)) break;
   }
-  return std::sqrt(squared);
+  return largest;
 }
 
 void SurfaceSide::take_loads(std::span<const InstantSums> of_particles) {
@@ -121,8 +201,9 @@ void SurfaceSide::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) co
   std::fill(end.begin(), end.end(), BodyWrench{});
   step.stiffness.clear();
   for (const StepSums& sums : merged(steps_)) {
-    const int body = surfaces_.on_body(sums.surface).carrier;
+    const int body = surfaces_.at(sums.surface).carrier;
     end[body] += sums.wrench(), step.wrench[body] += sums.wrench(kWrenchTerms);
+    if (!surfaces_.is_on_body(sums.surface)) continue;
     // The surfaces of a body follow each other.
     if (step.stiffness.empty() || step.stiffness.back().body != body)
       step.stiffness.push_back({body, {}, {}});
@@ -136,18 +217,17 @@ void SurfaceSide::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) co
 
 void SurfaceSide::reduce(std::vector<BodyWrench>& end) const {
   std::fill(end.begin(), end.end(), BodyWrench{});
-  for (const InstantSums& sums : merged(loads_))
-    end[surfaces_.on_body(sums.surface).carrier] += sums.wrench();
+  for (const InstantSums& sums : merged(loads_)) end[surfaces_.at(sums.surface).carrier] += sums.wrench();
 }
 
-std::vector<ContactSum> SurfaceSide::body_contacts() const {
-  std::vector<ContactSum> of_body(motion_.size());
+std::vector<ContactSum> SurfaceSide::carrier_contacts() const {
+  std::vector<ContactSum> of_carrier(motion_.size());
   for (const InstantSums& sums : merged(loads_)) {
-    ContactSum& sum = of_body[surfaces_.on_body(sums.surface).carrier];
+    ContactSum& sum = of_carrier[surfaces_.at(sums.surface).carrier];
     const BodyWrench wrench = sums.wrench();
     sum.force += wrench.force, sum.torque += wrench.torque, sum.contacts += sums.contacts;
   }
-  return of_body;
+  return of_carrier;
 }
 
 void SurfaceSide::book_losses(Real h) {
@@ -166,8 +246,11 @@ void SurfaceSide::book_step() {
 
 ShapePack SurfaceSide::pack() const {
   ShapePack pack;
+  std::vector<std::size_t> row(placed_.size(), placed_.size());  // of the shapes
   for (Index s = 0; s < size(); ++s) {
-    const Surface& surface = surfaces_.on_body(s);
+    const Surface& surface = surfaces_.at(s);
+    if (surface.kind != SurfaceKind::sphere) continue;
+    row[s] = pack.body.size();
     pack.body.push_back(surface.carrier);
     pack.radius.push_back(surface.radius);
     const PointMotion point = point_motion(motion_[surface.carrier], surface.point);
@@ -177,8 +260,10 @@ ShapePack SurfaceSide::pack() const {
   }
   pack.force.resize(pack.body.size()), pack.contacts.resize(pack.body.size());
   for (const InstantSums& sums : merged(loads_)) {
-    pack.force[sums.surface] = sums.wrench().force;
-    pack.contacts[sums.surface] = static_cast<int>(sums.contacts);
+    const std::size_t at = row[sums.surface];
+    if (at == placed_.size()) continue;
+    pack.force[at] = sums.wrench().force;
+    pack.contacts[at] = static_cast<int>(sums.contacts);
   }
   return pack;
 }

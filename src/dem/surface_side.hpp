@@ -1,4 +1,4 @@
-// The surfaces on bodies beside the particles of a backend: where they are, what their contacts sum to, what
+// The placed surfaces beside the particles of a backend: where they are, what their contacts sum to, what
 // the bodies lose among each other. Few and small, they live on the host for every backend.
 #pragma once
 
@@ -35,17 +35,21 @@ class SurfaceSide {
   SurfaceSide(const Model& model, const Subdomain& subdomain, const Ranks& ranks);
 
   const SurfaceSet& surfaces() const { return surfaces_; }
-  Index size() const { return surfaces_.on_bodies(); }
+  Index size() const { return surfaces_.placed(); }
+  // Of the carriers: the bodies, then the placed walls.
   void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
   // When a list is built: brings each surface into the periodic box, where it stays until the next one.
   void bring_into_box();
   // What bodies can touch, until a surface has moved by half the skin.
   void build_list(Real skin);
-  // Moves the surfaces to where the bodies are; returns the largest displacement of one [m].
+  // Moves the surfaces to where the bodies are; returns the largest displacement of a place on one [m].
   Real place();
-  // One entry per surface on a body.
+  // One entry per placed surface.
   const std::vector<PlacedSurface>& placed() const { return placed_; }
-  // By the last place(): displacements, and of laws that move the turns times the radii [m].
+  const std::vector<SurfaceFrame>& frames() const { return frames_; }
+  SurfacePlaces places() const { return {placed_, frames_, meshes_}; }
+  // By the last place(): displacements, and turns: of spheres, for laws that move, times the radii [m], of
+  // others as they are [rad].
   const std::vector<Vec3>& step() const { return step_; }
   const std::vector<Vec3>& step_turn() const { return step_turn_; }
 
@@ -56,10 +60,10 @@ class SurfaceSide {
   void reopen_step();
 
   // Start of an implicit step, to look back at.
-  void keep_start() { start_ = placed_, close_step(); }
+  void keep_start();
   const std::vector<PlacedSurface>& start() const { return start_; }
-  Real step_displacement() const { return largest_displacement(start_); }   // [m]
-  Real list_displacement() const { return largest_displacement(listed_); }  // since the list was built [m]
+  Real step_displacement() const { return largest_displacement(start_, start_axes_); }    // [m]
+  Real list_displacement() const { return largest_displacement(listed_, listed_axes_); }  // of the list [m]
 
   // What touches the surfaces at an instant, and over an implicit step: the backend hands over what its
   // particles do, in any order and a surface in any number of parts; rank 0 adds what the bodies do to each
@@ -83,14 +87,21 @@ class SurfaceSide {
   Real pairs() const { return bodies_.pairs(); }
 
   // From the last take_loads(). Collective; complete on rank 0.
-  std::vector<ContactSum> body_contacts() const;
-  ShapePack pack() const;
+  std::vector<ContactSum> carrier_contacts() const;  // bodies, then placed walls
+  ShapePack pack() const;                            // of the spheres
   ContactSum on_wall(int wall) const { return bodies_.on_wall(wall); }
 
  private:
   // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].
   Vec3 point_with(const std::vector<BodyMotion>& motion, Index surface) const;
-  Real largest_displacement(const std::vector<PlacedSurface>& from) const;
+  // Of any place on a surface.
+  Real largest_displacement(const std::vector<PlacedSurface>& from, const std::vector<Mat3>& axes) const;
+  Real displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const;
+  std::vector<Mat3> axes() const;  // of the frames
+  void turn_frames();
+  void span(const Surface& surface, SurfaceFrame& frame) const;
+  // Whether something asks how far the surfaces have come since a step began.
+  bool keeps_travel() const { return model_.rotates() || !frames_.empty(); }
   template <class Sums>
   std::vector<Sums> merged(std::vector<Sums> sums) const;
 
@@ -99,10 +110,14 @@ class SurfaceSide {
   Ranks ranks_;
   SurfaceSet surfaces_;
   BodyContacts bodies_;
-  // Of the bodies as last set, where the explicit step began, and the one before it.
+  // Of the carriers as last set, where the explicit step began, and the one before it.
   std::vector<BodyMotion> motion_, step_start_, start_before_;
   std::vector<ImageCount> image_;  // of each surface when it was brought into the box
   std::vector<PlacedSurface> placed_, start_, listed_;
+  std::vector<MeshView> meshes_;
+  std::vector<MeshBox> boxes_;  // of the meshes
+  std::vector<SurfaceFrame> frames_;
+  std::vector<Mat3> start_axes_, listed_axes_;
   std::vector<Vec3> step_, step_turn_;
   std::vector<InstantSums> loads_;
   std::vector<StepSums> steps_;

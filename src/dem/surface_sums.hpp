@@ -36,7 +36,9 @@ struct SurfaceStep {
   bool touches;
   StepContact contact;
   ContactBooks books;
-  Vec3 arm;  // at the end
+  Vec3 arm;               // at the end
+  Vec3 contact_arm{};     // from the surface's point to where they touch, at the end [m]
+  bool is_sphere = true;  // the surface
 };
 
 // Terms of one contact in the sums of its surface. kWrench: force and torque on the body about its centre;
@@ -82,7 +84,7 @@ SCREE_HD Real sum_term(const SurfaceStep& c, int k) {
 // Of the contacts of one surface.
 template <int kTerms>
 struct SurfaceSums {
-  Index surface = 0;  // counts from the first surface on a body
+  Index surface = 0;  // of the placed ones
   Index contacts = 0;
   ExactSum sum[kTerms];
 

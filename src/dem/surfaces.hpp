@@ -1,9 +1,11 @@
 // Surfaces that particles touch, in the frame of what carries them: the ground or a body.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/hd.hpp"
+#include "base/twist.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "model/body_exchange.hpp"
@@ -13,67 +15,124 @@
 
 namespace scree {
 
-enum class SurfaceKind : int { plane, sphere };  // discs are spheres: their centres lie in one plane
+enum class SurfaceKind : int { plane, sphere, mesh };  // discs are spheres: their centres lie in one plane
 
-// A surface on a body; constant.
+// A surface that is not a plane at rest; constant.
 struct Surface {
   SurfaceKind kind;
-  int carrier;  // index into Model::bodies
+  int carrier;  // index into Model::bodies; past these the walls of SurfaceSet, one after the other
   int material;
-  Vec3 point;   // of a plane, or a sphere's centre; in the carrier's frame [m]
-  Vec3 normal;  // of a plane: unit, into its free side
-  Real radius;  // of a sphere [m]
+  Vec3 point;    // of a plane, a sphere's centre, the origin of a mesh; in the carrier's frame [m]
+  Vec3 normal;   // of a plane: unit, into its free side
+  Real radius;   // of a sphere [m]
+  int mesh = 0;  // of a mesh: index into Model::meshes
 };
 
-// A surface of the ground in the form the items read: half space.
+// A wall in the form the items read. Of a plane at rest that is all; `placed`: of another wall its number
+// among the placed surfaces, else -1.
 struct WallPlane {
   Vec3 point, normal;
   int material;
+  Index placed = -1;
 };
 std::vector<WallPlane> wall_planes(const Model& model);
 
-// The surfaces of a model are numbered: the walls in the deck's order, on the ground, then the shapes of the
-// bodies.
+// The surfaces of a model are numbered: the walls in the deck's order, then the shapes of the bodies, then
+// their meshes. All but the planes at rest are placed anew as time goes on; these have a second number, first
+// those on bodies, then the walls.
 class SurfaceSet {
  public:
   explicit SurfaceSet(const Model& model);
-  Index ground() const { return ground_; }  // how many are on the ground; they do not move
-  Index on_bodies() const { return static_cast<Index>(on_bodies_.size()); }
-  // moving: counts from the first surface on a body.
-  const Surface& on_body(Index moving) const { return on_bodies_[static_cast<std::size_t>(moving)]; }
+  Index ground() const { return ground_; }  // how many are walls
+  Index placed() const { return static_cast<Index>(surfaces_.size()); }
+  const Surface& at(Index placed) const { return surfaces_[static_cast<std::size_t>(placed)]; }
+  Index number_of(Index placed) const {
+    return placed < on_bodies_ ? ground_ + placed : walls_[static_cast<std::size_t>(placed - on_bodies_)];
+  }
+  bool is_on_body(Index placed) const { return placed < on_bodies_; }
+  // Bodies, and walls that are placed.
+  std::size_t carriers() const { return carriers_; }
 
  private:
-  Index ground_;
-  std::vector<Surface> on_bodies_;
+  Index ground_, on_bodies_ = 0;
+  std::size_t carriers_;
+  std::vector<Surface> surfaces_;
+  std::vector<Index> walls_;
 };
 
-// A surface on a body where it is at one instant, as the items read it.
+// Which surface an entry of a row is about.
+struct SurfaceNumbers {
+  const WallPlane* planes;
+  Index ground;  // how many are walls
+
+  SCREE_HD bool at_rest(Index number) const { return number < ground && planes[number].placed < 0; }
+  SCREE_HD Index placed(Index number) const {
+    return number < ground ? planes[number].placed : number - ground;
+  }
+};
+
+// A placed surface where it is at one instant, as the items read it.
 struct PlacedSurface {
   SurfaceKind kind;
   int material;
-  Real radius;          // [m]
+  Real radius;          // of a sphere [m]
   Vec3 point, normal;   // as in Surface, in the global frame
   Vec3 arm;             // of the point, from the body's centre [m]
   Vec3 velocity, spin;  // of the body [m/s], [rad/s]
   // Since the explicit step began, for laws that move: of the point [m], and of the body about its centre
   // [rad]. The point's is exact, so that nothing is left over of a surface that comes back.
   Vec3 travel, turn;
+  Index frame = 0;  // of a plane or a mesh: its SurfaceFrame
 
   // Of the place on the body at `from_point` from the point.
   SCREE_HD Vec3 velocity_at(Vec3 from_point) const { return velocity + cross(spin, arm + from_point); }
 };
 
-// A sphere at p (x, y, z, radius) as it lies to a surface that is moved by `shift`.
+// How a placed plane or mesh is turned. Spheres have none.
+struct SurfaceFrame {
+  Mat3 axes;    // from the carrier's frame to the global one, now
+  Mat3 before;  // the same where the explicit step began
+  Vec3 normal;  // of a plane, in the carrier's frame
+  Index mesh;   // index into the meshes
+  // Of a mesh: the periods along which it goes on past its ends, as the space does. There it has no images,
+  // and particles are where they are beside its middle.
+  Vec3 spanned{}, middle{};  // [m], the latter in the carrier's frame
+
+  // How far the place at `from_point` from the surface's point has come since, beside that.
+  SCREE_HD Vec3 travel_about(Vec3 from_point) const {
+    const Vec3 local = transposed_times(axes, from_point);
+    return axes * local - before * local;
+  }
+};
+
+// A particle's place beside the mesh [m].
+SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p) {
+  const Vec3 period = frame.spanned;
+  if (period == Vec3{}) return p;
+  ImageCount unused;
+  return wrap(surface.point + frame.axes * frame.middle - Real(0.5) * period, period, p, unused);
+}
+
+// All placed surfaces at one instant; on the host.
+struct SurfacePlaces {
+  std::span<const PlacedSurface> placed;
+  std::span<const SurfaceFrame> frames;
+  std::span<const MeshView> meshes;
+};
+
+// A sphere at p (x, y, z, radius) as it lies to a plane or sphere that is moved by `shift`.
 struct SurfacePair {
   ContactGeometry geometry;
-  Vec3 contact;  // where they touch, on the surface, from its point [m]
+  // Where they touch, from the surface's point: on a sphere; at the particle's radius below its centre at a
+  // plane, whose material there turns with a particle that sticks to it without slip [m].
+  Vec3 contact;
 };
 
 SCREE_HD SurfacePair surface_pair(const PlacedSurface& surface, Vec3 shift, Vec4 p) {
   if (surface.kind == SurfaceKind::plane) {
     const Vec3 place = xyz(p) - shift;
     const ContactGeometry g = plane_pair(place, p.w, surface.point, surface.normal);
-    return {g, place - g.distance * g.direction - surface.point};
+    return {g, place - p.w * g.direction - surface.point};
   }
   const ContactGeometry g = sphere_pair(xyz(p) - (surface.point + shift), p.w + surface.radius);
   return {g, surface.radius * g.normal()};
@@ -82,10 +141,10 @@ SCREE_HD SurfacePair surface_pair(const PlacedSurface& surface, Vec3 shift, Vec4
 // Near which surfaces each particle is: a list of the same reach as the neighbour list. An entry stands in
 // the row of its particle, ordered by surface and image.
 struct SurfaceEntries {
-  const Index* surfaces;      // per entry; those of the ground have the lowest numbers
+  const Index* surfaces;      // per entry
   const std::int8_t* images;  // number of the shift of the surface, 13 for none
   const Index* particles;     // whose row it stands in
-  const Index* by_surface;    // the entries with surfaces on bodies, surface by surface
+  const Index* by_surface;    // the entries with placed surfaces, surface by surface
 };
 
 }  // namespace scree

@@ -77,7 +77,7 @@ struct WallContactItem {
     const Vec3 force = -load.force;
     ImageCount unused;
     const Vec3 point = wrap(choice.min, choice.period, xyz(p), unused) + load.to_wall;
-    const Vec3 torque = cross(point - walk.in.planes[choice.wall].point, force);
+    const Vec3 torque = cross(point - walk.in.numbers.planes[choice.wall].point, force);
     return {{force.x, force.y, force.z, torque.x, torque.y, torque.z, 1}};
   }
 };

@@ -25,6 +25,13 @@ struct Shape {
   int material = 0;
 };
 
+// Triangles fixed to a body.
+struct MeshShape {
+  Vec3 offset;   // of the origin of their frame in the body frame, whose axes they share [m]
+  int mesh = 0;  // index into Model::meshes
+  int material = 0;
+};
+
 // Planar: moves in its plane z = position.z, turns about z.
 struct Body {
   std::string name;
@@ -36,6 +43,7 @@ struct Body {
   Vec3 velocity;              // [m/s]
   Real angular_velocity = 0;  // [rad/s]
   std::vector<Shape> shapes;
+  std::vector<MeshShape> meshes;
   BodyKind kind = BodyKind::planar;
   // Of a spatial body, in place of inertia, angle and angular_velocity.
   Sym3 inertia_tensor;     // J about the centre of mass, in the body's frame [kg m^2]

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/rotation.hpp"
+#include "mesh/mesh_mass.hpp"
 #include "model/body_exchange.hpp"
 #include "model/build_parts.hpp"
 #include "model/frames.hpp"
@@ -33,6 +34,13 @@ void check_mass_keys(const DeckTable& table, bool spatial) {
     if (solid && table.has(key)) table.fail(key, "follows from solids; leave it out");
 }
 
+MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real density) {
+  const int mesh = find_name(names.meshes, table, "mesh", "mesh");
+  const TriangleMesh& triangles = names.triangles[static_cast<std::size_t>(mesh)];
+  if (!(mesh_volume(triangles) > 0)) table.fail("mesh", "it is a sheet, which encloses nothing");
+  return solid_mesh_mass(triangles, density);
+}
+
 // About its own centre, along the axes of the body's frame.
 MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
   const int material = table.has("density") ? 0 : find_material(names, table, "material");
@@ -47,6 +55,8 @@ MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
         return solid_cylinder(density, table.real("radius"), table.real("length"));
       case SolidKind::capsule:
         return solid_capsule(density, table.real("radius"), table.real("length"));
+      case SolidKind::mesh:
+        return mesh_mass(table, names, density);
       case SolidKind::box:
         break;
     }
@@ -56,8 +66,8 @@ MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
   if (!std::isnormal(own.mass) || !std::isnormal(own.inertia.zz) || !std::isnormal(own.inertia.xx))
     table.fail("kind",
                fmt::format("its mass, {:g} kg, or its inertia is beyond what a number holds", own.mass));
-  return {own.mass, table.vector("offset"),
-          turned_tensor(rotation_matrix(read_orientation(table)), own.inertia)};
+  const Mat3 axes = rotation_matrix(read_orientation(table));
+  return {own.mass, table.vector("offset") + axes * own.center, turned_tensor(axes, own.inertia)};
 }
 
 // Positive definite, and no principal moment above the sum of the other two: as of any body with mass.
@@ -149,6 +159,9 @@ Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
                  "the body has a shape of this offset and radius already; each must be another one");
     body.shapes.push_back({offset - body.center_of_mass, radius, find_material(names, shape, "material")});
   }
+  for (const DeckTable& mesh : table.tables("meshes"))
+    body.meshes.push_back({-body.center_of_mass, find_name(names.meshes, mesh, "mesh", "mesh"),
+                           find_material(names, mesh, "material")});
   return body;
 }
 

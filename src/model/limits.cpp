@@ -60,6 +60,13 @@ Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const
 
 }  // namespace
 
+Real farthest(const ModelMesh& mesh, Vec3 offset) {
+  Real squared = 0;
+  for (const Vec3 vertex : mesh.surface->vertices)
+    squared = std::max(squared, dot(offset + vertex, offset + vertex));
+  return std::sqrt(squared);
+}
+
 std::vector<MaterialUse> material_uses(const Model& model) {
   std::vector<MaterialUse> uses(static_cast<std::size_t>(model.contact.materials()));
   for (std::size_t m = 0; m < uses.size(); ++m) {
@@ -80,6 +87,14 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       take_smaller(use.smallest_rubbed_mass, 1 / (1 / body.mass + rubbed * rubbed / body.inertia));
     }
   }
+  for (const Body& body : model.bodies)
+    for (const MeshShape& shape : body.meshes) {
+      MaterialUse& use = uses[static_cast<std::size_t>(shape.material)];
+      const Real reach = farthest(model.meshes[static_cast<std::size_t>(shape.mesh)], shape.offset);
+      ++use.meshes;
+      for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
+        take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));
+    }
   for (const Wall& wall : model.walls) ++uses[static_cast<std::size_t>(wall.material)].walls;
   return uses;
 }
@@ -89,8 +104,8 @@ bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, i
   const auto moving = [](const MaterialUse& use) { return use.particles + use.shapes; };
   if (first.walls > 0 && moving(second) > 0) return true;
   if (second.walls > 0 && moving(first) > 0) return true;
-  if (first.particles > 0 && second.shapes > 0) return true;
-  if (second.particles > 0 && first.shapes > 0) return true;
+  if (first.particles > 0 && second.shapes + second.meshes > 0) return true;
+  if (second.particles > 0 && first.shapes + first.meshes > 0) return true;
   if (a == b ? first.particles > 1 : first.particles > 0 && second.particles > 0) return true;
   return first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch();
 }

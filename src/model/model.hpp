@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "model/bodies.hpp"
 #include "model/joint_forces.hpp"
 #include "model/particles.hpp"
@@ -29,12 +31,22 @@ struct Space {
   Leaving leaving = Leaving::error;
 };
 
-// Half space: solid behind the plane.
+// A surface of the ground. Half space, solid behind the plane; or triangles.
 struct Wall {
   std::string name;
-  Vec3 point;   // [m]
+  Vec3 point;   // of the plane, or the origin of the mesh [m]
   Vec3 normal;  // unit, into the free side
   int material = 0;
+  int mesh = -1;  // index into Model::meshes; -1: a plane
+
+  // Whether its contacts are those of a surface that is placed: all but planes at rest.
+  bool is_placed() const { return mesh >= 0; }
+};
+
+// Triangles that walls and bodies refer to.
+struct ModelMesh {
+  std::string name;  // for messages
+  std::shared_ptr<const SurfaceMesh> surface;
 };
 
 // A pair of materials that the deck does not give, made by contact.mixing.
@@ -131,7 +143,8 @@ struct Model {
   Vec3 gravity;  // [m/s^2]
   Contact contact;
   std::vector<Wall> walls;  // the deck's planes, then the sides of the space that are walls
-  ParticleSet particles;    // start state; this rank's part
+  std::vector<ModelMesh> meshes;
+  ParticleSet particles;  // start state; this rank's part
   DiscThickness disc_thickness;
   std::vector<Body> bodies;
   std::vector<Joint> joints;

@@ -8,6 +8,7 @@
 
 #include "base/types.hpp"
 #include "deck/deck.hpp"
+#include "mesh/triangle_mesh.hpp"
 #include "model/bodies.hpp"
 
 namespace scree {
@@ -24,10 +25,11 @@ struct NamedMarker {
 };
 
 struct ModelNames {
-  NameMap materials, bodies, joints;
+  NameMap materials, meshes, bodies, joints;
   std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
   std::map<std::string, NamedMarker> markers;
-  std::vector<Real> densities;  // of the materials [kg/m^3], 0 where not given
+  std::vector<Real> densities;          // of the materials [kg/m^3], 0 where not given
+  std::vector<TriangleMesh> triangles;  // of the meshes
 };
 
 // Index of the name that `table.key` holds. what: "material", "body", ... for the message. Throws InputError

@@ -100,6 +100,19 @@ SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0
   return out;
 }
 
+// Of a sphere i and an edge or a corner of a body j, whose arm is 0: as of a sphere j without radius, so that
+// i rolls over it without slip. normal0: at the start of the step, where the contact may have been with a
+// face beside the edge; travel: of i's centre relative to the material of j at the contact [m].
+SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 travel,
+                                   const TurningPartner& i, const TurningPartner& j, Real h) {
+  const Vec3 r0 = geometry.direction - travel, normal1 = geometry.normal();
+  const RootAndInverse<Real> distance0 = root_and_inverse(fused_dot(r0, r0));
+  ContactMotion out = contact_motion(normal0, normal1, i.arm * (normal1 - distance0.inverse * r0), i, j, h);
+  out.overlap0 = i.arm - distance0.root;
+  out.leverage = i.arm * geometry.scale;
+  return out;
+}
+
 // What such a law sees at an instant alone: nothing has moved, and what it remembers acts as it is, with
 // dashpots that see the rates of slip and turning.
 struct InstantPair : MovingPair {

@@ -3,6 +3,13 @@
 namespace scree {
 namespace {
 
+// Placed walls are carriers behind the bodies, in their order.
+std::size_t carrier_of_wall(const Model& model, int wall) {
+  std::size_t carrier = model.bodies.size();
+  for (int w = 0; w < wall; ++w) carrier += model.walls[static_cast<std::size_t>(w)].is_placed();
+  return carrier;
+}
+
 // The contacts of a row as one: torques about the origin, because the bodies move.
 ContactSum row_sum(const std::vector<int>& bodies, const std::vector<ContactSum>& contacts,
                    const std::vector<BodyMotion>& motion) {
@@ -21,24 +28,29 @@ ContactSum row_sum(const std::vector<int>& bodies, const std::vector<ContactSum>
 std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link, const State& state,
                                         Backend& backend) {
   const std::vector<ContactTarget>& targets = model.output.history_contacts;
-  std::vector<int> walls;
+  const auto is_plane = [&](const ContactTarget& target) {
+    return target.wall >= 0 && !model.walls[static_cast<std::size_t>(target.wall)].is_placed();
+  };
+  std::vector<int> planes;
   for (const ContactTarget& target : targets)
-    if (target.wall >= 0) walls.push_back(target.wall);
-  std::vector<ContactSum> on_bodies;
-  if (walls.size() < targets.size()) on_bodies = backend.reports().body_contacts();
-  const std::vector<ContactSum> on_walls = backend.reports().wall_contacts(walls);
+    if (is_plane(target)) planes.push_back(target.wall);
+  std::vector<ContactSum> on_carriers;
+  if (planes.size() < targets.size()) on_carriers = backend.reports().carrier_contacts();
+  const std::vector<ContactSum> on_planes = backend.reports().wall_contacts(planes);
   std::vector<BodyMotion> motion;
   if (link.multibody() != nullptr) motion = link.multibody()->motion(state.bodies);
   std::vector<ContactSum> sums;
-  auto wall = on_walls.begin();
+  auto plane = on_planes.begin();
   for (const ContactTarget& target : targets) {
     ContactSum& sum = sums.emplace_back();
-    if (target.wall >= 0)
-      sum = *wall++;
+    if (is_plane(target))
+      sum = *plane++;
+    else if (target.wall >= 0)
+      sum = on_carriers[carrier_of_wall(model, target.wall)];
     else if (!target.row)
-      sum = on_bodies[target.bodies.front()];
+      sum = on_carriers[target.bodies.front()];
     else if (!motion.empty())  // rank 0
-      sum = row_sum(target.bodies, on_bodies, motion);
+      sum = row_sum(target.bodies, on_carriers, motion);
   }
   return sums;
 }

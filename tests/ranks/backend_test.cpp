@@ -157,8 +157,8 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
       const std::vector<int> walls = c.walls ? std::vector{1, 0} : std::vector<int>{};
       const std::vector<ContactSum> walls_a = one.backend->reports().wall_contacts(walls),
                                     walls_b = many.backend->reports().wall_contacts(walls),
-                                    bodies_a = one.backend->reports().body_contacts(),
-                                    bodies_b = many.backend->reports().body_contacts();
+                                    bodies_a = one.backend->reports().carrier_contacts(),
+                                    bodies_b = many.backend->reports().carrier_contacts();
       if (world.is_root()) CHECK((same_bits(walls_a, walls_b) && touched(walls_a) == c.walls));
       if (world.is_root()) CHECK((same_bits(bodies_a, bodies_b) && touched(bodies_a) == c.bodies));
       const ParticleLedger p = one.backend->reports().ledger(0), q = many.backend->reports().ledger(0);

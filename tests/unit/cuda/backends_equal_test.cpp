@@ -75,7 +75,7 @@ void check_contacts(Pair& pair, Real tolerance) {
   for (int k = 0; k < 2; ++k) {
     Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
     sums[k] = backend.reports().wall_contacts(all);
-    for (const ContactSum& body : backend.reports().body_contacts()) sums[k].push_back(body);
+    for (const ContactSum& body : backend.reports().carrier_contacts()) sums[k].push_back(body);
   }
   REQUIRE(sums[0].size() == sums[1].size());
   std::int64_t contacts = 0;

@@ -85,7 +85,7 @@ TEST_CASE(
       for (Index k = 0; k < steps; ++k) {
         verlet_steps(looked_at, kStep, 1);
         looked_at.backend->reports().ledger(kStep);
-        looked_at.backend->reports().body_contacts();
+        looked_at.backend->reports().carrier_contacts();
         looked_at.backend->list().build(0.01 * (k % 5 + 1), looked_at.timers);
       }
       CHECK(differing_fields(a.records(), b.records()) == "");

@@ -21,7 +21,7 @@ class CountedReports : public Reports {
     return {};
   }
   std::vector<TracedParticle> traced(std::span<const GlobalId>) override { return {}; }
-  std::vector<ContactSum> body_contacts() override { return {}; }
+  std::vector<ContactSum> carrier_contacts() override { return {}; }
   std::vector<ContactSum> wall_contacts(std::span<const int>) override { return {}; }
 
   int looks = 0;
@@ -37,7 +37,7 @@ struct Told {
 };
 
 Told tell(Reports& reports, const std::vector<int>& walls) {
-  Told told{reports.ledger(0), reports.pack_shapes(), reports.body_contacts()};
+  Told told{reports.ledger(0), reports.pack_shapes(), reports.carrier_contacts()};
   for (const ContactSum& wall : reports.wall_contacts(walls)) told.contacts.push_back(wall);
   return told;
 }

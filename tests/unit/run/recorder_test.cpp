@@ -63,7 +63,7 @@ class FailingReports : public Reports {
   }
   ShapePack pack_shapes() override { return of_.pack_shapes(); }
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override { return of_.traced(wanted); }
-  std::vector<ContactSum> body_contacts() override { return of_.body_contacts(); }
+  std::vector<ContactSum> carrier_contacts() override { return of_.carrier_contacts(); }
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override {
     return of_.wall_contacts(walls);
   }

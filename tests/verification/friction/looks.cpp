@@ -48,7 +48,7 @@ TEST_CASE("looks at the bodies after a step and in reports leave what contacts r
     RememberingBox one(model, {}, make_test_backend), looked_at(model, {}, make_test_backend);
     for (RememberingBox* box : {&one, &looked_at}) box->start(), box->take_steps(60);
     one.take_steps(40), looked_at.take_steps(40, kMovingStep, 3);
-    looked_at.backend->reports().ledger(kMovingStep), looked_at.backend->reports().body_contacts();
+    looked_at.backend->reports().ledger(kMovingStep), looked_at.backend->reports().carrier_contacts();
     CHECK(difference(one.state().contacts, looked_at.state().contacts) == "");
     CHECK(differing_fields(one.state().particles, looked_at.state().particles) == "");
     CHECK(!with_bodies(one).keys.empty());

@@ -1,0 +1,127 @@
+// Keys of meshes.
+#include "deck/choices.hpp"
+#include "deck/keys.hpp"
+
+namespace scree {
+
+const TableKeys& mesh_keys() {
+  using K = MeshKind;
+  static constexpr auto files = {K::file}, boxes = {K::box, K::plate, K::rectangle}, lines = {K::line},
+                        spheres = {K::sphere}, plates = {K::plate}, cones = {K::cone}, pipes = {K::pipe},
+                        drums = {K::drum}, screws = {K::screw};
+  static constexpr auto round = {K::cylinder, K::cone, K::sphere, K::capsule, K::pipe, K::drum, K::screw},
+                        long_ones = {K::cylinder, K::cone, K::capsule, K::pipe, K::drum, K::screw},
+                        curved = {K::cylinder, K::cone, K::capsule, K::plate, K::pipe, K::drum, K::screw};
+  static const TableKeys keys = [] {
+    TableKeys mesh{
+        "Surfaces of triangles that walls and bodies refer to. Particles touch them; meshes do not touch "
+        "each "
+        "other, nor the shapes of bodies. In 2D: lines.",
+        {name_key().required().about("Name for references and messages."),
+         choice<MeshKind>("kind").required().about(
+             "File: STL, OBJ or PLY. Rectangle: a sheet in the plane z = 0. Line: in 2D, a sheet through "
+             "points. All others are closed solids about their axis z: plate, a box with a round hole along "
+             "z; "
+             "pipe, a tube; drum, a pipe with bars along its inside; screw, a core with a helical flight."),
+         file("file").only_for(files).required().about("File, relative to the deck's folder."),
+         real("scale", "")
+             .only_for(files)
+             .above(0)
+             .otherwise("1.0")
+             .about("Metres in the file's unit of length: 0.001 for a file in mm."),
+         real("weld", "m")
+             .only_for(files)
+             .above(0)
+             .left_out("equal places alone")
+             .about("Vertices at most this far apart become one."),
+         reals("size", "m")
+             .only_for(boxes)
+             .above(0)
+             .required()
+             .about("Edges along x, y and z; of a rectangle along x and y."),
+         real("radius", "m")
+             .only_for(round)
+             .above(0)
+             .required()
+             .about("Radius: of a cone at z = 0, of a pipe outside, of a drum inside, of a screw of its "
+                    "flight."),
+         real("top_radius", "m")
+             .only_for(cones)
+             .at_least(0)
+             .otherwise("0.0")
+             .about("Radius at z = length; 0: a tip."),
+         real("inner_radius", "m").only_for(pipes).above(0).required().about("Inside."),
+         real("hole_radius", "m").only_for(plates).above(0).required().about("Of the hole."),
+         real("length", "m")
+             .only_for(long_ones)
+             .above(0)
+             .required()
+             .about("Along z, about z = 0; of a cone from z = 0; of a capsule without its half spheres."),
+         integer("segments")
+             .only_for(curved)
+             .within(3, 10000)
+             .otherwise("48")
+             .about("Edges once around; of plates and capsules a multiple of 4, of screws at least 8."),
+         integer("levels").only_for(spheres).within(0, 9).otherwise("3").about(
+             "The 20 triangles of an icosahedron are split into four so many times."),
+         real("wall", "m").only_for(drums).above(0).required().about("Thickness of the drum's wall."),
+         real("end_wall", "m")
+             .only_for(drums)
+             .at_least(0)
+             .otherwise("0.0")
+             .about("Thickness of the discs that close it beyond its length; 0: open ends."),
+         integer("lifters").only_for(drums).within(0, 1000).otherwise("0").about("Bars along its inside."),
+         real("lifter_height", "m")
+             .only_for(drums)
+             .above(0)
+             .left_out("no lifters")
+             .about("Of the bars, towards the axis."),
+         real("lifter_width", "m")
+             .only_for(drums)
+             .above(0)
+             .left_out("no lifters")
+             .about("Of the bars, around."),
+         real("core_radius", "m").only_for(screws).above(0).required().about("Of the core."),
+         real("pitch", "m")
+             .only_for(screws)
+             .required()
+             .about("Height of one turn of the flight; below 0: left-handed."),
+         real("thickness", "m").only_for(screws).above(0).required().about("Of the flight, along z."),
+         real("core_length", "m")
+             .only_for(screws)
+             .above(0)
+             .left_out("length")
+             .about("Length of the core, at least that of the flight."),
+         vectors("points", "m")
+             .only_for(lines)
+             .required()
+             .about("Places in the x-y plane that the line goes through. Where it is not closed, it is a "
+                    "sheet with "
+                    "two sides."),
+         boolean("closed").only_for(lines).otherwise("false").about(
+             "Whether the last point is joined to the first, counterclockwise around what is solid."),
+         boolean("sheet").only_for(files).otherwise("false").about(
+             "Whether the surface has two sides and may have free edges; else it encloses a solid."),
+         real("refine", "m")
+             .above(0)
+             .left_out("triangles as they are")
+             .about("Edges longer than this are cut."),
+         real("feature_angle", "rad")
+             .above(0)
+             .within(0, 1.5)
+             .otherwise("0.5235987755982988")
+             .about("Edges that turn by less are taken for parts of a smooth surface, on which contacts in "
+                    "about the "
+                    "same direction count once."),
+         vector("offset", "m")
+             .otherwise("zero")
+             .about("Where its own origin lies in the frame of the body, or in the global one.")},
+        "kind"};
+    for (const Key& key : orientation_keys("", "its own frame", "the frame of the body, or the global one,"))
+      mesh.keys.push_back(key);
+    return mesh;
+  }();
+  return keys;
+}
+
+}  // namespace scree

@@ -1,0 +1,282 @@
+// Where particles touch meshes: found once for each particle and mesh near each other, before a law is asked.
+// One text for the CPU and CUDA.
+#pragma once
+
+#include "dem/history_slots.hpp"
+#include "dem/surfaces.hpp"
+#include "mesh/mesh_contacts.hpp"
+#include "mesh/mesh_tree.hpp"
+#include "physics/contact_geometry.hpp"
+
+namespace scree {
+
+// A particle near a mesh: the entries of its row that stand for that mesh, one for each contact that it may
+// have there, and the triangles that it may touch.
+struct MeshGroup {
+  Index entry, entries;
+  Index first_triangle, triangles;
+};
+
+// Rows of meshes near particles; a part of the surface rows.
+struct MeshRows {
+  const MeshGroup* groups;
+  const Index* triangles;
+  const MeshView* meshes;
+};
+
+// A contact with a mesh, per entry.
+struct MeshTouch {
+  bool touches;  // else nothing below has a meaning
+  bool is_face;
+  ContactGeometry geometry;
+  Vec3 contact;  // where forces act, from the surface's point [m]
+  Vec3 normal0;  // where the step began
+  Index feature, triangle;
+  Index from;  // entry whose memory the contact goes on from; -1: none
+};
+
+// The same contact where an implicit step began. One that was open then, or is open at the end, has no
+// overlap there.
+struct MeshTouchBefore {
+  ContactGeometry geometry;
+  Vec3 contact;
+};
+
+// A sphere as it lies to a feature that it touches.
+struct FeaturePair {
+  ContactGeometry geometry;  // its direction in the global frame
+  Vec3 contact;              // as in MeshTouch
+};
+
+SCREE_HD bool is_face(const MeshView& mesh, Index feature) { return feature < mesh.part_count; }
+
+// c: the sphere's centre in the mesh's frame. A face acts through the same function as an analytic plane, at
+// the foot of a radius below the centre; an edge or a vertex as a sphere of no radius.
+SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found, const Mat3& axes, Vec3 c,
+                                  Real radius) {
+  if (is_face(mesh, found.feature)) {
+    ContactGeometry g = plane_pair(c, radius, found.point, found.normal);
+    g.direction = axes * found.normal;
+    return {g, axes * (c - radius * found.normal)};
+  }
+  ContactGeometry g = sphere_pair(c - found.point, radius);
+  g.direction = axes * g.direction;
+  return {g, axes * found.point};
+}
+
+// Contacts of the particle now that were remembered, each with the entry that did.
+struct RememberedTouches {
+  Index entry[kMeshSlots];
+  MeshContact contact[kMeshSlots];  // as the particle lay when the step began
+  int count = 0;
+
+  SCREE_HD void take_out(int k) {
+    --count;
+    for (; k < count; ++k) entry[k] = entry[k + 1], contact[k] = contact[k + 1];
+  }
+};
+
+// Which of them a contact goes on from, -1: none. First the same feature; then, of those on the same smooth
+// patch in about the same direction, the one of the lowest number; then, over a sharp edge, one on a
+// neighbouring patch that acted close by. No order of entries matters.
+enum class Kinship { same, same_patch, neighbour };
+SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const RememberedTouches& old, Kinship kin,
+                      Real contact_radius) {
+  int best = -1;
+  for (int k = 0; k < old.count; ++k) {
+    const MeshContact& c = old.contact[k];
+    if (best >= 0 && !(c.feature < old.contact[best].feature)) continue;
+    const Vec3 apart = now.normal - c.normal;
+    const bool related = kin == Kinship::same ? c.feature == now.feature
+                         : kin == Kinship::same_patch
+                             ? same_cluster(mesh, now, c)
+                             : on_neighbouring_patches(mesh, now.feature, c.feature) &&
+                                   dot(apart, apart) < contact_radius * contact_radius;
+    if (related) best = k;
+  }
+  return best;
+}
+
+// For the g-th group: the contacts of its particle with its mesh at an instant or, with in.h above 0, over
+// the explicit step that ends there.
+template <class Views>
+struct MeshTouchItem {
+  Views in;
+  MeshTouch* touches;  // per entry
+
+  SCREE_HD void operator()(Index g) const {
+    const MeshGroup group = in.meshes.groups[g];
+    const Index i = in.entries.particles[group.entry];
+    const PlacedSurface& surface = in.placed[in.surface_of(group.entry)];
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const MeshView& mesh = in.meshes.meshes[frame.mesh];
+    const Vec4 p = in.position[i];
+    const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
+    const Vec3 c = transposed_times(frame.axes, from_point);
+    MeshContact found[kMeshSlots];
+    const int count = min_of(
+        find_mesh_contacts(mesh, c, p.w, in.meshes.triangles + group.first_triangle, group.triangles, found),
+        static_cast<int>(group.entries));
+    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
+    for (int k = 0; k < count; ++k) {
+      MeshTouch& out = touches[group.entry + k];
+      const FeaturePair pair = feature_pair(mesh, found[k], frame.axes, c, p.w);
+      out = {pair.geometry.overlap > 0,
+             is_face(mesh, found[k].feature),
+             pair.geometry,
+             pair.contact,
+             pair.geometry.normal(),
+             found[k].feature,
+             found[k].triangle,
+             -1};
+    }
+    if (in.history.bodies == nullptr) return;
+    const Vec3 travel = in.h > 0 ? in.h * xyz(in.velocity[i]) - surface.travel : Vec3{};
+    const Vec3 c0 = in.h > 0 ? transposed_times(frame.before, from_point - travel) : c;
+    const Mat3& axes0 = in.h > 0 ? frame.before : frame.axes;
+    go_on(group, mesh, {found, count}, axes0, c0, p.w);
+  }
+
+ private:
+  struct Found {
+    const MeshContact* contacts;
+    int count;
+  };
+  // Finds what the contacts go on from; of those that do, and of the others, the normals where the step
+  // began.
+  SCREE_HD void go_on(const MeshGroup& group, const MeshView& mesh, const Found& found, const Mat3& axes0,
+                      Vec3 c0, Real radius) const {
+    RememberedTouches old;
+    for (Index e = group.entry; e < group.entry + group.entries; ++e) {
+      if (in.history.bodies[std::int64_t{e} * in.records].w != in.history.step) continue;
+      const Index feature = in.history.features[e];
+      old.entry[old.count] = e;
+      old.contact[old.count++] = mesh_feature_at(mesh, feature, c0, side_of(found, mesh, feature));
+    }
+    for (const Kinship kin : {Kinship::same, Kinship::same_patch, Kinship::neighbour})
+      for (int k = 0; k < found.count && old.count > 0; ++k) {
+        MeshTouch& out = touches[group.entry + k];
+        if (out.from >= 0) continue;
+        const Real overlap = out.geometry.overlap;
+        const Real close = std::sqrt((overlap > 0 ? 2 * overlap : 0) / radius);
+        const int before = find_kin(mesh, found.contacts[k], old, kin, close);
+        if (before < 0) continue;
+        out.from = old.entry[before];
+        out.normal0 = normal_of(mesh, old.contact[before], axes0, c0, radius);
+        old.take_out(before);
+      }
+    for (int k = 0; k < found.count; ++k) {
+      MeshTouch& out = touches[group.entry + k];
+      if (out.from < 0)
+        out.normal0 = normal_of(mesh, mesh_feature_at(mesh, out.feature, c0, found.contacts[k].normal), axes0,
+                                c0, radius);
+    }
+  }
+  // What a remembered feature of a sheet is seen along.
+  SCREE_HD static Vec3 side_of(const Found& found, const MeshView& mesh, Index feature) {
+    for (int k = 0; k < found.count; ++k)
+      if (found.contacts[k].feature == feature) return found.contacts[k].normal;
+    return found.count > 0          ? found.contacts[0].normal
+           : is_face(mesh, feature) ? mesh.parts[feature].normal
+                                    : Vec3{};
+  }
+  SCREE_HD static Vec3 normal_of(const MeshView& mesh, const MeshContact& contact, const Mat3& axes, Vec3 c,
+                                 Real radius) {
+    return feature_pair(mesh, contact, axes, c, radius).geometry.normal();
+  }
+  SCREE_HD static int min_of(int a, int b) { return a < b ? a : b; }
+};
+
+// The same over an implicit step: the contacts at either end, those at both matched.
+template <class Views>
+struct MeshStepTouchItem {
+  Views in;
+  const Vec4* start_position;
+  const PlacedSurface* start_placed;
+  MeshTouch* touches;       // per entry; `touches`: at either end
+  MeshTouchBefore* before;  // likewise
+
+  SCREE_HD void operator()(Index g) const {
+    const MeshGroup group = in.meshes.groups[g];
+    const Index i = in.entries.particles[group.entry], s = in.surface_of(group.entry);
+    const PlacedSurface &surface = in.placed[s], &surface0 = start_placed[s];
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const MeshView& mesh = in.meshes.meshes[frame.mesh];
+    const Vec4 p = in.position[i];
+    const Vec3 place = place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry),
+               place0 = place - (xyz(p) - xyz(start_position[i]));
+    const Sight end{frame.axes, transposed_times(frame.axes, place - surface.point), p.w},
+        start{frame.before, transposed_times(frame.before, place0 - surface0.point), p.w};
+    const Index* const triangles = in.meshes.triangles + group.first_triangle;
+    MeshContact now[kMeshSlots];
+    RememberedTouches old;
+    const int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
+    old.count = find_mesh_contacts(mesh, start.c, p.w, triangles, group.triangles, old.contact);
+    for (int k = 0; k < old.count; ++k) old.entry[k] = remembering(group, old.contact[k].feature);
+    // Those that are there at the end come first, whether they were at the start or not.
+    bool matched[kMeshSlots] = {};
+    for (const Kinship kin : {Kinship::same, Kinship::same_patch})
+      for (int k = 0; k < count && k < group.entries; ++k) {
+        if (matched[k]) continue;
+        const int at = find_kin(mesh, now[k], old, kin, 0);
+        if (at < 0) continue;
+        put(group.entry + k, mesh, now[k], old.contact[at], {end, start}, old.entry[at]);
+        matched[k] = true, old.take_out(at);
+      }
+    for (int k = 0; k < count && k < group.entries; ++k) {
+      if (matched[k]) continue;
+      const MeshContact was = mesh_feature_at(mesh, now[k].feature, start.c, now[k].normal);
+      put(group.entry + k, mesh, now[k], was, {end, start}, -1);
+      open(before[group.entry + k].geometry);
+    }
+    Index next = count;
+    for (int k = 0; k < old.count && next < group.entries; ++k, ++next) {
+      const MeshContact& was = old.contact[k];
+      put(group.entry + next, mesh, mesh_feature_at(mesh, was.feature, end.c, was.normal), was, {end, start},
+          old.entry[k]);
+      open(touches[group.entry + next].geometry);
+    }
+    for (; next < group.entries; ++next) touches[group.entry + next].touches = false;
+  }
+
+ private:
+  // How a sphere lies in the frame of a mesh.
+  struct Sight {
+    const Mat3& axes;
+    Vec3 c;
+    Real radius;
+  };
+  struct Sights {
+    const Sight &end, &start;
+  };
+  SCREE_HD void put(Index entry, const MeshView& mesh, const MeshContact& now, const MeshContact& was,
+                    const Sights& sights, Index from) const {
+    const Sight &end = sights.end, &start = sights.start;
+    const FeaturePair pair = feature_pair(mesh, now, end.axes, end.c, end.radius),
+                      pair0 = feature_pair(mesh, was, start.axes, start.c, start.radius);
+    touches[entry] = {true,
+                      is_face(mesh, now.feature),
+                      pair.geometry,
+                      pair.contact,
+                      pair0.geometry.normal(),
+                      now.feature,
+                      now.triangle,
+                      from};
+    before[entry] = {pair0.geometry, pair0.contact};
+  }
+  // Of a contact that is only at the other end of the step.
+  SCREE_HD static void open(ContactGeometry& geometry) {
+    if (geometry.overlap > 0) geometry.overlap = 0;
+  }
+  // The entry that remembers the contact with a feature.
+  SCREE_HD Index remembering(const MeshGroup& group, Index feature) const {
+    if (in.history.bodies != nullptr)
+      for (Index e = group.entry; e < group.entry + group.entries; ++e)
+        if (in.history.bodies[std::int64_t{e} * in.records].w == in.history.step &&
+            in.history.features[e] == feature)
+          return e;
+    return -1;
+  }
+};
+
+}  // namespace scree

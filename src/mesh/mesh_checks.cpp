@@ -1,0 +1,176 @@
+#include "mesh/mesh_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mesh/mesh_mass.hpp"
+#include "mesh/mesh_shells.hpp"
+#include "mesh/mesh_sides.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr std::size_t kMostPlaces = 5;
+
+std::string text_of(Vec3 v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
+
+// Places of one kind of trouble: all are counted, the first are named.
+class Places {
+ public:
+  // text(): what the place is called.
+  template <class Text>
+  void add(Text text) {
+    if (count_++ < kMostPlaces) named_ += (named_.empty() ? "" : "; ") + text();
+  }
+  // what: with the count in place of {}.
+  void report(const char* one, const char* many, const char* demand,
+              std::vector<std::string>& troubles) const {
+    if (count_ == 0) return;
+    const std::string more = count_ > kMostPlaces ? fmt::format("; and {} more", count_ - kMostPlaces) : "";
+    const std::string what = count_ == 1 ? one : fmt::format("{} {}", count_, many);
+    troubles.push_back(fmt::format("{}; {}: {}{}", what, demand, named_, more));
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::string named_;
+};
+
+class Checker {
+ public:
+  Checker(const TriangleMesh& mesh, const std::vector<Index>& numbers) : mesh_(mesh), numbers_(numbers) {}
+
+  std::vector<std::string> troubles(bool sheet) {
+    if (mesh_.triangles.empty()) return {"no triangles"};
+    check_numbers();
+    if (!troubles_.empty()) return troubles_;
+    check_areas();
+    check_duplicates();
+    check_edges(sheet);
+    if (troubles_.empty() && !sheet) check_volume();
+    if (troubles_.empty() && !sheet) check_shells();
+    return troubles_;
+  }
+
+ private:
+  Index number(Index triangle) const { return numbers_.empty() ? triangle : numbers_[triangle]; }
+  std::array<Vec3, 3> corners(Index triangle) const {
+    const std::array<Index, 3>& t = mesh_.triangles[triangle];
+    return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+  }
+  std::string triangle_text(Index triangle) const {
+    const auto [a, b, c] = corners(triangle);
+    return fmt::format("triangle {} {} {} {}", number(triangle), text_of(a), text_of(b), text_of(c));
+  }
+  std::string edge_text(const Side* first, const Side* last) const {
+    std::string text = fmt::format("{} to {} of triangle{} {}", text_of(mesh_.vertices[first->low]),
+                                   text_of(mesh_.vertices[first->high]), last - first > 1 ? "s" : "",
+                                   number(first->triangle));
+    for (const Side* side = first + 1; side < last; ++side)
+      text += fmt::format("{} {}", side + 1 == last ? " and" : ",", number(side->triangle));
+    return text;
+  }
+
+  void check_numbers() {
+    Places places;
+    for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i) {
+      const auto [a, b, c] = corners(i);
+      if (!is_finite(a) || !is_finite(b) || !is_finite(c)) places.add([&] { return triangle_text(i); });
+    }
+    places.report("a triangle has a coordinate that is no finite number",
+                  "triangles have coordinates that are no finite numbers", "all must be", troubles_);
+  }
+
+  // No area: so low over its longest side that round-off alone turns its normal.
+  void check_areas() {
+    constexpr Real kLeastHeight = 1e-12;
+    Places places;
+    for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i) {
+      const auto [a, b, c] = corners(i);
+      const Vec3 ab = b - a, bc = c - b, ca = a - c;
+      const Real longest2 = std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)});
+      if (!(norm(cross(ab, ca)) > kLeastHeight * longest2)) places.add([&] { return triangle_text(i); });
+    }
+    places.report("a triangle has no area", "triangles have no area", "each must span a plane", troubles_);
+  }
+
+  void check_duplicates() {
+    std::vector<std::array<Index, 4>> rows;
+    for (Index i = 0; i < static_cast<Index>(mesh_.triangles.size()); ++i) {
+      std::array<Index, 3> t = mesh_.triangles[i];
+      std::sort(t.begin(), t.end());
+      rows.push_back({t[0], t[1], t[2], i});
+    }
+    std::sort(rows.begin(), rows.end());
+    Places places;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      if (!std::equal(rows[i].begin(), rows[i].begin() + 3, rows[i - 1].begin())) continue;
+      places.add([&] {
+        return fmt::format("triangle {} and {}", number(rows[i - 1][3]), triangle_text(rows[i][3]));
+      });
+    }
+    places.report("a triangle has the corners of another", "triangles have the corners of others",
+                  "each must be there once", troubles_);
+  }
+
+  void check_edges(bool sheet) {
+    Places open, crowded, turned;
+    for_each_edge(sides_of(mesh_), [&](const Side* first, const Side* last) {
+      const auto text = [&] { return edge_text(first, last); };
+      if (last - first == 1 && !sheet) open.add(text);
+      if (last - first > 2 && !sheet) crowded.add(text);
+      if (last - first == 2 && first[0].forward == first[1].forward) turned.add(text);
+    });
+    open.report("an edge has one triangle", "edges have one triangle",
+                "a closed mesh has two at each (one that is meant to be open is a sheet)", troubles_);
+    crowded.report("an edge has more than two triangles", "edges have more than two triangles",
+                   "a closed mesh has two at each", troubles_);
+    turned.report("an edge lies between opposite windings", "edges lie between opposite windings",
+                  "corners must run counterclockwise seen from one side of the whole", troubles_);
+  }
+
+  void check_volume() {
+    constexpr Real kLeastThickness = 1e-12;  // of the mesh's own size: below it round-off decides the sign
+    const Real volume = mesh_volume(mesh_), area = mesh_area(mesh_);
+    if (std::abs(volume) <= kLeastThickness * area * std::sqrt(area)) {
+      troubles_.push_back(fmt::format("it encloses {:.3g} m^3, nothing but round-off", volume));
+    } else if (volume < 0) {
+      troubles_.push_back(fmt::format(
+          "its volume is {:.9g} m^3, below 0: it is inside out; corners must run counterclockwise "
+          "seen from outside",
+          volume));
+    }
+  }
+
+  void check_shells() {
+    Places inverted, inner;
+    const std::vector<Index> shell = shells_of(mesh_);
+    for (const MisplacedShell& misplaced : misplaced_shells(mesh_, shell)) {
+      const auto text = [&] {
+        const auto first = std::find(shell.begin(), shell.end(), misplaced.shell) - shell.begin();
+        return fmt::format("that of {}", triangle_text(static_cast<Index>(first)));
+      };
+      (misplaced.volume < 0 ? inverted : inner).add(text);
+    }
+    inverted.report("a shell is inside out", "shells are inside out",
+                    "corners must run counterclockwise seen from outside, but around a cavity", troubles_);
+    inner.report("a shell lies inside another", "shells lie inside others",
+                 "around a cavity corners must run clockwise seen from outside; solids must not overlap",
+                 troubles_);
+  }
+
+  const TriangleMesh& mesh_;
+  const std::vector<Index>& numbers_;
+  std::vector<std::string> troubles_;
+};
+
+}  // namespace
+
+std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
+                                       const std::vector<Index>& numbers) {
+  return Checker(mesh, numbers).troubles(sheet);
+}
+
+}  // namespace scree

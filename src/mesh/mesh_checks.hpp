@@ -1,0 +1,18 @@
+// What is wrong with triangles that are to be a surface.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/types.hpp"
+#include "mesh/triangle_mesh.hpp"
+
+namespace scree {
+
+// What keeps a welded mesh from being a surface that contacts are found on, one text per kind of trouble,
+// which names the first five places; none: it is sound. Triangles are counted from 0 in their order, or have
+// the `numbers` given. Sheets may end at free edges and have more than two triangles at an edge.
+std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
+                                       const std::vector<Index>& numbers = {});
+
+}  // namespace scree

@@ -1,0 +1,40 @@
+// What a PLY file says that it holds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/words.hpp"
+
+namespace scree {
+
+struct PlyType {
+  const char *name, *other_name;
+  std::size_t bytes;
+  bool whole, has_sign;
+};
+
+struct PlyProperty {
+  std::string name;
+  const PlyType* type;
+  const PlyType* count_type;  // of a list; nullptr: one value
+};
+
+struct PlyElement {
+  std::string name;
+  std::int64_t count;
+  std::vector<PlyProperty> properties;  // at least one
+};
+
+enum class PlyForm { ascii, low_byte_first, high_byte_first };
+
+struct PlyHeader {
+  PlyForm form = PlyForm::ascii;
+  std::vector<PlyElement> elements;
+};
+
+// Up to the end of the line of end_header. Throws InputError for what PLY 1.0 does not know.
+PlyHeader read_ply_header(Words& words);
+
+}  // namespace scree

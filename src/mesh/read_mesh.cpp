@@ -1,0 +1,57 @@
+#include "mesh/read_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "mesh/mesh_formats.hpp"
+#include "mesh/words.hpp"
+
+namespace scree {
+
+namespace {
+
+// No format has more vertices or triangles than bytes: with this many an Index counts them.
+constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 31;
+
+std::string contents(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::is_directory(status)) throw IoError(path + ": is a folder; must be a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw IoError(fmt::format("{}: cannot be read: {}", path, error.message()));
+  if (size == 0) throw InputError(path + ": is empty");
+  if (size >= kMostBytes)
+    throw InputError(fmt::format("{}: {} bytes; must be less than {}", path, size, kMostBytes));
+  std::string bytes(size, '\0');
+  if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
+    throw IoError(path + ": cannot be read to its end");
+  return bytes;
+}
+
+}  // namespace
+
+TriangleMesh parse_mesh(std::string_view bytes, const std::string& path) {
+  using Parse = TriangleMesh (*)(std::string_view, const std::string&);
+  const std::string suffix = lower(std::filesystem::path(path).extension().string());
+  const Parse parse = suffix == ".stl"   ? parse_stl
+                      : suffix == ".obj" ? parse_obj
+                      : suffix == ".ply" ? parse_ply
+                                         : nullptr;
+  if (parse == nullptr) throw InputError(path + ": must end with .stl, .obj or .ply");
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // some text begins with it
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+  TriangleMesh mesh = parse(bytes, path);
+  if (mesh.triangles.empty()) throw InputError(path + ": has no triangles");
+  return mesh;
+}
+
+TriangleMesh read_mesh(const std::string& path) { return parse_mesh(contents(path), path); }
+
+}  // namespace scree

@@ -1,0 +1,74 @@
+// Meshes: made or read, checked, prepared for contacts.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "mesh/mesh_checks.hpp"
+#include "mesh/mesh_mass.hpp"
+#include "mesh/refine.hpp"
+#include "mesh/surface_numbers.hpp"
+#include "mesh/weld.hpp"
+#include "model/build_parts.hpp"
+#include "model/make_mesh.hpp"
+
+namespace scree {
+namespace {
+
+// The key that troubles are about.
+std::string source_key(const DeckTable& table) { return table.has("file") ? "file" : "kind"; }
+
+// A closed line is open where it ends along z.
+void check(const DeckTable& table, const TriangleMesh& mesh, const std::vector<Index>& numbers) {
+  const bool open = is_sheet(table) || table.choice<MeshKind>("kind") == MeshKind::line;
+  const std::vector<std::string> troubles = mesh_troubles(mesh, open, numbers);
+  if (!troubles.empty())
+    table.fail(source_key(table), fmt::format("the mesh is no surface: {}", fmt::join(troubles, "; ")));
+}
+
+// Welded and checked; in 2D lines were refined when they were drawn.
+TriangleMesh surface_of(const DeckTable& table, Real half_depth) {
+  const TriangleMesh mesh = make_mesh(table, half_depth);
+  LooselyWelded joined{welded(mesh), {}};
+  if (table.has("weld")) joined = welded_within(mesh, table.real("weld"));
+  check(table, joined.mesh, joined.numbers);
+  if (!table.has("refine") || table.choice<MeshKind>("kind") == MeshKind::line) return joined.mesh;
+  try {
+    return refined(joined.mesh, table.real("refine"));
+  } catch (const InputError& error) {
+    table.fail("refine", error.what());
+  }
+}
+
+void check_features(const DeckTable& table, const SurfaceMesh& mesh) {
+  const std::size_t features = mesh.parts.size() + mesh.features.size(),
+                    most = std::size_t{1} << kFeatureBits;
+  if (features > most)
+    table.fail(source_key(table),
+               fmt::format("the mesh has {} faces, edges and vertices; at most {} can be told apart",
+                           features, most));
+}
+
+}  // namespace
+
+void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
+  const DeckTable& space = deck.table("space");
+  const bool planar = space.integer("dimension") == 2;
+  // No particle is near the ends of a line along z.
+  const Real half_depth = norm(space.vector("max") - space.vector("min"));
+  for (const DeckTable& table : deck.tables("meshes")) {
+    if (planar != (table.choice<MeshKind>("kind") == MeshKind::line))
+      table.fail("kind",
+                 planar ? "must be \"line\", as space.dimension = 2" : "\"line\" needs space.dimension = 2");
+    add_name(names.meshes, table.text("name"), static_cast<int>(model.meshes.size()), table);
+    const TriangleMesh mesh = surface_of(table, half_depth);
+    const auto surface = std::make_shared<const SurfaceMesh>(
+        build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
+    check_features(table, *surface);
+    model.meshes.push_back({table.text("name"), surface});
+    names.triangles.push_back(mesh);
+  }
+}
+
+}  // namespace scree
