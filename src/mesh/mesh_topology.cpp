@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
-#include <tuple>
 #include <utility>
+
+#include "mesh/mesh_sides.hpp"
 
 namespace scree {
 
@@ -64,37 +65,20 @@ TriangleMesh reordered(const TriangleMesh& mesh, const std::vector<Index>& order
   return result;
 }
 
-// What an edge is found by: its vertices; and which side of a triangle it is.
-struct EdgeKey {
-  Index low, high, triangle;
-  int corner;
-  bool reversed;
-};
-
-std::vector<EdgeKey> sorted_sides(const TriangleMesh& mesh) {
-  std::vector<EdgeKey> keys;
-  keys.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Index from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
-      keys.push_back({std::min(from, to), std::max(from, to), static_cast<Index>(t), k, from > to});
-    }
-  std::sort(keys.begin(), keys.end(), [](const EdgeKey& a, const EdgeKey& b) {
-    return std::tie(a.low, a.high, a.triangle, a.corner) < std::tie(b.low, b.high, b.triangle, b.corner);
-  });
-  return keys;
-}
-
 void find_edges(MeshTopology& topology) {
-  topology.edges_of.resize(topology.mesh.triangles.size());
-  for (const EdgeKey& key : sorted_sides(topology.mesh)) {
-    auto& edges = topology.edges;
-    if (edges.empty() || edges.back().low != key.low || edges.back().high != key.high)
-      edges.push_back({key.low, key.high, static_cast<Index>(topology.uses.size()), 0});
-    ++edges.back().uses;
-    topology.uses.push_back({key.triangle, key.corner, key.reversed});
-    topology.edges_of[key.triangle][key.corner] = static_cast<Index>(edges.size()) - 1;
-  }
+  const TriangleMesh& mesh = topology.mesh;
+  topology.edges_of.resize(mesh.triangles.size());
+  for_each_edge(sides_of(mesh), [&](const Side* first, const Side* last) {
+    const Index edge = static_cast<Index>(topology.edges.size());
+    topology.edges.push_back({first->low, first->high, static_cast<Index>(topology.uses.size()),
+                              static_cast<Index>(last - first)});
+    for (const Side* side = first; side != last; ++side) {
+      const auto& corners = mesh.triangles[side->triangle];
+      const auto from = std::find(corners.begin(), corners.end(), side->forward ? side->low : side->high);
+      topology.uses.push_back({side->triangle, !side->forward});
+      topology.edges_of[side->triangle][from - corners.begin()] = edge;
+    }
+  });
 }
 
 IndexLists triangles_at_vertices(const TriangleMesh& mesh) {

@@ -12,11 +12,10 @@
 
 namespace scree {
 
-// A side of a triangle: from corner to corner + 1.
+// A triangle at an edge.
 struct EdgeUse {
   Index triangle;
-  int corner;
-  bool reversed;  // runs from the higher vertex to the lower one
+  bool reversed;  // it runs from the higher vertex to the lower one
 };
 
 struct MeshEdge {
