@@ -7,13 +7,12 @@
 
 namespace scree {
 
-// Of a point from a box: 0 inside [m^2].
+// Of a point from a box: 0 inside [m^2]. Without branches, which a processor could not foresee.
 SCREE_HD Real squared_distance(const MeshBox& box, Vec3 p) {
-  const auto outside = [](Real low, Real x, Real high) {
-    return x < low ? low - x : x > high ? x - high : 0;
-  };
-  const Vec3 d{outside(box.min.x, p.x, box.max.x), outside(box.min.y, p.y, box.max.y),
-               outside(box.min.z, p.z, box.max.z)};
+  const auto larger = [](Real a, Real b) { return a > b ? a : b; };
+  const Vec3 below = box.min - p, above = p - box.max;
+  const Vec3 d{larger(larger(below.x, above.x), 0), larger(larger(below.y, above.y), 0),
+               larger(larger(below.z, above.z), 0)};
   return dot(d, d);
 }
 
@@ -38,6 +37,17 @@ SCREE_HD Real squared_distance(Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
   return nearer < ca ? nearer : ca;
 }
 
+// Whether a triangle is nearer than the square root of this. Its box tells most that are not.
+SCREE_HD bool is_nearer(const MeshView& mesh, Index triangle, Vec3 p, Real limit) {
+  const Index* const v = mesh.triangles[triangle].vertex;
+  const Vec3 a = mesh.vertices[v[0]], b = mesh.vertices[v[1]], c = mesh.vertices[v[2]];
+  const auto least = [](Real x, Real y, Real z) { return x < y ? (x < z ? x : z) : (y < z ? y : z); };
+  const auto most = [](Real x, Real y, Real z) { return x > y ? (x > z ? x : z) : (y > z ? y : z); };
+  const MeshBox box{{least(a.x, b.x, c.x), least(a.y, b.y, c.y), least(a.z, b.z, c.z)},
+                    {most(a.x, b.x, c.x), most(a.y, b.y, c.y), most(a.z, b.z, c.z)}};
+  return squared_distance(box, p) < limit && squared_distance(a, b, c, p) < limit;
+}
+
 // Calls visit(triangle) for every triangle less than `reach` from c [m], but for round-off, in increasing
 // order. The place in the tree is a level and a number, so that it needs no stack.
 SCREE_HD_CALLER
@@ -53,11 +63,8 @@ SCREE_HD void for_each_triangle_near(const MeshView& mesh, Vec3 c, Real reach, c
         --level, node *= kTreeWidth;
         continue;
       }
-      for (Index t = kTreeWidth * node; t < kTreeWidth * (node + 1) && t < mesh.triangle_count; ++t) {
-        const Index* v = mesh.triangles[t].vertex;
-        if (squared_distance(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]], c) < limit)
-          visit(t);
-      }
+      for (Index t = kTreeWidth * node; t < kTreeWidth * (node + 1) && t < mesh.triangle_count; ++t)
+        if (is_nearer(mesh, t, c, limit)) visit(t);
     }
     ++node;
     while (level < top &&
