@@ -1,6 +1,8 @@
 #include "base/countable.hpp"
+#include "dem/mesh_touches.hpp"
 #include "device_meshes.cuh"
 #include "for_each.cuh"
+#include "mesh/mesh_tree.hpp"
 
 namespace scree {
 namespace {
@@ -163,14 +165,13 @@ void DeviceMeshes::make_room_over_step(Index entries) {
 }
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
-  for_each(device, count_, MeshTouchItem<SurfaceViews>{views, touches_.data()});
+  for_each(device, count_, MeshTouchItem{views, touches_.data()});
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
                                    const PlacedSurface* start_placed) {
-  for_each(
-      device, count_,
-      MeshStepTouchItem<SurfaceViews>{views, start_position, start_placed, touches_.data(), before_.data()});
+  for_each(device, count_,
+           MeshStepTouchItem{views, start_position, start_placed, touches_.data(), before_.data()});
 }
 
 }  // namespace scree

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "dem/mesh_touches.hpp"
+#include "dem/mesh_rows.hpp"
 #include "dem/surface_items.hpp"
 #include "device.cuh"
 #include "model/model.hpp"
