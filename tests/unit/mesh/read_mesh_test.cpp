@@ -102,6 +102,16 @@ TEST_CASE("dialects") {
   CHECK(types(-0.1f, "float32") == Real(-0.1f));
 }
 
+TEST_CASE("solids of polygons") {
+  for (const MeshFile& file : polygon_files()) {
+    CAPTURE(file.name);
+    const TriangleMesh mesh = welded(parse_mesh(file.bytes, file.name));
+    CHECK(mesh_troubles(mesh, false) == std::vector<std::string>{});
+    CHECK(mesh.triangles.size() == (file.name == "l.obj" ? 20 : 12));
+    CHECK(mesh_volume(mesh) == (file.name == "l.obj" ? 3 : 1));
+  }
+}
+
 TEST_CASE("polygons are cut into triangles of their winding") {
   const auto area_of = [](const std::string& text, std::size_t triangles) {
     const TriangleMesh mesh = parse_mesh(text, "a.obj");
