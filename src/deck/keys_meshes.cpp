@@ -59,9 +59,9 @@ const TableKeys& mesh_keys() {
              .about("Along z, about z = 0; of a cone from z = 0; of a capsule without its half spheres."),
          integer("segments")
              .only_for(curved)
-             .within(3, 100000)
+             .within(3, 10000)
              .otherwise("48")
-             .about("Edges once around; of plates and capsules a multiple of 4."),
+             .about("Edges once around; of plates and capsules a multiple of 4, of screws at least 8."),
          integer("levels").only_for(spheres).within(0, 9).otherwise("3").about(
              "The 20 triangles of an icosahedron are split into four so many times."),
          real("wall", "m").only_for(drums).above(0).required().about("Thickness of the drum's wall."),

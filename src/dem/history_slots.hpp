@@ -7,6 +7,7 @@
 #include "base/hd.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "mesh/surface_numbers.hpp"
 #include "partition/halo_plan.hpp"
 #include "partition/subdomain.hpp"
 
@@ -95,7 +96,6 @@ struct HistoryViews {
 // beside the particle where both are in the periodic box, so that no name depends on when that was last seen
 // to.
 inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48;
-inline constexpr int kSurfaceBits = 20;  // of the number of a surface, where there are meshes
 SCREE_HD GlobalId surface_id(Index surface, Index feature = 0) {
   return kFirstSurfaceId + surface + (GlobalId{feature} << kSurfaceBits);
 }

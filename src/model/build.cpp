@@ -94,7 +94,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   model.gravity = root.vector("gravity");
   model.consistent_velocities = root.choice<StartVelocities>("velocities") == StartVelocities::consistent;
   build_materials(root, model, names);
-  build_meshes(root, model, names);
+  share.together([&] { build_meshes(root, model, names); });
   build_space(root, names, model);
   build_time(root, model);
   check_bodies_inside(root, model.space);

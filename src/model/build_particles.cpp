@@ -11,6 +11,7 @@
 #include "model/generators.hpp"
 #include "model/particle_file.hpp"
 #include "model/plausibility.hpp"
+#include "model/start_meshes.hpp"
 #include "physics/particle_mass.hpp"
 
 namespace scree {
@@ -206,7 +207,9 @@ void Group::place_random(const std::vector<StartItem>& placed, RandomNumbers bef
   const std::vector<Real> radius = draw(table_.table("radius"), count_, {0, count_}, before_radii);
   if (const std::string trouble = packing_trouble(box, radius); !trouble.empty())
     table_.fail("count", trouble);
-  const std::vector<Vec3> places = random_packing(box, radius, placed, random_);
+  const StartMeshes meshes(model_);
+  const auto clear = [&](Vec3 p, Real r) { return meshes.is_clear(p, r, box.gap); };
+  const std::vector<Vec3> places = random_packing(box, radius, placed, clear, random_);
   if (places.size() < radius.size())
     table_.fail("count",
                 fmt::format("only {} particles found a place in {} tries each; a larger box (min, max), "

@@ -128,7 +128,8 @@ Vec3 lattice_position(Vec3 origin, Vec3 spacing, const std::array<std::int64_t, 
 }
 
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
-                                 const std::vector<StartItem>& obstacles, RandomNumbers& random) {
+                                 const std::vector<StartItem>& obstacles, const IsFree& is_free,
+                                 RandomNumbers& random) {
   const Real own = radius.empty() ? 0 : *std::max_element(radius.begin(), radius.end());
   Real largest = own;
   for (const StartItem& item : obstacles) largest = std::max(largest, item.radius);
@@ -146,7 +147,7 @@ std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>&
     bool found = false;
     for (std::int64_t attempt = 0; attempt < box.tries && !found && fits(box, r); ++attempt) {
       positions[order[n]] = random_place(box, r, random);
-      found = bins.is_clear(positions[order[n]], r, box.gap);
+      found = bins.is_clear(positions[order[n]], r, box.gap) && is_free(positions[order[n]], r);
     }
     if (!found) return std::vector<Vec3>(n);
     bins.insert(positions[order[n]], r);

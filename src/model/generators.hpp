@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,15 @@ struct PackingBox {
   std::int64_t tries = 0;  // random places per particle
 };
 
+// Whether a sphere may stand at a point [m].
+using IsFree = std::function<bool(Vec3 point, Real radius)>;
+
 // Random sequential insertion: each particle, the largest first, goes to the first of its random places that
-// keeps clear of everything there already. Result: one position per radius, in the order of the radii; fewer,
-// the number placed, where a particle found no place.
+// is free and keeps clear of all spheres there already. Result: one position per radius, in the order of the
+// radii; fewer, the number placed, where a particle found no place.
 std::vector<Vec3> random_packing(const PackingBox& box, const std::vector<Real>& radius,
-                                 const std::vector<StartItem>& obstacles, RandomNumbers& random);
+                                 const std::vector<StartItem>& obstacles, const IsFree& is_free,
+                                 RandomNumbers& random);
 
 // Why there cannot be room for all of them, before any place is tried; empty where there may be. Judges large
 // groups by the chance of a random place, small ones by their volume alone.

@@ -11,6 +11,7 @@
 #include "model/limits.hpp"
 #include "model/point_bins.hpp"
 #include "model/space_box.hpp"
+#include "model/start_meshes.hpp"
 #include "model/touching.hpp"
 #include "physics/step_limits.hpp"
 
@@ -21,29 +22,36 @@ namespace {
 // Phase that a body on one contact may turn in a step of a staggered run, and should.
 constexpr Real kMostBodyPhase = 0.7, kGoodBodyPhase = 0.3;
 
-// Numbers of items: particles by their ids, then shapes, then walls.
+// Numbers of items: particles by their ids, then shapes, then walls, then meshes of bodies.
 class ItemNames {
  public:
   explicit ItemNames(const Model& model) : model_(model), particles_(model.particles.totals.count) {
     for (std::size_t b = 0; b < model.bodies.size(); ++b)
       body_.insert(body_.end(), model.bodies[b].shapes.size(), static_cast<int>(b));
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+      with_mesh_.insert(with_mesh_.end(), model.bodies[b].meshes.size(), b);
   }
   // Of a shape; kGround for a particle.
   int body(std::int64_t number) const {
     return number < particles_ ? kGround : body_[static_cast<std::size_t>(number - particles_)];
   }
   std::int64_t first_wall() const { return particles_ + std::ssize(body_); }
+  std::int64_t first_mesh() const { return first_wall() + std::ssize(model_.walls); }
   std::string name(std::int64_t number) const {
     if (number < particles_) return fmt::format("particle {}", number);
     if (number < first_wall())
       return fmt::format("body \"{}\"", model_.bodies[static_cast<std::size_t>(body(number))].name);
-    return fmt::format("wall \"{}\"", model_.walls[static_cast<std::size_t>(number - first_wall())].name);
+    if (number < first_mesh())
+      return fmt::format("wall \"{}\"", model_.walls[static_cast<std::size_t>(number - first_wall())].name);
+    return fmt::format("body \"{}\"",
+                       model_.bodies[with_mesh_[static_cast<std::size_t>(number - first_mesh())]].name);
   }
 
  private:
   const Model& model_;
   std::int64_t particles_;
-  std::vector<int> body_;  // of each shape
+  std::vector<int> body_;               // of each shape
+  std::vector<std::size_t> with_mesh_;  // bodies, of each of their meshes
 };
 
 // The largest overlap so far, over the smaller radius; of equal ones the first by number.
@@ -97,37 +105,6 @@ void check_particles_inside(const DeckTable& deck, const Model& model) {
   }
 }
 
-// As a run does it: a particle may start many periods outside the space.
-void bring_into_periodic_box(const Space& space, std::vector<StartItem>& items) {
-  const auto axis = [&](int side, Real min, Real max, Real Vec3::*along) {
-    if (space.boundary[side] != Boundary::periodic) return;
-    const Real period = max - min;
-    for (StartItem& item : items) {
-      Real& x = item.position.*along;
-      x -= std::floor((x - min) / period) * period;
-    }
-  };
-  axis(kXMin, space.min.x, space.max.x, &Vec3::x);
-  axis(kYMin, space.min.y, space.max.y, &Vec3::y);
-  axis(kZMin, space.min.z, space.max.z, &Vec3::z);
-}
-
-// Displacements of the images across periodic sides, the item itself included.
-std::vector<Vec3> image_shifts(const Space& space) {
-  const Vec3 extent = space.max - space.min;
-  const auto periods = [&](int side, Vec3 period) {
-    return space.boundary[side] == Boundary::periodic ? std::vector{-period, Vec3{}, period}
-                                                      : std::vector{Vec3{}};
-  };
-  std::vector<Vec3> shifts;
-  for (const Vec3 x : periods(kXMin, {extent.x, 0, 0})) {
-    for (const Vec3 y : periods(kYMin, {0, extent.y, 0})) {
-      for (const Vec3 z : periods(kZMin, {0, 0, extent.z})) shifts.push_back(x + y + z);
-    }
-  }
-  return shifts;
-}
-
 // Around all of them; there is at least one.
 Box box_around(const std::vector<StartItem>& items) {
   Box box{items.front().position, items.front().position};
@@ -147,7 +124,7 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
   const TouchRule rule(model);
   const Box box = box_around(items);
   const SortedBins bins(PointCells(box.min, box.max, reach, items.size()), items);
-  for (const Vec3 shift : image_shifts(model.space)) {
+  for (const Vec3 shift : image_shifts(periods_of(model.space))) {
     for (const StartItem& item : bins.items()) {
       const Vec3 p = item.position + shift;
       if (!box.reaches(p, reach)) continue;
@@ -173,6 +150,19 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
       const Real overlap = item.radius - dot(wall.normal, item.position - wall.point);
       worst.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));
     }
+  }
+}
+
+// Of particles: shapes do not touch meshes.
+void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items, WorstOverlap& worst) {
+  const ItemNames names(model);
+  const StartMeshes meshes(model);
+  std::int64_t of_bodies = names.first_mesh();
+  for (const StartMesh& mesh : meshes.all()) {
+    const std::int64_t number = mesh.wall < 0 ? of_bodies++ : names.first_wall() + mesh.wall;
+    for (const StartItem& item : items)
+      if (item.number < model.particles.totals.count)
+        worst.meet(mesh.overlap(item.position, item.radius) / item.radius, item.number, number);
   }
 }
 
@@ -274,9 +264,11 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   constexpr Real kRoundOff = 1e-9;
   share.together([&] { check_particles_inside(deck, model); });
   std::vector<StartItem> items = collect_items(model, share);
-  bring_into_periodic_box(model.space, items);
+  // As a run does it: a particle may start many periods outside the space.
+  for (StartItem& item : items) item.position = in_periodic_box(model.space, item.position);
   WorstOverlap own;
   find_wall_overlaps(model, items, own);
+  find_mesh_overlaps(model, items, own);
   const Real reach = 2 * radius_range(model).largest;
   items = share.near_each_other(std::move(items), model.space, reach);
   share.together([&] { find_pair_overlaps(model, items, reach, own); });

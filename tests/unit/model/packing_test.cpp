@@ -32,7 +32,8 @@ Packing packing(int dimension, Real fraction, Real smallest, Real length) {
 Real tried_chance(const Packing& p, Real radius) {
   constexpr int kTried = 20000;
   RandomNumbers random(7);
-  const std::vector<Vec3> places = random_packing(p.box, p.radius, {}, random);
+  const std::vector<Vec3> places = random_packing(
+      p.box, p.radius, {}, [](Vec3, Real) { return true; }, random);
   REQUIRE(places.size() == p.radius.size());
   int free = 0;
   for (int n = 0; n < kTried; ++n) {

@@ -1,0 +1,178 @@
+#include "model/make_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "deck/choices.hpp"
+#include "mesh/primitives.hpp"
+#include "mesh/read_mesh.hpp"
+#include "model/frames.hpp"
+#include "physics/spatial_rotation.hpp"
+
+namespace scree {
+namespace {
+
+Vec3 size_of(const DeckTable& table, std::size_t entries) {
+  const std::vector<Real>& size = table.reals("size");
+  if (size.size() != entries) table.fail("size", fmt::format("must have {} entries", entries));
+  return {size[0], size[1], entries > 2 ? size[2] : 0};
+}
+
+Index segments_of(const DeckTable& table) { return static_cast<Index>(table.integer("segments")); }
+
+// The keys of a pipe and a screw are called otherwise in the deck than in their shapes.
+void check_smaller(const DeckTable& table, const std::string& key, const std::string& than) {
+  if (!(table.real(key) < table.real(than)))
+    table.fail(key, fmt::format("must be below {} = {}", than, table.real(than)));
+}
+
+template <class Shape>
+TriangleMesh sound(const DeckTable& table, const Shape& shape, TriangleMesh (*make)(const Shape&)) {
+  if (const std::string trouble = shape_trouble(shape); !trouble.empty()) table.fail("kind", trouble);
+  return make(shape);
+}
+
+DrumShape drum_of(const DeckTable& table) {
+  const auto lifters = static_cast<Index>(table.integer("lifters"));
+  for (const char* key : {"lifter_height", "lifter_width"})
+    if ((lifters > 0) != table.has(key))
+      table.fail(key, lifters > 0 ? "missing; lifters are given" : "not used without lifters");
+  const auto of_lifters = [&](const char* key) { return lifters > 0 ? table.real(key) : 0; };
+  return {table.real("radius"),
+          table.real("wall"),
+          table.real("length"),
+          table.real("end_wall"),
+          lifters,
+          of_lifters("lifter_height"),
+          of_lifters("lifter_width"),
+          segments_of(table)};
+}
+
+ScrewShape screw_of(const DeckTable& table) {
+  check_smaller(table, "core_radius", "radius");
+  const Real length = table.real("length");
+  return {table.real("core_radius"),
+          table.real("radius"),
+          table.real("pitch"),
+          table.real("thickness"),
+          length,
+          table.has("core_length") ? table.real("core_length") : length,
+          segments_of(table)};
+}
+
+// Points on the segments, so that none of these is longer than `longest` [m].
+std::vector<Vec3> with_points_between(const std::vector<Vec3>& points, bool closed, Real longest) {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    all.push_back(points[i]);
+    if (!closed && i + 1 == points.size()) break;
+    const Vec3 apart = points[(i + 1) % points.size()] - points[i];
+    const auto parts = static_cast<int>(std::ceil(norm(apart) / longest));
+    for (int k = 1; k < parts; ++k) all.push_back(points[i] + (Real(k) / parts) * apart);
+  }
+  return all;
+}
+
+TriangleMesh line_of(const DeckTable& table, Real half_depth) {
+  constexpr Real kMostSegments = 1e7;
+  const std::vector<Vec3>& points = table.vectors("points");
+  const bool closed = table.boolean("closed");
+  const std::size_t least = closed ? 3 : 2;
+  if (points.size() < least) table.fail("points", fmt::format("must be at least {}", least));
+  Real length = 0, area = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 a = points[i], b = points[(i + 1) % points.size()];
+    length += closed || i + 1 < points.size() ? norm(b - a) : 0;
+    area += cross(a - points[0], b - points[0]).z / 2;
+  }
+  if (closed && !(area > 0))
+    table.fail(
+        "points",
+        fmt::format("enclose an area of {:.4g} m^2; they must run counterclockwise around what is solid",
+                    area));
+  if (!table.has("refine")) return extruded_line_mesh(points, closed, half_depth);
+  const Real longest = table.real("refine");
+  if (!(length / longest < kMostSegments))
+    table.fail("refine", fmt::format("must be above the length of the line / {:g} = {:.4g}", kMostSegments,
+                                     length / kMostSegments));
+  return extruded_line_mesh(with_points_between(points, closed, longest), closed, half_depth);
+}
+
+TriangleMesh read(const DeckTable& table) {
+  try {
+    return read_mesh(table.text("file"));
+  } catch (const InputError& error) {
+    table.fail("file", error.what());
+  }
+}
+
+TriangleMesh made(const DeckTable& table, Real half_depth) {
+  const auto radius = [&] { return table.real("radius"); };
+  const auto length = [&] { return table.real("length"); };
+  switch (table.choice<MeshKind>("kind")) {
+    case MeshKind::file:
+      return read(table);
+    case MeshKind::box:
+      return sound(table, BoxShape{size_of(table, 3)}, box_mesh);
+    case MeshKind::cylinder:
+      return sound(table, CylinderShape{radius(), length(), segments_of(table)}, cylinder_mesh);
+    case MeshKind::cone:
+      return sound(table, ConeShape{radius(), table.real("top_radius"), length(), segments_of(table)},
+                   cone_mesh);
+    case MeshKind::sphere:
+      return sound(table, SphereShape{radius(), static_cast<int>(table.integer("levels"))}, sphere_mesh);
+    case MeshKind::capsule:
+      return sound(table, CapsuleShape{radius(), length(), segments_of(table)}, capsule_mesh);
+    case MeshKind::plate:
+      return sound(table, PlateShape{size_of(table, 3), table.real("hole_radius"), segments_of(table)},
+                   plate_mesh);
+    case MeshKind::pipe:
+      check_smaller(table, "inner_radius", "radius");
+      return sound(table, PipeShape{table.real("inner_radius"), radius(), length(), segments_of(table)},
+                   pipe_mesh);
+    case MeshKind::drum:
+      return sound(table, drum_of(table), drum_mesh);
+    case MeshKind::screw:
+      return sound(table, screw_of(table), screw_mesh);
+    case MeshKind::rectangle: {
+      const Vec3 size = size_of(table, 2);
+      return rectangle_mesh(size.x, size.y);
+    }
+    case MeshKind::line:
+      break;
+  }
+  return line_of(table, half_depth);
+}
+
+}  // namespace
+
+bool is_sheet(const DeckTable& table) {
+  switch (table.choice<MeshKind>("kind")) {
+    case MeshKind::file:
+      return table.boolean("sheet");
+    case MeshKind::line:
+      return !table.boolean("closed");
+    case MeshKind::rectangle:
+      return true;
+    default:
+      return false;
+  }
+}
+
+TriangleMesh make_mesh(const DeckTable& table, Real half_depth) {
+  TriangleMesh mesh = made(table, half_depth);
+  const Quaternion turn = read_orientation(table);
+  const Mat3 axes = rotation_matrix(turn);
+  const Vec3 offset = table.vector("offset");
+  const Real scale = table.has("scale") ? table.real("scale") : 1;
+  for (Vec3& vertex : mesh.vertices) {
+    vertex = scale * vertex;
+    vertex = (turn.w == 1 ? vertex : axes * vertex) + offset;
+  }
+  return mesh;
+}
+
+}  // namespace scree
