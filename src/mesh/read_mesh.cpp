@@ -47,8 +47,6 @@ TriangleMesh parse_mesh(std::string_view bytes, const std::string& path) {
                       : suffix == ".ply" ? parse_ply
                                          : nullptr;
   if (parse == nullptr) throw InputError(path + ": must end with .stl, .obj or .ply");
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // some text begins with it
-  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   TriangleMesh mesh = parse(bytes, path);
   if (mesh.triangles.empty()) throw InputError(path + ": has no triangles");
   return mesh;
