@@ -17,7 +17,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libpetsc-real-dev libeigen3-dev
-  libtomlplusplus-dev libcli11-dev libfmt-dev libassimp-dev catch2
+  libtomlplusplus-dev libcli11-dev libfmt-dev catch2
   clang-format                    # of the test of style: version 14, as Debian 12 has it
 )
 picture_packages=( # animations and reader tests, too

@@ -35,6 +35,11 @@ std::string lower(std::string_view word) {
   return small;
 }
 
+Words::Words(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // some text begins with it
+  if (text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+}
+
 void Words::skip_blanks(bool over_lines) {
   for (; at_ < text_.size(); ++at_) {
     const char c = text_[at_];

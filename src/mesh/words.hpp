@@ -14,7 +14,7 @@ namespace scree {
 class Words {
  public:
   // file: its name in messages. text lives longer than this.
-  Words(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+  Words(std::string_view text, std::string file);
 
   // Empty at the end of the file.
   std::string_view next();

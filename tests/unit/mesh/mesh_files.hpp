@@ -107,4 +107,36 @@ inline std::vector<MeshFile> tetrahedron_files() {
           {"float.ply", binary_ply<float>("float", false), true}};
 }
 
+// More of what the formats know: a prism over an L with faces of four and six corners, counted back and with
+// texture and normals; a cube of squares with elements and lists that are passed over.
+inline std::vector<MeshFile> polygon_files() {
+  std::string l = "mtllib l.mtl\ng l\n", prism;
+  for (const char* const z : {" 0\n", " 1\n"})
+    for (const char* const xy : {"0 0", "2 0", "2 1", "1 1", "1 2", "0 2"}) l += std::string("v ") + xy + z;
+  l += "vt 0 0\nvn 0 0 1\nf 6/1/1 5/1/1 4//1 3//1 2/1 1 # below\nf -6 -5 -4 \\\n -3 -2 -1\n";
+  for (int k = 1; k <= 6; ++k) {
+    const int next = k % 6 + 1;
+    for (const int corner : {k, next, next + 6, k + 6})
+      prism += (corner == k ? "f " : " ") + std::to_string(corner);
+    prism += "\n";
+  }
+  std::string cube =
+      "ply\nformat binary_big_endian 1.0\nobj_info none\nelement vertex 8\nproperty short x\nproperty int8 "
+      "y\n"
+      "property list uchar ushort w\nproperty uint32 z\nelement face 6\nproperty float32 quality\n"
+      "property list int uint16 vertex_index\nelement edge 1\nproperty double a\nend_header\n";
+  for (int k = 0; k < 8; ++k) {
+    cube += bytes_of(std::int16_t(k % 2), true) + bytes_of(std::int8_t(k / 2 % 2)) + '\1' +
+            bytes_of(std::uint16_t(k));
+    cube += bytes_of(std::uint32_t(k / 4), true);
+  }
+  constexpr std::uint16_t kSquares[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& square : kSquares) {
+    cube += bytes_of(0.5f, true) + bytes_of(std::int32_t(4), true);
+    for (const std::uint16_t corner : square) cube += bytes_of(corner, true);
+  }
+  return {{"l.obj", l + prism}, {"cube.ply", cube + bytes_of(1.0)}};
+}
+
 }  // namespace scree

@@ -130,7 +130,8 @@ bool is_read(const std::string& bytes, const std::string& name) {
 }  // namespace
 
 TEST_CASE("files changed at random are read or refused") {
-  const std::vector<MeshFile> files = tetrahedron_files();
+  std::vector<MeshFile> files = tetrahedron_files();
+  for (const MeshFile& file : polygon_files()) files.push_back(file);
   const std::uint32_t count = from_environment("SCREE_MUTATIONS", 200'000),
                       seed = from_environment("SCREE_SEED", 1);
   std::vector<std::size_t> read(files.size()), refused(files.size());

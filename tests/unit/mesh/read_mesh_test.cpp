@@ -102,6 +102,16 @@ TEST_CASE("dialects") {
   CHECK(types(-0.1f, "float32") == Real(-0.1f));
 }
 
+TEST_CASE("solids of polygons") {
+  for (const MeshFile& file : polygon_files()) {
+    CAPTURE(file.name);
+    const TriangleMesh mesh = welded(parse_mesh(file.bytes, file.name));
+    CHECK(mesh_troubles(mesh, false) == std::vector<std::string>{});
+    CHECK(mesh.triangles.size() == (file.name == "l.obj" ? 20 : 12));
+    CHECK(mesh_volume(mesh) == (file.name == "l.obj" ? 3 : 1));
+  }
+}
+
 TEST_CASE("polygons are cut into triangles of their winding") {
   const auto area_of = [](const std::string& text, std::size_t triangles) {
     const TriangleMesh mesh = parse_mesh(text, "a.obj");
@@ -159,6 +169,8 @@ TEST_CASE("what is said of files that cannot be read") {
   CHECK(said("none.stl") == at + "none.stl: cannot be read: No such file or directory");
   fs::create_directory(folder / "folder.stl");
   CHECK(said("folder.stl") == at + "folder.stl: is a folder; must be a file");
+  fs::create_symlink("/dev/zero", folder / "endless.stl");
+  CHECK(said("endless.stl") == at + "endless.stl: is no regular file");
   std::ofstream(folder / "empty.ply");
   CHECK(said("empty.ply") == at + "empty.ply: is empty");
   std::ofstream(folder / "step.stp") << "x";
