@@ -10,38 +10,42 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// The drum's section. `inner` and `outer` run counterclockwise at the same angles; a lifter stands on the
-// chord from inner[foot] to the next one, with its two tips; the arc from there to the next foot has an even
-// number of segments.
+// The drum's section. `inner` and `outer` run counterclockwise; a lifter stands from inner[foot] to
+// inner[foot + 1] and has two tips. The arc from there to the next foot has an even number of segments. Under
+// a lifter the outer ring goes on, and `under` is beside it where the inner one does not: inner, with those
+// between its feet, has the outer one's angles.
 struct Section {
-  std::vector<Vec3> inner, outer, tips;
+  std::vector<Vec3> inner, outer, tips, under;  // under: of the first lifter, then of the second, ...
   std::vector<std::size_t> feet;
 };
 
 Section drum_section(const DrumShape& shape) {
   Section section;
   const Real outwards = 1 + shape.wall / shape.radius;
-  const auto add = [&](Vec3 p) {
-    section.inner.push_back(p);
+  const auto add = [&](std::vector<Vec3>& ring, Vec3 p) {
+    ring.push_back(p);
     section.outer.push_back(outwards * p);
   };
   if (shape.lifters == 0)
-    for (Index k = 0; k < shape.segments; ++k) add(shape.radius * circle_point(k, shape.segments));
+    for (Index k = 0; k < shape.segments; ++k)
+      add(section.inner, shape.radius * circle_point(k, shape.segments));
   const Real half = shape.lifter_width / 2, foot_angle = std::asin(half / shape.radius);
   const Real foot = std::sqrt(shape.radius * shape.radius - half * half);
   const Index arc = 2 * ((shape.segments + 2 * shape.lifters - 1) / std::max<Index>(1, 2 * shape.lifters));
+  const Index below = static_cast<Index>(std::ceil(shape.segments * foot_angle / kPi));
   for (Index i = 0; i < shape.lifters; ++i) {
     const Vec3 out = circle_point(i, shape.lifters), along{-out.y, out.x, 0};
+    const auto on_arc = [&](Real angle) {
+      return shape.radius * (std::cos(angle) * out + std::sin(angle) * along);
+    };
     section.feet.push_back(section.inner.size());
-    for (const Real side : {-half, half}) {
-      add(foot * out + side * along);
+    for (const Real side : {-half, half})
       section.tips.push_back((shape.radius - shape.lifter_height) * out + side * along);
-    }
+    add(section.inner, foot * out - half * along);
+    for (Index k = 1; k < below; ++k) add(section.under, on_arc(foot_angle * (2 * k - below) / below));
+    add(section.inner, foot * out + half * along);
     const Real gap = 2 * kPi / shape.lifters - 2 * foot_angle;
-    for (Index k = 1; k < arc; ++k) {
-      const Real angle = foot_angle + gap * k / arc;
-      add(shape.radius * (std::cos(angle) * out + std::sin(angle) * along));
-    }
+    for (Index k = 1; k < arc; ++k) add(section.inner, on_arc(foot_angle + gap * k / arc));
   }
   return section;
 }
@@ -64,22 +68,28 @@ Ring contour(const Section& section, const Level& level) {
   return ring;
 }
 
-// The cut through wall and lifters, seen from +z (up) or -z.
-void add_cut(MeshBuilder& builder, const Section& section, const Level& level, const Ring& outer, bool up) {
-  if (up) {
-    builder.strip(outer, level.inner, true);
-  } else {
-    builder.strip(level.inner, outer, true);
+// The cut through wall and lifters at height z, seen from +z (up) or -z: the wall as a strip, each lifter as
+// a fan about the tip before it.
+void add_cut(MeshBuilder& builder, const Section& section, const Level& level, const Ring& outer, Real z,
+             bool up) {
+  const auto add = [&](Index a, Index b, Index c) {
+    up ? builder.triangle(a, b, c) : builder.triangle(a, c, b);
+  };
+  const Ring under = builder.ring(section.under, z);
+  const std::size_t lifters = section.feet.size(), below = lifters == 0 ? 0 : under.size() / lifters;
+  Ring wall = level.inner;
+  for (std::size_t i = lifters; i-- > 0;) {
+    const auto foot = wall.begin() + static_cast<std::ptrdiff_t>(section.feet[i]);
+    const auto first = under.begin() + static_cast<std::ptrdiff_t>(i * below);
+    wall.insert(foot + 1, first, first + static_cast<std::ptrdiff_t>(below));
   }
-  for (std::size_t i = 0; i < section.feet.size(); ++i) {
-    const Index before = level.inner[section.feet[i]], after = level.inner[section.feet[i] + 1];
-    const Index tip_before = level.tips[2 * i], tip_after = level.tips[2 * i + 1];
-    if (up) {
-      builder.quad(before, after, tip_after, tip_before);
-    } else {
-      builder.quad(before, tip_before, tip_after, after);
-    }
+  for (std::size_t i = 0; i < lifters; ++i) {
+    const std::size_t foot = section.feet[i] + i * below;
+    const Index tip = level.tips[2 * i];
+    for (std::size_t k = foot; k <= foot + below; ++k) add(tip, wall[k], wall[k + 1]);
+    add(tip, wall[foot + below + 1], level.tips[2 * i + 1]);
   }
+  up ? builder.strip(outer, wall, true) : builder.strip(wall, outer, true);
 }
 
 // The end wall inside the contour: between two lifters a fan about the middle of the arc, which sees the axis
@@ -124,8 +134,8 @@ TriangleMesh drum_mesh(const DrumShape& shape) {
     add_inner_end(builder, section, low, -inside, true);
     add_inner_end(builder, section, high, inside, false);
   } else {
-    add_cut(builder, section, low, outer_low, false);
-    add_cut(builder, section, high, outer_high, true);
+    add_cut(builder, section, low, outer_low, -inside, false);
+    add_cut(builder, section, high, outer_high, inside, true);
   }
   return builder.take();
 }

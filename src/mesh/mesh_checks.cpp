@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "mesh/mesh_mass.hpp"
+#include "mesh/mesh_shells.hpp"
+#include "mesh/mesh_sides.hpp"
 
 namespace scree {
 
@@ -14,38 +15,6 @@ namespace {
 constexpr std::size_t kMostPlaces = 5;
 
 std::string text_of(Vec3 v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
-
-// A side of a triangle, from its lower to its higher vertex.
-struct Side {
-  Index low, high, triangle;
-  bool forward;  // as the triangle runs
-  auto operator<=>(const Side&) const = default;
-};
-
-// In order of edge, then triangle. Sides from a vertex to itself are none.
-std::vector<Side> sides_of(const TriangleMesh& mesh) {
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (Index i = 0; i < static_cast<Index>(mesh.triangles.size()); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const Index a = mesh.triangles[i][k], b = mesh.triangles[i][(k + 1) % 3];
-      if (a != b) sides.push_back({std::min(a, b), std::max(a, b), i, a < b});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
-
-// Calls visit(first, last) with the sides of each edge.
-template <class Visit>
-void for_each_edge(const std::vector<Side>& sides, Visit visit) {
-  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
-    while (last < sides.size() && sides[last].low == sides[first].low &&
-           sides[last].high == sides[first].high)
-      ++last;
-    visit(&sides[first], &sides[first] + (last - first));
-  }
-}
 
 // Places of one kind of trouble: all are counted, the first are named.
 class Places {
@@ -81,6 +50,7 @@ class Checker {
     check_duplicates();
     check_edges(sheet);
     if (troubles_.empty() && !sheet) check_volume();
+    if (troubles_.empty() && !sheet) check_shells();
     return troubles_;
   }
 
@@ -174,6 +144,23 @@ class Checker {
     }
   }
 
+  void check_shells() {
+    Places inverted, inner;
+    const std::vector<Index> shell = shells_of(mesh_);
+    for (const MisplacedShell& misplaced : misplaced_shells(mesh_, shell)) {
+      const auto text = [&] {
+        const auto first = std::find(shell.begin(), shell.end(), misplaced.shell) - shell.begin();
+        return fmt::format("that of {}", triangle_text(static_cast<Index>(first)));
+      };
+      (misplaced.volume < 0 ? inverted : inner).add(text);
+    }
+    inverted.report("a shell is inside out", "shells are inside out",
+                    "corners must run counterclockwise seen from outside, but around a cavity", troubles_);
+    inner.report("a shell lies inside another", "shells lie inside others",
+                 "around a cavity corners must run clockwise seen from outside; solids must not overlap",
+                 troubles_);
+  }
+
   const TriangleMesh& mesh_;
   const std::vector<Index>& numbers_;
   std::vector<std::string> troubles_;
@@ -184,28 +171,6 @@ class Checker {
 std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
                                        const std::vector<Index>& numbers) {
   return Checker(mesh, numbers).troubles(sheet);
-}
-
-std::vector<Index> shells_of(const TriangleMesh& mesh) {
-  std::vector<Index> parent(mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](Index i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for_each_edge(sides_of(mesh), [&](const Side* first, const Side* last) {
-    for (const Side* side = first + 1; side < last; ++side) {
-      const Index a = root(first->triangle), b = root(side->triangle);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  });
-  std::vector<Index> shell(parent.size());
-  Index count = 0;
-  for (Index i = 0; i < static_cast<Index>(parent.size()); ++i) {
-    const Index first = root(i);  // the lowest of its piece, at most i
-    shell[i] = first == i ? count++ : shell[first];
-  }
-  return shell;
 }
 
 }  // namespace scree

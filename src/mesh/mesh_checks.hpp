@@ -15,8 +15,4 @@ namespace scree {
 std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
                                        const std::vector<Index>& numbers = {});
 
-// Pieces that hang together over shared edges: of each triangle the number of its piece, from 0 in the order
-// of their first triangles.
-std::vector<Index> shells_of(const TriangleMesh& mesh);
-
 }  // namespace scree

@@ -53,6 +53,20 @@ bool is_convex(const std::vector<Flat>& points) {
   return true;
 }
 
+// Whether two sides cross; they may touch, as those of polygons with a hole do where outline and hole are
+// joined.
+bool crosses_itself(const std::vector<Flat>& points) {
+  const std::size_t n = points.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Flat a = points[i], b = points[(i + 1) % n];
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Flat c = points[j], d = points[(j + 1) % n];
+      if (area2(a, b, c) * area2(a, b, d) < 0 && area2(c, d, a) * area2(c, d, b) < 0) return true;
+    }
+  }
+  return false;
+}
+
 // Whether the corner at position k can be cut off: it turns to the left and holds no other corner.
 bool is_ear(const std::vector<Flat>& points, const std::vector<Index>& left, std::size_t k) {
   const std::size_t n = left.size();
@@ -84,6 +98,8 @@ std::string add_polygon(TriangleMesh& mesh, const std::vector<Index>& corners) {
   }
   if (size > kMostNotConvex)
     return fmt::format("{} corners and not convex; must be at most {} then", size, kMostNotConvex);
+  const std::string crossed = "it crosses itself or has no area";
+  if (crosses_itself(flat)) return crossed;
   std::vector<Index> left(corners.size());
   std::iota(left.begin(), left.end(), 0);
   const std::size_t before = mesh.triangles.size();
@@ -96,7 +112,7 @@ std::string add_polygon(TriangleMesh& mesh, const std::vector<Index>& corners) {
       tried = 0;
     } else if (++tried > n) {
       mesh.triangles.resize(before);
-      return "it crosses itself or has no area";
+      return crossed;
     }
   }
   return "";

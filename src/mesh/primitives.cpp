@@ -6,7 +6,9 @@
 #include <numbers>
 #include <utility>
 
+#include "base/error.hpp"
 #include "mesh/mesh_builder.hpp"
+#include "mesh/polygon.hpp"
 
 namespace scree {
 
@@ -183,7 +185,13 @@ TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Re
   MeshBuilder builder;
   const Ring low = builder.ring(points, -end), high = builder.ring(points, end);
   builder.strip(low, high, closed);
-  return builder.take();
+  TriangleMesh mesh = builder.take();
+  if (!closed) return mesh;
+  for (const Ring& end_face : {reversed(low), high}) {
+    const std::string trouble = add_polygon(mesh, end_face);
+    if (!trouble.empty()) throw InputError("the closed line is no outline: " + trouble);
+  }
+  return mesh;
 }
 
 }  // namespace scree

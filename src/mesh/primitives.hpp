@@ -91,10 +91,11 @@ TriangleMesh screw_mesh(const ScrewShape& shape);
 
 // A sheet: the rectangle of this size about the origin in the plane z = 0, seen from +z.
 TriangleMesh rectangle_mesh(Real width, Real depth);
-// A sheet for planar models: segments between points (their z is left out) drawn along z, from -2^k to 2^k,
-// the least power of two that is at least half_depth, so that what is nearest to a point at z = 0 is at z = 0
-// exactly. Seen from the right of the way from point to point: outwards where a closed line runs
-// counterclockwise.
+// For planar models: segments between points (their z is left out) drawn along z, from -2^k to 2^k, the least
+// power of two that is at least half_depth, so that what is nearest to a point at z = 0 is at z = 0 exactly.
+// Seen from the right of the way from point to point. An open line is a sheet; a closed one, which runs
+// counterclockwise around its inside, has ends and is a closed mesh. Throws InputError for one that crosses
+// itself.
 TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Real half_depth);
 
 }  // namespace scree

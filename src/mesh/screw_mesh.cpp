@@ -11,16 +11,9 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// An arc of so many segments, both ends included, the whole turned about z.
-std::vector<Vec3> arc_points(Real radius, Real first, Real last, Index segments, Real turned) {
-  std::vector<Vec3> points;
-  for (Index k = 0; k <= segments; ++k) {
-    const Real angle = turned + first + (last - first) * k / segments;
-    points.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
-  }
-  return points;
-}
-
+// Its section at one height: the free core, and the flight as a fan of `radial_segments_` by
+// `sector_segments_` patches, whose edges on the flight's faces are so short that a face's patches, which are
+// twisted, are flat to second order.
 class Screw {
  public:
   explicit Screw(const ScrewShape& shape)
@@ -28,7 +21,8 @@ class Screw {
         half_sector_(kPi * shape.thickness / std::abs(shape.pitch)),
         layers_(segments_of(shape.length / std::abs(shape.pitch), 1)),
         core_segments_(segments_of(1 - half_sector_ / kPi, 2)),
-        sector_segments_(segments_of(half_sector_ / kPi, 1)) {}
+        sector_segments_(segments_of(half_sector_ / kPi, 1)),
+        radial_segments_(segments_of((1 - shape.core_radius / shape.flight_radius) / (2 * kPi), 1)) {}
 
   TriangleMesh mesh() {
     std::vector<Layer> layers;
@@ -40,43 +34,67 @@ class Screw {
   }
 
  private:
-  // Around one height: the free core from the flight's one face to the other, and the flight's rim back.
+  // Counterclockwise: the free core, the flight's first face outwards, its rim, its second face inwards. The
+  // corners belong to core and rim.
   struct Layer {
-    Ring core, rim;
+    Ring core, first_face, rim, second_face;
     Real z, turned;
   };
 
   Index segments_of(Real turns, Index least) const {
     return std::max(least, static_cast<Index>(std::ceil(shape_.segments * turns)));
   }
+  Real radius(Index k) const {
+    return shape_.core_radius + (shape_.flight_radius - shape_.core_radius) * k / radial_segments_;
+  }
+  Index vertex_at(Real radius, Real angle, Real z) {
+    return builder_.vertex({radius * std::cos(angle), radius * std::sin(angle), z});
+  }
+  // So many segments, both ends included.
+  Ring arc(Real radius, Real first, Real last, Index segments, Real z) {
+    Ring ring;
+    for (Index k = 0; k <= segments; ++k)
+      ring.push_back(vertex_at(radius, first + (last - first) * k / segments, z));
+    return ring;
+  }
   Layer layer(Index k) {
     const Real z = shape_.length * (Real(k) / layers_ - Real(0.5)), turned = 2 * kPi * z / shape_.pitch;
-    const auto core =
-        arc_points(shape_.core_radius, half_sector_, 2 * kPi - half_sector_, core_segments_, turned);
-    const auto rim = arc_points(shape_.flight_radius, -half_sector_, half_sector_, sector_segments_, turned);
-    return {builder_.ring(core, z), builder_.ring(rim, z), z, turned};
+    const Real first = turned - half_sector_, second = turned + half_sector_;
+    Layer layer{{}, {}, {}, {}, z, turned};
+    layer.core = arc(shape_.core_radius, second, first + 2 * kPi, core_segments_, z);
+    for (Index r = 1; r < radial_segments_; ++r) layer.first_face.push_back(vertex_at(radius(r), first, z));
+    layer.rim = arc(shape_.flight_radius, first, second, sector_segments_, z);
+    for (Index r = radial_segments_; --r > 0;) layer.second_face.push_back(vertex_at(radius(r), second, z));
+    return layer;
   }
   static Ring contour(const Layer& layer) {
     Ring ring = layer.core;
-    ring.insert(ring.end(), layer.rim.begin(), layer.rim.end());
+    for (const Ring* part : {&layer.first_face, &layer.rim, &layer.second_face})
+      ring.insert(ring.end(), part->begin(), part->end());
+    return ring;
+  }
+  // Across the flight at radius(r), 0 <= r < radial_segments_: new vertices between those of the faces.
+  Ring across(const Layer& layer, Index r) {
+    const Index last = radial_segments_ - 1;
+    Ring ring{r == 0 ? layer.core.back() : layer.first_face[r - 1]};
+    for (Index k = 1; k < sector_segments_; ++k) {
+      const Real angle = layer.turned + half_sector_ * (2 * k - sector_segments_) / sector_segments_;
+      ring.push_back(vertex_at(radius(r), angle, layer.z));
+    }
+    ring.push_back(r == 0 ? layer.core.front() : layer.second_face[last - r]);
     return ring;
   }
   // The flight's cut and the core's end, seen from +z (up) or -z.
   void end(const Layer& layer, bool up) {
-    std::vector<Vec3> under =
-        arc_points(shape_.core_radius, -half_sector_, half_sector_, sector_segments_, layer.turned);
-    under = {under.begin() + 1, under.end() - 1};
-    const Ring hidden = builder_.ring(under, layer.z);
-    Ring foot{layer.core.back()};
-    foot.insert(foot.end(), hidden.begin(), hidden.end());
-    foot.push_back(layer.core.front());
-    if (up) {
-      builder_.strip(layer.rim, foot, false);
-    } else {
-      builder_.strip(foot, layer.rim, false);
+    const Ring foot = across(layer, 0);
+    Ring low = foot;
+    for (Index r = 1; r <= radial_segments_; ++r) {
+      const Ring high = r < radial_segments_ ? across(layer, r) : layer.rim;
+      up ? builder_.strip(high, low, false) : builder_.strip(low, high, false);
+      low = high;
     }
     Ring ring = layer.core;
-    ring.insert(ring.end(), hidden.begin(), hidden.end());
+    ring.insert(ring.end(), foot.begin() + 1, foot.end() - 1);
     const Real z = (up ? 1 : -1) * shape_.core_length / 2;
     if (shape_.core_length > shape_.length) ring = drawn_out(ring, z, up);
     const Index axis = builder_.vertex({0, 0, z});
@@ -89,17 +107,13 @@ class Screw {
       const Vec3 p = builder_.place(v);
       far.push_back(builder_.vertex({p.x, p.y, z}));
     }
-    if (up) {
-      builder_.strip(ring, far, true);
-    } else {
-      builder_.strip(far, ring, true);
-    }
+    up ? builder_.strip(ring, far, true) : builder_.strip(far, ring, true);
     return far;
   }
 
   const ScrewShape& shape_;
   Real half_sector_;  // [rad], of the flight's section
-  Index layers_, core_segments_, sector_segments_;
+  Index layers_, core_segments_, sector_segments_, radial_segments_;
   MeshBuilder builder_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/mesh_shells.hpp"
 #include "mesh/primitives.hpp"
 #include "mesh/weld.hpp"
 #include "support/catch.hpp"
@@ -149,6 +150,33 @@ TEST_CASE("shells are counted in the order of their triangles") {
   CHECK(std::count(shells.begin(), shells.end(), 0) == 12);
   CHECK(std::count(shells.begin(), shells.end(), 1) == 20);
   CHECK(shells.back() == 1);
+}
+
+TEST_CASE("shells that do not fit to where they are") {
+  const TriangleMesh small = sphere_mesh({0.5, 0});
+  const auto with = [](TriangleMesh mesh, const TriangleMesh& other, Vec3 shift) {
+    append(mesh, other, shift);
+    return mesh;
+  };
+  const TriangleMesh hollow = with(cube(), turned_over(small), {});
+  CHECK(mesh_troubles(hollow, false) == Texts{});
+  CHECK(mesh_troubles(with(hollow, sphere_mesh({0.2, 1}), {}), false) == Texts{});
+  const Texts inner = mesh_troubles(with(cube(), small, {0.1, 0, 0}), false);
+  REQUIRE(inner.size() == 1);
+  CHECK(inner[0].starts_with(
+      "a shell lies inside another; around a cavity corners must run clockwise seen from "
+      "outside; solids must not overlap: that of triangle 12 ("));
+  const Texts inverted = mesh_troubles(with(cube(), turned_over(small), {3, 0, 0}), false);
+  REQUIRE(inverted.size() == 1);
+  CHECK(inverted[0].starts_with(
+      "a shell is inside out; corners must run counterclockwise seen from outside, but "
+      "around a cavity: that of triangle 12 ("));
+  // One inside a cavity, and an inverted one beside.
+  const TriangleMesh twice =
+      with(with(hollow, sphere_mesh({0.1, 1}), {0.2, 0, 0}), turned_over(cube()), {0, 0, 9});
+  CHECK(mesh_troubles(twice, false).size() == 1);
+  // Boxes that stand on each other.
+  CHECK(mesh_troubles(with(cube(), cube(), {0.5, 0.25, 2}), false) == Texts{});
 }
 
 }  // namespace scree

@@ -1,5 +1,5 @@
 // Files of every format, changed at random: each is read or refused, and whatever is read is checked and
-// weighed. SCREE_MUTATIONS: how many (20,000); SCREE_SEED: of the first.
+// weighed. SCREE_MUTATIONS: how many (200,000); SCREE_SEED: of the first.
 #include <cstdlib>
 #include <random>
 
@@ -131,7 +131,7 @@ bool is_read(const std::string& bytes, const std::string& name) {
 
 TEST_CASE("files changed at random are read or refused") {
   const std::vector<MeshFile> files = tetrahedron_files();
-  const std::uint32_t count = from_environment("SCREE_MUTATIONS", 20'000),
+  const std::uint32_t count = from_environment("SCREE_MUTATIONS", 200'000),
                       seed = from_environment("SCREE_SEED", 1);
   std::vector<std::size_t> read(files.size()), refused(files.size());
   for (std::uint32_t i = seed; i < seed + count; ++i) {

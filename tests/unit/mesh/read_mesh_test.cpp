@@ -120,6 +120,10 @@ TEST_CASE("polygons are cut into triangles of their winding") {
   }
   for (const char* const face : {" 1 2 3 4", " 2 3 4 1", " 3 4 1 2", " 4 1 2 3"})
     CHECK(area_of(std::string("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 2 0\nf") + face, 2) == 2);
+  // A hole, joined to the outline by a way there and back.
+  CHECK(
+      area_of("v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 1 0\nf 1 2 3 4 1 5 6 7 8 5",
+              8) == 8);
   // A comb, seen along each axis and from behind.
   const auto comb = [](const char* form) {
     std::string text, face = "f";
@@ -216,6 +220,7 @@ TEST_CASE("what is said of broken OBJ") {
   CHECK(said("f 1 2") == "a.obj:5: 2 corners; a face must have at least 3");
   CHECK(said("f 1 4 2 3") ==
         "a.obj:5: a face cannot be cut into triangles: it crosses itself or has no area");
+  CHECK(said("v 3 3 0\nv 2 0.2 0\nf 1 5 3 6 4").ends_with("it crosses itself or has no area"));
   CHECK(said("l 1 2") == "a.obj:5: \"l\": points and lines are no surface; leave them out");
   CHECK(said("curv 1 2") == "a.obj:5: \"curv\": no statement of a polygon mesh");
   CHECK(said("v 1 inf 0") == "a.obj:5: coordinate \"inf\": must be a finite number");
@@ -243,7 +248,7 @@ TEST_CASE("what is said of broken PLY") {
         "a.ply:2: format \"text\": must be ascii, binary_little_endian or binary_big_endian");
   CHECK(changed(text, "1.0", "2.0") == "a.ply:2: format version \"2.0\": must be 1.0");
   CHECK(refusal(text.substr(0, text.find("property double z")), "a.ply") ==
-        "a.ply:6: ends before end_header: the file is cut");
+        "a.ply:7: ends before end_header: the file is cut");
   CHECK(changed(text, "double y", "double w") == "a.ply:10: element vertex must have a property y");
   CHECK(changed(text, "double y", "real y").starts_with("a.ply:6: type \"real\": must be char, uchar"));
   CHECK(changed(text, "double y", "double x") == "a.ply:6: property \"x\" is repeated");
