@@ -24,8 +24,7 @@ class Places {
   void add(Text text) {
     if (count_++ < kMostPlaces) named_ += (named_.empty() ? "" : "; ") + text();
   }
-  // what: with the count in place of {}.
-  void report(const char* one, const char* many, const char* demand,
+  void report(const char* one, const char* many, const std::string& demand,
               std::vector<std::string>& troubles) const {
     if (count_ == 0) return;
     const std::string more = count_ > kMostPlaces ? fmt::format("; and {} more", count_ - kMostPlaces) : "";
@@ -37,6 +36,25 @@ class Places {
   std::size_t count_ = 0;
   std::string named_;
 };
+
+// What is said of a mesh that is torn where vertices of open edges nearly meet, or "".
+std::string tear_text(const TriangleMesh& mesh, const std::vector<Side>& open) {
+  constexpr std::size_t kMostOpen = 1000;  // each is compared with each
+  constexpr Real kNearly = 0.01;           // of the shortest edge
+  if (open.size() > kMostOpen) return "";
+  std::vector<Index> ends;
+  Real nearest = kInfinity, shortest = kInfinity;
+  for (const Side& edge : open) {
+    ends.insert(ends.end(), {edge.low, edge.high});
+    shortest = std::min(shortest, norm(mesh.vertices[edge.high] - mesh.vertices[edge.low]));
+  }
+  for (const Index a : ends)
+    for (const Index b : ends)
+      if (a < b) nearest = std::min(nearest, norm(mesh.vertices[b] - mesh.vertices[a]));
+  if (!(nearest < kNearly * shortest)) return "";
+  return fmt::format("; two of their ends are {:.3g} m apart, which welding within a tolerance joins",
+                     nearest);
+}
 
 class Checker {
  public:
@@ -117,14 +135,17 @@ class Checker {
 
   void check_edges(bool sheet) {
     Places open, crowded, turned;
+    std::vector<Side> free;
     for_each_edge(sides_of(mesh_), [&](const Side* first, const Side* last) {
       const auto text = [&] { return edge_text(first, last); };
-      if (last - first == 1 && !sheet) open.add(text);
+      if (last - first == 1 && !sheet) open.add(text), free.push_back(*first);
       if (last - first > 2 && !sheet) crowded.add(text);
       if (last - first == 2 && first[0].forward == first[1].forward) turned.add(text);
     });
-    open.report("an edge has one triangle", "edges have one triangle",
-                "a closed mesh has two at each (one that is meant to be open is a sheet)", troubles_);
+    open.report(
+        "an edge has one triangle", "edges have one triangle",
+        "a closed mesh has two at each (one that is meant to be open is a sheet)" + tear_text(mesh_, free),
+        troubles_);
     crowded.report("an edge has more than two triangles", "edges have more than two triangles",
                    "a closed mesh has two at each", troubles_);
     turned.report("an edge lies between opposite windings", "edges lie between opposite windings",

@@ -22,6 +22,8 @@ std::string contents(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (std::filesystem::is_directory(status)) throw IoError(path + ": is a folder; must be a file");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw IoError(path + ": is no regular file");  // a pipe, or a device, which may never end
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
   const std::uintmax_t size = std::filesystem::file_size(path, error);

@@ -159,6 +159,8 @@ TEST_CASE("what is said of files that cannot be read") {
   CHECK(said("none.stl") == at + "none.stl: cannot be read: No such file or directory");
   fs::create_directory(folder / "folder.stl");
   CHECK(said("folder.stl") == at + "folder.stl: is a folder; must be a file");
+  fs::create_symlink("/dev/zero", folder / "endless.stl");
+  CHECK(said("endless.stl") == at + "endless.stl: is no regular file");
   std::ofstream(folder / "empty.ply");
   CHECK(said("empty.ply") == at + "empty.ply: is empty");
   std::ofstream(folder / "step.stp") << "x";
