@@ -4,16 +4,11 @@ namespace scree {
 
 using Loads = DeviceSurfaces::Loads;
 
-void CudaBodies::put() { items_.surfaces.place(items_.device(), side_.placed()); }
-
-const Vec3* CudaBodies::upload_steps() {
-  step_.upload(side_.step(), items_.stream);
-  return step_.data();
-}
+void CudaBodies::put() { items_.surfaces.place(items_.device(), side_.places()); }
 
 SurfaceMoves CudaBodies::upload_moves() {
-  step_turn_.upload(side_.step_turn(), items_.stream);
-  return {upload_steps(), step_turn_.data()};
+  step_.upload(side_.step(), items_.stream), step_turn_.upload(side_.step_turn(), items_.stream);
+  return {step_.data(), step_turn_.data()};
 }
 
 void CudaBodies::find_loads() {
@@ -47,7 +42,7 @@ void CudaBodies::take_steps(Real h) {
 
 void CudaBodies::queue_loads(const SurfaceLook& look, const Event& ready) {
   const Device beside{stream_};
-  items_.surfaces.place(beside, side_.placed());
+  items_.surfaces.place(beside, side_.places());
   ready.hold(stream_);
   items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_step, look);
   loads_found_.record(stream_);
@@ -61,7 +56,7 @@ void CudaBodies::take_loads() {
 void CudaBodies::find_loads_beside(const SurfaceLook& look) {
   if (!have_surfaces()) return;
   const Device beside{stream_};
-  items_.surfaces.place(beside, side_.placed());
+  items_.surfaces.place(beside, side_.places());
   items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, look);
   take_loads();
 }

@@ -21,9 +21,7 @@ class CudaBodies {
 
   // Brings the surfaces, as they are placed on the host, to the device.
   void put();
-  // By the last placement, on the device: displacements, and of laws that move the turns, too.
-  const Vec3* upload_steps();
-  SurfaceMoves upload_moves();
+  SurfaceMoves upload_moves();  // by the last placement, on the device
 
   // Contacts with the state now: what forces and reports read, and the side's sums. Waits.
   void find_loads();

@@ -199,7 +199,7 @@ void CudaImplicitStep::shorten_correction() {
 void CudaImplicitStep::subtract_surface_steps() {
   if (!bodies_.have_surfaces()) return;
   for_each(items_.device(), items_.owned,
-           SurfaceShiftItem<SlicedRows>{items_.views(), newton_weights(), bodies_.upload_steps(),
+           SurfaceShiftItem<SlicedRows>{items_.views(), newton_weights(), bodies_.upload_moves(),
                                         arrays_.residual.data()});
   max_over(items_.device(), items_.owned, NormItem{arrays_.residual.data()},
            items_.results.at(&Results::largest));

@@ -18,7 +18,7 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       hht(hht_coefficients(of.integrator.hht_alpha)),
       idle_work(work),
       kernels(std::move(law)),
-      surfaces(wall_planes(of), SurfaceSet(of).on_bodies(), subdomain.period(), stream),
+      surfaces(of, subdomain.period(), stream),
       lane(on, of.parallel.transport),
       list(kernels->history() > 0),
       history(kernels->history(), {of.space.min, subdomain.period()}, stream),

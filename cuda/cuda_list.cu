@@ -192,7 +192,7 @@ void CudaList::search(Real skin) {
   const DeviceSurfaces::Particles particles{
       now.position.data(),     now.material.data(),      items_.owned, items_.layout.active, &grid_,
       particle_sort_.starts(), builder_.largest_radius()};
-  items_.surfaces.build(items_.device(), particles, bodies_.side().placed(), builder_.past_touch(skin));
+  items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
 }
 
 // What of the list each rank makes alone: what takes most of the memory.

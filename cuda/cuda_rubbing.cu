@@ -254,8 +254,9 @@ bool CudaRubbingStep::is_consistent() const { return !frozen_ && ::scree::is_con
 Real CudaRubbingStep::right_hand_side() {
   if (!bodies_.have_surfaces()) return scaled_residual_ * force_scale_;
   for_each(items_.device(), items_.owned,
-           RubbingShiftItem{matrix(), items_.surfaces.list().offsets, newton_weights(), is_consistent(),
-                            bodies_.upload_moves(), rubbing_.residual.data()});
+           RubbingShiftItem{matrix(), items_.surfaces.list().offsets, items_.surfaces.list().surfaces,
+                            items_.surfaces.numbers(), items_.surfaces.rubs(), newton_weights(),
+                            is_consistent(), bodies_.upload_moves(), rubbing_.residual.data()});
   max_over(items_.device(), items_.owned, TwistSizeItem{rubbing_.residual.data()},
            items_.results.at(&Results::largest));
   const Real largest = items_.ranks.max(items_.results.fetch(&Results::largest));

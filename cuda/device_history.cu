@@ -34,16 +34,31 @@ struct NamedRows {
         const Index j = rows.neighbors[slot];
         return row_key(id_of(row_keys[j]), box.image_beside(p, xyz(position[j])));
       });
-    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry) {
-      const Index s = surfaces.surfaces[entry];
-      const bool on_ground = s < surfaces.ground;
-      visit((on_ground ? history.ground : history.bodies) + std::int64_t{entry} * records, [&] {
-        const std::int8_t image = on_ground ? kNoShift
-                                            : box.image_beside(p, surfaces.placed[s - surfaces.ground].point,
-                                                               surfaces.images[entry]);
-        return row_key(kFirstSurfaceId + s, image);
-      });
-    }
+    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
+      visit(record_of(entry), [&] { return surface_key(entry, p, is_mesh(entry) ? feature(entry) : 0); });
+  }
+
+  __device__ Vec4* record_of(Index entry) const {
+    const bool at_rest = surfaces.numbers.at_rest(surfaces.surfaces[entry]);
+    return (at_rest ? history.ground : history.bodies) + std::int64_t{entry} * records;
+  }
+  __device__ bool is_mesh(Index entry) const {
+    const Index s = surfaces.surfaces[entry];
+    return !surfaces.numbers.at_rest(s) &&
+           surfaces.placed[surfaces.numbers.placed(s)].kind == SurfaceKind::mesh;
+  }
+  __device__ Index& feature(Index entry) const { return history.features[entry]; }
+  __device__ std::int64_t surface_key(Index entry, Vec3 p, Index feature) const {
+    const Index s = surfaces.surfaces[entry];
+    if (surfaces.numbers.at_rest(s)) return row_key(surface_id(s));
+    const PlacedSurface& surface = surfaces.placed[surfaces.numbers.placed(s)];
+    const PeriodicBox of =
+        surface.kind == SurfaceKind::mesh ? box.without(surfaces.frames[surface.frame].spanned) : box;
+    return row_key(surface_id(s, feature), of.image_beside(p, surface.point, surfaces.images[entry]));
+  }
+  // Whether two entries of a row are of the same mesh and image.
+  __device__ bool alike(Index a, Index b) const {
+    return surfaces.surfaces[a] == surfaces.surfaces[b] && surfaces.images[a] == surfaces.images[b];
   }
 };
 
@@ -71,10 +86,28 @@ struct KeepItem {
       ++at;
     });
     row_of[i] = i;
+    order(kept.offsets[i], at);
+  }
+
+ private:
+  // Contacts with meshes may stand out of order: by distance, not by feature.
+  __device__ void order(Index first, Index end) const {
+    for (Index k = first + 1; k < end; ++k)
+      for (Index at = k; at > first && kept.keys[at - 1] > kept.keys[at]; --at) {
+        exchange(kept.keys[at - 1], kept.keys[at]);
+        for (int v = 0; v < names.numbers; ++v)
+          exchange(kept.values[std::int64_t{at - 1} * names.numbers + v],
+                   kept.values[std::int64_t{at} * names.numbers + v]);
+      }
+  }
+  template <class T>
+  __device__ static void exchange(T& a, T& b) {
+    const T was = a;
+    a = b, b = was;
   }
 };
 
-// Both the row and what was kept are ordered by key: one pass over both.
+// Both the row and what was kept are ordered by key: one pass over both. Meshes come after.
 struct TakeItem {
   NamedRows names;
   KeptViews kept;
@@ -87,11 +120,33 @@ struct TakeItem {
       if (at == end) return;
       const std::int64_t wanted = key();
       while (at < end && kept.keys[at] < wanted) ++at;
-      if (at == end || kept.keys[at] != wanted) return;
-      const Real* const from = kept.values + std::int64_t{at} * names.numbers;
-      for (int k = 0; k < names.numbers; ++k) number_of(record, k) = from[k];
-      record->w = names.history.step;
+      if (at < end && kept.keys[at] == wanted) put(record, at);
     });
+    for (Index entry = names.surfaces.offsets[i]; entry < names.surfaces.offsets[i + 1]; ++entry)
+      if (names.is_mesh(entry) && (entry == names.surfaces.offsets[i] || !names.alike(entry - 1, entry)))
+        take_mesh(i, entry);
+  }
+
+ private:
+  __device__ void put(Vec4* record, Index contact) const {
+    const Real* const from = kept.values + std::int64_t{contact} * names.numbers;
+    for (int k = 0; k < names.numbers; ++k) number_of(record, k) = from[k];
+    record->w = names.history.step;
+  }
+  // What the particle remembers of a mesh goes to the entries of their group, the first of which is given.
+  __device__ void take_mesh(Index i, Index entry) const {
+    const std::int64_t wanted = names.surface_key(entry, xyz(names.position[i]), 0);
+    Index slot = entry;
+    for (; slot < names.surfaces.offsets[i + 1] && names.alike(entry, slot); ++slot)
+      *names.record_of(slot) = {};
+    const Index last = slot;
+    slot = entry;
+    for (Index k = kept.offsets[row_of[i]]; k < kept.offsets[row_of[i] + 1] && slot < last; ++k) {
+      const std::int64_t key = kept.keys[k];
+      if (!is_surface(key) || without_feature(key) != wanted) continue;
+      names.feature(slot) = feature_of(key);
+      put(names.record_of(slot++), k);
+    }
   }
 };
 
@@ -150,12 +205,14 @@ DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t s
 
 HistoryViews DeviceHistory::views() {
   if (!exists()) return {};
-  return {neighbors_.data(), ground_.data(), bodies_.data(), ahead_.data(), step_};
+  return {neighbors_.data(), ground_.data(),         bodies_.data(), ahead_.data(),
+          features_.data(),  features_ahead_.data(), step_};
 }
 
 HistoryViews DeviceHistory::views_before() {
   if (!exists()) return {};
-  return {nullptr, nullptr, ahead_.data(), bodies_.data(), step_ - 1};
+  return {nullptr,          nullptr,  ahead_.data(), bodies_.data(), features_ahead_.data(),
+          features_.data(), step_ - 1};
 }
 
 // The number itself is the device's, and contacts with bodies are not this kernel's, so that the launches of
@@ -210,7 +267,9 @@ void DeviceHistory::take_slots(const Listed& at) {
   neighbors_.resize_with_spare(static_cast<std::size_t>(at.list.used()) * records);
   for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
-  ahead_.zero(stream_);
+  for (DeviceArray<Index>* of_meshes : {&features_, &features_ahead_})
+    of_meshes->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()));
+  features_.zero(stream_), ahead_.zero(stream_);
   for_each({stream_}, at.owned,
            TakeItem{names_of(at, box_, views(), numbers_), kept_views(kept_), row_of_.data()});
   at_slots_ = true;

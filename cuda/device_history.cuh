@@ -28,7 +28,7 @@ class DeviceHistory {
   void closed(Index steps) { step_ = run_start_ + steps; }  // since the run began
   void accepted() { step_ += 1, take_ahead(); }
   // What was evaluated ahead of contacts with bodies holds; accepted() does this, closed() does not.
-  void take_ahead() { bodies_.swap(ahead_); }
+  void take_ahead() { bodies_.swap(ahead_), features_.swap(features_ahead_); }
   // For another look at the contacts with bodies over the step that was accepted last: from before it, to be
   // held in place of what the step left.
   HistoryViews views_before();
@@ -71,7 +71,8 @@ class DeviceHistory {
   const cudaStream_t stream_;
   bool at_slots_ = false;
   DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews
-  Real step_ = 2, run_start_ = 2;                          // there is one before the first
+  DeviceArray<Index> features_, features_ahead_;
+  Real step_ = 2, run_start_ = 2;  // there is one before the first
   DeviceArray<Real> first_step_;
   PinnedArray<Real> h_first_step_;
   // Unless at the slots: what is kept, and which row of it is that of each particle.

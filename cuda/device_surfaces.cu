@@ -18,8 +18,7 @@ struct SurfaceSearch {
   BrickGrid grid;
   const Index* starts;
   Real reach, skin;  // reach: largest radius of a particle and skin [m]
-  const WallPlane* planes;
-  Index ground;
+  SurfaceNumbers numbers;
   const PlacedSurface* placed;
   Vec3 period;
 };
@@ -28,14 +27,15 @@ __device__ bool is_near(const SurfaceSearch& in, Vec4 p, const WallPlane& plane)
   return wall_pair(p, plane).distance < p.w + in.skin;
 }
 
-// Entries with the ground per particle.
+// Entries with planes at rest per particle.
 struct GroundCountItem {
   SurfaceSearch in;
   Index* counts;
   __device__ void operator()(Index i) const {
     Index count = 0;
     if (i < in.active)
-      for (Index w = 0; w < in.ground; ++w) count += is_near(in, in.position[i], in.planes[w]);
+      for (Index w = 0; w < in.numbers.ground; ++w)
+        count += in.numbers.at_rest(w) && is_near(in, in.position[i], in.numbers.planes[w]);
     counts[i] = count;
   }
 };
@@ -53,20 +53,21 @@ struct GroundFillItem {
   __device__ void operator()(Index i) const {
     Index slot = offsets[i];
     if (offsets[i + 1] > slot)  // most have none, and their places need not be read
-      for (Index w = 0; w < in.ground; ++w)
-        if (is_near(in, in.position[i], in.planes[w])) {
-          out.surfaces[slot] = w, out.particles[slot] = i, out.images[slot] = kNoShift;
+      for (Index w = 0; w < in.numbers.ground; ++w)
+        if (in.numbers.at_rest(w) && is_near(in, in.position[i], in.numbers.planes[w])) {
+          out.surfaces[slot] = w, out.images[slot] = kNoShift;
           ++slot;
         }
     next[i] = slot;
   }
 };
 
-// Calls visit(i, surface, image) for the active particles near the block's surface on a body.
+// Calls visit(i, surface, image) for the active particles near the block's surface, a sphere.
 template <class Visit>
 __device__ void visit_near(const SurfaceSearch& in, const Visit& visit) {
   const auto s = static_cast<Index>(blockIdx.x);
   const PlacedSurface surface = in.placed[s];
+  if (surface.kind != SurfaceKind::sphere) return;
   const CellGrid& cells = in.grid.cells.own;
   for_each_shift(in.period, [&](Vec3 shift, std::int8_t image) {
     const CellRange range = cells_near(cells, surface.point + shift, surface.radius + in.reach);
@@ -78,7 +79,7 @@ __device__ void visit_near(const SurfaceSearch& in, const Visit& visit) {
       const Index key = in.grid.key(x, y, z);
       for (Index i = in.starts[key]; i < in.starts[key + 1]; ++i)
         if (surface_pair(surface, shift, in.position[i]).geometry.overlap > -in.skin)
-          visit(i, in.ground + s, image);
+          visit(i, in.numbers.ground + s, image);
     }
   });
 }
@@ -92,15 +93,38 @@ __global__ void __launch_bounds__(kSearchThreads)
     fill_near_kernel(const __grid_constant__ SurfaceSearch in, Index* next, EntryOutputs out) {
   visit_near(in, [&](Index i, Index surface, std::int8_t image) {
     const Index slot = atomicAdd(&next[i], 1);
-    out.surfaces[slot] = surface, out.particles[slot] = i, out.images[slot] = image;
+    out.surfaces[slot] = surface, out.images[slot] = image;
   });
 }
+
+// Of a plane that is placed.
+struct PlaneCountItem {
+  SurfaceSearch in;
+  Index placed;
+  Index* counts;
+  __device__ bool near(Index i) const {
+    return surface_pair(in.placed[placed], {}, in.position[i]).geometry.overlap > -in.skin;
+  }
+  __device__ void operator()(Index i) const { counts[i] += near(i); }
+};
+struct PlaneFillItem {
+  PlaneCountItem of;
+  Index number;
+  Index* next;
+  EntryOutputs out;
+  __device__ void operator()(Index i) const {
+    if (!of.near(i)) return;
+    const Index slot = next[i]++;
+    out.surfaces[slot] = number, out.images[slot] = kNoShift;
+  }
+};
 
 // Orders a row's entries by surface and image: they were written as the threads came.
 struct OrderItem {
   const Index* offsets;
   EntryOutputs out;
   __device__ void operator()(Index i) const {
+    for (Index k = offsets[i]; k < offsets[i + 1]; ++k) out.particles[k] = i;
     for (Index k = offsets[i] + 1; k < offsets[i + 1]; ++k) {
       const Index surface = out.surfaces[k];
       const std::int8_t image = out.images[k];
@@ -114,14 +138,15 @@ struct OrderItem {
   }
 };
 
-// Entries with the ground come last, behind all surfaces on bodies.
+// Entries with planes at rest come last, behind all placed surfaces.
 struct SurfaceKeyItem {
   const Index* surfaces;
-  Index ground;
+  SurfaceNumbers numbers;
   unsigned last;
   unsigned* keys;
   SCREE_HD void operator()(Index entry) const {
-    keys[entry] = surfaces[entry] < ground ? last : static_cast<unsigned>(surfaces[entry] - ground);
+    const Index number = surfaces[entry];
+    keys[entry] = numbers.at_rest(number) ? last : static_cast<unsigned>(numbers.placed(number));
   }
 };
 
@@ -135,32 +160,38 @@ std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>&
 
 }  // namespace
 
-DeviceSurfaces::DeviceSurfaces(const std::vector<WallPlane>& planes, Index on_bodies, Vec3 period,
-                               cudaStream_t stream)
-    : period_(period), ground_(static_cast<Index>(planes.size())), on_bodies_(on_bodies), h_index_(1) {
-  planes_.upload(planes, stream);
+DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
+    : period_(period), meshes_(model, stream), h_index_(1) {
+  const SurfaceSet surfaces(model);
+  ground_ = surfaces.ground(), placed_count_ = surfaces.placed();
+  planes_.upload(wall_planes(model), stream);
+  for (Index s = 0; s < placed_count_; ++s)
+    if (surfaces.at(s).kind == SurfaceKind::plane)
+      placed_planes_.push_back(s), plane_numbers_.push_back(surfaces.number_of(s));
 }
 
-void DeviceSurfaces::build(Device device, const Particles& particles, std::span<const PlacedSurface> placed,
+void DeviceSurfaces::build(Device device, const Particles& particles, const SurfacePlaces& places,
                            Real skin) {
   material_ = particles.material;
-  place(device, placed);
+  place(device, places);
   find_entries(device, particles, skin);
-  if (on_bodies()) group_by_surface(device);
+  if (any_placed()) group_by_surface(device);
 }
 
 void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
-  const SurfaceSearch in{p.position, p.active,       *p.grid, p.starts,       p.largest_radius + skin,
-                         skin,       planes_.data(), ground_, places_.data(), period_};
-  const auto blocks = static_cast<unsigned>(on_bodies_);
+  const SurfaceSearch in{p.position, p.active,  *p.grid,        p.starts, p.largest_radius + skin,
+                         skin,       numbers(), places_.data(), period_};
+  const auto blocks = static_cast<unsigned>(placed_count_);
   // The entry past the end is read, though no sum depends on it.
   require_cuda(cudaMemsetAsync(counts_.data() + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
   for_each(device, p.owned, GroundCountItem{in, counts_.data()});
-  if (on_bodies() && p.active > 0)
+  if (any_placed() && p.active > 0)
     count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts_.data());
   require_cuda(cudaGetLastError(), "surfaces near particles");
+  for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts_.data()});
+  meshes_.find(device, {p.position, p.active, skin, period_, places_.data(), frames_.data()}, counts_.data());
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(
         cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), offsets_.data(), p.owned + 1, device.stream),
@@ -171,27 +202,34 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) 
   entries_ = h_index_[0];
   const auto entries = static_cast<std::size_t>(entries_);
   surfaces_.resize(entries), particles_.resize(entries), images_.resize(entries);
+  meshes_.make_room(entries_);
   if (entries_ == 0) return;
   const EntryOutputs out{surfaces_.data(), particles_.data(), images_.data()};
   for_each(device, p.owned, GroundFillItem{in, offsets_.data(), next_.data(), out});
-  if (!on_bodies() || p.active == 0) return;
-  fill_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, next_.data(), out);
-  require_cuda(cudaGetLastError(), "surfaces near particles");
+  if (any_placed() && p.active > 0) {
+    fill_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, next_.data(), out);
+    require_cuda(cudaGetLastError(), "surfaces near particles");
+    for (std::size_t k = 0; k < placed_planes_.size(); ++k)
+      for_each(device, p.active,
+               PlaneFillItem{{in, placed_planes_[k], nullptr}, plane_numbers_[k], next_.data(), out});
+    meshes_.fill(device, next_.data(), out.surfaces, out.images);
+  }
   for_each(device, p.owned, OrderItem{offsets_.data(), out});
+  meshes_.group(device, offsets_.data(), surfaces_.data(), images_.data());
 }
 
 void DeviceSurfaces::group_by_surface(Device device) {
-  const auto last = static_cast<unsigned>(on_bodies_);
+  const auto last = static_cast<unsigned>(placed_count_);
   const auto entries = static_cast<std::size_t>(entries_);
-  for_each(device, entries_, SurfaceKeyItem{surfaces_.data(), ground_, last, by_surface_.keys(entries)});
+  for_each(device, entries_, SurfaceKeyItem{surfaces_.data(), numbers(), last, by_surface_.keys(entries)});
   by_surface_.sort(device, entries_, last);
-  std::vector<Index> starts(static_cast<std::size_t>(on_bodies_) + 1);
+  std::vector<Index> starts(static_cast<std::size_t>(placed_count_) + 1);
   require_cuda(cudaMemcpyAsync(starts.data(), by_surface_.starts(), starts.size() * sizeof(Index),
                                cudaMemcpyDeviceToHost, device.stream),
                "cudaMemcpyAsync");
   wait_for(device.stream);
   h_chunks_.clear();
-  for (Index s = 0; s < on_bodies_; ++s)
+  for (Index s = 0; s < placed_count_; ++s)
     for (Index first = starts[s]; first < starts[s + 1]; first += kChunk)
       h_chunks_.push_back({s, first, std::min(first + kChunk, starts[s + 1])});
   chunks_.upload(h_chunks_, device.stream);
@@ -199,48 +237,69 @@ void DeviceSurfaces::group_by_surface(Device device) {
   steps_.resize(entries);
 }
 
-void DeviceSurfaces::place(Device device, std::span<const PlacedSurface> placed) {
-  if (!on_bodies()) return;
+void DeviceSurfaces::place(Device device, const SurfacePlaces& places) {
+  if (!any_placed()) return;
   placed_.wait();  // for the last copy
-  h_placed_.resize(placed.size()), places_.resize(placed.size());
-  std::copy(placed.begin(), placed.end(), h_placed_.data());
-  copy_async(places_.data(), h_placed_.data(), placed.size(), device.stream);
+  h_placed_.resize(places.placed.size()), places_.resize(places.placed.size());
+  std::copy(places.placed.begin(), places.placed.end(), h_placed_.data());
+  copy_async(places_.data(), h_placed_.data(), places.placed.size(), device.stream);
+  h_frames_.resize(places.frames.size()), frames_.resize(places.frames.size());
+  std::copy(places.frames.begin(), places.frames.end(), h_frames_.data());
+  copy_async(frames_.data(), h_frames_.data(), places.frames.size(), device.stream);
   placed_.record(device.stream);
 }
 
 void DeviceSurfaces::keep_start(Device device) {
-  if (!on_bodies()) return;
+  if (!any_placed()) return;
   start_places_.resize(places_.size());
   copy_async(start_places_.data(), places_.data(), places_.size(), device.stream);
 }
 
-SurfaceViews DeviceSurfaces::entry_views(const SurfaceLook& look) const {
-  return {look.position,  look.velocity,
-          material_,      {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
-          places_.data(), ground_,
-          period_,        look.history,
-          look.spin,      look.h};
+SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels, const SurfaceLook& look) const {
+  return {look.position,
+          look.velocity,
+          material_,
+          {surfaces_.data(), images_.data(), particles_.data(), by_surface_.order()},
+          places_.data(),
+          frames_.data(),
+          numbers(),
+          meshes_.rows(),
+          meshes_.touches(),
+          meshes_.before(),
+          period_,
+          look.history,
+          records_of(kernels.history()),
+          look.spin,
+          look.h};
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,
                                 const SurfaceLook& look) {
   h_load_sums_.resize(h_chunks_.size());
-  kernels.surface_loads(device, entry_views(look), chunk_list(),
-                        loads_[which == Loads::of_step ? 0 : 1].data(), h_load_sums_.data());
+  const SurfaceViews views = entry_views(kernels, look);
+  meshes_.touch(device, views);
+  kernels.surface_loads(device, views, chunk_list(), loads_[which == Loads::of_step ? 0 : 1].data(),
+                        h_load_sums_.data());
 }
 
 void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
                                 const Vec4* velocity, const StepStart& start) {
   h_step_sums_.resize(h_chunks_.size());
-  kernels.surface_steps(device, entry_views({position, velocity, nullptr, {}}), chunk_list(),
-                        {start, start_places_.data()}, steps_.data(), h_step_sums_.data());
+  meshes_.make_room_over_step(entries_);
+  const SurfaceViews views = entry_views(kernels, {position, velocity, nullptr, {}});
+  meshes_.touch_over_step(device, views, start.position, start_places_.data());
+  kernels.surface_steps(device, views, chunk_list(), {start, start_places_.data()}, steps_.data(),
+                        h_step_sums_.data());
 }
 
 void DeviceSurfaces::find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
                                const SurfaceLook& look) {
   rubs_.resize(static_cast<std::size_t>(entries_));
   h_step_sums_.resize(h_chunks_.size());
-  kernels.surface_rubs(device, entry_views(look), chunk_list(), {start, start_places_.data(), rubs_.data()},
+  meshes_.make_room_over_step(entries_);
+  const SurfaceViews views = entry_views(kernels, look);
+  meshes_.touch_over_step(device, views, start.step.position, start_places_.data());
+  kernels.surface_rubs(device, views, chunk_list(), {start, start_places_.data(), rubs_.data()},
                        h_step_sums_.data());
 }
 

@@ -11,6 +11,7 @@
 #include "dem/surface_sums.hpp"
 #include "dem/surfaces.hpp"
 #include "device.cuh"
+#include "device_meshes.cuh"
 
 namespace scree {
 
@@ -18,8 +19,9 @@ namespace scree {
 struct SurfaceList {
   const Index *offsets, *surfaces;  // [particles + 1], [entries]
   const std::int8_t* images;        // [entries]
-  const PlacedSurface* placed;      // those on bodies, where they are now
-  Index ground;
+  const PlacedSurface* placed;      // where they are now
+  const SurfaceFrame* frames;
+  SurfaceNumbers numbers;
 };
 
 class DeviceSurfaces {
@@ -35,21 +37,22 @@ class DeviceSurfaces {
   };
 
   // period: of the space [m].
-  DeviceSurfaces(const std::vector<WallPlane>& planes, Index on_bodies, Vec3 period, cudaStream_t stream);
+  DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream);
 
-  // Fills the rows. placed: the surfaces on bodies, where they are now. Waits for the device.
-  void build(Device device, const Particles& particles, std::span<const PlacedSurface> placed, Real skin);
-  bool on_bodies() const { return on_bodies_ > 0; }
+  // Fills the rows. places: of the surfaces now. Waits for the device.
+  void build(Device device, const Particles& particles, const SurfacePlaces& places, Real skin);
+  bool any_placed() const { return placed_count_ > 0; }
   Index entries() const { return entries_; }
+  SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
-    return {offsets_.data(), surfaces_.data(), images_.data(), places_.data(), ground_};
+    return {offsets_.data(), surfaces_.data(), images_.data(), places_.data(), frames_.data(), numbers()};
   }
 
   // Which of the two sets of loads: those of the step, which the particles read, or of another look at the
   // bodies.
   enum class Loads { of_step, of_look };
   // Queues the copy of the surfaces' new places, which no longer change once it is done.
-  void place(Device device, std::span<const PlacedSurface> placed);
+  void place(Device device, const SurfacePlaces& places);
   void keep_start(Device device);  // of an implicit step
   // Queues the contacts with the surfaces on bodies, placed as they are, of particles as `look` has them;
   // their sums are on the way to the host, too.
@@ -68,19 +71,21 @@ class DeviceSurfaces {
   template <class Rows>
   ContactViews<Rows> views(const Vec4* position, const Vec4* velocity, const int* material,
                            const Rows& rows) const {
-    return {position,       velocity, material,         rows,         offsets_.data(), surfaces_.data(),
-            planes_.data(), ground_,  loads_[0].data(), steps_.data()};
+    return {position,         velocity,  material,         rows,         offsets_.data(),
+            surfaces_.data(), numbers(), loads_[0].data(), steps_.data()};
   }
 
  private:
   void find_entries(Device device, const Particles& particles, Real skin);
   void group_by_surface(Device device);
   SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
-  SurfaceViews entry_views(const SurfaceLook& look) const;
+  SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceLook& look) const;
 
   Vec3 period_;
   DeviceArray<WallPlane> planes_;
-  Index ground_ = 0, on_bodies_ = 0;
+  Index ground_, placed_count_;
+  std::vector<Index> placed_planes_, plane_numbers_;  // among the placed surfaces
+  DeviceMeshes meshes_;
   Index entries_ = 0;
   DeviceArray<Index> counts_, offsets_, next_, surfaces_, particles_;
   DeviceArray<std::int8_t> images_;
@@ -90,8 +95,10 @@ class DeviceSurfaces {
   DeviceArray<SurfaceChunk> chunks_;
   const int* material_ = nullptr;
   PinnedArray<PlacedSurface> h_placed_;
+  PinnedArray<SurfaceFrame> h_frames_;
   Event placed_;
   DeviceArray<PlacedSurface> places_, start_places_;
+  DeviceArray<SurfaceFrame> frames_;
   DeviceArray<SurfaceLoad> loads_[2];
   DeviceArray<SurfaceStep> steps_;
   DeviceArray<SurfaceRub> rubs_;  // empty unless contacts rub in implicit steps

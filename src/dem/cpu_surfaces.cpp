@@ -1,6 +1,7 @@
 #include "dem/cpu_surfaces.hpp"
 
 #include "base/for_each.hpp"
+#include "dem/mesh_touches.hpp"
 
 namespace scree {
 namespace {
@@ -51,7 +52,7 @@ void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows
   if (!rows.groups.empty()) {
     touches_.resize(rows.surfaces.size());
     for_each(Serial{}, static_cast<Index>(rows.groups.size()),
-             MeshTouchItem<SurfaceViews>{entry_views(store, rows, look), touches_.data()});
+             MeshTouchItem{entry_views(store, rows, look), touches_.data()});
   }
   kernels_.surface_loads(entry_views(store, rows, look), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());
@@ -61,8 +62,8 @@ void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows
 void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows,
                                   const StepStart& start) {
   for_each(Serial{}, static_cast<Index>(rows.groups.size()),
-           MeshStepTouchItem<SurfaceViews>{views, start.position, side_.start().data(), touches_.data(),
-                                           touches_before_.data()});
+           MeshStepTouchItem{views, start.position, side_.start().data(), touches_.data(),
+                             touches_before_.data()});
 }
 
 void CpuSurfaces::make_room(const SurfaceRows& rows) {

@@ -2,45 +2,13 @@
 // One text for the CPU and CUDA.
 #pragma once
 
-#include "dem/history_slots.hpp"
-#include "dem/surfaces.hpp"
+#include "dem/mesh_rows.hpp"
+#include "dem/surface_items.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/mesh_tree.hpp"
 #include "physics/contact_geometry.hpp"
 
 namespace scree {
-
-// A particle near a mesh: the entries of its row that stand for that mesh, one for each contact that it may
-// have there, and the triangles that it may touch.
-struct MeshGroup {
-  Index entry, entries;
-  Index first_triangle, triangles;
-};
-
-// Rows of meshes near particles; a part of the surface rows.
-struct MeshRows {
-  const MeshGroup* groups;
-  const Index* triangles;
-  const MeshView* meshes;
-};
-
-// A contact with a mesh, per entry.
-struct MeshTouch {
-  bool touches;  // else nothing below has a meaning
-  bool is_face;
-  ContactGeometry geometry;
-  Vec3 contact;  // where forces act, from the surface's point [m]
-  Vec3 normal0;  // where the step began
-  Index feature, triangle;
-  Index from;  // entry whose memory the contact goes on from; -1: none
-};
-
-// The same contact where an implicit step began. One that was open then, or is open at the end, has no
-// overlap there.
-struct MeshTouchBefore {
-  ContactGeometry geometry;
-  Vec3 contact;
-};
 
 // A sphere as it lies to a feature that it touches.
 struct FeaturePair {
@@ -99,9 +67,8 @@ SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const Rememb
 
 // For the g-th group: the contacts of its particle with its mesh at an instant or, with in.h above 0, over
 // the explicit step that ends there.
-template <class Views>
 struct MeshTouchItem {
-  Views in;
+  SurfaceViews in;
   MeshTouch* touches;  // per entry
 
   SCREE_HD void operator()(Index g) const {
@@ -188,9 +155,8 @@ struct MeshTouchItem {
 };
 
 // The same over an implicit step: the contacts at either end, those at both matched.
-template <class Views>
 struct MeshStepTouchItem {
-  Views in;
+  SurfaceViews in;
   const Vec4* start_position;
   const PlacedSurface* start_placed;
   MeshTouch* touches;       // per entry; `touches`: at either end

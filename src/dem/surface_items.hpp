@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dem/contact_items.hpp"
-#include "dem/mesh_touches.hpp"
+#include "dem/mesh_rows.hpp"
 #include "dem/surface_sums.hpp"
 #include "dem/surfaces.hpp"
 #include "dem/system_items.hpp"

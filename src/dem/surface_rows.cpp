@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "base/countable.hpp"
+#include "mesh/mesh_contacts.hpp"
+#include "mesh/mesh_tree.hpp"
 #include "partition/halo_plan.hpp"
 
 namespace scree {

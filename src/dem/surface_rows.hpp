@@ -7,7 +7,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "dem/contact_walk.hpp"
-#include "dem/mesh_touches.hpp"
+#include "dem/mesh_rows.hpp"
 #include "dem/surfaces.hpp"
 #include "partition/cell_grid.hpp"
 

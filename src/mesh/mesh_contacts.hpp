@@ -35,7 +35,7 @@ SCREE_HD Real rough_length(Vec3 a) { return std::abs(a.x) + std::abs(a.y) + std:
 namespace mesh_detail {
 
 inline constexpr Real kSideRoundOff = 0x1p-49;   // of left_of_edge, relative to rough lengths
-inline constexpr Real kWeakRoundOff = 0x1p-40;   // of corners of slivers, where regions meet at small angles
+inline constexpr Real kWeakRoundOff = 0x1p-36;   // of corners of slivers, where regions meet at small angles
 inline constexpr Real kLeastSquare = 0x1p-1000;  // of a distance that has a direction [m^2]
 
 // Patches that a feature adjoins.
@@ -70,20 +70,35 @@ SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const Mes
   return of_a != of_b ? of_a < of_b : a.feature < b.feature;
 }
 
-// Whether c is over a triangle, seen along the normal of its part. Across an edge to the same plane round-off
-// counts for both sides: it is the same contact.
-SCREE_HD bool over_triangle(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 from = mesh.vertices[triangle.vertex[k]],
-               to = mesh.vertices[triangle.vertex[k < 2 ? k + 1 : 0]];
-    const bool reversed = triangle.flags & (kReversed << k);
-    const Vec3 low = reversed ? to : from, e = (reversed ? from : to) - low, d = c - low;
-    const Real left = left_of_edge(d, e, normal), inside = reversed ? -left : left;
-    if (inside > 0) continue;
-    if (!(triangle.flags & (kInnerEdge << k))) return false;
-    if (inside < -kSideRoundOff * rough_length(d) * rough_length(e)) return false;
+// How far c lies to the inside of edge k of a triangle, seen along the normal of its part, times the length
+// of the edge; and what its round-off can be [m^2].
+struct EdgeSide {
+  Real inside, round_off;
+};
+
+SCREE_HD EdgeSide side_of_edge(const MeshView& mesh, const MeshTriangle& triangle, int k, Vec3 normal,
+                               Vec3 c) {
+  const Index from = triangle.vertex[k], to = triangle.vertex[k < 2 ? k + 1 : 0];
+  const bool reversed = triangle.flags & (kReversed << k);
+  const Vec3 low = mesh.vertices[reversed ? to : from], d = c - low,
+             e = mesh.vertices[reversed ? from : to] - low;
+  const Real left = left_of_edge(d, e, normal);
+  return {reversed ? -left : left, kSideRoundOff * rough_length(d) * rough_length(e)};
+}
+
+// Past which edges of a triangle c lies: bit k for edge k; 0: c is over the triangle. Across an edge to the
+// same plane round-off counts for both sides: it is the same contact.
+SCREE_HD unsigned edges_passed(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
+  unsigned passed = 0;
+  for (int k = 0; k < 3; ++k)
+    passed |= static_cast<unsigned>(side_of_edge(mesh, triangle, k, normal, c).inside <= 0) << k;
+  const unsigned inner = passed & triangle.flags;
+  for (int k = 0; k < 3 && inner != 0; ++k) {
+    if (!(inner & (kInnerEdge << k))) continue;
+    const EdgeSide side = side_of_edge(mesh, triangle, k, normal, c);
+    if (side.inside >= -side.round_off) passed &= ~(1u << k);
   }
-  return true;
+  return passed;
 }
 
 // From the nearest point of an edge to c, if c lies in the edge's normal cone.
@@ -110,7 +125,7 @@ SCREE_HD Cone cone_of_vertex(const MeshView& mesh, const MeshFeature& vertex, Ve
     const Vec3 e = mesh.vertices[mesh.tests[i]] - v;
     const Real along = dot(d, e);
     if (along <= 0) continue;
-    if (along > kWeakRoundOff * rough_length(d) * rough_length(e)) return Cone::outside;
+    if (along > rough_length(d) * (kWeakRoundOff * rough_length(e) + 8 * mesh.flatness)) return Cone::outside;
     cone = Cone::weak;
   }
   return cone;
@@ -212,11 +227,11 @@ class MeshContactSearch {
     const MeshPart& part = mesh_.parts[triangle.part];
     const Real height = dot(c_ - part.point, part.normal);
     if (!(std::abs(height) < reach_ + mesh_.flatness)) return;
-    if (!weak_pass_ && std::abs(height) < reach_ && !known(triangle.part, t) &&
-        mesh_detail::over_triangle(mesh_, triangle, part.normal, c_))
-      add_face(t, triangle.part, part, height);
-    for (Index row = triangle.first_feature; row < triangle.first_feature + triangle.features; ++row)
-      look_at_feature(t, row);
+    if (triangle.features == 0 && (weak_pass_ || known(triangle.part, t))) return;
+    const unsigned passed = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
+    if (passed != 0) return look_at_features(t, triangle, passed);
+    // Over a triangle no cone of its edges and vertices can be.
+    if (!weak_pass_ && std::abs(height) < reach_) add_face(t, triangle.part, part, height);
   }
 
   // Whether this triangle could tell nothing new of its part.
@@ -237,26 +252,41 @@ class MeshContactSearch {
       behind_.triangle = t;
   }
 
-  SCREE_HD void look_at_feature(Index t, Index row) {
+  // passed: the triangle's edges that c lies past; in the cones of others it is not.
+  SCREE_HD void look_at_features(Index t, const MeshTriangle& triangle, unsigned passed) {
+    Index row = triangle.first_feature;
+    for (int k = 0; k < 3; ++k) {
+      if (!(triangle.flags & (kOwnsEdge << k))) continue;
+      if (!weak_pass_ && passed & (1u << k)) look_at_edge(t, row);
+      ++row;
+    }
+    for (const Index end = triangle.first_feature + triangle.features; row < end; ++row)
+      look_at_vertex(t, row);
+  }
+
+  SCREE_HD void look_at_edge(Index t, Index row) {
+    Vec3 from;
+    if (mesh_detail::in_cone_of_edge(mesh_, mesh_.features[row], c_, from)) add_feature(t, row, from, false);
+  }
+
+  SCREE_HD void look_at_vertex(Index t, Index row) {
     using mesh_detail::Cone;
     const MeshFeature& feature = mesh_.features[row];
-    Vec3 from = c_ - mesh_.vertices[feature.a];
-    Cone cone = Cone::inside;
-    if (feature.b >= 0) {
-      if (weak_pass_ || !mesh_detail::in_cone_of_edge(mesh_, feature, c_, from)) return;
-    } else {
-      if (!(dot(from, from) < reach_ * reach_)) return;
-      cone = mesh_detail::cone_of_vertex(mesh_, feature, from);
-    }
+    const Vec3 from = c_ - mesh_.vertices[feature.a];
+    if (!(dot(from, from) < reach_ * reach_)) return;
+    const Cone cone = mesh_detail::cone_of_vertex(mesh_, feature, from);
     if (cone == Cone::outside || (cone == Cone::inside && weak_pass_)) return;
-    if (!mesh_.sheet && dot(from, in_double(feature.outward)) < 0) return;
+    add_feature(t, row, from, cone == Cone::weak && !weak_pass_);
+  }
+
+  // wait: until it is known whether anything else counts.
+  SCREE_HD void add_feature(Index t, Index row, Vec3 from, bool wait) {
+    if (!mesh_.sheet && dot(from, in_double(mesh_.features[row].outward)) < 0) return;
     MeshContact contact = mesh_detail::contact_from(mesh_, row, c_, from);
     contact.triangle = t;
     if (!(contact.distance < reach_)) return;
-    if (cone == Cone::inside || weak_pass_)
-      add(contact);
-    else if (contact.distance < nearest_weak_)
-      nearest_weak_ = contact.distance;
+    if (!wait) return add(contact);
+    if (contact.distance < nearest_weak_) nearest_weak_ = contact.distance;
   }
 
   SCREE_HD void add(const MeshContact& contact) {

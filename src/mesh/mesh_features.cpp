@@ -57,10 +57,15 @@ class FeatureFinder {
       const MeshEdge& edge = topology_.edges[topology_.edges_of[t][k]];
       if (is_inner(edge)) triangle.flags |= kInnerEdge << k;
       if (vertex[k] != edge.low) triangle.flags |= kReversed << k;
-      if (topology_.uses_of(edge)[0].triangle == t && may_touch(edge)) add_edge(edge);
+      if (topology_.uses_of(edge)[0].triangle != t || !may_touch(edge)) continue;
+      triangle.flags |= kOwnsEdge << k;
+      add_edge(edge);
     }
-    for (const Index v : vertex)
-      if (touched_[v] && topology_.triangles_at.of(v)[0] == t) add_vertex(v);
+    for (int k = 0; k < 3; ++k) {
+      if (!touched_[vertex[k]] || topology_.triangles_at.of(vertex[k])[0] != t) continue;
+      triangle.flags |= kOwnsVertex << k;
+      add_vertex(vertex[k]);
+    }
     triangle.features = static_cast<Index>(result_.features.size()) - triangle.first_feature;
     result_.triangles.push_back(triangle);
   }

@@ -15,10 +15,12 @@ struct MeshPart {
   Index patch;         // parts joined over edges that turn by less than the feature angle
 };
 
-// flags of a triangle, per edge k from corner k to corner k + 1.
+// flags of a triangle, << k for corner k or the edge from it to corner k + 1.
 enum TriangleFlags : std::uint32_t {
-  kInnerEdge = 1,  // << k: between two triangles of one part
-  kReversed = 8,   // << k: the edge's lower vertex is corner k + 1
+  kInnerEdge = 1,     // between two triangles of one part
+  kReversed = 8,      // the edge's lower vertex is corner k + 1
+  kOwnsEdge = 64,     // and
+  kOwnsVertex = 512,  // among its features, edges first, each by increasing k
 };
 
 struct MeshTriangle {

@@ -17,6 +17,8 @@ RUBBING_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration"
 FIXED = ["time.control=fixed"]
 # Motors, gears, a screw, a spring, a stop, friction, a bushing and a loop of hinges, all of them at work.
 ELEMENTS = [HERE / "spatial_elements.toml", "parallel.imbalance=0.0"]
+# Walls and bodies of triangles: at rest, driven, on motors and hinges, across periodic sides.
+MESHES = [HERE / "meshes.toml", "parallel.imbalance=0.0"]
 # The cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
@@ -35,6 +37,7 @@ MAIN_CASES = {
     "rubbing on bodies": ([HERE / "rubbing_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
     "bodies in space": ([HERE / "spatial_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 4)),
     "elements in space": ([*ELEMENTS, "time.end=0.08"], (1, 2, 4)),
+    "meshes": ([*MESHES, "time.end=0.08"], (1, 2, 3, 4)),
     "rubbing, implicit": ([*RUBBING, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
     "rubbing after Hertz and Mindlin, implicit": ([HERE / "rubbing_hertz.toml", *IMPLICIT, *FIXED,
                                                    "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
@@ -48,6 +51,7 @@ CASES = {
                                    "parallel.imbalance=0.0", "time.end=0.08"], (1, 2)),
     "elements in space, implicit": ([*ELEMENTS, *IMPLICIT, *FIXED, "integrator.substeps=1", "time.end=0.08"],
                                     (1, 2, 4)),
+    "meshes, implicit": ([*MESHES, *IMPLICIT, *FIXED, "integrator.substeps=1", "time.end=0.08"], (1, 2, 4)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (1, 3)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
 }
@@ -149,7 +153,8 @@ class SameBitsTest(RanksTest):
         self.assertLess(sizes[1], sizes[0])
 
     def test_lists_built_often_and_seldom_give_the_bits_of_rubbing_particles(self):
-        cases = {deck: [] for deck in ("rubbing", "rubbing_hertz", "rolling", "rubbing_bodies", "spatial_elements")}
+        cases = {deck: [] for deck in ("rubbing", "rubbing_hertz", "rolling", "rubbing_bodies", "spatial_elements",
+                                    "meshes")}
         cases["spatial_bodies"] = [*IMPLICIT, *FIXED, "integrator.substeps=1", "time.end=0.04"]  # steps begin anew
         for deck, overrides in cases.items():
             builds = []

@@ -33,13 +33,13 @@ struct BuiltRows {
     side.place();
     store.load(initial_records(model.particles, subdomain));
     layout.owned = layout.items = store.owned, layout.active = store.owned - kDrifting;
-    builder.build(store, layout, builder.cells(kSkin, store.owned), side.placed(), kSkin, list);
+    builder.build(store, layout, builder.cells(kSkin, store.owned), side.places(), kSkin, list);
   }
   std::vector<Entry> row(Index i) const {
     const SurfaceRows& rows = list.surfaces;
     std::vector<Entry> out;
     for (Index k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
-      CHECK((rows.particles[k] == i || rows.surfaces[k] < side.surfaces().ground()));
+      CHECK(rows.particles[k] == i);
       out.emplace_back(rows.surfaces[k], rows.images[k]);
     }
     return out;

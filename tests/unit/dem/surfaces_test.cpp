@@ -47,13 +47,13 @@ TEST_CASE("a sphere and a sphere on a body touch on the line of their centres") 
   CHECK(s.velocity_at(pair.contact) == Vec3{-1, 1, 3});
 }
 
-TEST_CASE("a sphere and a plane on a body touch below the sphere's centre") {
+TEST_CASE("a sphere and a plane on a body touch at its radius below its centre") {
   const PlacedSurface s = placed(SurfaceKind::plane, 0, {0, 1, 0});
   const SurfacePair pair = surface_pair(s, {0, 10, 0}, {4, 12.5, 1, 0.75});
   CHECK(pair.geometry.overlap == 0.25);
   CHECK(pair.geometry.normal() == Vec3{0, 1, 0});
-  CHECK(pair.contact == Vec3{3, 0, 1});
-  CHECK(s.velocity_at(pair.contact) == Vec3{0, 7, 3});
+  CHECK(pair.contact == Vec3{3, -0.25, 1});
+  CHECK(s.velocity_at(pair.contact) == Vec3{0.5, 7, 3});
 }
 
 TEST_CASE("a contact pushes its body back at the point of contact") {

@@ -63,7 +63,7 @@ TEST_CASE("an axis-aligned flat mesh has the bits of the plane everywhere") {
     const SurfaceMesh surface = sheet_mesh(mapped(mesh, [&](Vec3 v) { return v + Vec3{0, 0, offset}; }));
     REQUIRE(surface.parts.size() == 1);
     int wrong = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 100000; ++i) {
       const Vec3 p = place_over(mesh, random);
       if (!inside_border(p, size)) continue;
       const Vec3 c = p + Vec3{0, 0, offset + random.in(0.001, 0.01)};
@@ -88,7 +88,7 @@ TEST_CASE("a tilted flat mesh is the plane but for round-off") {
     REQUIRE(surface.parts.size() == 1);
     int wrong = 0;
     Real error = 0;
-    for (int i = 0; i < 10000; ++i) {
+    for (int i = 0; i < 30000; ++i) {
       Vec3 c = place_over(mesh, random);
       if (!inside_border(c, size)) continue;
       const Real height = random.in(0.001, 0.01);
@@ -102,6 +102,28 @@ TEST_CASE("a tilted flat mesh is the plane but for round-off") {
     CHECK(wrong == 0);
     CHECK(error < 1e-12);
   }
+}
+
+TEST_CASE("a flat mesh far from its origin, or very small, is one plane") {
+  MeshRandom random(10);
+  for (const Real size : {1e-6, 1.0})
+    for (const Real away : {0.0, 1e6 * size}) {
+      const Mat3 turn = random.turn();
+      const TriangleMesh mesh = jittered_grid(12, 7);
+      const auto placed = [&](Vec3 v) { return turn * (size * v + Vec3{away, away, 0}); };
+      const SurfaceMesh surface = sheet_mesh(mapped(mesh, placed));
+      REQUIRE(surface.parts.size() == 1);
+      int wrong = 0;
+      for (int i = 0; i < 10000; ++i) {
+        Vec3 c = place_over(mesh, random);
+        if (std::min(c.x, c.y) < 1e-6 || std::max(c.x, c.y) > 1 - 1e-6) continue;
+        c.z = 0.05;
+        const auto contacts = contacts_at(surface, placed(c), 0.1 * size);
+        wrong +=
+            contacts.size() != 1 || std::abs(contacts[0].distance - 0.05 * size) > 4 * kUlp * (away + size);
+      }
+      CHECK(wrong == 0);
+    }
 }
 
 }  // namespace scree

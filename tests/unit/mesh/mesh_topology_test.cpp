@@ -71,6 +71,53 @@ TEST_CASE("an edge with three faces is touched in every corner between them") {
   CHECK(near(below[0].normal, {0, 0, -1}, {.absolute = kUlp}));
 }
 
+TEST_CASE("a step of any height parts two flats, what round-off makes does not") {
+  // Up a riser from z = 0 to z = step, along x = 1.
+  const auto stairs = [](Real step) {
+    return strip({{0, 0, 0}, {1, 0, 0}, {1, 0, step}, {2, 0, step}}, 1, 3);
+  };
+  for (const Real step : {0.5, 1e-3, 1e-9, 1e-11}) {
+    const SurfaceMesh mesh = sheet_mesh(stairs(step));
+    CHECK(mesh.parts.size() == 3);
+    CHECK(contacts_at(mesh, {0.5, 0.5, 0.1}, 0.2).at(0).distance == 0.1);
+    CHECK(contacts_at(mesh, {1.5, 0.5, step + 0.1}, 0.2).at(0).distance == step + 0.1 - step);
+  }
+  MeshRandom random(51);
+  const SurfaceMesh noisy = sheet_mesh(mapped(jittered_grid(20, 1), [&](Vec3 v) {
+    return Vec3{v.x, v.y, random.in(-1e-13, 1e-13)};
+  }));
+  CHECK(noisy.parts.size() == 1);
+}
+
+TEST_CASE("slivers join the plane of their neighbours, whatever their own normals") {
+  MeshRandom random(52);
+  // Slivers 1e-9 wide along all sides, turned so that all coordinates are rounded.
+  const Real lines[] = {0, 1e-9, 0.5, 1 - 1e-9, 1};
+  const TriangleMesh mesh = mapped(unit_grid(4, 4), [&](Vec3 v) {
+    return Vec3{lines[static_cast<int>(4 * v.x)], lines[static_cast<int>(4 * v.y)], 0};
+  });
+  for (int i = 0; i < 10; ++i) CHECK(sheet_mesh(turned(mesh, random.turn())).parts.size() == 1);
+  // Slivers alone, of which none knows the plane to the far end.
+  CHECK(sheet_mesh(turned(unit_grid(1, 30000), random.turn())).parts.size() == 1);
+}
+
+TEST_CASE("a flat that folds back on itself is two parts") {
+  const auto second_corner_at = [](Vec3 p) {
+    return TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, p}, {{0, 1, 2}, {2, 1, 3}}};
+  };
+  CHECK(sheet_mesh(second_corner_at({0.8, 0.8, 0})).parts.size() == 1);
+  CHECK(sheet_mesh(second_corner_at({0.2, 0.2, 0})).parts.size() == 2);
+}
+
+TEST_CASE("a drum whose facets turn by the feature angle itself has a patch per facet") {
+  for (const int facets : {3, 4, 6, 12}) {
+    const SurfaceMesh drum = sheet_mesh(drum_shell(facets, 1, 1, 2));
+    CHECK(drum.first_neighbour.size() == static_cast<std::size_t>(facets) + 1);
+    CHECK(drum.neighbours.size() == 2 * static_cast<std::size_t>(facets));
+  }
+  CHECK(sheet_mesh(drum_shell(13, 1, 1, 2)).first_neighbour.size() == 2);
+}
+
 TEST_CASE("triangles keep their numbers in the file, and every one is in the order of the curve once") {
   const TriangleMesh mesh = icosphere(3, 2);
   const SurfaceMesh surface = closed_mesh(mesh);

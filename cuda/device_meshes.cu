@@ -1,0 +1,177 @@
+#include "base/countable.hpp"
+#include "dem/mesh_touches.hpp"
+#include "device_meshes.cuh"
+#include "for_each.cuh"
+#include "mesh/mesh_tree.hpp"
+
+namespace scree {
+namespace {
+
+// How many groups and triangles there are so far.
+enum Cursor { kGroups, kTriangles, kCursors };
+
+__device__ Vec3 place_in_frame(const MeshSearch& in, Index placed, Vec3 shift, Vec3 p) {
+  const PlacedSurface& surface = in.placed[placed];
+  const SurfaceFrame& frame = in.frames[surface.frame];
+  return transposed_times(frame.axes, (place_beside(surface, frame, p) - shift) - surface.point);
+}
+
+// Counts the particles near a mesh and the triangles that they are near.
+struct CountNearItem {
+  MeshSearch in;
+  const MeshView* meshes;
+  Index placed;
+  Index* cursors;
+
+  __device__ void operator()(Index i) const {
+    const SurfaceFrame& frame = in.frames[in.placed[placed].frame];
+    const MeshView& mesh = meshes[frame.mesh];
+    const Vec4 p = in.position[i];
+    for_each_shift(in.period - frame.spanned, [&](Vec3 shift, std::int8_t) {
+      Index triangles = 0;
+      for_each_triangle_near(mesh, place_in_frame(in, placed, shift, xyz(p)), p.w + in.skin,
+                             [&](Index) { ++triangles; });
+      if (triangles > 0) atomicAdd(&cursors[kGroups], 1), atomicAdd(&cursors[kTriangles], triangles);
+    });
+  }
+};
+
+// Makes the groups, in any order, with their triangles and the number of entries that they need.
+struct FindNearItem {
+  MeshSearch in;
+  const MeshView* meshes;
+  Index placed, number;
+  Index* cursors;
+  NearMesh* near;
+  MeshGroup* groups;
+  Index* triangles;
+  Index* counts;  // of entries per particle
+
+  __device__ void operator()(Index i) const {
+    const SurfaceFrame& frame = in.frames[in.placed[placed].frame];
+    const MeshView& mesh = meshes[frame.mesh];
+    const Vec4 p = in.position[i];
+    for_each_shift(in.period - frame.spanned, [&](Vec3 shift, std::int8_t image) {
+      const Vec3 c = place_in_frame(in, placed, shift, xyz(p));
+      Index found = 0;
+      for_each_triangle_near(mesh, c, p.w + in.skin, [&](Index) { ++found; });
+      if (found == 0) return;
+      const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
+      Index* to = triangles + first;
+      for_each_triangle_near(mesh, c, p.w + in.skin, [&](Index t) { *to++ = t; });
+      const Index entries = slots_needed(mesh, triangles + first, found);
+      near[g] = {i, number, placed, image};
+      groups[g] = {0, entries, first, found};
+      atomicAdd(&counts[i], entries);
+    });
+  }
+};
+
+struct FillItem {
+  const NearMesh* near;
+  const MeshGroup* groups;
+  Index *next, *surfaces;
+  std::int8_t* images;
+
+  __device__ void operator()(Index g) const {
+    const Index first = atomicAdd(&next[near[g].particle], groups[g].entries);
+    for (Index k = first; k < first + groups[g].entries; ++k)
+      surfaces[k] = near[g].surface, images[k] = near[g].image;
+  }
+};
+
+struct GroupItem {
+  const NearMesh* near;
+  const Index *offsets, *surfaces;
+  const std::int8_t* images;
+  MeshGroup* groups;
+
+  __device__ void operator()(Index g) const {
+    const NearMesh& of = near[g];
+    Index entry = offsets[of.particle];
+    while (surfaces[entry] != of.surface || images[entry] != of.image) ++entry;
+    groups[g].entry = entry;
+  }
+};
+
+template <class T>
+const T* uploaded(DeviceArray<T>& array, const std::vector<T>& values, cudaStream_t stream) {
+  array.upload(values, stream);
+  return array.data();
+}
+
+}  // namespace
+
+DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream) : cursors_(kCursors) {
+  std::vector<MeshView> views;
+  meshes_.reserve(model.meshes.size());
+  for (const ModelMesh& mesh : model.meshes) {
+    const SurfaceMesh& from = *mesh.surface;
+    Arrays& to = meshes_.emplace_back();
+    MeshView& view = views.emplace_back(from.view());
+    view.vertices = uploaded(to.vertices, from.vertices, stream);
+    view.triangles = uploaded(to.triangles, from.triangles, stream);
+    view.parts = uploaded(to.parts, from.parts, stream);
+    view.features = uploaded(to.features, from.features, stream);
+    view.tests = uploaded(to.tests, from.tests, stream);
+    view.patches = uploaded(to.patches, from.patches, stream);
+    view.first_neighbour = uploaded(to.first_neighbour, from.first_neighbour, stream);
+    view.neighbours = uploaded(to.neighbours, from.neighbours, stream);
+    view.boxes = uploaded(to.boxes, from.boxes, stream);
+  }
+  views_.upload(views, stream);
+  const SurfaceSet surfaces(model);
+  for (Index s = 0; s < surfaces.placed(); ++s)
+    if (surfaces.at(s).kind == SurfaceKind::mesh)
+      instances_.push_back(s), numbers_.push_back(surfaces.number_of(s));
+}
+
+void DeviceMeshes::find(Device device, const MeshSearch& search, Index* counts) {
+  count_ = 0;
+  if (instances_.empty()) return;
+  cursors_.zero(device.stream);
+  for (const Index s : instances_)
+    for_each(device, search.active, CountNearItem{search, views_.data(), s, cursors_.data()});
+  copy_async(h_counts_.data(), cursors_.data(), kCursors, device.stream);
+  wait_for(device.stream);
+  if (h_counts_[kTriangles] < 0)
+    countable(std::size_t{1} << 32, "stage neighbors: more triangles near particles");
+  count_ = h_counts_[kGroups];
+  near_.resize_with_spare(static_cast<std::size_t>(count_));
+  groups_.resize_with_spare(static_cast<std::size_t>(count_));
+  triangles_.resize_with_spare(static_cast<std::size_t>(h_counts_[kTriangles]));
+  cursors_.zero(device.stream);
+  for (std::size_t k = 0; k < instances_.size(); ++k)
+    for_each(device, search.active,
+             FindNearItem{search, views_.data(), instances_[k], numbers_[k], cursors_.data(), near_.data(),
+                          groups_.data(), triangles_.data(), counts});
+}
+
+void DeviceMeshes::fill(Device device, Index* next, Index* surfaces, std::int8_t* images) {
+  for_each(device, count_, FillItem{near_.data(), groups_.data(), next, surfaces, images});
+}
+
+void DeviceMeshes::group(Device device, const Index* offsets, const Index* surfaces,
+                         const std::int8_t* images) {
+  for_each(device, count_, GroupItem{near_.data(), offsets, surfaces, images, groups_.data()});
+}
+
+void DeviceMeshes::make_room(Index entries) {
+  if (exist()) touches_.resize_with_spare(static_cast<std::size_t>(entries));
+}
+
+void DeviceMeshes::make_room_over_step(Index entries) {
+  if (exist()) before_.resize_with_spare(static_cast<std::size_t>(entries));
+}
+
+void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
+  for_each(device, count_, MeshTouchItem{views, touches_.data()});
+}
+
+void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
+                                   const PlacedSurface* start_placed) {
+  for_each(device, count_,
+           MeshStepTouchItem{views, start_position, start_placed, touches_.data(), before_.data()});
+}
+
+}  // namespace scree

@@ -1,0 +1,79 @@
+// Meshes on the device: which particles are near which triangles, and where they touch.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dem/mesh_rows.hpp"
+#include "dem/surface_items.hpp"
+#include "device.cuh"
+#include "model/model.hpp"
+
+namespace scree {
+
+// A particle near a mesh, before its row is there.
+struct NearMesh {
+  Index particle, surface;  // the latter by its number
+  Index placed;
+  std::int8_t image;
+};
+
+// Where the search finds particles and placed surfaces; device.
+struct MeshSearch {
+  const Vec4* position;
+  Index active;
+  Real skin;  // how far past touch surfaces are looked for [m]
+  Vec3 period;
+  const PlacedSurface* placed;
+  const SurfaceFrame* frames;
+};
+
+class DeviceMeshes {
+ public:
+  DeviceMeshes(const Model& model, cudaStream_t stream);
+  bool exist() const { return !meshes_.empty(); }
+
+  // For a new list, in this order. Finds who is near what, and adds to counts[particle] the entries that they
+  // need; waits. Then: writes these entries to the rows, of which next[particle] are free from then on. Then,
+  // with the rows in order: which entries belong together.
+  void find(Device device, const MeshSearch& search, Index* counts);
+  void fill(Device device, Index* next, Index* surfaces, std::int8_t* images);
+  void group(Device device, const Index* offsets, const Index* surfaces, const std::int8_t* images);
+
+  // Queues the contacts now; the entries' arrays hold them.
+  void touch(Device device, const SurfaceViews& views);
+  // The same over an implicit step.
+  void touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
+                       const PlacedSurface* start_placed);
+  // For so many entries; and for those of an implicit step.
+  void make_room(Index entries);
+  void make_room_over_step(Index entries);
+
+  MeshRows rows() const { return {groups_.data(), triangles_.data(), views_.data()}; }
+  const MeshTouch* touches() const { return touches_.data(); }
+  const MeshTouchBefore* before() const { return before_.data(); }
+
+ private:
+  // The arrays of a MeshView.
+  struct Arrays {
+    DeviceArray<Vec3> vertices;
+    DeviceArray<MeshTriangle> triangles;
+    DeviceArray<MeshPart> parts;
+    DeviceArray<MeshFeature> features;
+    DeviceArray<Index> tests, patches, first_neighbour, neighbours;
+    DeviceArray<MeshBox> boxes;
+  };
+
+  std::vector<Arrays> meshes_;
+  DeviceArray<MeshView> views_;
+  std::vector<Index> instances_, numbers_;  // placed surfaces that are meshes, and their numbers
+  Index count_ = 0;                         // of groups
+  DeviceArray<NearMesh> near_;
+  DeviceArray<MeshGroup> groups_;
+  DeviceArray<Index> triangles_, cursors_;
+  PinnedArray<Index> h_counts_{2};
+  DeviceArray<MeshTouch> touches_;
+  DeviceArray<MeshTouchBefore> before_;
+};
+
+}  // namespace scree

@@ -1,0 +1,44 @@
+// Particles near meshes, and where they touch them: what the search and the look leave to the contacts'
+// items.
+#pragma once
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+#include "mesh/mesh_view.hpp"
+#include "physics/contact_geometry.hpp"
+
+namespace scree {
+
+// A particle near a mesh: the entries of its row that stand for that mesh, one for each contact that it may
+// have there, and the triangles that it may touch.
+struct MeshGroup {
+  Index entry, entries;
+  Index first_triangle, triangles;
+};
+
+// Rows of meshes near particles; a part of the surface rows.
+struct MeshRows {
+  const MeshGroup* groups;
+  const Index* triangles;
+  const MeshView* meshes;
+};
+
+// A contact with a mesh, per entry.
+struct MeshTouch {
+  bool touches;  // else nothing below has a meaning
+  bool is_face;
+  ContactGeometry geometry;
+  Vec3 contact;  // where forces act, from the surface's point [m]
+  Vec3 normal0;  // where the step began
+  Index feature, triangle;
+  Index from;  // entry whose memory the contact goes on from; -1: none
+};
+
+// The same contact where an implicit step began. One that was open then, or is open at the end, has no
+// overlap there.
+struct MeshTouchBefore {
+  ContactGeometry geometry;
+  Vec3 contact;
+};
+
+}  // namespace scree
