@@ -22,14 +22,13 @@ SCREE_HD bool is_face(const MeshView& mesh, Index feature) { return feature < me
 // the foot of a radius below the centre; an edge or a vertex as a sphere of no radius.
 SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found, const Mat3& axes, Vec3 c,
                                   Real radius) {
+  const Vec3 normal = axes * found.normal;
   if (is_face(mesh, found.feature)) {
     ContactGeometry g = plane_pair(c, radius, found.point, found.normal);
-    g.direction = axes * found.normal;
+    g.direction = normal;
     return {g, axes * (c - radius * found.normal)};
   }
-  ContactGeometry g = sphere_pair(c - found.point, radius);
-  g.direction = axes * g.direction;
-  return {g, axes * found.point};
+  return {{radius - found.distance, found.distance, normal, 1}, axes * found.point};
 }
 
 // Contacts of the particle now that were remembered, each with the entry that did.

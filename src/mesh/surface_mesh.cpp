@@ -87,6 +87,7 @@ SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, Real feature_angle, boo
       kUnits * std::numeric_limits<Real>::epsilon() * std::max(largest(box.min), largest(box.max));
   result.flatness = kFlatness * largest(box.max - box.min) + result.round_off;
   MeshParts parts = mesh_parts(topology, result.flatness, result.cosine);
+  result.curvature = mesh_curvature(topology, parts, result.cosine, sheet);
   MeshFeatures features = mesh_features(topology, parts, sheet);
   result.triangles = std::move(features.triangles);
   result.features = std::move(features.features);

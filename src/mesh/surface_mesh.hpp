@@ -5,6 +5,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "mesh/mesh_curvature.hpp"
 #include "mesh/mesh_view.hpp"
 #include "mesh/triangle_mesh.hpp"
 
@@ -21,6 +22,7 @@ struct SurfaceMesh {
   std::vector<Index> level_start;  // into boxes, and the end
   std::vector<Index> original;     // number of each triangle in the mesh that it was made from
   MeshBox box;                     // of all vertices [m]
+  MeshCurvature curvature;
   bool sheet = false;
   Real cosine = 1, round_off = 0, flatness = 0;
 

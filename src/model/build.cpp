@@ -102,6 +102,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   naming_memory(size, share.size(), [&] {
     check_memory(size, bytes_to_build_bodies(size, share.rank()), "building the bodies", share);
     build_bodies(root, model, names);
+    check_surface_count(root, model);
     build_markers(root, model, names);
     build_joints(root, model, names);
     build_force_elements(root, model, names);

@@ -1,6 +1,7 @@
 // Bodies and rows of bodies.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -37,16 +38,23 @@ void check_mass_keys(const DeckTable& table, bool spatial) {
 MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real density) {
   const int mesh = find_name(names.meshes, table, "mesh", "mesh");
   const TriangleMesh& triangles = names.triangles[static_cast<std::size_t>(mesh)];
-  if (!(mesh_volume(triangles) > 0)) table.fail("mesh", "it is a sheet, which encloses nothing");
+  if (triangles.triangles.empty())
+    table.fail("mesh",
+               "is a sheet or a line, which encloses no volume; give the body's mass and inertia instead");
   return solid_mesh_mass(triangles, density);
 }
 
-// About its own centre, along the axes of the body's frame.
-MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
+Real density_of(const DeckTable& table, const ModelNames& names) {
   const int material = table.has("density") ? 0 : find_material(names, table, "material");
   const Real density =
       table.has("density") ? table.real("density") : names.densities[static_cast<std::size_t>(material)];
   if (density == 0) table.fail("density", "missing; the material has none, either");
+  return density;
+}
+
+// About its own centre, along the axes of the body's frame.
+MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
+  const Real density = density_of(table, names);
   const auto own = [&]() -> MassProperties {
     switch (table.choice<SolidKind>("kind")) {
       case SolidKind::sphere:
@@ -165,6 +173,17 @@ Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
   return body;
 }
 
+// For the report.
+void note_mesh_solids(const DeckTable& body, const ModelNames& names, Model& model) {
+  for (const DeckTable& solid : body.tables("solids")) {
+    if (solid.choice<SolidKind>("kind") != SolidKind::mesh) continue;
+    const auto mesh = static_cast<std::size_t>(find_name(names.meshes, solid, "mesh", "mesh"));
+    const Real mass = density_of(solid, names) * mesh_volume(names.triangles[mesh]);
+    std::vector<Real>& masses = model.meshes[mesh].solid_masses;
+    if (std::ranges::find(masses, mass) == masses.end()) masses.push_back(mass);
+  }
+}
+
 }  // namespace
 
 Vec3 turned_at_start(const DeckTable& body, Vec3 local) {
@@ -177,6 +196,7 @@ void build_bodies(const DeckTable& deck, Model& model, ModelNames& names) {
     const std::string& name = table.text("name");
     if (name == kGroundName) table.fail("name", "\"ground\" is the fixed frame; choose another name");
     const Body first = body_of(table, names, model.space.dimension);
+    note_mesh_solids(table, names, model);
     const bool row = table.has("count");
     const Vec3 spacing = table.vector("spacing");
     const std::int64_t count = row ? table.integer("count") : 1;

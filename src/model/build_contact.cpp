@@ -40,7 +40,7 @@ Real stiffness_of_overlap(const DeckTable& table, const Model& model, const int 
                     &b = uses[static_cast<std::size_t>(material[1])];
   if (a.particles + b.particles == 0)
     table.fail("largest_overlap", "needs particles of one of the two materials; give a stiffness");
-  const bool alike = a.particles > 0 && b.particles > 0 && a.walls + b.walls + a.shapes + b.shapes == 0;
+  const bool alike = a.particles > 0 && b.particles > 0 && !a.is_of_surfaces() && !b.is_of_surfaces();
   const Real mass = model.particles.totals.largest_mass / (alike ? 2 : 1);
   const PairSize smallest = smallest_partners(a, b);
   const Real overlap = table.real("largest_overlap") * std::min(smallest.radius_i, smallest.radius_j);
@@ -280,9 +280,12 @@ void check_attraction(const DeckTable& contact, const Model& model) {
     if (model.integrator.precision == Precision::mixed)
       pair.fail(key, "needs integrator.precision = \"double\"");
     for (const Body& body : model.bodies)
-      if (!body.shapes.empty())
-        pair.fail(key,
-                  fmt::format("bodies do not attract particles yet, and body \"{}\" has shapes", body.name));
+      if (!body.shapes.empty() || !body.meshes.empty())
+        pair.fail(key, fmt::format("bodies do not attract particles yet, and body \"{}\" has {}", body.name,
+                                   body.shapes.empty() ? "meshes" : "shapes"));
+    for (const Wall& wall : model.walls)
+      if (wall.is_placed())
+        pair.fail(key, fmt::format("only planes at rest attract particles yet, not wall \"{}\"", wall.name));
   }
 }
 

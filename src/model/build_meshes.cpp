@@ -52,6 +52,17 @@ void check_features(const DeckTable& table, const SurfaceMesh& mesh) {
 
 }  // namespace
 
+void check_surface_count(const DeckTable& deck, const Model& model) {
+  if (model.meshes.empty()) return;
+  std::size_t surfaces = model.walls.size();
+  for (const Body& body : model.bodies) surfaces += body.shapes.size() + body.meshes.size();
+  constexpr std::size_t kMost = std::size_t{1} << kSurfaceBits;
+  if (surfaces > kMost)
+    throw InputError(fmt::format(
+        "{}: the deck has {} walls, shapes and meshes of bodies; with meshes there can be at most {}",
+        deck.tables("meshes").front().label(), surfaces, kMost));
+}
+
 void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
   const DeckTable& space = deck.table("space");
   const bool planar = space.integer("dimension") == 2;
@@ -67,7 +78,7 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
         build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
     check_features(table, *surface);
     model.meshes.push_back({table.text("name"), surface});
-    names.triangles.push_back(mesh);
+    names.triangles.push_back(planar || is_sheet(table) ? TriangleMesh{} : mesh);
   }
 }
 

@@ -12,6 +12,8 @@ namespace scree {
 
 void build_materials(const DeckTable& deck, Model& model, ModelNames& names);
 void build_meshes(const DeckTable& deck, Model& model, ModelNames& names);
+// After bodies and walls.
+void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
 void build_time(const DeckTable& deck, Model& model);  // control and end; also the integrator
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);

@@ -95,7 +95,10 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
         take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));
     }
-  for (const Wall& wall : model.walls) ++uses[static_cast<std::size_t>(wall.material)].walls;
+  for (const Wall& wall : model.walls) {
+    MaterialUse& use = uses[static_cast<std::size_t>(wall.material)];
+    ++(wall.mesh < 0 ? use.walls : use.meshes);
+  }
   return uses;
 }
 

@@ -14,13 +14,15 @@ Real farthest(const ModelMesh& mesh, Vec3 offset);
 // Extremes of what one material is used for; radius and mass are 0 where it is not used.
 struct MaterialUse {
   std::int64_t particles = 0;
-  int shapes = 0, meshes = 0, walls = 0;  // meshes: on bodies
+  int shapes = 0, meshes = 0, walls = 0;  // meshes: of bodies and walls; walls: planes
   Real smallest_radius = 0;               // [m]
   Real smallest_particle_mass = 0;        // [kg]
   Real smallest_inertia_factor = 0;       // of particles, I / (m R^2)
   // [kg] At a shape: 1 / (1/m + arm^2 / inertia), the arm being the offset where the body is pushed at the
   // shape's centre, and reaching to its far side where its surface is rubbed.
   Real smallest_body_mass = 0, smallest_rubbed_mass = 0;
+
+  bool is_of_surfaces() const { return shapes + meshes + walls > 0; }
 };
 
 std::vector<MaterialUse> material_uses(const Model& model);

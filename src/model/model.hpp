@@ -47,6 +47,7 @@ struct Wall {
 struct ModelMesh {
   std::string name;  // for messages
   std::shared_ptr<const SurfaceMesh> surface;
+  std::vector<Real> solid_masses{};  // of solids that it stands for, each number once [kg]
 };
 
 // A pair of materials that the deck does not give, made by contact.mixing.

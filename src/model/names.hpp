@@ -29,7 +29,7 @@ struct ModelNames {
   std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
   std::map<std::string, NamedMarker> markers;
   std::vector<Real> densities;          // of the materials [kg/m^3], 0 where not given
-  std::vector<TriangleMesh> triangles;  // of the meshes
+  std::vector<TriangleMesh> triangles;  // of the meshes; none of those that enclose no volume
 };
 
 // Index of the name that `table.key` holds. what: "material", "body", ... for the message. Throws InputError

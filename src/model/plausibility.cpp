@@ -12,6 +12,7 @@
 #include "deck/choices.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
+#include "model/mesh_plausibility.hpp"
 #include "model/touching.hpp"
 #include "physics/plausible.hpp"
 
@@ -33,12 +34,6 @@ std::string pair_name(const Model& model, const PairLimit& limit) {
   const std::vector<std::string>& names = model.contact.material_names;
   return fmt::format("\"{}\" on \"{}\"", names[static_cast<std::size_t>(limit.material[0])],
                      names[static_cast<std::size_t>(limit.material[1])]);
-}
-
-// Mass of the relative motion of the lightest pair [kg].
-Real lightest_mass(const PairLimit& limit) {
-  const Real inverse_frequency = limit.contact_time / std::numbers::pi_v<Real>;
-  return limit.stiffness * inverse_frequency * inverse_frequency;
 }
 
 // How far something can fall within the space [m].
@@ -107,7 +102,8 @@ std::string larger_than_space(const Model& model) {
                     : finding(fmt::format("a shape of body \"{}\"{}", first->name, and_more(count)), radius);
 }
 
-// How far the shapes of each body, and the points that something acts on, reach from its centre [m].
+// How far the shapes and meshes of each body, and the points that something acts on, reach from its centre
+// [m].
 std::vector<Real> body_extents(const Model& model) {
   std::vector<Real> extents(model.bodies.size());
   const auto reach = [&](int body, Vec3 point, Real radius) {
@@ -117,6 +113,10 @@ std::vector<Real> body_extents(const Model& model) {
   };
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const Shape& shape : model.bodies[b].shapes) reach(static_cast<int>(b), shape.offset, shape.radius);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes)
+      extents[b] =
+          std::max(extents[b], farthest(model.meshes[static_cast<std::size_t>(shape.mesh)], shape.offset));
   for (int side = 0; side < 2; ++side) {
     for (const Joint& joint : model.joints) reach(joint.body[side], joint.point[side], 0);
     for (const SpringDamper& spring : model.spring_dampers) reach(spring.body[side], spring.point[side], 0);
@@ -284,6 +284,11 @@ std::string undamped_joints_in_space(const Model& model) {
 
 }  // namespace
 
+Real lightest_mass(const PairLimit& limit) {
+  const Real inverse_frequency = limit.contact_time / std::numbers::pi_v<Real>;
+  return limit.stiffness * inverse_frequency * inverse_frequency;
+}
+
 Real impact_speed(const Model& model, const PairLimit& limit) {
   const std::vector<MaterialUse> uses = material_uses(model);
   const MaterialUse &a = uses[static_cast<std::size_t>(limit.material[0])],
@@ -291,9 +296,9 @@ Real impact_speed(const Model& model, const PairLimit& limit) {
   Real speed = 0;
   if (a.particles + b.particles > 0)
     speed = model.particles.totals.most_radii_per_second * model.particles.totals.smallest_radius;
-  if (a.shapes + b.shapes > 0)
+  if (a.shapes + b.shapes + a.meshes + b.meshes > 0)
     for (const Body& body : model.bodies) speed = std::max(speed, norm(body.velocity));
-  const bool floor = a.walls + b.walls + a.shapes + b.shapes > 0;
+  const bool floor = a.is_of_surfaces() || b.is_of_surfaces();
   if (floor && a.particles + b.particles > 0)
     speed = std::hypot(speed, fall_speed(norm(model.gravity), height(model)));
   return speed;
@@ -319,6 +324,8 @@ std::vector<std::string> implausible(const DeckTable& deck, const Model& model) 
   for (const PairLimit& limit : pair_limits(model))
     for (const auto& finding : {overdamped, overlap_at_rest, overlap_at_impact})
       findings.push_back(finding(model, limit));
+  const std::vector<std::string> of_meshes = implausible_meshes(deck, model);
+  findings.insert(findings.end(), of_meshes.begin(), of_meshes.end());
   std::erase(findings, "");
   return findings;
 }

@@ -105,11 +105,12 @@ SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0
 // face beside the edge; travel: of i's centre relative to the material of j at the contact [m].
 SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 travel,
                                    const TurningPartner& i, const TurningPartner& j, Real h) {
-  const Vec3 r0 = geometry.direction - travel, normal1 = geometry.normal();
+  const Vec3 normal1 = geometry.normal(), r0 = geometry.distance * normal1 - travel;
   const RootAndInverse<Real> distance0 = root_and_inverse(fused_dot(r0, r0));
   ContactMotion out = contact_motion(normal0, normal1, i.arm * (normal1 - distance0.inverse * r0), i, j, h);
   out.overlap0 = i.arm - distance0.root;
-  out.leverage = i.arm * geometry.scale;
+  // A centre on the edge itself has no lever to it.
+  out.leverage = geometry.distance > 0 ? i.arm * reciprocal(geometry.distance) : 1;
   return out;
 }
 

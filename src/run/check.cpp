@@ -18,6 +18,7 @@
 #include "model/limits.hpp"
 #include "model/memory.hpp"
 #include "run/check_bodies.hpp"
+#include "run/check_meshes.hpp"
 #include "run/step_trials.hpp"
 
 namespace scree {
@@ -285,8 +286,8 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
 
 std::string check_report(const Model& model, const Ranks& ranks) {
   const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
-  return title + space_lines(model, ranks.size()) + multibody_lines(model) + limit_lines(model) +
-         time_lines(model) + output_lines(model) +
+  return title + space_lines(model, ranks.size()) + mesh_lines(model) + multibody_lines(model) +
+         limit_lines(model) + time_lines(model) + output_lines(model) +
          fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
          memory_line(model, ranks.size()) + device_memory_line(model, ranks);
 }

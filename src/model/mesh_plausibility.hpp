@@ -1,0 +1,20 @@
+// What meshes stand for and how finely, against the particles that touch them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deck/deck.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// How many triangles are within the list's reach of a sphere that touches a mesh somewhere, on average; in 2D
+// segments of a line.
+Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius);
+
+// What seems wrong with the meshes, one text for each finding: nobody uses them, particles are too large for
+// their curves, their facets too coarse for the overlaps, or too fine for the particles.
+std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& model);
+
+}  // namespace scree

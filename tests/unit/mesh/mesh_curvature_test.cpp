@@ -1,0 +1,53 @@
+// Radii of curvature and sags, of shapes whose radii are known.
+#include "mesh/mesh_curvature.hpp"
+
+#include "mesh/primitives.hpp"
+#include "support/catch.hpp"
+#include "support/near.hpp"
+#include "support/test_meshes.hpp"
+
+namespace scree {
+
+namespace {
+
+MeshCurvature curvature_of(const TriangleMesh& mesh, bool sheet = false) {
+  return build_surface_mesh(mesh, kFeatureAngle, sheet).curvature;
+}
+
+TriangleMesh inside_out(TriangleMesh mesh) {
+  for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("the inside of a pipe is as curved as its radius says; convex shapes are not concave") {
+  for (const Index n : {16, 48, 144}) {
+    const MeshCurvature pipe = curvature_of(pipe_mesh({2, 3, 1, n}));
+    CHECK(pipe.concave_radius == Approx(2).epsilon(2.0 / (n * n)));
+    const Real sag = 3 * (1 - std::cos(M_PI / n));
+    CHECK(pipe.sag == Approx(sag).epsilon(4.0 / (n * n)));
+  }
+  for (const TriangleMesh& mesh : {box_mesh({{1, 1, 1}}), cylinder_mesh({1, 1, 48}), sphere_mesh({1, 3})})
+    CHECK(curvature_of(mesh).concave_radius == kInfinity);
+  CHECK(curvature_of(box_mesh({{1, 1, 1}})).sag == 0);
+}
+
+TEST_CASE("spheres from inside, sheets from either side, fillets beside planes") {
+  CHECK(curvature_of(inside_out(sphere_mesh({1, 3}))).concave_radius == Approx(1).margin(0.25));
+  CHECK(curvature_of(sphere_mesh({1, 3}), true).concave_radius == Approx(1).margin(0.25));
+  std::vector<Vec3> trough = {{-3, 0, 0}};
+  for (int k = 0; k <= 16; ++k)
+    trough.push_back({std::sin(k * M_PI / 32) * 0.1, 0.1 - 0.1 * std::cos(k * M_PI / 32), 0});
+  trough.push_back({0.1, 2, 0});
+  CHECK(curvature_of(extruded_line_mesh(trough, false, 4), true).concave_radius == Approx(0.1).epsilon(0.01));
+}
+
+TEST_CASE("planes that coordinates of seven digits bend are no curves") {
+  TriangleMesh plane = jittered_grid(33, 2);
+  MeshRandom random(5);
+  for (Vec3& v : plane.vertices) v.z += random.in(-1e-7, 1e-7);
+  CHECK(curvature_of(plane, true).concave_radius == kInfinity);
+}
+
+}  // namespace scree
