@@ -106,10 +106,12 @@ SCREE_HD ContactMotion face_motion(const ContactGeometry& geometry, Vec3 normal0
 SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0, Vec3 travel,
                                    const TurningPartner& i, const TurningPartner& j, Real h) {
   const Vec3 normal1 = geometry.normal(), r0 = geometry.distance * normal1 - travel;
-  const RootAndInverse<Real> distance0 = root_and_inverse(fused_dot(r0, r0));
-  ContactMotion out = contact_motion(normal0, normal1, i.arm * (normal1 - distance0.inverse * r0), i, j, h);
+  const Real square0 = fused_dot(r0, r0);
+  // A centre on the edge itself has no direction from it, and no lever to it.
+  const RootAndInverse<Real> distance0 = square0 > 0 ? root_and_inverse(square0) : RootAndInverse<Real>{0, 0};
+  const Vec3 along0 = square0 > 0 ? distance0.inverse * r0 : normal1;
+  ContactMotion out = contact_motion(normal0, normal1, i.arm * (normal1 - along0), i, j, h);
   out.overlap0 = i.arm - distance0.root;
-  // A centre on the edge itself has no lever to it.
   out.leverage = geometry.distance > 0 ? i.arm * reciprocal(geometry.distance) : 1;
   return out;
 }
