@@ -1,0 +1,134 @@
+// A plane made of triangles against an analytic one, through decks.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/surface_mesh.hpp"
+#include "physics/spatial_rotation.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/near.hpp"
+#include "support/simulation_run.hpp"
+#include "support/state_bits.hpp"
+#include "support/test_meshes.hpp"
+#include "verification/surfaces/grains.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kTrajectory = 1e-10;  // over the way
+
+// The rectangle from -1 to 3 in x and y at z = 0, cut in many ways.
+std::vector<std::pair<std::string, TriangleMesh>> triangulations() {
+  const auto over = [](const TriangleMesh& unit, Real sx, Real sy) {
+    return mapped(unit, [&](Vec3 v) { return Vec3{-1 + 4 * sx * v.x, -1 + 4 * sy * v.y, 0}; });
+  };
+  std::vector<std::pair<std::string, TriangleMesh>> meshes;
+  meshes.emplace_back("two triangles", over(unit_grid(1, 1), 1, 1));
+  meshes.emplace_back("squares", over(unit_grid(7, 7), 1, 1));
+  meshes.emplace_back("small squares", over(unit_grid(200, 200), 1, 1));
+  meshes.emplace_back("slivers along x", over(unit_grid(1, 1000), 1, 1));
+  meshes.emplace_back("slivers along y", over(unit_grid(1000, 1), 1, 1));
+  for (const int n : {5, 40, 120})
+    meshes.emplace_back(fmt::format("jittered {}", n), over(jittered_grid(n, 7), 1, 1));
+  meshes.emplace_back("a kilometre", over(unit_grid(3, 3), 250, 250));
+  return meshes;
+}
+
+Model with_floor(const Model& of_rectangle, const TriangleMesh& floor) {
+  Model model = of_rectangle;
+  model.meshes[0].surface =
+      std::make_shared<const SurfaceMesh>(build_surface_mesh(welded(floor), kFeatureAngle, true));
+  return model;
+}
+
+const std::string kPlane = "[[walls]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n";
+const std::string kMesh =
+    "[[meshes]]\nname = \"floor\"\nkind = \"rectangle\"\nsize = [2.0, 2.0]\n[[walls]]\nname = "
+    "\"floor\"\nmesh = "
+    "\"floor\"\n";
+
+Checkpoint end_of(const Model& model) {
+  SimulationRun run(model);
+  run.run();
+  return pack(run.complete_state());
+}
+
+}  // namespace
+
+TEST_CASE(
+    "however a plane along the axes is cut into triangles, grains that rub on it keep the plane's bits") {
+  for (const std::string method : {"velocity-verlet", "hht"}) {
+    const std::string deck = falling_grains(method);
+    const Checkpoint plane = end_of(model_of(deck + kPlane));
+    const Model rectangle = model_of(deck + kMesh);
+    for (const auto& [name, mesh] : triangulations()) {
+      CAPTURE(method, name);
+      CHECK(differing_arrays(end_of(with_floor(rectangle, mesh)), plane) == "");
+    }
+  }
+}
+
+TEST_CASE("the upper side of a block keeps the plane's bits of places, velocities and spins") {
+  const std::string deck = falling_grains("velocity-verlet");
+  const std::string block =
+      "[[meshes]]\nname = \"floor\"\nkind = \"box\"\nsize = [4.0, 4.0, 1.0]\noffset = [1.0, 1.0, "
+      "-0.5]\nrefine = "
+      "0.3\n[[walls]]\nname = \"floor\"\nmesh = \"floor\"\n";
+  SimulationRun on_plane(model_of(deck + kPlane)), on_block(model_of(deck + block));
+  on_plane.run(), on_block.run();
+  const std::vector<Particle> a = on_plane.particles(), b = on_block.particles();
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].position == b[i].position);
+    CHECK(a[i].velocity == b[i].velocity);
+    CHECK(a[i].angular_velocity == b[i].angular_velocity);
+  }
+}
+
+TEST_CASE("on a tilted plane of triangles grains go as on the analytic one") {
+  for (const Real angle : {0.1, 0.7, 2.0, 3.1}) {
+    const Mat3 a = rotation_matrix(exponential(angle * (1 / std::sqrt(3.0)) * Vec3{1, -1, 1}));
+    const auto text = [](Vec3 v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x, v.y, v.z); };
+    const Vec3 normal = a * Vec3{0, 0, 1}, along = a * Vec3{1, 0, 0};
+    const std::string deck = sliding_grain(text(0.0199 * normal), text(0.8 * along), text(-9.81 * normal));
+    SimulationRun plane(
+        model_of(deck + "[[walls]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = " + text(normal)));
+    Model tilted = model_of(deck + kMesh);
+    tilted = with_floor(tilted, turned(mapped(jittered_grid(30, 3),
+                                              [](Vec3 v) {
+                                                return Vec3{4 * v.x - 2, 4 * v.y - 2, 0};
+                                              }),
+                                       a));
+    SimulationRun mesh(tilted);
+    plane.run(), mesh.run();
+    CAPTURE(angle);
+    const Particle p = plane.particles()[0], m = mesh.particles()[0];
+    CHECK(norm(p.position) > 0.3);
+    CHECK(near(m.position, p.position, {.relative = kTrajectory}));
+    CHECK(near(m.velocity, p.velocity, {.relative = kTrajectory}));
+    CHECK(near(m.angular_velocity, p.angular_velocity, {.relative = kTrajectory}));
+  }
+}
+
+TEST_CASE(
+    "a sphere thrown along a floor of small triangles rolls at 5/7 of its speed, with the plane's bits") {
+  const std::string deck = sliding_grain("[0.0, 0.0, 0.02]", "[0.8, 0.0, 0.0]", "[0.0, 0.0, -9.81]");
+  SimulationRun plane(model_of(deck + kPlane)),
+      mesh(with_floor(model_of(deck + kMesh), mapped(jittered_grid(400, 5), [](Vec3 v) {
+                        return Vec3{2 * v.x - 0.5, 2 * v.y - 1, 0};
+                      })));
+  plane.run(), mesh.run();
+  const Particle p = plane.particles()[0], m = mesh.particles()[0];
+  CHECK(near(m.velocity.x, 0.8 * 5 / 7, {.relative = 1e-4}));
+  CHECK(m.position == p.position);
+  CHECK(m.velocity == p.velocity);
+  CHECK(m.angular_velocity == p.angular_velocity);
+}
+
+}  // namespace scree
