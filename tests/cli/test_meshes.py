@@ -90,7 +90,8 @@ class BadFileTest(MeshTest):
         ("a hole", stl(FACES[:3] + FACES[4:]), "3 edges have one triangle", "of triangle"),
         ("a flipped face", stl(FACES[:5] + [FACES[5][::-1]] + FACES[6:]), "opposite windings", "of triangles 4 and 5"),
         ("a duplicate", stl(FACES + FACES[:1]), "has the corners of another", "triangle 0 and triangle 12"),
-        ("not a number", stl(FACES).replace("vertex 0.2 0.0 0.0", "vertex nan 0.0 0.0", 1), "rock.stl:6: coordinate \"nan\"", "must be a finite number"),
+        ("not a number", stl(FACES).replace("vertex 0.2 0.0 0.0", "vertex nan 0.0 0.0", 1),
+         "rock.stl:6: coordinate \"nan\"", "must be a finite number"),
         ("no triangles", stl([]), "triangle", "no"),
         ("2^31 faces", binary_stl(2**31, FACES), "2147483648", "triangles"),
         ("a cut file", binary_stl(12, FACES)[:-30], "12", "triangle"),
@@ -121,7 +122,8 @@ class BadDeckTest(MeshTest):
         self.write("rock.stl", stl(FACES))
 
     def test_every_slip_is_named(self):
-        box, plate = '{name="rock",kind="box",size=[0.2,0.2,0.2]}', '{name="rock",kind="rectangle",size=[0.2,0.2]}'
+        box = '{name="rock",kind="box",size=[0.2,0.2,0.2]}'
+        plate = '{name="rock",kind="rectangle",size=[0.2,0.2]}'
         drum = '{name="rock",kind="drum",radius=0.2,length=0.1,wall=0.02'
         screw = '{name="rock",kind="screw",radius=0.2,core_radius=0.05,length=0.4,pitch=0.1,thickness=0.02'
         body = 'bodies=[{name="b",kind="spatial",position=[0,0,0.5],%s}]'
@@ -168,10 +170,11 @@ class ReportTest(MeshTest):
         return result.stdout, result.stderr
 
     def test_size_and_mass(self):
-        body = 'bodies=[{name="b",kind="spatial",position=[0,0,-0.5],solids=[{kind="mesh",mesh="rock",density=1000.0}]}]'
+        body = ('bodies=[{name="b",kind="spatial",position=[0,0,-0.5],'
+                'solids=[{kind="mesh",mesh="rock",density=1000.0}]}]')
         report, warnings = self.report(body, "meshes.rock.scale=0.5")
-        self.assertIn('mesh           "rock": 12 triangles, 8 vertices, 1 shell, closed; (0, 0, 0) to (0.1, 0.1, 0.1) m, '
-                      'area 0.06 m^2, volume 0.001 m^3, as a solid 1 kg', report)
+        self.assertIn('mesh           "rock": 12 triangles, 8 vertices, 1 shell, closed; '
+                      '(0, 0, 0) to (0.1, 0.1, 0.1) m, area 0.06 m^2, volume 0.001 m^3, as a solid 1 kg', report)
         self.assertNotIn("warning", warnings)
 
     def test_warnings(self):
@@ -180,7 +183,7 @@ class ReportTest(MeshTest):
                 (["meshes.rock.refine=0.005"], "triangles, and each of them is looked at"),
                 (['meshes=[{name="rock",kind="pipe",radius=0.1,inner_radius=0.09,length=0.1}]'],
                  "more than half as wide as the narrowest of its hollows, of radius about 0.0899 m"),
-                (['meshes=[{name="rock",kind="sphere",radius=0.5,levels=2}]'], "beside the smooth surface")]:
+                (['meshes=[{name="rock",kind="sphere",radius=0.5,levels=1}]'], "beside the smooth surface")]:
             with self.subTest(settings=settings):
                 self.assertIn(text, self.report(*settings)[1])
 
