@@ -167,9 +167,12 @@ Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
                  "the body has a shape of this offset and radius already; each must be another one");
     body.shapes.push_back({offset - body.center_of_mass, radius, find_material(names, shape, "material")});
   }
-  for (const DeckTable& mesh : table.tables("meshes"))
-    body.meshes.push_back({-body.center_of_mass, find_name(names.meshes, mesh, "mesh", "mesh"),
-                           find_material(names, mesh, "material")});
+  for (const DeckTable& mesh : table.tables("meshes")) {
+    const int number = find_name(names.meshes, mesh, "mesh", "mesh");
+    if (std::ranges::find(body.meshes, number, &MeshShape::mesh) != body.meshes.end())
+      mesh.fail("mesh", "the body has this mesh already; each must be another one");
+    body.meshes.push_back({-body.center_of_mass, number, find_material(names, mesh, "material")});
+  }
   return body;
 }
 

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/host_memory.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/mesh_mass.hpp"
 #include "mesh/refine.hpp"
@@ -27,6 +29,18 @@ void check(const DeckTable& table, const TriangleMesh& mesh, const std::vector<I
     table.fail(source_key(table), fmt::format("the mesh is no surface: {}", fmt::join(troubles, "; ")));
 }
 
+// No triangle with edges up to L is larger than the equilateral one, sqrt(3) / 4 L^2.
+void check_room(const DeckTable& table, const TriangleMesh& mesh) {
+  const Real longest = table.real("refine"),
+             least = mesh_area(mesh) / (std::sqrt(Real(3)) / 4 * longest * longest);
+  const FreeMemory memory = free_memory();
+  const Real free = std::min(memory.process.bytes, memory.host.bytes);
+  if (kBytesPerTriangle * least > free)
+    table.fail("refine",
+               fmt::format("makes at least {:.3g} triangles, which take about {:.3g} GB; {:.3g} GB are free",
+                           least, kBytesPerTriangle * least / 1e9, free / 1e9));
+}
+
 // Welded and checked; in 2D lines were refined when they were drawn.
 TriangleMesh surface_of(const DeckTable& table, Real half_depth) {
   const TriangleMesh mesh = make_mesh(table, half_depth);
@@ -34,6 +48,7 @@ TriangleMesh surface_of(const DeckTable& table, Real half_depth) {
   if (table.has("weld")) joined = welded_within(mesh, table.real("weld"));
   check(table, joined.mesh, joined.numbers);
   if (!table.has("refine") || table.choice<MeshKind>("kind") == MeshKind::line) return joined.mesh;
+  check_room(table, joined.mesh);
   try {
     return refined(joined.mesh, table.real("refine"));
   } catch (const InputError& error) {

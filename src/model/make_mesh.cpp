@@ -76,6 +76,15 @@ std::vector<Vec3> with_points_between(const std::vector<Vec3>& points, bool clos
   return all;
 }
 
+// Without the ends of a closed line, which no particle is near, and which may have triangles without area.
+TriangleMesh upright(TriangleMesh mesh) {
+  std::erase_if(mesh.triangles, [&](const std::array<Index, 3>& t) {
+    const Real z = mesh.vertices[t[0]].z;
+    return mesh.vertices[t[1]].z == z && mesh.vertices[t[2]].z == z;
+  });
+  return mesh;
+}
+
 TriangleMesh line_of(const DeckTable& table, Real half_depth) {
   constexpr Real kMostSegments = 1e7;
   const std::vector<Vec3>& points = table.vectors("points");
@@ -93,12 +102,12 @@ TriangleMesh line_of(const DeckTable& table, Real half_depth) {
         "points",
         fmt::format("enclose an area of {:.4g} m^2; they must run counterclockwise around what is solid",
                     area));
-  if (!table.has("refine")) return extruded_line_mesh(points, closed, half_depth);
+  if (!table.has("refine")) return upright(extruded_line_mesh(points, closed, half_depth));
   const Real longest = table.real("refine");
   if (!(length / longest < kMostSegments))
     table.fail("refine", fmt::format("must be above the length of the line / {:g} = {:.4g}", kMostSegments,
                                      length / kMostSegments));
-  return extruded_line_mesh(with_points_between(points, closed, longest), closed, half_depth);
+  return upright(extruded_line_mesh(with_points_between(points, closed, longest), closed, half_depth));
 }
 
 TriangleMesh read(const DeckTable& table) {

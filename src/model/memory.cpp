@@ -36,6 +36,12 @@ Real bytes_per_particle(const Model& model) {
   return bytes;
 }
 
+Real bytes_of_meshes(const Model& model) {
+  Real triangles = 0;
+  for (const ModelMesh& mesh : model.meshes) triangles += static_cast<Real>(mesh.surface->triangles.size());
+  return kBytesPerTriangle * triangles;
+}
+
 std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }

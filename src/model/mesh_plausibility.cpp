@@ -15,7 +15,7 @@ namespace scree {
 namespace {
 
 constexpr Real kMostOfCurve = 0.5;  // radius of a particle over that of a concave surface
-constexpr Real kMostSag = 0.1;      // over the overlap: it is the error of the force
+constexpr Real kMostSag = 0.5;      // over the largest overlap: so far the force errs where it is greatest
 constexpr Real kMostTrianglesNear = 64;
 
 Real area_of(const SurfaceMesh& mesh) {

@@ -230,17 +230,19 @@ std::string memory_line(const Model& model, int ranks) {
   const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
       kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));
+  const Real meshes = bytes_of_meshes(model);
   const std::string most = ranks == 1 ? ""
                                       : fmt::format(" on all ranks together, {} on rank 0",
-                                                    megabytes(particles / ranks + unknowns));
+                                                    megabytes(particles / ranks + unknowns + meshes));
   const FreeMemory free = free_memory();
   const MemoryBound& bound = free.process.bytes < free.host.bytes ? free.process : free.host;
   return fmt::format(
-      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown); {} "
+      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown{}); {} "
       "are free here "
       "({})\n",
-      megabytes(particles + unknowns), most, per_particle, kBytesPerUnknown, megabytes(bound.bytes),
-      bound.set_by);
+      megabytes(particles + unknowns + ranks * meshes), most, per_particle, kBytesPerUnknown,
+      meshes == 0 ? "" : fmt::format(", {} B per triangle on every rank", kBytesPerTriangle),
+      megabytes(bound.bytes), bound.set_by);
 }
 
 // The estimate counts neighbours and images where radii differ or sides are periodic: whether there is room

@@ -1,4 +1,4 @@
-"""Makes the cases: mutated decks, particle files and --set words, and damaged checkpoints."""
+"""Makes the cases: mutated decks, particle files, mesh files and --set words, and damaged checkpoints."""
 
 import dataclasses
 import pathlib
@@ -18,9 +18,9 @@ INPUT = sorted((HERE.parents[1] / "input").glob("*/*.toml"))
 LARGEST = 100000  # bytes of a word of the command line
 
 
-def particle_files():
+def named_files():
     """The files that the decks here name."""
-    files = {"particles.csv": (HERE / "decks" / "particles.csv").read_bytes()}
+    files = {name: (HERE / "decks" / name).read_bytes() for name in ("particles.csv", "wedge.stl")}
     with h5py.File("particles.h5", "w", driver="core", backing_store=False) as file:
         for name, values in (("x", [0.2, 0.5, 0.8]), ("y", [0.9, 0.9, 0.9]), ("z", [0.3, 0.5, 0.7]), ("vx", [0.0] * 3),
                              ("vy", [-1.0] * 3), ("vz", [0.0] * 3), ("radius", [0.05, 0.04, 0.05])):
@@ -79,7 +79,7 @@ def some_value(key, rng):
     return rng.choice(mutations.NUMBERS + mutations.OTHERS)
 
 
-KINDS = ("deck", "declared_key", "words", "particles", "checkpoint")
+KINDS = ("deck", "declared_key", "words", "particles", "meshes", "checkpoint")
 
 
 class Maker:
@@ -87,7 +87,7 @@ class Maker:
         self.seed, self.kinds = seed, kinds
         self.keys = declared_keys(manual)
         self.decks = [(path, path.read_text()) for path in OWN * 3 + INPUT]
-        self.files = particle_files()
+        self.files = named_files()
         self.checkpoints = []  # (deck's text, checkpoint's bytes, state hash)
 
     def make(self, number):
@@ -156,6 +156,14 @@ class Maker:
                    mutations.truncate, mutations.random_bytes, mutations.other_encoding, other_cell, other_cell]
         files[name], kinds = mutations.mutate(files[name].decode(), rng, changes)
         return Case(("particle_file", *kinds), files)
+
+    def meshes(self, rng):
+        deck = next(text for _, text in self.decks if '"wedge.stl"' in text)
+        files = {**self.files, "deck.toml": deck.encode()}
+        changes = [mutations.delete_line, mutations.repeat_line, mutations.swap_lines, mutations.scale_number,
+                   mutations.truncate, mutations.random_bytes]
+        files["wedge.stl"], kinds = mutations.mutate(files["wedge.stl"].decode(), rng, changes)
+        return Case(("mesh_file", *kinds), files)
 
     def checkpoint(self, rng):
         text, files, data, state_hash = rng.choice(self.checkpoints)

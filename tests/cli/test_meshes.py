@@ -1,0 +1,199 @@
+"""Bad meshes and bad decks of meshes, each with its message; what `scree check` says of good ones.
+Usage: SCREE=path/to/scree python3 test_meshes.py"""
+
+import struct
+import unittest
+
+from test_cli import BAD_INPUT, DONE, CommandLineTest
+
+DECK = """gravity = [0.0, 0.0, -9.8066]
+
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+
+[time]
+end = 1e-3
+step = 1e-4
+control = "fixed"
+
+[integrator]
+particles = "velocity-verlet"
+
+[[contact.pairs]]
+stiffness = 1e5
+
+[[meshes]]
+name = "rock"
+kind = "file"
+file = "rock.stl"
+
+[[walls]]
+name = "rock"
+mesh = "rock"
+
+[[bodies]]
+name = "shell"
+kind = "spatial"
+mass = 1.0
+inertia_tensor = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
+position = [0.0, 0.0, 0.5]
+
+[[particles]]
+kind = "list"
+positions = [[0.0, 0.0, 0.7]]
+radius = 0.05
+mass = 1.0
+"""
+CORNERS = [(x, y, z) for z in (0.0, 0.2) for y in (0.0, 0.2) for x in (0.0, 0.2)]
+FACES = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6),
+         (1, 3, 5), (3, 7, 5)]
+TWO_RANKS = ("mpirun", "--oversubscribe", "-n", "2")
+
+
+def stl(faces, corners=CORNERS):
+    rows = "".join("facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x} {y} {z}\n" for x, y, z in
+                                                                (corners[c] for c in face)) +
+                   "endloop\nendfacet\n" for face in faces)
+    return f"solid rock\n{rows}endsolid rock\n"
+
+
+def binary_stl(count, faces):
+    data = b"\0" * 80 + struct.pack("<I", count)
+    for face in faces:
+        data += struct.pack("<12fH", 0, 0, 0, *(x for c in face for x in CORNERS[c]), 0)
+    return data
+
+
+class MeshTest(CommandLineTest):
+    def setUp(self):
+        super().setUp()
+        self.deck = self.write("deck.toml", DECK)
+
+    def refusal(self, *words, launcher=()):
+        result = self.expect(BAD_INPUT, "check", self.deck, *words, launcher=launcher)
+        message = result.stderr
+        self.assertEqual(message.count("error: "), 1, message)
+        return message
+
+    def of_file(self, content, launcher=()):
+        (self.folder / "rock.stl").write_bytes(content if isinstance(content, bytes) else content.encode())
+        message = self.refusal(launcher=launcher)
+        self.assertIn("meshes.rock.file", message)
+        self.assertIn("rock.stl", message)
+        return message
+
+
+class BadFileTest(MeshTest):
+    BAD = [
+        ("a hole", stl(FACES[:3] + FACES[4:]), "3 edges have one triangle", "of triangle"),
+        ("a flipped face", stl(FACES[:5] + [FACES[5][::-1]] + FACES[6:]), "opposite windings", "of triangles 4 and 5"),
+        ("a duplicate", stl(FACES + FACES[:1]), "has the corners of another", "triangle 0 and triangle 12"),
+        ("not a number", stl(FACES).replace("vertex 0.2 0.0 0.0", "vertex nan 0.0 0.0", 1),
+         "rock.stl:6: coordinate \"nan\"", "must be a finite number"),
+        ("no triangles", stl([]), "triangle", "no"),
+        ("2^31 faces", binary_stl(2**31, FACES), "2147483648", "triangles"),
+        ("a cut file", binary_stl(12, FACES)[:-30], "12", "triangle"),
+        ("a cut text", stl(FACES)[:400], "rock.stl:27: ends before a coordinate"),
+        ("inside out", stl([face[::-1] for face in FACES]), "its volume is -0.008 m^3", "inside out"),
+        ("a point for a triangle", stl(FACES + [(0, 0, 1)]), "a triangle has no area", "triangle 12"),
+    ]
+
+    def test_every_bad_file_is_refused_with_its_place(self):
+        for name, content, *words in self.BAD:
+            with self.subTest(name):
+                message = self.of_file(content)
+                for word in words:
+                    self.assertIn(word, message)
+
+    def test_on_two_ranks_the_message_is_one(self):
+        for name, content, *words in self.BAD[:1] + self.BAD[6:7]:
+            with self.subTest(name):
+                self.assertIn(words[0], self.of_file(content, launcher=TWO_RANKS))
+
+    def test_a_file_that_is_not_there(self):
+        self.assertIn("rock.stl cannot be read", self.refusal())
+
+
+class BadDeckTest(MeshTest):
+    def setUp(self):
+        super().setUp()
+        self.write("rock.stl", stl(FACES))
+
+    def test_every_slip_is_named(self):
+        box = '{name="rock",kind="box",size=[0.2,0.2,0.2]}'
+        plate = '{name="rock",kind="rectangle",size=[0.2,0.2]}'
+        drum = '{name="rock",kind="drum",radius=0.2,length=0.1,wall=0.02'
+        screw = '{name="rock",kind="screw",radius=0.2,core_radius=0.05,length=0.4,pitch=0.1,thickness=0.02'
+        body = 'bodies=[{name="b",kind="spatial",position=[0,0,0.5],%s}]'
+        mass = "mass=1.0,inertia_tensor=[1,1,1,0,0,0]"
+        attraction = 'contact.pairs=[{stiffness=1e5,attraction=1e-3,attraction_range=1e-3}]'
+        cases = [
+            (["walls.rock.mesh=rocks"], "no mesh named \"rocks\""),
+            (["walls.rock.normal=[0,0,1]"], "not used together with mesh"),
+            ([body % (mass + ',meshes=[{mesh="sand"}]')], "no mesh named \"sand\""),
+            ([body % (mass + ',meshes=[{mesh="rock"},{mesh="rock"}]')], "has this mesh already"),
+            ([body % 'solids=[{kind="mesh",mesh="rock",density=1.0}]', f"meshes=[{plate}]"], "encloses no volume"),
+            (["meshes=[{name=\"rock\",kind=\"line\",points=[[0,0,0],[1,0,0]]}]"], "needs space.dimension = 2"),
+            ([f"meshes=[{box},{box}]"], "rock"),
+            ([f"meshes=[{drum},lifters=4}}]"], "lifter_height: missing"),
+            ([f"meshes=[{drum},lifters=40,lifter_height=0.02,lifter_width=0.05}}]"], "do not fit"),
+            ([f"meshes=[{drum},lifter_width=0.05}}]"], "not used without lifters"),
+            ([f"meshes=[{screw[:-4]}0.2}}]"], "must be less than the pitch"),
+            ([f"meshes=[{screw},core_length=0.1}}]"], "core_length = 0.1: must be at least length"),
+            (["meshes.rock.size=[1,1]"], "not used with kind = \"file\""),
+            (["meshes.rock.scale=0"], "must be"),
+            (["meshes.rock.feature_angle=2"], "must be"),
+            (["meshes.rock.refine=1e-6"], "triangles"),
+            ([attraction], "only planes at rest attract particles yet, not wall \"rock\""),
+            ([attraction, "walls=[]", body % (mass + ',meshes=[{mesh="rock"}]')], "body \"b\" has meshes"),
+            (["particles.0.positions=[[0.1,0.1,0.1]]"], "particle 0 and wall \"rock\" overlap at t = 0 by 2 of"),
+        ]
+        for settings, text in cases:
+            with self.subTest(settings=settings):
+                self.assertIn(text, self.refusal(*(word for setting in settings for word in ("--set", setting))))
+
+    def test_a_planar_deck_has_lines_alone(self):
+        message = self.refusal("--set", "space={dimension=2,min=[-1,-1],max=[1,1]}", "--set", "gravity=[0,-10]",
+                               "--set", "bodies=[]", "--set", "particles.0.positions=[[0,0.5]]")
+        self.assertIn("must be \"line\", as space.dimension = 2", message)
+
+
+class ReportTest(MeshTest):
+    def setUp(self):
+        super().setUp()
+        self.write("rock.stl", stl(FACES))
+
+    def report(self, *settings):
+        result = self.expect(DONE, "check", self.deck, *(word for setting in settings for word in ("--set", setting)))
+        return result.stdout, result.stderr
+
+    def test_size_and_mass(self):
+        body = ('bodies=[{name="b",kind="spatial",position=[0,0,-0.5],'
+                'solids=[{kind="mesh",mesh="rock",density=1000.0}]}]')
+        report, warnings = self.report(body, "meshes.rock.scale=0.5")
+        self.assertIn('mesh           "rock": 12 triangles, 8 vertices, 1 shell, closed; '
+                      '(0, 0, 0) to (0.1, 0.1, 0.1) m, area 0.06 m^2, volume 0.001 m^3, as a solid 1 kg', report)
+        self.assertNotIn("warning", warnings)
+
+    def test_warnings(self):
+        for settings, text in [
+                (["walls=[]"], 'mesh "rock": no wall, body or solid uses it'),
+                (["meshes.rock.refine=0.005"], "triangles, and each of them is looked at"),
+                (['meshes=[{name="rock",kind="pipe",radius=0.1,inner_radius=0.09,length=0.1}]'],
+                 "more than half as wide as the narrowest of its hollows, of radius about 0.0899 m"),
+                (['meshes=[{name="rock",kind="sphere",radius=0.5,levels=1}]'], "beside the smooth surface")]:
+            with self.subTest(settings=settings):
+                self.assertIn(text, self.report(*settings)[1])
+
+    def test_a_run_goes_on_with_the_same_mesh_alone(self):
+        self.run_deck(DONE, "out")
+        longer = ("--restart", self.folder / "out" / "checkpoint_end.h5", "--set", "time.end=2e-3")
+        self.run_deck(DONE, "more", *longer)
+        self.write("rock.stl", stl(FACES, [(x, y, z + 0.1) for x, y, z in CORNERS]))
+        self.assertIn("meshes.rock.file", self.run_deck(BAD_INPUT, "other", *longer).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,151 @@
+// Meshes as decks give them: placed, refined, weighed, counted.
+#include <fmt/format.h>
+
+#include "model/mesh_plausibility.hpp"
+#include "support/catch.hpp"
+#include "support/models.hpp"
+#include "support/near.hpp"
+
+namespace scree {
+
+namespace {
+
+const std::string kSpace = R"([space]
+dimension = 3
+min = [-1, -1, -1]
+max = [1, 1, 1]
+[time]
+end = 1.0
+step = 1e-4
+control = "fixed"
+)";
+
+// One body with these solids and the mesh "made", a table without its name.
+std::string body_of(const std::string& made, const std::string& solids) {
+  return kSpace + "[[meshes]]\nname = \"made\"\n" + made +
+         "\n[[bodies]]\nname = \"b\"\nkind = \"spatial\"\nposition = [0.1, 0, 0]\nsolids = [" + solids +
+         "]\n";
+}
+
+const std::string kOfMesh = R"({ kind = "mesh", mesh = "made", density = 800.0 })";
+
+void check_equal(const Body& a, const Body& b) {
+  CHECK(a.mass == Approx(b.mass).epsilon(1e-12));
+  CHECK(norm(a.center_of_mass - b.center_of_mass) < 1e-13);
+  CHECK(norm(a.position - b.position) < 1e-13);
+  const Sym3 &i = a.inertia_tensor, &j = b.inertia_tensor;
+  const Real scale = std::abs(j.xx) + std::abs(j.yy) + std::abs(j.zz);
+  for (const Real apart : {i.xx - j.xx, i.yy - j.yy, i.zz - j.zz, i.xy - j.xy, i.xz - j.xz, i.yz - j.yz})
+    CHECK(std::abs(apart) < 1e-12 * scale);
+}
+
+Body body(const std::string& deck, const std::vector<std::string>& overrides = {}) {
+  return model_of(deck, overrides).bodies.front();
+}
+
+const std::string kSmallLine = kSmallDeck + R"([[meshes]]
+name = "line"
+kind = "line"
+points = [[0.0, 0.0], [0.3, 0.0], [0.0, 0.4]]
+[[walls]]
+name = "line"
+mesh = "line"
+)";
+
+}  // namespace
+
+TEST_CASE("a body made of a box of triangles weighs what the box does") {
+  const std::string turned = "offset = [0.1, 0.2, 0.3]\nrotation_axis = [1, 2, 3]\nrotation_angle = 0.7";
+  const std::string box = body_of("kind = \"box\"\nsize = [0.1, 0.2, 0.3]\n" + turned, kOfMesh);
+  const Body whole =
+      body(body_of("kind = \"box\"\nsize = [1, 1, 1]",
+                   "{ kind = \"box\", size = [0.1, 0.2, 0.3], density = 800.0, offset = [0.1, 0.2, 0.3], "
+                   "rotation_axis = [1, 2, 3], rotation_angle = 0.7 }"));
+  check_equal(body(box), whole);
+  check_equal(body(box, {"meshes.made.refine=0.03"}), whole);
+  // Placed by the solid instead of by the mesh.
+  check_equal(body(body_of("kind = \"box\"\nsize = [0.1, 0.2, 0.3]",
+                           "{ kind = \"mesh\", mesh = \"made\", density = 800.0, offset = [0.1, 0.2, 0.3], "
+                           "rotation_axis = [1, 2, 3], rotation_angle = 0.7 }")),
+              whole);
+}
+
+TEST_CASE("round bodies made of triangles converge to their closed forms at order 2") {
+  const Real radius = 0.3, length = 0.4, density = 800, mass = density * M_PI * radius * radius * length;
+  Real before = 0;
+  for (const int segments : {16, 32, 64}) {
+    const Body made = body(body_of(
+        fmt::format("kind = \"cylinder\"\nradius = 0.3\nlength = 0.4\nsegments = {}", segments), kOfMesh));
+    const Real error = 1 - made.mass / mass;
+    const Real around = 1 - made.inertia_tensor.zz / (mass * radius * radius / 2);
+    CHECK(error > 0);
+    CHECK(around == Approx(2 * error).epsilon(0.1));
+    if (before > 0) CHECK(std::log2(before / error) == Approx(2).margin(0.05));
+    before = error;
+  }
+}
+
+TEST_CASE("the masses of solids made of meshes are kept for the report, each once") {
+  const std::string deck =
+      body_of("kind = \"box\"\nsize = [0.1, 0.1, 0.1]", kOfMesh + ", " + kOfMesh) +
+      "[[bodies]]\nname = \"c\"\nkind = \"spatial\"\nposition = [0, 0, 0]\nsolids = [{ kind = "
+      "\"mesh\", mesh = \"made\", density = 1.0 }]\n";
+  const std::vector<Real> masses = model_of(deck).meshes.front().solid_masses;
+  REQUIRE(masses.size() == 2);
+  CHECK(masses[0] == Approx(0.8).epsilon(1e-12));
+  CHECK(masses[1] == Approx(0.001).epsilon(1e-12));
+}
+
+TEST_CASE("lines of planar decks: refined along themselves, closed counterclockwise, without volume") {
+  const auto triangles = [](const std::vector<std::string>& overrides) {
+    return model_of(kSmallLine, overrides).meshes.front().surface->triangles.size();
+  };
+  CHECK(triangles({}) == 4);
+  CHECK(triangles({"meshes.line.closed=true"}) == 6);
+  CHECK(triangles({"meshes.line.refine=0.1"}) == 2 * (3 + 5));
+  CHECK(triangles({"meshes.line.closed=true", "meshes.line.refine=0.1"}) == 2 * (3 + 5 + 4));
+  CHECK(
+      contains(model_error(kSmallLine, {"meshes.line.closed=true", "meshes.line.points=[[0,0],[0,1],[1,0]]"}),
+               "must run counterclockwise"));
+  CHECK(contains(model_error(kSmallLine, {"meshes.line.points=[[0,0]]"}), "must be at least 2"));
+  CHECK(contains(model_error(kSmallLine, {"meshes.line.refine=1e-12"}),
+                 "must be above the length of the line"));
+  CHECK(contains(
+      model_error(kSmallLine, {"meshes.line.closed=true",
+                               "bodies=[{name=\"b\",position=[0,0],solids=[{kind=\"mesh\",mesh=\"line\","
+                               "density=1.0}]}]"}),
+      "encloses no volume"));
+}
+
+TEST_CASE("with meshes no more surfaces than contacts can tell apart") {
+  const std::string row = body_of("kind = \"box\"\nsize = [0.1, 0.1, 0.1]", kOfMesh);
+  const std::string message =
+      model_error(row, {"bodies.b.count=524289", "bodies.b.shapes=[{radius=0.01},{radius=0.02}]"});
+  CHECK(contains(message, "meshes.made: the deck has 1048578 walls, shapes and meshes of bodies"));
+  CHECK(contains(message, "at most 1048576"));
+}
+
+TEST_CASE("how many triangles a particle is near: of small ones the disc in reach, of large ones one") {
+  const std::string deck = kSpace + R"([[contact.pairs]]
+stiffness = 1e4
+[[meshes]]
+name = "floor"
+kind = "rectangle"
+size = [1.0, 1.0]
+[[walls]]
+name = "floor"
+mesh = "floor"
+[[particles]]
+kind = "list"
+positions = [[0, 0, 0.5]]
+radius = 0.1
+mass = 1.0
+)";
+  const Model coarse = model_of(deck), fine = model_of(deck, {"meshes.floor.refine=0.01"});
+  const Real around = M_PI * (0.12 * 0.12 - 0.1 * 0.1);  // the skin is 0.2 radii
+  const SurfaceMesh& mesh = *fine.meshes.front().surface;
+  CHECK(triangles_near(coarse, *coarse.meshes.front().surface, 0.1) <= 2);
+  CHECK(triangles_near(fine, mesh, 0.1) == Approx(around * mesh.triangles.size()).epsilon(0.1));
+}
+
+}  // namespace scree
