@@ -68,7 +68,8 @@ void BodyLink::book_walls(MultibodyState& bodies, Real t, Real end, const std::v
   walls_.at(t, walls_before_), walls_.at(end, walls_after_);
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     BodyWrench& start = bodies.wrench[bodies_ + w];
-    if (walls_.run()) start.slide_power = bodies.slide_power[w], bodies.slide_power[w] = end_wrench_[bodies_+w].slide_power;
+    if (walls_.run())
+      start.slide_power = bodies.slide_power[w], bodies.slide_power[w] = end_wrench_[bodies_ + w].slide_power;
     bodies.driver_work -=
         work_between(walls_before_[w], start, walls_after_[w], wrench[bodies_ + w], end - t);
     start = end_wrench_[bodies_ + w];

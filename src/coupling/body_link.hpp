@@ -72,7 +72,7 @@ class BodyLink {
   WallMotions walls_;
   Real end_ = 0;  // of the open step [s]
   std::unique_ptr<Multibody> multibody_;
-  std::vector<BodyMotion> motion_;     // of the bodies, then of the placed walls
+  std::vector<BodyMotion> motion_;                                  // of the bodies, then of the placed walls
   std::vector<BodyMotion> of_bodies_, walls_before_, walls_after_;  // scratch
   ContactWrenches step_wrench_;
   std::vector<BodyWrench> end_wrench_;

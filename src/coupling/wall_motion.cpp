@@ -11,8 +11,7 @@ WallMotions::WallMotions(const Model& model) {
     std::vector<Part>& parts = walls_.emplace_back();
     for (const WallMotion& motion : wall.motions)
       parts.push_back(
-          {motion,
-           ScalarFunction(motion.coordinate, fmt::format("wall '{}'", wall.name), model.time.end)});
+          {motion, ScalarFunction(motion.coordinate, fmt::format("wall '{}'", wall.name), model.time.end)});
   }
 }
 

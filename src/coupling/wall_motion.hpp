@@ -1,5 +1,5 @@
-// Walls that are placed, as they are carried: where they are and how they move at any instant, whatever touches
-// them, and what contacts do to them on the way.
+// Walls that are placed, as they are carried: where they are and how they move at any instant, whatever
+// touches them, and what contacts do to them on the way.
 #pragma once
 
 #include <span>

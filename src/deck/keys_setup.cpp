@@ -321,7 +321,8 @@ const TableKeys& material_keys() {
 const TableKeys& wall_motion_keys() {
   using Kind = WallMotionKind;
   static const TableKeys keys{
-      "How a wall moves, whatever touches it: one motion after the other, each on what those before it leave, "
+      "How a wall moves, whatever touches it: one motion after the other, each on what those before it "
+      "leave, "
       "along directions and about axes that the global frame keeps. At t = 0 the wall is where the deck puts "
       "it: of a function of time its change since then counts.",
       {choice<Kind>("type").required().about(
@@ -346,7 +347,8 @@ const TableKeys& wall_motion_keys() {
 
 const TableKeys& wall_keys() {
   static const TableKeys keys{
-      "Walls inside the space: planes, solid behind them, or meshes. Nothing that touches a wall moves it; one "
+      "Walls inside the space: planes, solid behind them, or meshes. Nothing that touches a wall moves it; "
+      "one "
       "that is to respond is a body on a joint.",
       {name_key().required().about("Name for messages and output.history_contacts."),
        vector("point", "m").left_out("mesh is given").about("Any point of the plane."),
@@ -360,9 +362,10 @@ const TableKeys& wall_keys() {
        tables("motions", wall_motion_keys()),
        vector("surface_velocity", "m/s")
            .left_out("the surface moves as the wall")
-           .about("How fast the surface runs along itself while the wall stays, as a conveyor's belt does: of "
-                  "this vector, fixed to the wall, the part along the surface at each contact. It acts by "
-                  "friction alone.")},
+           .about(
+               "How fast the surface runs along itself while the wall stays, as a conveyor's belt does: of "
+               "this vector, fixed to the wall, the part along the surface at each contact. It acts by "
+               "friction alone.")},
       ""};
   return keys;
 }

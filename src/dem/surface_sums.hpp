@@ -42,9 +42,9 @@ struct SurfaceStep {
   bool is_sphere = true;  // the surface
 };
 
-// Terms of one contact in the sums of its surface. kWrench: force and torque on the body about its centre, and
-// slide_power; kStepTerms: at the end of the step, for the step, and the packed 6 x 6 blocks of stiffness and
-// damping.
+// Terms of one contact in the sums of its surface. kWrench: force and torque on the body about its centre,
+// and slide_power; kStepTerms: at the end of the step, for the step, and the packed 6 x 6 blocks of stiffness
+// and damping.
 inline constexpr int kBlockRows = 6, kWrenchTerms = kBlockRows + 1, kBlockTerms = 21;
 inline constexpr int kStepTerms = 2 * kWrenchTerms + 2 * kBlockTerms;
 

@@ -27,7 +27,7 @@ struct MultibodyState {
   std::vector<Real> memory;        // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
   Real dissipated = 0;             // in force elements since t = 0 [J]
   Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
-  Real driver_work = 0;  // done by drivers, actuators, applied forces and walls since t = 0 [J]
+  Real driver_work = 0;            // done by drivers, actuators, applied forces and walls since t = 0 [J]
 };
 
 // Size of one Newton iteration, scaled and dimensionless.

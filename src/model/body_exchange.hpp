@@ -69,8 +69,8 @@ inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
 
 // Contact wrench on one body, or on a wall that is placed.
 struct BodyWrench {
-  Vec3 force;   // [N]
-  Vec3 torque;  // about the centre of mass [N m]
+  Vec3 force;            // [N]
+  Vec3 torque;           // about the centre of mass [N m]
   Real slide_power = 0;  // of friction on a wall's surface that runs along itself [W]
 
   BodyWrench& operator+=(const BodyWrench& other) {

@@ -38,7 +38,9 @@ TimeFunction coordinate_of(const DeckTable& motion, const std::string& key, Real
 
 WallMotion build_wall_motion(const DeckTable& table, int dimension, Real end) {
   if (table.choice<WallMotionKind>("type") == WallMotionKind::translation)
-    return {WallMotionKind::translation, unit_vector(table, "direction"), {},
+    return {WallMotionKind::translation,
+            unit_vector(table, "direction"),
+            {},
             coordinate_of(table, "displacement", end)};
   return {WallMotionKind::rotation, rotation_axis(table, dimension), table.vector("point"),
           coordinate_of(table, "angle", end)};

@@ -34,8 +34,8 @@ struct Space {
 // Of a wall; follows one of its coordinates less what that is at t = 0.
 struct WallMotion {
   WallMotionKind kind = WallMotionKind::translation;
-  Vec3 axis;   // unit: the direction, or the axis of the rotation
-  Vec3 point;  // of that axis [m]
+  Vec3 axis;                // unit: the direction, or the axis of the rotation
+  Vec3 point;               // of that axis [m]
   TimeFunction coordinate;  // [m] or [rad]
 };
 
@@ -45,7 +45,7 @@ struct Wall {
   Vec3 point;   // of the plane, or the origin of the mesh [m]
   Vec3 normal;  // unit, into the free side
   int material = 0;
-  int mesh = -1;  // index into Model::meshes; -1: a plane
+  int mesh = -1;                      // index into Model::meshes; -1: a plane
   std::vector<WallMotion> motions{};  // one after the other; point and normal are those at t = 0
   Vec3 surface_velocity{};            // in the wall's frame, the global one at t = 0 [m/s]
 
