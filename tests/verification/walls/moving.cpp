@@ -23,8 +23,8 @@ WallDeck shaken(const std::string& method, Real step) {
       kFloor + motions(fmt::format("{{ type = \"translation\", direction = [0, 0, 3], displacement = {{ "
                                    "kind = \"sine\", amplitude = {}, frequency = {} }} }}",
                                    kAmplitude, kFrequency));
-  deck.contact = kElastic, deck.gravity = "[0, 0, -100]";
-  deck.grain = fmt::format("positions = [[0, 0, {}]]\n", kRadius - kMass * 100 / kStiffness);
+  deck.contact = kElastic, deck.gravity = "[0, 0, -40]";
+  deck.grain = fmt::format("positions = [[0, 0, {}]]\n", kRadius - kMass * 40 / kStiffness);
   deck.step = step, deck.end = 0.3, deck.particles = method;
   return deck;
 }
@@ -38,7 +38,7 @@ Shaken shake(const std::string& method, Real step) {
   const Real w = std::sqrt(kStiffness / kMass), drive = 2 * std::numbers::pi_v<Real> * kFrequency;
   const Real t = run.time(), q = drive / w;
   const Real x = kAmplitude * (std::sin(drive * t) - q * std::sin(w * t)) / (1 - q * q);
-  const Real height = kRadius - kMass * 100 / kStiffness + x;
+  const Real height = kRadius - kMass * 40 / kStiffness + x;
   return {std::abs(run.particles()[0].position.z - height), std::abs(run.balance_error()) / run.exchanged()};
 }
 

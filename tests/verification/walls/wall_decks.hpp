@@ -23,7 +23,8 @@ struct WallDeck {
 
   std::string text() const {
     return fmt::format(
-        "gravity = {}\n[space]\nmin = [-4, -4, -1]\nmax = [4, 4, 2]\n[time]\nend = {}\nstep = {}\n"
+        "gravity = {}\n[space]\ndimension = 3\nmin = [-4, -4, -1]\nmax = [4, 4, 2]\n[time]\nend = {}\nstep = "
+        "{}\n"
         "control = \"fixed\"\n[integrator]\nparticles = \"{}\"\n[[contact.pairs]]\n{}\n"
         "[[walls]]\nname = \"plate\"\n{}\n[[particles]]\nname = \"ball\"\nkind = \"list\"\nradius = 0.1\n"
         "mass = 1\n{}\n{}",
