@@ -222,7 +222,7 @@ TEST_CASE("a run resumed from its state goes on with the same bits") {
     second.bodies = whole.bodies;
     second.backend->particles().load(whole.backend->particles().records(),
                                      whole.backend->particles().shape_losses());
-    second.step->resume(second.bodies);
+    second.step->resume(second.bodies, 10 * kStep);
     advance(whole, 10, 30), advance(second, 10, 30);
     CHECK(differing(whole, second) == "");
     CHECK(whole.backend->particles().shape_losses().contact_loss ==
