@@ -7,10 +7,12 @@
 
 namespace scree {
 
-BodyLink::BodyLink(const Model& model, const Ranks& ranks) : ranks_(ranks), bodies_(model.bodies.size()) {
+BodyLink::BodyLink(const Model& model, const Ranks& ranks)
+    : ranks_(ranks), bodies_(model.bodies.size()), walls_(model) {
   const std::size_t carriers = SurfaceSet(model).carriers();
   motion_.resize(carriers), end_wrench_.resize(carriers), step_wrench_.wrench.resize(carriers);
-  for (std::size_t c = bodies_; c < carriers; ++c) motion_[c].kind = BodyKind::spatial;
+  walls_before_.resize(walls_.size()), walls_after_.resize(walls_.size());
+  walls_.at(0, std::span(motion_).subspan(bodies_));
   if (bodies_ > 0) ranks_.on_root([&] { multibody_ = std::make_unique<Multibody>(model); });
 }
 
@@ -23,11 +25,21 @@ void BodyLink::set_initial_state(MultibodyState& bodies, const std::vector<BodyW
 }
 
 void BodyLink::solve_acceleration(MultibodyState& bodies, Real t) {
-  bodies.wrench = wrench_of_bodies();
-  if (has_bodies()) ranks_.on_root([&] { multibody_->solve_acceleration(bodies, t, bodies.wrench); });
+  const std::vector<BodyWrench> wrench = wrench_of_bodies();
+  if (has_bodies()) ranks_.on_root([&] { multibody_->solve_acceleration(bodies, t, wrench); });
+  take_wrench(bodies);
 }
 
-void BodyLink::predict(const MultibodyState& bodies, Real t, Real h) {
+void BodyLink::take_wrench(MultibodyState& state) const {
+  state.wrench = end_wrench_;
+  state.slide_power.clear();
+  if (!walls_.run()) return;
+  for (std::size_t c = bodies_; c < end_wrench_.size(); ++c)
+    state.slide_power.push_back(end_wrench_[c].slide_power);
+}
+
+void BodyLink::predict(const MultibodyState& bodies, Real t, Real h, Real end) {
+  end_ = end;
   if (multibody_) multibody_->predict(bodies, t, h);
 }
 
@@ -48,7 +60,20 @@ Real BodyLink::error() const {
 void BodyLink::accept(MultibodyState& bodies) {
   const std::vector<BodyWrench> wrench = wrench_of_bodies();
   if (has_bodies()) ranks_.on_root([&] { multibody_->accept(bodies, wrench); });
-  bodies.wrench = wrench;
+  take_wrench(bodies);
+}
+
+void BodyLink::book_walls(MultibodyState& bodies, Real t, Real end, const std::vector<BodyWrench>& wrench) {
+  if (!has_driven_walls() || !ranks_.is_root()) return;
+  walls_.at(t, walls_before_), walls_.at(end, walls_after_);
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    BodyWrench& start = bodies.wrench[bodies_ + w];
+    if (walls_.run())
+      start.slide_power = bodies.slide_power[w], bodies.slide_power[w] = end_wrench_[bodies_ + w].slide_power;
+    bodies.driver_work -=
+        work_between(walls_before_[w], start, walls_after_[w], wrench[bodies_ + w], end - t);
+    start = end_wrench_[bodies_ + w];
+  }
 }
 
 void BodyLink::check_reactions() {
@@ -66,8 +91,11 @@ std::string BodyLink::trouble() {
   return text;
 }
 
-void BodyLink::broadcast(RankList& list) {
-  if (has_bodies()) ranks_.broadcast(std::span<BodyMotion>(motion_).first(bodies_));
+// Walls that move are rank 0's, too: sines of other machines need not have its bits.
+void BodyLink::broadcast(RankList& list, Real t) {
+  const std::span<BodyMotion> motion(motion_);
+  if (walls_.move()) walls_.at(t, motion.subspan(bodies_));
+  if (carriers_move()) ranks_.broadcast(walls_.move() ? motion : motion.first(bodies_));
   list.place_bodies(motion_);
 }
 
@@ -78,16 +106,16 @@ void BodyLink::place(const std::vector<BodyMotion>& bodies) {
 void BodyLink::broadcast_motion(RankList& list) {
   if (!has_carriers()) return;
   if (multibody_) place(multibody_->motion());
-  broadcast(list);
+  broadcast(list, end_);
 }
 
-void BodyLink::broadcast_motion(RankList& list, const MultibodyState& state, Real tau) {
+void BodyLink::broadcast_motion(RankList& list, const MultibodyState& state, Real tau, Real t) {
   if (!has_carriers()) return;
   if (multibody_) {
     multibody_->motion(state, tau, of_bodies_);
     place(of_bodies_);
   }
-  broadcast(list);
+  broadcast(list, t);
 }
 
 void BodyLink::reduce_wrench(ImplicitStep& step) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/wall_motion.hpp"
 #include "dem/backend.hpp"
 #include "mbs/multibody.hpp"
 #include "model/model.hpp"
@@ -21,6 +22,9 @@ class BodyLink {
   bool has_bodies() const { return bodies_ > 0; }
   // Whether there are surfaces that are placed: on bodies, or walls that are no planes at rest.
   bool has_carriers() const { return !motion_.empty(); }
+  // Whether they move, or do work.
+  bool has_driven_walls() const { return walls_.move() || walls_.run(); }
+  bool carriers_move() const { return has_bodies() || walls_.move(); }
   Multibody* multibody() { return multibody_.get(); }  // null on ranks other than 0
   const Multibody* multibody() const { return multibody_.get(); }
   const Ranks& ranks() const { return ranks_; }
@@ -28,17 +32,22 @@ class BodyLink {
   // The functions of Multibody on rank 0; collective, and nothing without bodies.
   void set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench);
   void solve_acceleration(MultibodyState& bodies, Real t);  // with end_wrench()
-  void predict(const MultibodyState& bodies, Real t, Real h);
+  // end: of the step, t + h but for round-off [s].
+  void predict(const MultibodyState& bodies, Real t, Real h, Real end);
   IterationNorms correct();             // with the step's wrench; the norms on every rank
   Real error() const;                   // on every rank
   void accept(MultibodyState& bodies);  // with end_wrench()
+  // Books what walls do to particles over a step, or a substep, from t to `end`. wrench: of the contacts, as
+  // the step was solved with; at its start that of `bodies`, which gets end_wrench() of the walls.
+  void book_walls(MultibodyState& bodies, Real t, Real end, const std::vector<BodyWrench>& wrench);
+  const std::vector<BodyWrench>& step_wrench() const { return step_wrench_.wrench; }
   void check_reactions();
   std::string trouble();  // on every rank
 
   // Rank 0 -> all: motion at the current iterate of the open step, handed to the placed surfaces on the list.
   void broadcast_motion(RankList& list);
-  // The same for an instant tau [s] after `state`, along rank 0's prediction.
-  void broadcast_motion(RankList& list, const MultibodyState& state, Real tau);
+  // The same for an instant tau [s] after `state`, along rank 0's prediction; of walls at the instant t [s].
+  void broadcast_motion(RankList& list, const MultibodyState& state, Real tau, Real t);
   // All -> rank 0: contact wrench and contact stiffness per body. The wrenches are rank 0's; zero elsewhere.
   void reduce_wrench(ImplicitStep& step);
   void reduce_end_wrench(ExplicitRun& run);          // end_wrench() alone
@@ -49,19 +58,22 @@ class BodyLink {
   void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
                        int substeps);
   // Of the bodies, then of the placed walls.
+  void take_wrench(MultibodyState& state) const;  // end_wrench()
   const std::vector<BodyWrench>& end_wrench() const { return end_wrench_; }
   std::vector<BodyWrench> wrench_of_bodies() const;
   const std::vector<BodyMotion>& motion() const { return motion_; }
 
  private:
-  void broadcast(RankList& list);
+  void broadcast(RankList& list, Real t);
   void place(const std::vector<BodyMotion>& bodies);
 
   Ranks ranks_;
   std::size_t bodies_;
+  WallMotions walls_;
+  Real end_ = 0;  // of the open step [s]
   std::unique_ptr<Multibody> multibody_;
-  std::vector<BodyMotion> motion_;     // of the bodies, then of the placed walls
-  std::vector<BodyMotion> of_bodies_;  // scratch
+  std::vector<BodyMotion> motion_;                                  // of the bodies, then of the placed walls
+  std::vector<BodyMotion> of_bodies_, walls_before_, walls_after_;  // scratch
   ContactWrenches step_wrench_;
   std::vector<BodyWrench> end_wrench_;
 };

@@ -57,16 +57,16 @@ void CoupledStep::rebuild_list(Real skin) { backend_.list().build(skin, timers_)
 
 void CoupledStep::start(MultibodyState& bodies) {
   link_.set_initial_state(bodies, {model_.bodies.size(), BodyWrench{}});
-  resume(bodies);
+  resume(bodies, 0);
   backend_.particles().initial_forces();
   // Only now are the contact wrenches at the start known.
   link_.reduce_end_wrench(backend_.particles());
   link_.set_initial_state(bodies, link_.wrench_of_bodies());
-  bodies.wrench = link_.wrench_of_bodies();
+  link_.take_wrench(bodies);
 }
 
-void CoupledStep::resume(const MultibodyState& bodies) {
-  link_.broadcast_motion(backend_.list(), bodies, 0);
+void CoupledStep::resume(const MultibodyState& bodies, Real t) {
+  link_.broadcast_motion(backend_.list(), bodies, 0, t);
   rebuild_list(model_.contact.skin);
 }
 
@@ -79,7 +79,9 @@ void CoupledStep::renew_forces(MultibodyState& bodies, Real t) {
 void CoupledStep::open_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h) {
   {
     const auto scope = timers_.time(Stage::predict);
-    link_.predict(bodies, t, h);
+    // Walls were left at the end of the step before, which round-off takes for another instant.
+    if (link_.has_driven_walls()) link_.broadcast_motion(backend_.list(), bodies, 0, t);
+    link_.predict(bodies, t, h, t + h);
     step = backend_.open_step(h);
     step->predict();
   }
@@ -87,16 +89,16 @@ void CoupledStep::open_step(OpenStep& step, const MultibodyState& bodies, Real t
   link_.broadcast_motion(backend_.list());
 }
 
-void CoupledStep::undo_step(OpenStep& step, const MultibodyState& bodies) {
+void CoupledStep::undo_step(OpenStep& step, const MultibodyState& bodies, Real t) {
   if (step) step->undo();
   step.reset();
-  link_.broadcast_motion(backend_.list(), bodies, 0);
+  link_.broadcast_motion(backend_.list(), bodies, 0, t);
 }
 
 // Whether the neighbour list sees every pair that the iterate can bring to touch. If not, the step is undone
 // and the list built with a skin that covers it: the step is then repeated with the same h, so that what the
 // list happens to cover never changes the result.
-bool CoupledStep::covered(OpenStep& step, const MultibodyState& bodies, int builds) {
+bool CoupledStep::covered(OpenStep& step, const MultibodyState& bodies, Real t, int builds) {
   if (!something_touches_ || backend_.list().displacement() <= 1) return true;
   const Real moved = step->step_displacement(), widest = kMostSkin * largest_radius_;
   if (builds == kMostListBuilds)
@@ -104,7 +106,7 @@ bool CoupledStep::covered(OpenStep& step, const MultibodyState& bodies, int buil
         "stage neighbors: the step moves a particle or a shape of a body by {:.3g} m, farther than "
         "contacts are looked for: by half of {:.3g} m",
         moved, std::max(model_.contact.skin, widest)));
-  undo_step(step, bodies);
+  undo_step(step, bodies, t);
   rebuild_list(std::max(model_.contact.skin, std::min(kSkinPerMotion * moved, widest)));
   return false;
 }
@@ -118,9 +120,9 @@ void CoupledStep::solve_step(OpenStep& step, const MultibodyState& bodies, Real 
     counts_.newton_iterations = before.newton_iterations,
     counts_.linear_iterations = before.linear_iterations;
     open_step(step, bodies, t, h);
-    if (!covered(step, bodies, builds)) continue;
+    if (!covered(step, bodies, t, builds)) continue;
     iterate(*step);
-    done = covered(step, bodies, builds);
+    done = covered(step, bodies, t, builds);
   }
 }
 
@@ -135,11 +137,11 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   } catch (const DeviceError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
     counts_ = before;
-    undo_step(step, bodies);
+    undo_step(step, bodies, t);
     throw;
   } catch (const SimulationError& error) {
     link_.ranks().meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
-    undo_step(step, bodies);
+    undo_step(step, bodies, t);
     link_.check_reactions();
     ++counts_.rejected_newton;
     return {Verdict::not_converged, 0, error.what()};
@@ -149,7 +151,7 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
     outcome.error = std::max(step->error(), link_.error());
     outcome.error /= model_.time.tolerance;
     if (!(outcome.error <= 1)) {
-      undo_step(step, bodies);
+      undo_step(step, bodies, t);
       ++counts_.rejected_error;
       outcome.verdict = Verdict::inaccurate;
       return outcome;
@@ -158,9 +160,10 @@ StepOutcome CoupledStep::implicit_step(MultibodyState& bodies, Real t, Real h) {
   MultibodyState end = bodies;
   try {
     check_inside();
+    link_.book_walls(end, t, t + h, link_.step_wrench());
     link_.accept(end);
   } catch (const SimulationError&) {
-    undo_step(step, bodies);
+    undo_step(step, bodies, t);
     throw;
   }
   step->accept();
@@ -253,6 +256,9 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) 
       bodies_done = last.bodies.residual <= limits.residual_tolerance &&
                     last.bodies.correction <= limits.correction_tolerance;
     }
+  }
+  // Also where no body was corrected: walls must not count as moved by a correction.
+  if (link_.carriers_move()) {
     const auto scope = timers_.time(Stage::broadcast_motion);
     link_.broadcast_motion(backend_.list());
   }
@@ -268,7 +274,8 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) 
   return false;
 }
 
-std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h) {
+std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h,
+                                        Real end) {
   const int substeps = model_.integrator.substeps;
   std::unique_ptr<ExplicitRun> run;
   {
@@ -276,9 +283,11 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
     run = backend_.start_run(h / substeps);
   }
   std::size_t taken = 0;
-  if (link_.has_bodies()) {
-    for (bool open = true; open; ++taken)
-      open = explicit_step_with_bodies(*run, bodies, times[taken], h, taken + 1 < times.size());
+  if (link_.has_bodies() || link_.has_driven_walls()) {
+    for (bool open = true; open; ++taken) {
+      const bool last = taken + 1 == times.size();
+      open = explicit_step(*run, bodies, {times[taken], h, last ? end : times[taken + 1], !last});
+    }
   } else {
     const Index most = static_cast<Index>(times.size()) * substeps;
     taken = static_cast<std::size_t>(run->take_steps(most, false, timers_).closed / substeps);
@@ -288,35 +297,47 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
 }
 
 // Returns whether the particles' next step is open.
-bool CoupledStep::explicit_step_with_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h,
-                                            bool keep_open) {
+bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
+  const bool open = explicit_substeps(run, bodies, step);
+  if (link_.has_bodies())
+    solve_bodies(run, bodies, step);
+  else
+    link_.take_wrench(bodies);
+  return open;
+}
+
+bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
   const int substeps = model_.integrator.substeps;
+  const std::vector<BodyWrench> start = bodies.wrench;
   std::vector<BodyWrench>& sum = wrench_sum_;
   sum.assign(link_.end_wrench().size(), BodyWrench{});
-  add_wrenches(sum, bodies.wrench, 0.5);
+  add_wrenches(sum, start, 0.5);
   bool open = true;
+  Real before = step.t;
   for (int s = 1; s <= substeps; ++s) {
+    const Real tau = step.h * s / substeps, now = s < substeps ? step.t + tau : step.end;
     {
       const auto scope = timers_.time(Stage::broadcast_motion);
-      link_.broadcast_motion(backend_.list(), bodies, h * s / substeps);
+      link_.broadcast_motion(backend_.list(), bodies, tau, now);
     }
-    open = run.take_steps(1, s < substeps || keep_open, timers_).open;
+    open = run.take_steps(1, s < substeps || step.keep_open, timers_).open;
     const auto scope = timers_.time(Stage::reduce_wrench);
     link_.reduce_end_wrench(run);
     add_wrenches(sum, link_.end_wrench(), s < substeps ? 1 : 0.5);
+    link_.book_walls(bodies, before, now, link_.end_wrench());
+    before = now;
   }
-  link_.set_mean_wrench(bodies.wrench, sum, substeps);
-  solve_bodies(run, bodies, t, h);
+  link_.set_mean_wrench(start, sum, substeps);
   return open;
 }
 
 // The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
 // begins, with the contacts at the bodies' corrected place.
-void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h) {
+void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
   const Integrator& limits = model_.integrator;
   {
     const auto scope = timers_.time(Stage::mbs_correct);
-    link_.predict(bodies, t, h);
+    link_.predict(bodies, step.t, step.h, step.end);
     IterationNorms norms;
     int iteration = 0;
     do {

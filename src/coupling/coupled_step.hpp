@@ -36,16 +36,16 @@ class CoupledStep {
   // Forces, accelerations and multipliers at the start.
   void start(MultibodyState& bodies);
   // After a restart: the same without recomputing what the state holds.
-  void resume(const MultibodyState& bodies);
+  void resume(const MultibodyState& bodies, Real t);
   // After resume(): forces, accelerations and multipliers of this model, where the state is of another one.
   void renew_forces(MultibodyState& bodies, Real t);
   // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they
   // were, where a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
   // Advances both sides by up to times.size() steps of length h, the particles in substeps. times: where each
-  // step starts [s]. Returns the number of steps taken: fewer where a particle is outside the space after
-  // one.
-  std::size_t explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h);
+  // step starts; end: of the last one [s]. Returns the number of steps taken: fewer where a particle is
+  // outside the space after one.
+  std::size_t explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h, Real end);
   // The particles outside the space now. Throws SimulationError naming the first that is beyond a wall, or
   // outside at all where the deck calls that an error.
   std::vector<Leaver> check_inside() const;
@@ -57,17 +57,22 @@ class CoupledStep {
 
  private:
   struct Iteration;
+  struct ExplicitStep {
+    Real t, h, end;  // end: t + h but for round-off [s]
+    bool keep_open;  // whether another one follows
+  };
   using OpenStep = std::unique_ptr<ImplicitStep>;  // of the particles; null while none is open
   void open_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
-  void undo_step(OpenStep& step, const MultibodyState& bodies);
-  bool covered(OpenStep& step, const MultibodyState& bodies, int builds);
+  void undo_step(OpenStep& step, const MultibodyState& bodies, Real t);
+  bool covered(OpenStep& step, const MultibodyState& bodies, Real t, int builds);
   void solve_step(OpenStep& step, const MultibodyState& bodies, Real t, Real h);
   void iterate(ImplicitStep& step);
   void freeze(ImplicitStep& step, const Iteration& last);
   bool iterate_once(ImplicitStep& step, Iteration& last, bool final);
   std::string trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const;
-  bool explicit_step_with_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h, bool keep_open);
-  void solve_bodies(ExplicitRun& run, MultibodyState& bodies, Real t, Real h);
+  bool explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
+  bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
+  void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
 
   const Model& model_;
   Backend& backend_;

@@ -26,6 +26,7 @@ Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_ou
   out.dissipated_contacts = particles.contact_loss + carried_out.contact_loss;
   out.dissipated_integrator = particles.integrator_loss + carried_out.integrator_loss;
   out.carried_out = carried_out.energy;
+  out.driver_work = state.driver_work;
   if (bodies == nullptr) return out;
   const MultibodyEnergies energies = bodies->energies(state, t);
   out.kinetic += energies.kinetic;
@@ -33,7 +34,6 @@ Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_ou
   out.elastic_force_elements = energies.elastic;
   out.dissipated_force_elements = state.dissipated;
   out.dissipated_integrator += state.integrator_loss;
-  out.driver_work = state.driver_work;
   return out;
 }
 

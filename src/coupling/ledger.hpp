@@ -14,7 +14,7 @@ struct Ledger {
   Real kinetic = 0, gravitational = 0;
   Real elastic_force_elements = 0, elastic_contacts = 0;
   Real dissipated_force_elements = 0, dissipated_contacts = 0, dissipated_integrator = 0;
-  Real driver_work = 0;  // of drivers, actuators and applied forces
+  Real driver_work = 0;  // of drivers, actuators, applied forces and walls
   // Kinetic and gravitational energy of removed particles, elastic energy of the contacts that ended as one
   // left.
   Real carried_out = 0;

@@ -199,6 +199,12 @@ inline constexpr auto kWords<CouplerKind> =
                                       {"differential", CouplerKind::differential},
                                       {"sum", CouplerKind::sum}});
 
+// How a wall moves.
+enum class WallMotionKind { translation, rotation };
+template <>
+inline constexpr auto kWords<WallMotionKind> = std::to_array<Word<WallMotionKind>>(
+    {{"translation", WallMotionKind::translation}, {"rotation", WallMotionKind::rotation}});
+
 enum class TimeFunctionKind { constant, ramp, sine, step, table };
 template <>
 inline constexpr auto kWords<TimeFunctionKind> =

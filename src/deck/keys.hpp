@@ -131,6 +131,7 @@ const TableKeys& contact_keys();
 const TableKeys& material_keys();
 const TableKeys& mesh_keys();
 const TableKeys& wall_keys();
+const TableKeys& wall_motion_keys();
 const TableKeys& output_keys();
 const TableKeys& parallel_keys();
 const TableKeys& body_keys();

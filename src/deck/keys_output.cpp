@@ -47,7 +47,8 @@ const TableKeys& output_keys() {
                "force is "
                "recorded, with its torque and the number of contacts. Torques are about a body's centre, a "
                "wall's "
-               "point (a side's: space.min or space.max), and for a row, whose bodies are summed, about the "
+               "point, where that has come (a side's: space.min or space.max; a mesh's: its origin), and for "
+               "a row, whose bodies are summed, about the "
                "origin."),
        integer("history_reactions")
            .at_least(0)

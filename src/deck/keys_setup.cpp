@@ -318,9 +318,38 @@ const TableKeys& material_keys() {
   return keys;
 }
 
+const TableKeys& wall_motion_keys() {
+  using Kind = WallMotionKind;
+  static const TableKeys keys{
+      "How a wall moves, whatever touches it: one motion after the other, each on what those before it "
+      "leave, "
+      "along directions and about axes that the global frame keeps. At t = 0 the wall is where the deck puts "
+      "it: of a function of time its change since then counts.",
+      {choice<Kind>("type").required().about(
+           "Translation: by displacement along direction. Rotation: by angle about an axis."),
+       vector("direction", "").only_for({Kind::translation}).required().about("Of any length but 0."),
+       quantity("displacement", "m", time_function_keys())
+           .only_for({Kind::translation})
+           .required()
+           .about("Function of time; tables as for the motion of a driver."),
+       vector("axis", "")
+           .only_for({Kind::rotation})
+           .left_out("z in 2D; in 3D it must be given")
+           .about("Right-handed, of any length but 0."),
+       vector("point", "m").only_for({Kind::rotation}).required().about("Any point of the axis."),
+       quantity("angle", "rad", time_function_keys())
+           .only_for({Kind::rotation})
+           .required()
+           .about("Function of time; tables as for the motion of a driver.")},
+      "type"};
+  return keys;
+}
+
 const TableKeys& wall_keys() {
   static const TableKeys keys{
-      "Walls inside the space: planes, solid behind them, or meshes that stand still.",
+      "Walls inside the space: planes, solid behind them, or meshes. Nothing that touches a wall moves it; "
+      "one "
+      "that is to respond is a body on a joint.",
       {name_key().required().about("Name for messages and output.history_contacts."),
        vector("point", "m").left_out("mesh is given").about("Any point of the plane."),
        vector("normal", "")
@@ -328,8 +357,15 @@ const TableKeys& wall_keys() {
            .about("Direction into the free side, of any length but 0."),
        text("mesh")
            .left_out("point and normal are given")
-           .about("Name of one of the meshes, in place of a plane; its frame is the global one."),
-       text("material").left_out("the only material").about("Material of the wall.")},
+           .about("Name of one of the meshes, in place of a plane; its frame is the global one at t = 0."),
+       text("material").left_out("the only material").about("Material of the wall."),
+       tables("motions", wall_motion_keys()),
+       vector("surface_velocity", "m/s")
+           .left_out("the surface moves as the wall")
+           .about(
+               "How fast the surface runs along itself while the wall stays, as a conveyor's belt does: of "
+               "this vector, fixed to the wall, the part along the surface at each contact. It acts by "
+               "friction alone.")},
       ""};
   return keys;
 }

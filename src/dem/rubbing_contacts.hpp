@@ -36,6 +36,7 @@ struct RubbingPath : ContactPath {
   Real leverage0;
   Vec3 velocity0, velocity1;  // of i relative to j [m/s]
   Vec3 turning;               // R_i times i's turn over the step, and j's likewise; even [m]
+  Vec3 slide;                 // velocity of j's surface where that runs along itself [m/s]
   Index i, j;                 // items; j: kWall
   std::int64_t slot;          // of the list, or of the surfaces
   Real frozen_limit = -1;
@@ -185,7 +186,7 @@ SCREE_HD RubbingBooks rubbing_books(const Law& law, const RubbingPath& c, const 
   const StepRub& rub = at.rub;
   const Vec3 force = at.leverage0 * rub.start + at.leverage * rub.step;
   const Vec3 moment = cross(c.normal0, rub.start) + cross(c.normal1, rub.step);
-  const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel));
+  const Real work = Real(0.5) * (dot(moment, c.turning) - dot(force, c.travel - c.step.h * c.slide));
   const Real lost = rub.losses.sum();
   out.dissipated += lost, out.integrator += (rub.stored0 - rub.stored1) - work - lost;
   out.friction = lost;
@@ -211,6 +212,7 @@ struct SurfaceRub {
   Vec3 arm;          // from the body's centre to the surface's, or to where they touch, at the end [m]
   Real radius;       // of the surface; 0 of all but spheres [m]
   Vec3 contact_arm;  // from the surface's point to where they touch, at the end; of a sphere zero [m]
+  Vec3 slide;        // RubbingPath
 };
 
 template <class Views>

@@ -25,6 +25,7 @@ SCREE_HD Real sum_term(const SurfaceRub& c, int k) {
   if (k < 2 * kWrenchTerms) {
     const bool at_end = k < kWrenchTerms;
     const Vec3 rub = at_end ? c.contact.rub.end : c.contact.rub.step;
+    if (k % kWrenchTerms == kBlockRows) return c.contact.leverage * dot(rub, c.slide);
     const Vec3 force = c.contact.leverage * rub - (at_end ? normal.end_force : normal.step.force) * n;
     return component(force, cross(c.arm, force) + c.radius * cross(n, rub), k % kWrenchTerms);
   }
@@ -74,11 +75,19 @@ struct SurfaceRubItem {
     out.arm = way.now.is_sphere ? surface.arm : surface.arm + way.now.pair.contact;
     out.radius = way.now.is_sphere ? surface.radius : 0;
     out.contact_arm = way.now.is_sphere ? Vec3{} : way.now.pair.contact;
+    out.slide = path.slide;
     if (!out.contact.lasts) return in.template remember_none<Law>(entry);
     in.template remember<Law>(surface, entry, out.contact.history);
   }
 
  private:
+  // What the surface's own motion adds to what friction sees.
+  SCREE_HD static void run_along(const SurfaceFrame& frame, RubbingPath& path) {
+    const Vec3 slide = frame.middle_slide();
+    add_slide(path.motion, slide);
+    path.velocity0 -= frame.before * frame.slide, path.velocity1 -= frame.axes * frame.slide;
+    path.slide = across(slide, path.normal1);
+  }
   SCREE_HD RubbingPath path_of(const SurfacePath& way, const PlacedSurface& surface,
                                const PlacedSurface& before, Index entry, Index i) const {
     const Vec4 p = in.position[i], w = start.mean_spin[i];
@@ -99,6 +108,7 @@ struct SurfaceRubItem {
       out.motion = face_motion(end, out.normal0, way.travel, one, other, h);
     else
       out.motion = edge_motion(end, out.normal0, way.travel, one, other, h);
+    if (!is_sphere && in.frames[surface.frame].runs()) run_along(in.frames[surface.frame], out);
     const Real reach = p.w + arm;
     out.leverage0 = way.now.is_face ? 1 : out.motion.leverage * end.distance / (reach - out.step.overlap0);
     out.turning = h * (one.arm * one.spin + other.arm * other.spin);

@@ -102,6 +102,7 @@ struct SurfaceLoadItem {
     else
       find_load(law, state, surface, entry);
     out.arm = Law::kMoves && touch.is_sphere ? surface.arm : surface.arm + touch.pair.contact;
+    out.slide_power = Law::kMoves ? slide_power(touch, surface, out.load.force) : 0;
     out.particle_arm = contact_arm(state);
   }
 
@@ -125,13 +126,17 @@ struct SurfaceLoadItem {
   SCREE_HD void find_moving(const Law& law, const PairState& state, const SurfaceTouch& touch,
                             const PlacedSurface& surface, Index entry) const {
     const ContactHistory before = old(surface, entry);
-    const MovingPair pair = moving_pair(state, touch, surface, entry);
+    MovingPair pair = moving_pair(state, touch, surface, entry);
     if (in.h > 0) {
+      if (!touch.is_sphere && in.frames[surface.frame].runs())
+        add_slide(pair.motion, in.frames[surface.frame].middle_slide());
       const ContactOutcome outcome = law.load(pair, before);
       take(law, pair, outcome, outcome.history, entry);
       in.template remember<Law>(surface, entry, outcome.history);
     } else {
-      const InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
+      InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
+      if (!touch.is_sphere && in.frames[surface.frame].runs())
+        at.slip_rate -= pair.motion.leverage * slide_at(touch, surface);
       take(law, at, law.load(at, before), before, entry);
     }
   }
@@ -159,6 +164,15 @@ struct SurfaceLoadItem {
     const Vec3 travel = in.h * state.velocity;
     if (touch.is_face) return {state, face_motion(state.geometry, normal0, travel, one, {turning}, in.h)};
     return {state, edge_motion(state.geometry, normal0, travel, one, {turning}, in.h)};
+  }
+  // Velocity of a surface that runs along itself, where they touch [m/s].
+  SCREE_HD Vec3 slide_at(const SurfaceTouch& touch, const PlacedSurface& surface) const {
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    return across(frame.axes * frame.slide, touch.pair.geometry.normal());
+  }
+  SCREE_HD Real slide_power(const SurfaceTouch& touch, const PlacedSurface& surface, Vec3 force) const {
+    if (touch.is_sphere || !in.frames[surface.frame].runs()) return 0;
+    return -dot(force, slide_at(touch, surface));
   }
   SCREE_HD void take(const Law& law, const PairState& state, const ContactOutcome& outcome,
                      const ContactHistory& history, Index entry) const {

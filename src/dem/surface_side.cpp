@@ -3,9 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/box.hpp"
 #include "base/mat3.hpp"
 
 namespace scree {
+namespace {
+
+// k: from 0 to 7.
+template <class AnyBox>
+Vec3 corner_of(const AnyBox& box, int k) {
+  return {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z};
+}
+
+}  // namespace
 
 SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const Ranks& ranks)
     : model_(model),
@@ -28,6 +38,8 @@ SurfaceSide::SurfaceSide(const Model& model, const Subdomain& subdomain, const R
     placed_[s].frame = static_cast<Index>(frames_.size());
     frames_.push_back({identity3(), identity3(), surface.normal, surface.mesh});
     if (surface.kind == SurfaceKind::mesh) span(surface, frames_.back());
+    if (!surfaces_.is_on_body(s))
+      frames_.back().slide = model.walls[static_cast<std::size_t>(surfaces_.number_of(s))].surface_velocity;
   }
 }
 
@@ -51,8 +63,9 @@ void SurfaceSide::span(const Surface& surface, SurfaceFrame& frame) const {
 void SurfaceSide::bring_into_box() {
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.at(s);
-    const Vec3 p = point_motion(motion_[surface.carrier], surface.point).position;
     image_[s] = {};
+    if (surface.kind == SurfaceKind::plane) continue;  // it has no images
+    const Vec3 p = point_motion(motion_[surface.carrier], surface.point).position;
     subdomain_.wrap(snap(p, subdomain_.snap_constant()), image_[s]);
   }
 }
@@ -115,16 +128,23 @@ Real SurfaceSide::place() {
   return largest;
 }
 
-// The corners of a mesh's box go farthest: displacements are linear in the place.
+// Both are linear in the place: corners of boxes go farthest. Of a plane what counts is how its distance from
+// places in the space changes.
 Real SurfaceSide::displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const {
   const SurfaceFrame& frame = frames_[static_cast<std::size_t>(surface.frame)];
-  if (surface.kind == SurfaceKind::plane) return norm(moved);
-  const MeshBox& box = boxes_[static_cast<std::size_t>(frame.mesh)];
+  const bool is_plane = surface.kind == SurfaceKind::plane;
+  const Box space{model_.space.min, model_.space.max};
+  const Vec3 normal0 = from * frame.normal, point0 = surface.point - moved;
   Real largest = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 at{corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                  corner & 4 ? box.max.z : box.min.z};
-    const Real size = norm(moved + (frame.axes * at - from * at));
+    Real size;
+    if (is_plane) {
+      const Vec3 at = corner_of(space, corner);
+      size = std::abs(dot(surface.normal, at - surface.point) - dot(normal0, at - point0));
+    } else {
+      const Vec3 at = corner_of(boxes_[static_cast<std::size_t>(frame.mesh)], corner);
+      size = norm(moved + (frame.axes * at - from * at));
+    }
     if (!(size <= largest)) largest = size;
   }
   return largest;

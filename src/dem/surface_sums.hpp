@@ -29,6 +29,7 @@ struct SurfaceLoad {
   Vec3 arm;                // from the body's centre to where they touch [m]
   Vec3 particle_arm;       // contact_arm() of the particle
   RubbingLosses losses{};  // of laws that move
+  Real slide_power = 0;    // of the force on a surface that runs along itself [W]
 };
 
 // The same over an implicit step.
@@ -41,9 +42,11 @@ struct SurfaceStep {
   bool is_sphere = true;  // the surface
 };
 
-// Terms of one contact in the sums of its surface. kWrench: force and torque on the body about its centre;
-// kStepTerms: at the end of the step, for the step, and the packed 6 x 6 blocks of stiffness and damping.
-inline constexpr int kWrenchTerms = 6, kBlockTerms = 21, kStepTerms = 2 * kWrenchTerms + 2 * kBlockTerms;
+// Terms of one contact in the sums of its surface. kWrench: force and torque on the body about its centre,
+// and slide_power; kStepTerms: at the end of the step, for the step, and the packed 6 x 6 blocks of stiffness
+// and damping.
+inline constexpr int kBlockRows = 6, kWrenchTerms = kBlockRows + 1, kBlockTerms = 21;
+inline constexpr int kStepTerms = 2 * kWrenchTerms + 2 * kBlockTerms;
 
 SCREE_HD Real component(Vec3 force, Vec3 torque, int k) {
   return k == 0   ? force.x
@@ -55,6 +58,7 @@ SCREE_HD Real component(Vec3 force, Vec3 torque, int k) {
 }
 
 SCREE_HD Real sum_term(const SurfaceLoad& c, int k) {
+  if (k == kBlockRows) return c.slide_power;
   const Vec3 force = -c.load.force;
   return component(force, cross(c.arm, force) + c.load.torque_j, k);
 }
@@ -67,13 +71,14 @@ struct BlockPlace {
 SCREE_HD BlockPlace block_place(int k) {
   const bool is_stiffness = k < 2 * kWrenchTerms + kBlockTerms;
   int column = k - 2 * kWrenchTerms - (is_stiffness ? 0 : kBlockTerms), row = 0;
-  for (; column >= kWrenchTerms - row; ++row) column -= kWrenchTerms - row;
+  for (; column >= kBlockRows - row; ++row) column -= kBlockRows - row;
   return {is_stiffness, row, row + column};
 }
 
 // The wrench is -F w with w = (n, arm x n), along which the overlap grows with the body's motion.
 SCREE_HD Real sum_term(const SurfaceStep& c, int k) {
   const Vec3 n = c.contact.normal, moment = cross(c.arm, n);
+  if (k == kBlockRows || k == kWrenchTerms + kBlockRows) return 0;  // a surface's own motion only rubs
   if (k < kWrenchTerms) return -c.contact.end_force * component(n, moment, k);
   if (k < 2 * kWrenchTerms) return -c.contact.step.force * component(n, moment, k - kWrenchTerms);
   const BlockPlace at = block_place(k);
@@ -99,7 +104,7 @@ struct SurfaceSums {
   }
   BodyWrench wrench(int first = 0) const {
     const auto at = [&](int k) { return sum[first + k].value(); };
-    return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}};
+    return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(kBlockRows)};
   }
 };
 using InstantSums = SurfaceSums<kWrenchTerms>;

@@ -97,12 +97,16 @@ struct SurfaceFrame {
   // Of a mesh: the periods along which it goes on past its ends, as the space does. There it has no images,
   // and particles are where they are beside its middle.
   Vec3 spanned{}, middle{};  // [m], the latter in the carrier's frame
+  Vec3 slide{};              // velocity of a surface that runs along itself, in the carrier's frame [m/s]
 
   // How far the place at `from_point` from the surface's point has come since, beside that.
   SCREE_HD Vec3 travel_about(Vec3 from_point) const {
     const Vec3 local = transposed_times(axes, from_point);
     return axes * local - before * local;
   }
+  SCREE_HD bool runs() const { return !(slide == Vec3{}); }
+  // The surface's own velocity in the middle of the step [m/s].
+  SCREE_HD Vec3 middle_slide() const { return Real(0.5) * (axes * slide + before * slide); }
 };
 
 // A particle's place beside the mesh [m].

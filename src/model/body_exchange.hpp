@@ -67,13 +67,14 @@ inline PointMotion point_motion(const BodyMotion& body, Vec3 offset) {
   return {body.position + arm, body.velocity + turning_velocity(body.angular_velocity, arm)};
 }
 
-// Contact wrench on one body.
+// Contact wrench on one body, or on a wall that is placed.
 struct BodyWrench {
-  Vec3 force;   // [N]
-  Vec3 torque;  // about the centre of mass [N m]
+  Vec3 force;            // [N]
+  Vec3 torque;           // about the centre of mass [N m]
+  Real slide_power = 0;  // of friction on a wall's surface that runs along itself [W]
 
   BodyWrench& operator+=(const BodyWrench& other) {
-    force += other.force, torque += other.torque;
+    force += other.force, torque += other.torque, slide_power += other.slide_power;
     return *this;
   }
 };

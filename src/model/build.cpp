@@ -57,23 +57,6 @@ Real longest_step(const Model& model) {
   return radii_per_second * longest > kShareOfRadius ? kShareOfRadius / radii_per_second : longest;
 }
 
-// A plane or a mesh.
-Wall wall_of(const DeckTable& table, const ModelNames& names) {
-  Wall wall{table.text("name"), {}, {}, find_material(names, table, "material")};
-  if (table.has("mesh")) {
-    for (const char* key : {"point", "normal"})
-      if (table.has(key)) table.fail(key, "not used together with mesh");
-    wall.mesh = find_name(names.meshes, table, "mesh", "mesh");
-    return wall;
-  }
-  for (const char* key : {"point", "normal"})
-    if (!table.has(key)) table.fail(key, "missing; without mesh it must be given");
-  const Vec3 normal = table.vector("normal");
-  if (norm(normal) == 0) table.fail("normal", "must not be 0");
-  wall.point = table.vector("point"), wall.normal = (1 / norm(normal)) * normal;
-  return wall;
-}
-
 // The plane of a side of the space.
 Wall side_wall(const Space& space, int side) {
   Wall wall{kSideNames[side], side % 2 == 0 ? space.min : space.max, {}, space.wall_material};
@@ -117,6 +100,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
     check_start_positions(root, model, share, log);
     check_steps(root, model, log);
     for (const std::string& finding : implausible(root, model)) log.warning(finding);
+    warn_of_missed_walls(model, log);
   });
   return model;
 }
@@ -138,7 +122,7 @@ void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
     if (side != kSideNames.end() &&
         space.boundary[static_cast<std::size_t>(side - kSideNames.begin())] == Boundary::wall)
       entry.fail("name", "is the name of a side of the space that is a wall; choose another one");
-    model.walls.push_back(wall_of(entry, names));
+    model.walls.push_back(build_wall(entry, names, space.dimension, deck.table("time").real("end")));
   }
   const bool walled = std::count(space.boundary.begin(), space.boundary.end(), Boundary::wall) > 0;
   if (walled || table.has("wall_material"))

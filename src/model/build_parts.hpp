@@ -15,6 +15,8 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names);
 // After bodies and walls.
 void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
+// dimension: of the space; end: of the simulated time [s].
+Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension, Real end);
 void build_time(const DeckTable& deck, Model& model);  // control and end; also the integrator
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
@@ -46,6 +48,8 @@ void check_bodies_inside(const DeckTable& deck, const Space& space);
 // Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
 // for smaller overlaps.
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);
+// Where the shapes of bodies go through walls that particles touch.
+void warn_of_missed_walls(const Model& model, Log& log);
 // Warns of steps in which particles go farther than their radius; refuses explicit steps past the stability
 // limit.
 void check_steps(const DeckTable& deck, const Model& model, Log& log);

@@ -31,16 +31,28 @@ struct Space {
   Leaving leaving = Leaving::error;
 };
 
+// Of a wall; follows one of its coordinates less what that is at t = 0.
+struct WallMotion {
+  WallMotionKind kind = WallMotionKind::translation;
+  Vec3 axis;                // unit: the direction, or the axis of the rotation
+  Vec3 point;               // of that axis [m]
+  TimeFunction coordinate;  // [m] or [rad]
+};
+
 // A surface of the ground. Half space, solid behind the plane; or triangles.
 struct Wall {
   std::string name;
   Vec3 point;   // of the plane, or the origin of the mesh [m]
   Vec3 normal;  // unit, into the free side
   int material = 0;
-  int mesh = -1;  // index into Model::meshes; -1: a plane
+  int mesh = -1;                      // index into Model::meshes; -1: a plane
+  std::vector<WallMotion> motions{};  // one after the other; point and normal are those at t = 0
+  Vec3 surface_velocity{};            // in the wall's frame, the global one at t = 0 [m/s]
 
+  bool moves() const { return !motions.empty(); }
+  bool runs() const { return surface_velocity != Vec3{}; }  // its surface, along itself
   // Whether its contacts are those of a surface that is placed: all but planes at rest.
-  bool is_placed() const { return mesh >= 0; }
+  bool is_placed() const { return mesh >= 0 || moves() || runs(); }
 };
 
 // Triangles that walls and bodies refer to.

@@ -116,6 +116,13 @@ SCREE_HD ContactMotion edge_motion(const ContactGeometry& geometry, Vec3 normal0
   return out;
 }
 
+// The surface of j, a face or an edge, runs along itself with the velocity `slide` of the middle of the step
+// [m/s]: that is slip, and nothing else.
+SCREE_HD void add_slide(ContactMotion& c, Vec3 slide) {
+  const Vec3 ran = c.h * slide;
+  c.slip -= c.leverage * across(ran + c.turn / 4 * cross(c.normal0 + c.normal1, ran), c.normal1);
+}
+
 // What such a law sees at an instant alone: nothing has moved, and what it remembers acts as it is, with
 // dashpots that see the rates of slip and turning.
 struct InstantPair : MovingPair {

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "dem/surfaces.hpp"
 #include "model/body_layout.hpp"
 #include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
@@ -55,7 +57,6 @@ void check_row_group(const std::string& path, const std::string& group,
 
 void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
   State sizes;
-  const std::size_t bodies = model.bodies.size();
   const BodyLayout layout(model.bodies);
   // Before the angles of joints in space were counted there were none.
   if (checkpoint.reals.count("bodies/counted_angles") > 0)
@@ -66,7 +67,10 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
     values->resize(static_cast<std::size_t>(layout.columns()));
   sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
   sizes.bodies.memory.resize(static_cast<std::size_t>(memory_count(model)));
-  sizes.bodies.wrench.resize(bodies);
+  const SurfaceSet surfaces(model);
+  sizes.bodies.wrench.resize(surfaces.carriers());
+  if (std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.runs(); }))
+    sizes.bodies.slide_power.resize(surfaces.carriers() - model.bodies.size());
   // What contacts remember may be there or not, and so may rotation: no history is none.
   sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
   Checkpoint expected = pack(sizes);

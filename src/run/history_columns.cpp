@@ -71,7 +71,8 @@ void energy_columns(Group energy) {
   entry("dissipated_contacts", "dissipated in contacts since t = 0", &Ledger::dissipated_contacts);
   entry("dissipated_integrator", "taken out by the time integration since t = 0",
         &Ledger::dissipated_integrator);
-  entry("driver_work", "work of drivers, actuators and applied forces since t = 0", &Ledger::driver_work);
+  entry("driver_work", "work of drivers, actuators, applied forces and walls since t = 0",
+        &Ledger::driver_work);
   entry(
       "carried_out",
       "kinetic and gravitational energy of removed particles, and elastic energy of contacts that ended as a "
@@ -200,7 +201,8 @@ void coordinate_columns(Group joint, JointCoordinate coordinate, std::size_t k) 
 }
 
 std::string torque_text(const ContactTarget& target) {
-  if (target.wall >= 0) return "torque of these forces about the wall's point";
+  if (target.wall >= 0)
+    return "torque of these forces about the wall's point, a mesh's origin, where that has come";
   return target.row ? "torque of these forces about the origin"
                     : "torque of these forces about the body's centre";
 }

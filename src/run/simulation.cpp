@@ -128,7 +128,7 @@ void Simulation::start_or_resume() {
       throw InputError(fmt::format("--restart {}: the checkpoint is at t = {:.9g} s, past time.end = {:g} s",
                                    options_.restart, state_.clock.time, model_.time.end));
     if (!continues_files()) state_.history_rows = state_.snapshots = 0;
-    step_.resume(state_.bodies);
+    step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
   }
   start_time_ = state_.clock.time;

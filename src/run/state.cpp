@@ -180,6 +180,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("bodies/applied", state.bodies.applied);
   visit.if_any("bodies/memory", state.bodies.memory);
   visit("bodies/wrench", state.bodies.wrench);
+  visit.if_any("bodies/slide_power", state.bodies.slide_power);
   visit("bodies/dissipated", state.bodies.dissipated);
   visit("bodies/integrator_loss", state.bodies.integrator_loss);
   visit("bodies/driver_work", state.bodies.driver_work);

@@ -106,6 +106,12 @@ std::vector<Real> StepClock::equal_steps(std::size_t most) const {
   }
 }
 
+Real StepClock::end_of(std::size_t equal_steps) const {
+  StepClock ahead(*this);
+  for (std::size_t k = 0; k < equal_steps; ++k) ahead.accepted(0);
+  return ahead.time();
+}
+
 void StepClock::accepted(Real error) {
   const Real h = step();
   if (time_.control == StepControl::fixed) {

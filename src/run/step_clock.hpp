@@ -41,6 +41,8 @@ class StepClock {
   // Start times of the steps from the open one on that are as long as it, at most so many and none past the
   // next output [s].
   std::vector<Real> equal_steps(std::size_t most) const;
+  // When the last of so many of them ends [s].
+  Real end_of(std::size_t equal_steps) const;
   // The step was taken; error: local error over the tolerance.
   void accepted(Real error);
   // The step is to be repeated, shorter. Throws SimulationError, with the reason, when it would be shorter

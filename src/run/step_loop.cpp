@@ -97,7 +97,7 @@ void StepLoop::take_explicit_steps(Real h, Real until) {
       clock_.equal_steps(batch_length(parts_.model, parts_.backend.is_mixed(), step_seconds_));
   times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
   const double start = parts_.seconds();
-  const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h);
+  const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h, clock_.end_of(times.size()));
   step_seconds_ = (parts_.seconds() - start) / static_cast<double>(taken);
   ranks().broadcast(step_seconds_);  // clocks differ
   for (std::size_t k = 0; k < taken; ++k) clock_.accepted(0);

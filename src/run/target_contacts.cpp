@@ -10,6 +10,12 @@ std::size_t carrier_of_wall(const Model& model, int wall) {
   return carrier;
 }
 
+// A carrier's torque is about its origin; this is about the wall's point, where that has come.
+ContactSum on_wall(const Wall& wall, ContactSum sum, const BodyMotion& motion) {
+  sum.torque -= cross(body_arm(motion, wall.point), sum.force);
+  return sum;
+}
+
 // The contacts of a row as one: torques about the origin, because the bodies move.
 ContactSum row_sum(const std::vector<int>& bodies, const std::vector<ContactSum>& contacts,
                    const std::vector<BodyMotion>& motion) {
@@ -46,7 +52,9 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
     if (is_plane(target))
       sum = *plane++;
     else if (target.wall >= 0)
-      sum = on_carriers[carrier_of_wall(model, target.wall)];
+      sum = on_wall(model.walls[static_cast<std::size_t>(target.wall)],
+                    on_carriers[carrier_of_wall(model, target.wall)],
+                    link.motion()[carrier_of_wall(model, target.wall)]);
     else if (!target.row)
       sum = on_carriers[target.bodies.front()];
     else if (!motion.empty())  // rank 0

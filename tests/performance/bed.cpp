@@ -134,7 +134,7 @@ CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& repo
         throw InputError(
             "--plough: it has come through the bed; fewer --repeats, --seconds or --steps, or more "
             "--particles");
-      if (run.step.explicit_steps(run.bodies, times, kSphereStep) != times.size())
+      if (run.step.explicit_steps(run.bodies, times, kSphereStep, times.back() + kSphereStep) != times.size())
         throw SimulationError("a particle has left the bed");
       const std::vector<int> contacts = run.backend->reports().pack_shapes().contacts;
       out.contacts.push_back(std::accumulate(contacts.begin(), contacts.end(), 0));

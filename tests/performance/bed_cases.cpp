@@ -223,7 +223,7 @@ std::vector<Vec3> settled_discs() {
   MultibodyState bodies;
   step.start(bodies);
   const std::vector<Real> times(static_cast<std::size_t>(kSteps / model.integrator.substeps));
-  step.explicit_steps(bodies, times, model.time.step);
+  step.explicit_steps(bodies, times, model.time.step, times.back() + model.time.step);
   const ParticleLedger ledger = backend->reports().ledger(0);
   fmt::print("settled tile: kinetic energy {:.2e} J per disc, {:.2f} contacts per disc\n",
              ledger.kinetic / kTileParticles, 2 * static_cast<Real>(ledger.contacts) / kTileParticles);

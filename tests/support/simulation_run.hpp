@@ -52,7 +52,7 @@ class SimulationRun {
     backend_->particles().load(std::exchange(state_.particles, {}), state_.shapes);
     backend_->particles().load_contacts(state_.contacts);
     step_.counts() = state_.counts;
-    step_.resume(state_.bodies);
+    step_.resume(state_.bodies, state_.clock.time);
     make_loop();
   }
   SimulationRun(const SimulationRun&) = delete;

@@ -15,8 +15,8 @@ inline auto fields(const ShapeLosses& l) {
   return std::tie(contact_loss, loss_power, integrator_loss);
 }
 inline auto fields(const BodyWrench& w) {
-  const auto& [force, torque] = w;
-  return std::tie(force, torque);
+  const auto& [force, torque, slide_power] = w;
+  return std::tie(force, torque, slide_power);
 }
 inline auto fields(const ContactSum& s) {
   const auto& [force, torque, contacts] = s;

@@ -192,7 +192,8 @@ TEST_CASE("explicit steps do not depend on how many are asked for at once, nor o
     for (int n = 0; n < 120; n += at_once) {
       std::vector<Real> times;
       for (int k = n; k < n + at_once; ++k) times.push_back(k * kStep);
-      REQUIRE(coupled->step->explicit_steps(coupled->bodies, times, kStep) == times.size());
+      REQUIRE(coupled->step->explicit_steps(coupled->bodies, times, kStep, times.back() + kStep) ==
+              times.size());
     }
     return coupled;
   };
@@ -214,14 +215,14 @@ TEST_CASE("a run resumed from its state goes on with the same bits") {
         if (particles == "hht")
           REQUIRE(coupled.step->implicit_step(coupled.bodies, n * kStep, kStep).verdict == Verdict::accepted);
         else
-          coupled.step->explicit_steps(coupled.bodies, {n * kStep}, kStep);
+          coupled.step->explicit_steps(coupled.bodies, {n * kStep}, kStep, (n + 1) * kStep);
       }
     };
     advance(whole, 0, 10);
     second.bodies = whole.bodies;
     second.backend->particles().load(whole.backend->particles().records(),
                                      whole.backend->particles().shape_losses());
-    second.step->resume(second.bodies);
+    second.step->resume(second.bodies, 10 * kStep);
     advance(whole, 10, 30), advance(second, 10, 30);
     CHECK(differing(whole, second) == "");
     CHECK(whole.backend->particles().shape_losses().contact_loss ==

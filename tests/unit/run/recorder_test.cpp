@@ -119,7 +119,8 @@ struct Recording {
     recorder = std::make_unique<Recorder>(model, backend, link, folder.path(), state);
   }
   void advance() {
-    step.explicit_steps(state.bodies, {state.clock.time}, model.time.step);
+    step.explicit_steps(state.bodies, {state.clock.time}, model.time.step,
+                        state.clock.time + model.time.step);
     state.clock.time += model.time.step;
     state.counts = step.counts();
     recorder->history(state, model.time.step);

@@ -1,0 +1,52 @@
+#include "coupling/wall_motion.hpp"
+
+#include <fmt/format.h>
+
+namespace scree {
+
+WallMotions::WallMotions(const Model& model) {
+  for (const Wall& wall : model.walls) {
+    if (!wall.is_placed()) continue;
+    move_ |= wall.moves(), run_ |= wall.runs();
+    std::vector<Part>& parts = walls_.emplace_back();
+    for (const WallMotion& motion : wall.motions)
+      parts.push_back(
+          {motion, ScalarFunction(motion.coordinate, fmt::format("wall '{}'", wall.name), model.time.end)});
+  }
+}
+
+void WallMotions::at(Real t, std::span<BodyMotion> out) const {
+  for (std::size_t w = 0; w < size(); ++w) {
+    out[w] = {};
+    out[w].kind = BodyKind::spatial;
+    for (const Part& part : walls_[w]) add(part, t, out[w]);
+  }
+}
+
+// The motion takes a place x, with its velocity v, on: translated to x + s d and v + s' d; turned by R about
+// the axis a through c to c + R (x - c) and R v + f' a x (its new arm).
+void WallMotions::add(const Part& part, Real t, BodyMotion& motion) {
+  const TimeValue now = part.coordinate(t);
+  const Real change = now.value - part.coordinate(0).value;
+  const Vec3 axis = part.of.axis;
+  if (part.of.kind == WallMotionKind::translation) {
+    motion.position += change * axis, motion.velocity += now.rate * axis;
+    return;
+  }
+  const Quaternion turn = exponential(change * axis);
+  const Vec3 arm = turned(turn, motion.position - part.of.point);
+  motion.position = part.of.point + arm;
+  motion.velocity = turned(turn, motion.velocity) + cross(now.rate * axis, arm);
+  motion.orientation = normalized(turn * motion.orientation);
+  motion.spin += turned(conjugate(motion.orientation), now.rate * axis);  // in the carrier's frame
+}
+
+// Trapezoidal, as the particles' own work.
+Real work_between(const BodyMotion& start, const BodyWrench& start_wrench, const BodyMotion& end,
+                  const BodyWrench& wrench, Real h) {
+  return Real(0.5) * (dot(start_wrench.force + wrench.force, end.position - start.position) +
+                      dot(start_wrench.torque + wrench.torque, turn_between(start, end)) +
+                      h * (start_wrench.slide_power + wrench.slide_power));
+}
+
+}  // namespace scree

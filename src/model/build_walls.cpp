@@ -1,0 +1,77 @@
+// Walls inside the space, and how they move.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/build_parts.hpp"
+
+namespace scree {
+
+namespace {
+
+// Of any length but 0 in the deck.
+Vec3 unit_vector(const DeckTable& table, const std::string& key) {
+  const Vec3 a = table.vector(key);
+  if (norm(a) == 0) table.fail(key, "must not be 0");
+  return (1 / norm(a)) * a;
+}
+
+Vec3 rotation_axis(const DeckTable& table, int dimension) {
+  if (dimension == 3) {
+    if (!table.has("axis")) table.fail("axis", "missing; in 3D it must be given");
+    return unit_vector(table, "axis");
+  }
+  if (table.has("axis")) table.fail("axis", "not used in a space of dimension 2: walls turn about z");
+  return {0, 0, 1};
+}
+
+// key: of the function of time.
+TimeFunction coordinate_of(const DeckTable& motion, const std::string& key, Real end) {
+  const DeckTable& table = motion.table(key);
+  const TimeFunction function = build_motion(table);
+  if (function.kind == TimeFunctionKind::table && (function.times.front() > 0 || function.times.back() < end))
+    table.fail("times", fmt::format("must cover the whole run, 0 s to time.end = {} s; they go from {} s to "
+                                    "{} s",
+                                    end, function.times.front(), function.times.back()));
+  return function;
+}
+
+WallMotion build_wall_motion(const DeckTable& table, int dimension, Real end) {
+  if (table.choice<WallMotionKind>("type") == WallMotionKind::translation)
+    return {WallMotionKind::translation,
+            unit_vector(table, "direction"),
+            {},
+            coordinate_of(table, "displacement", end)};
+  return {WallMotionKind::rotation, rotation_axis(table, dimension), table.vector("point"),
+          coordinate_of(table, "angle", end)};
+}
+
+}  // namespace
+
+Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension, Real end) {
+  Wall wall{table.text("name"), {}, {}, find_material(names, table, "material")};
+  for (const DeckTable& motion : table.tables("motions"))
+    wall.motions.push_back(build_wall_motion(motion, dimension, end));
+  if (table.has("surface_velocity")) wall.surface_velocity = table.vector("surface_velocity");
+  if (table.has("mesh")) {
+    for (const char* key : {"point", "normal"})
+      if (table.has(key)) table.fail(key, "not used together with mesh");
+    wall.mesh = find_name(names.meshes, table, "mesh", "mesh");
+    return wall;
+  }
+  for (const char* key : {"point", "normal"})
+    if (!table.has(key)) table.fail(key, "missing; without mesh it must be given");
+  wall.point = table.vector("point"), wall.normal = unit_vector(table, "normal");
+  return wall;
+}
+
+void warn_of_missed_walls(const Model& model, Log& log) {
+  const bool shapes =
+      std::ranges::any_of(model.bodies, [](const Body& body) { return !body.shapes.empty(); });
+  for (const Wall& wall : model.walls)
+    if (shapes && wall.mesh < 0 && wall.is_placed())
+      log.warning(fmt::format("wall \"{}\" moves: particles touch it, the shapes of bodies go through it",
+                              wall.name));
+}
+
+}  // namespace scree
