@@ -67,6 +67,7 @@ class FailingReports : public Reports {
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override {
     return of_.wall_contacts(walls);
   }
+  std::vector<TriangleLoad> triangle_loads() override { return of_.triangle_loads(); }
 
   bool failed = false;
 
