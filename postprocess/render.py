@@ -15,6 +15,7 @@ import numpy as np
 from model import read_model
 from results import fail, open_series, read_history
 from scenes import DiscScene, SphereScene
+from surfaces import Surfaces
 
 COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
 FRAMES_PER_SECOND = 25
@@ -45,6 +46,8 @@ class Run:
         if self.particles is None:
             fail(f"{directory}: no particles.vtkhdf there")
         self.bodies = open_series(directory, "bodies")
+        surfaces = open_series(directory, "surfaces")
+        self.surfaces = Surfaces(surfaces) if surfaces else None
         bare = any(len(offsets) == 0 for offsets in self.model.offsets)
         self.history = read_history(directory) if bare else {}
 
