@@ -143,7 +143,10 @@ def draw_run(directory, frames, view, with_vtk):
         fail("--view is for runs in the plane")
     with_vtk = with_vtk and not run.model.planar and vtk_renders()
     last = len(run.particles) - 1
-    unseen = int((~run.motion(last).known).sum())
+    seen = run.motion(last).known
+    if run.surfaces:
+        seen[run.surfaces.bodies] = True
+    unseen = int((~seen).sum())
     if unseen:
         print(f"{counted(unseen, 'body', 'bodies')} without shapes and not in output.history_bodies: not drawn",
               file=sys.stderr)

@@ -24,8 +24,9 @@ class Surfaces:
 
     def __init__(self, series):
         self._series = series
-        triangles, on_body = series.triangles(), series.numbers("body") >= 0
-        self.triangles = {"walls": triangles[~on_body], "bodies": triangles[on_body]}
+        triangles, body = series.triangles(), series.numbers("body")
+        self.bodies = np.unique(body[body >= 0])  # those that have meshes
+        self.triangles = {"walls": triangles[body < 0], "bodies": triangles[body >= 0]}
         points = series.rows(0, "Points")
         self._edges = {whose: sharp_edges(points, found) for whose, found in self.triangles.items()}
 
