@@ -12,7 +12,7 @@ constexpr int kSearchThreads = 128;
 constexpr Index kChunk = 128;  // entries
 
 // What the search for entries reads.
-struct SurfaceSearch {
+struct EntrySearch {
   const Vec4* position;
   Index active;
   BrickGrid grid;
@@ -23,13 +23,13 @@ struct SurfaceSearch {
   Vec3 period;
 };
 
-__device__ bool is_near(const SurfaceSearch& in, Vec4 p, const WallPlane& plane) {
+__device__ bool is_near(const EntrySearch& in, Vec4 p, const WallPlane& plane) {
   return wall_pair(p, plane).distance < p.w + in.skin;
 }
 
 // Entries with planes at rest per particle.
 struct GroundCountItem {
-  SurfaceSearch in;
+  EntrySearch in;
   Index* counts;
   __device__ void operator()(Index i) const {
     Index count = 0;
@@ -46,7 +46,7 @@ struct EntryOutputs {
 };
 
 struct GroundFillItem {
-  SurfaceSearch in;
+  EntrySearch in;
   const Index* offsets;
   Index* next;
   EntryOutputs out;
@@ -64,7 +64,7 @@ struct GroundFillItem {
 
 // Calls visit(i, surface, image) for the active particles near the block's surface, a sphere.
 template <class Visit>
-__device__ void visit_near(const SurfaceSearch& in, const Visit& visit) {
+__device__ void visit_near(const EntrySearch& in, const Visit& visit) {
   const auto s = static_cast<Index>(blockIdx.x);
   const PlacedSurface surface = in.placed[s];
   if (surface.kind != SurfaceKind::sphere) return;
@@ -85,12 +85,12 @@ __device__ void visit_near(const SurfaceSearch& in, const Visit& visit) {
 }
 
 __global__ void __launch_bounds__(kSearchThreads)
-    count_near_kernel(const __grid_constant__ SurfaceSearch in, Index* counts) {
+    count_near_kernel(const __grid_constant__ EntrySearch in, Index* counts) {
   visit_near(in, [&](Index i, Index, std::int8_t) { atomicAdd(&counts[i], 1); });
 }
 
 __global__ void __launch_bounds__(kSearchThreads)
-    fill_near_kernel(const __grid_constant__ SurfaceSearch in, Index* next, EntryOutputs out) {
+    fill_near_kernel(const __grid_constant__ EntrySearch in, Index* next, EntryOutputs out) {
   visit_near(in, [&](Index i, Index surface, std::int8_t image) {
     const Index slot = atomicAdd(&next[i], 1);
     out.surfaces[slot] = surface, out.images[slot] = image;
@@ -99,7 +99,7 @@ __global__ void __launch_bounds__(kSearchThreads)
 
 // Of a plane that is placed.
 struct PlaneCountItem {
-  SurfaceSearch in;
+  EntrySearch in;
   Index placed;
   Index* counts;
   __device__ bool near(Index i) const {
@@ -181,7 +181,7 @@ void DeviceSurfaces::build(Device device, const Particles& particles, const Surf
 void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
-  const SurfaceSearch in{p.position, p.active,  *p.grid,        p.starts, p.largest_radius + skin,
+  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts, p.largest_radius + skin,
                          skin,       numbers(), places_.data(), period_};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The entry past the end is read, though no sum depends on it.
