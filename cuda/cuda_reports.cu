@@ -161,6 +161,12 @@ std::vector<ContactSum> CudaReports::carrier_contacts() {
   return bodies_.side().carrier_contacts();
 }
 
+std::vector<TriangleLoad> CudaReports::triangle_loads() {
+  need_loads();
+  const std::vector<WallPlane> planes = wall_planes(items_.model);
+  return bodies_.side().triangle_loads(items_.surfaces.triangle_sums(items_.device(), planes));
+}
+
 std::vector<ContactSum> CudaReports::wall_contacts(std::span<const int> walls) {
   const auto share = [&](Real* largest) { items_.lane.halo.max(items_.device(), largest, kWallTerms); };
   std::vector<ContactSum> contacts;

@@ -21,6 +21,7 @@ class CudaReports : public Reports {
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
   std::vector<ContactSum> carrier_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
+  std::vector<TriangleLoad> triangle_loads() override;
 
  private:
   // The values of a snapshot on their way out: those of one field, and all.

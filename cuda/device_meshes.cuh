@@ -49,6 +49,10 @@ class DeviceMeshes {
   void make_room(Index entries);
   void make_room_over_step(Index entries);
 
+  // What triangle_sums() reads of them, on the host; waits.
+  std::vector<MeshGroup> download_groups(cudaStream_t stream) const { return groups_.download(stream); }
+  std::vector<MeshTouch> download_touches(cudaStream_t stream) const { return touches_.download(stream); }
+
   MeshRows rows() const { return {groups_.data(), triangles_.data(), views_.data()}; }
   const MeshTouch* touches() const { return touches_.data(); }
   const MeshTouchBefore* before() const { return before_.data(); }

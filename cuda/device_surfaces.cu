@@ -307,4 +307,14 @@ std::vector<InstantSums> DeviceSurfaces::load_sums() const { return touched(h_lo
 
 std::vector<StepSums> DeviceSurfaces::step_sums() const { return touched(h_step_sums_); }
 
+std::vector<TriangleSums> DeviceSurfaces::triangle_sums(Device device,
+                                                        std::span<const WallPlane> planes) const {
+  if (!meshes_.exist() || entries_ == 0) return {};
+  const std::vector<MeshGroup> groups = meshes_.download_groups(device.stream);
+  const std::vector<MeshTouch> touches = meshes_.download_touches(device.stream);
+  const std::vector<Index> surfaces = surfaces_.download(device.stream);
+  const std::vector<SurfaceLoad> loads = loads_[0].download(device.stream);
+  return scree::triangle_sums({groups, surfaces, touches, loads}, {planes.data(), ground_});
+}
+
 }  // namespace scree

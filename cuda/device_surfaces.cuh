@@ -10,6 +10,7 @@
 #include "contact_kernels.cuh"
 #include "dem/surface_sums.hpp"
 #include "dem/surfaces.hpp"
+#include "dem/triangle_sums.hpp"
 #include "device.cuh"
 #include "device_meshes.cuh"
 
@@ -66,6 +67,9 @@ class DeviceSurfaces {
   // The sums of the last contacts found, once the stream is done: a surface may come in several parts.
   std::vector<InstantSums> load_sums() const;
   std::vector<StepSums> step_sums() const;
+  // Of the loads of the step, what they do to the triangles of meshes. For snapshots: all contacts are
+  // brought to the host. planes: there. Waits.
+  std::vector<TriangleSums> triangle_sums(Device device, std::span<const WallPlane> planes) const;
 
   // For the items' views: everything of them but particles and rows.
   template <class Rows>

@@ -4,8 +4,8 @@
 
 Writes RESULT_DIR/final.png, RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg) and RESULT_DIR/history.png,
 the energies over time. Particles are drawn to scale and coloured by their speed, bodies in orange, with walls,
-joints and springs: discs in 2D, lit spheres in 3D. Bodies without shapes are seen where output.history_bodies
-names them.
+joints and springs: discs in 2D, lit spheres in 3D. Meshes are see-through, with their sharp edges. Bodies without
+shapes are seen where output.history_bodies names them.
 """
 
 import argparse

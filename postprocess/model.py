@@ -68,9 +68,12 @@ def volume(solid):
 
 
 def center_of_mass(body, densities):
-    """In the body's frame. densities: of the materials, by name."""
+    """In the body's frame. densities: of the materials, by name. The deck does not tell the volume of a mesh: with
+    one among them it is the middle of the solids' origins."""
     if not body.get("solids"):
         return in_space(body.get("center_of_mass", [0.0, 0.0]))
+    if any(s["kind"] == "mesh" for s in body["solids"]):
+        return np.mean([in_space(s["offset"]) for s in body["solids"]], axis=0)
     only = next(iter(densities), None)
     masses = [
         volume(s) * (s["density"] if "density" in s else densities[s.get("material", only)])
@@ -126,7 +129,8 @@ class Model:
         self.low, self.high = in_space(space["min"]), in_space(space["max"])
         self.gravity = in_space(deck["gravity"])
         self.boundaries = {side: space[side] for side in SIDES[: 4 if self.planar else 6]}
-        self.walls = [(in_space(wall["point"]), in_space(wall["normal"])) for wall in deck.get("walls", [])]
+        planes = [wall for wall in deck.get("walls", []) if "mesh" not in wall]
+        self.walls = [(in_space(wall["point"]), in_space(wall["normal"])) for wall in planes]
         densities = {material["name"]: material.get("density") for material in deck.get("materials", [])}
         self._read_bodies(deck.get("bodies", []), densities)
         self._markers = {marker["name"]: marker for marker in deck.get("markers", [])}

@@ -15,6 +15,7 @@ import numpy as np
 from model import read_model
 from results import fail, open_series, read_history
 from scenes import DiscScene, SphereScene
+from surfaces import Surfaces
 
 COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
 FRAMES_PER_SECOND = 25
@@ -45,6 +46,8 @@ class Run:
         if self.particles is None:
             fail(f"{directory}: no particles.vtkhdf there")
         self.bodies = open_series(directory, "bodies")
+        surfaces = open_series(directory, "surfaces")
+        self.surfaces = Surfaces(surfaces) if surfaces else None
         bare = any(len(offsets) == 0 for offsets in self.model.offsets)
         self.history = read_history(directory) if bare else {}
 
@@ -140,7 +143,10 @@ def draw_run(directory, frames, view, with_vtk):
         fail("--view is for runs in the plane")
     with_vtk = with_vtk and not run.model.planar and vtk_renders()
     last = len(run.particles) - 1
-    unseen = int((~run.motion(last).known).sum())
+    seen = run.motion(last).known
+    if run.surfaces:
+        seen[run.surfaces.bodies] = True
+    unseen = int((~seen).sum())
     if unseen:
         print(f"{counted(unseen, 'body', 'bodies')} without shapes and not in output.history_bodies: not drawn",
               file=sys.stderr)

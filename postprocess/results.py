@@ -19,7 +19,7 @@ def open_file(path):
 
 
 class Series:
-    """The snapshots of one kind (particles or bodies)."""
+    """The snapshots of one kind (particles, bodies or surfaces)."""
 
     def __init__(self, path):
         self._file = open_file(path)
@@ -44,6 +44,14 @@ class Series:
         dataset = self._root[name if name == "Points" else f"PointData/{name}"]
         first = self._first[snapshot]
         return dataset[first : first + self._count[snapshot]]
+
+    def triangles(self):
+        """Of surfaces: the rows of Points at their corners [n][3]."""
+        return self._root["Polygons/Connectivity"][:].reshape(-1, 3)
+
+    def numbers(self, name):
+        """Of surfaces: what no snapshot changes, per triangle."""
+        return self._root[f"CellData/{name}"][:]
 
     def has(self, name):
         """Whether the field is there."""

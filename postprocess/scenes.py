@@ -10,6 +10,8 @@ from walls import section, solids
 
 BODY_COLOR = "#e66100"
 EDGE_COLOR = "#303030"
+SURFACE_COLORS = {"walls": "#909090", "bodies": BODY_COLOR}
+SURFACE_OPACITY = 0.18  # what a drum holds shows
 LIGHT = np.array([-0.4, 0.75, 0.53])  # where walls are lighter: right, up, towards the eye
 LONGEST_SIDE = 7.5  # of the axes [inch]
 SPREAD = 40  # snapshots in which bodies are looked for
@@ -58,7 +60,7 @@ def union(*boxes):
 
 
 def body_bounds(run, snapshots):
-    """Of shapes, joints and springs."""
+    """Of shapes, meshes, joints and springs."""
     mechanism = Mechanism(run.model, run.motion, 0.0)
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for snapshot in snapshots:
@@ -66,6 +68,8 @@ def body_bounds(run, snapshots):
         everything = np.concatenate([a.reshape(-1, 3) for a in (*lines.values(), *points.values())])
         low = np.min(np.concatenate([[low], everything]), axis=0)
         high = np.max(np.concatenate([[high], everything]), axis=0)
+    if run.surfaces:
+        low, high = union((low, high), run.surfaces.bounds(snapshots))
     if run.bodies is None:
         return low, high
     return union((low, high), bounds(run.bodies, snapshots, strays=0))
@@ -141,6 +145,21 @@ class FlatMechanism:
             markers.set_data(*self.flatten(points.get(kind, np.empty((0, 3)))).T)
 
 
+class FlatSurfaces:
+    """The edges of meshes as matplotlib draws them. flatten: as in FlatMechanism."""
+
+    def __init__(self, surfaces, axes, flatten):
+        self.surfaces, self.flatten, self.lines = surfaces, flatten, {}
+        for whose, color in SURFACE_COLORS.items() if surfaces else ():
+            self.lines[whose] = LineCollection([], colors=color, linewidths=1.0, zorder=1.5)
+            axes.add_collection(self.lines[whose], autolim=False)
+
+    def draw(self, snapshot):
+        lines = self.surfaces.lines(snapshot) if self.surfaces else {}
+        for whose, found in lines.items():
+            self.lines[whose].set_segments(self.flatten(found))
+
+
 class DiscScene:
     def __init__(self, run, snapshots, view):
         self.run = run
@@ -167,6 +186,7 @@ class DiscScene:
         self.mechanism = FlatMechanism(
             Mechanism(self.run.model, self.run.motion, unit), axes, lambda points: points[..., :2]
         )
+        self.surfaces = FlatSurfaces(self.run.surfaces, axes, lambda points: points[..., :2])
 
     def draw_walls(self, axes):
         """What is solid, and the sides of the space: dashed where they are periodic, dotted where open."""
@@ -189,6 +209,7 @@ class DiscScene:
         self.colors.set_array(particles.speed(snapshot))
         if bodies:
             place_discs(self.shapes, bodies.rows(snapshot, "Points")[:, :2], bodies.rows(snapshot, "radius"))
+        self.surfaces.draw(snapshot)
         self.mechanism.draw(snapshot)
 
 
@@ -276,6 +297,7 @@ class SphereScene:
             self.draw_box(axes)
             self.discs = disc_collection(axes, edgecolors=EDGE_COLOR, linewidths=0.2)
             self.mechanism = FlatMechanism(mechanism, axes, lambda points: self.project(points)[..., :2])
+            self.surfaces = FlatSurfaces(self.run.surfaces, axes, lambda points: self.project(points)[..., :2])
 
     def draw_box(self, axes):
         for polygon, color, opacity in self.faces():
@@ -322,8 +344,10 @@ class SphereScene:
             colors = np.concatenate([colors, np.tile(matplotlib.colors.to_rgb(BODY_COLOR), (len(shapes), 1))])
         if not self.use_vtk:
             self.draw_discs(self.project(points), radii, colors)
+            self.surfaces.draw(snapshot)
             self.mechanism.draw(snapshot)
             return
+        self.draw_surfaces(snapshot)
         lines, joints = self.mechanism.draw(snapshot)
         for style, (color, width, _) in LINES.items():
             strokes = lines.get(style, np.empty((0, 2, 3)))
@@ -332,6 +356,15 @@ class SphereScene:
         points, radii = np.concatenate([points, balls]), np.append(radii, np.full(len(balls), 0.005 * self.extent))
         colors = np.concatenate([colors, np.tile(matplotlib.colors.to_rgb(EDGE_COLOR), (len(balls), 1))])
         self.image.set_data(self.renderer.image(points, radii, colors))
+
+    def draw_surfaces(self, snapshot):
+        if not self.run.surfaces:
+            return
+        points, lines = self.run.surfaces.points(snapshot), self.run.surfaces.lines(snapshot)
+        for whose, triangles in self.run.surfaces.triangles.items():
+            color = matplotlib.colors.to_rgb(SURFACE_COLORS[whose])
+            self.renderer.set_triangles(whose, points, triangles, color, SURFACE_OPACITY)
+            self.renderer.set_lines(f"edges of {whose}", lines[whose], color, 0.0008 * self.extent)
 
     def draw_discs(self, flat, radii, colors):
         """Far ones first and darker."""

@@ -56,7 +56,7 @@ class SphereRenderer:
         self._renderer = renderer = vtk.vtkRenderer()
         renderer.SetBackground(1, 1, 1)
         renderer.AddActor(actor)
-        self._lines = {}
+        self._lines, self._triangles = {}, {}
         self._aim(renderer, center, axes_of_picture, half_height, extent)
         self._window = vtk.vtkRenderWindow()
         self._window.SetOffScreenRendering(1)
@@ -104,6 +104,25 @@ class SphereRenderer:
         tube.CappingOn()
         self._lines[style] = self._add(tube, color)
         self._lines[style].GetProperty().LightingOn()
+
+    def set_triangles(self, style, points, triangles, color, opacity):
+        """In place of those of the same style."""
+        if style in self._triangles:
+            self._renderer.RemoveActor(self._triangles.pop(style))
+        if len(triangles) == 0:
+            return
+        corners = vtk.vtkPoints()
+        corners.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
+        cells = vtk.vtkCellArray()
+        offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
+        cells.SetData(*(numpy_to_vtk(values, deep=True) for values in (offsets, triangles.reshape(-1))))
+        data = vtk.vtkPolyData()
+        data.SetPoints(corners)
+        data.SetPolys(cells)
+        self._triangles[style] = self._add(data, color)
+        self._triangles[style].GetProperty().LightingOn()
+        self._triangles[style].GetProperty().SetInterpolationToFlat()
+        self._triangles[style].GetProperty().SetOpacity(opacity)
 
     @staticmethod
     def _aim(renderer, center, axes_of_picture, half_height, extent):

@@ -85,6 +85,11 @@ std::vector<ContactSum> CpuReports::carrier_contacts() {
   return items_.side.carrier_contacts();
 }
 
+std::vector<TriangleLoad> CpuReports::triangle_loads() {
+  need_loads();
+  return items_.side.triangle_loads(items_.surfaces.triangle_sums(items_.list.surfaces));
+}
+
 std::vector<ContactSum> CpuReports::wall_contacts(std::span<const int> walls) {
   std::vector<ContactSum> contacts;
   need_loads();

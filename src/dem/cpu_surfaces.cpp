@@ -94,6 +94,10 @@ void CpuSurfaces::find_rubs(const ParticleStore& store, const SurfaceRows& rows,
   side_.take_steps(sums_of<StepSums>(rubs_, rows, numbers()), start.step.h);
 }
 
+std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) const {
+  return scree::triangle_sums({rows.groups, rows.surfaces, touches_, loads_}, numbers());
+}
+
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,
                                             const std::vector<Vec4>& velocity, const PackedRows& neighbors,
                                             const SurfaceRows& rows) const {

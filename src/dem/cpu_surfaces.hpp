@@ -24,6 +24,8 @@ class CpuSurfaces {
   // And where contacts rub; history: with what they will remember if the step is accepted.
   void find_rubs(const ParticleStore& store, const SurfaceRows& rows, const RubbingStart& start,
                  const HistoryViews& history);
+  // Of the last find_loads().
+  std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
   const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
 
   // What items see of particles at these places, with the contacts found last.

@@ -87,6 +87,8 @@ class Reports {
   // Model::walls), where all are now. Complete on rank 0.
   virtual std::vector<ContactSum> carrier_contacts() = 0;
   virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
+  // What the particles do to the triangles of meshes that they touch, where all are now. Complete on rank 0.
+  virtual std::vector<TriangleLoad> triangle_loads() = 0;
 
  protected:
   // Before contacts with bodies are read.

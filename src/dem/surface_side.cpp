@@ -200,20 +200,10 @@ void SurfaceSide::take_steps(std::span<const StepSums> of_particles, Real h) {
     if (step.sums.contacts > 0) steps_.push_back(step.sums);
 }
 
-// Of all ranks, ordered by surface, one entry each; on rank 0.
+// Of all ranks, on rank 0.
 template <class Sums>
 std::vector<Sums> SurfaceSide::merged(std::vector<Sums> sums) const {
-  sums = ranks_.gather(std::move(sums));
-  std::stable_sort(sums.begin(), sums.end(),
-                   [](const Sums& a, const Sums& b) { return a.surface < b.surface; });
-  std::vector<Sums> out;
-  for (const Sums& part : sums) {
-    if (out.empty() || out.back().surface != part.surface)
-      out.push_back(part);
-    else
-      out.back().add(part);
-  }
-  return out;
+  return merged_by_place(ranks_.gather(std::move(sums)));
 }
 
 void SurfaceSide::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) const {
@@ -248,6 +238,16 @@ std::vector<ContactSum> SurfaceSide::carrier_contacts() const {
     sum.force += wrench.force, sum.torque += wrench.torque, sum.contacts += sums.contacts;
   }
   return of_carrier;
+}
+
+std::vector<TriangleLoad> SurfaceSide::triangle_loads(std::vector<TriangleSums> of_particles) const {
+  std::vector<TriangleLoad> loads;
+  for (const TriangleSums& sums : merged(std::move(of_particles))) {
+    const ExactSum* const t = sums.tangential;
+    loads.push_back(
+        {sums.surface, sums.triangle, sums.normal.value(), {t[0].value(), t[1].value(), t[2].value()}});
+  }
+  return loads;
 }
 
 void SurfaceSide::book_losses(Real h) {

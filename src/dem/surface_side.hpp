@@ -8,6 +8,7 @@
 #include "dem/body_contacts.hpp"
 #include "dem/surface_sums.hpp"
 #include "dem/surfaces.hpp"
+#include "dem/triangle_sums.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
 #include "partition/ranks.hpp"
@@ -90,6 +91,8 @@ class SurfaceSide {
   std::vector<ContactSum> carrier_contacts() const;  // bodies, then placed walls
   ShapePack pack() const;                            // of the spheres
   ContactSum on_wall(int wall) const { return bodies_.on_wall(wall); }
+  // Of all ranks' particles, ordered by surface and triangle. Collective; complete on rank 0.
+  std::vector<TriangleLoad> triangle_loads(std::vector<TriangleSums> of_particles) const;
 
  private:
   // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].

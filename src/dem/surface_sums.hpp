@@ -3,6 +3,9 @@
 // ranks.
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "base/exact_sum.hpp"
 #include "base/hd.hpp"
 #include "base/types.hpp"
@@ -93,6 +96,7 @@ struct SurfaceSums {
   Index contacts = 0;
   ExactSum sum[kTerms];
 
+  Index place() const { return surface; }
   template <class Contact>
   SCREE_HD void add_contact(const Contact& contact) {
     ++contacts;
@@ -109,5 +113,20 @@ struct SurfaceSums {
 };
 using InstantSums = SurfaceSums<kWrenchTerms>;
 using StepSums = SurfaceSums<kStepTerms>;
+
+// Ordered by place(), one entry each.
+template <class Sums>
+std::vector<Sums> merged_by_place(std::vector<Sums> sums) {
+  std::stable_sort(sums.begin(), sums.end(),
+                   [](const Sums& a, const Sums& b) { return a.place() < b.place(); });
+  std::vector<Sums> out;
+  for (const Sums& part : sums) {
+    if (out.empty() || out.back().place() != part.place())
+      out.push_back(part);
+    else
+      out.back().add(part);
+  }
+  return out;
+}
 
 }  // namespace scree

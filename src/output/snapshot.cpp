@@ -62,9 +62,19 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
   return snapshot;
 }
 
+PointSnapshot surface_points(Real time, const SurfaceSnapshot& surfaces) {
+  const std::int64_t points = std::ssize(surfaces.position);
+  PointSnapshot snapshot{time, points, {0, points}, components(surfaces.position), {}};
+  snapshot.fields = {
+      scalar("pressure", "Pa", "normal contact forces on the triangle over its area", surfaces.pressure),
+      vector("shear", "Pa", "tangential contact forces on the triangle over its area", surfaces.shear)};
+  return snapshot;
+}
+
 SeriesOptions with_global_id(SeriesOptions options) {
   if (options.fields) options.fields->emplace_back(kGlobalId);
   options.names.clear();  // of the bodies
+  options.triangles.reset();
   return options;
 }
 
@@ -77,37 +87,43 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
   ranks_.on_root([&] {
     SeriesOptions alone = options;
     alone.ranks = {}, alone.fields = {};
+    alone.triangles = options.triangles.value_or(SeriesTriangles{});
+    surfaces_.emplace(directory, "surfaces", alone);
+    alone.triangles.reset();
     bodies_.emplace(directory, "bodies", alone);
   });
   if (particles_.snapshots() != snapshots_)
     throw IoError(particles_.path() + ": missing, the restarted run needs it");
 }
 
-void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies) {
-  ranks_.on_root([&] {
-    if (bodies.position.empty() || bodies_->snapshots() == snapshots_) return;
-    throw IoError(fmt::format("{}: holds {} snapshots where {} were written", bodies_->path(),
-                              bodies_->snapshots(), snapshots_));
-  });
-  const PointSnapshot points = particle_points(time, particles, ranks_), shapes = body_points(time, bodies);
-  const auto with_bodies = [&](const auto& action) {
+void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,
+                            const SurfaceSnapshot& surfaces) {
+  const PointSnapshot points = particle_points(time, particles, ranks_), shapes = body_points(time, bodies),
+                      corners = surface_points(time, surfaces);
+  const auto with_others = [&](const auto& action) {
     ranks_.on_root([&] {
-      if (shapes.points > 0) action(*bodies_);
+      if (shapes.points > 0) action(*bodies_, shapes);
+      if (corners.points > 0) action(*surfaces_, corners);
     });
   };
+  with_others([&](const VtkHdfSeries& series, const PointSnapshot&) {
+    if (series.snapshots() == snapshots_) return;
+    throw IoError(fmt::format("{}: holds {} snapshots where {} were written", series.path(),
+                              series.snapshots(), snapshots_));
+  });
   particles_.prepare(points);
-  with_bodies([&](VtkHdfSeries& series) { series.prepare(shapes); });
+  with_others([](VtkHdfSeries& series, const PointSnapshot& of) { series.prepare(of); });
   particles_.show();
-  with_bodies([&](VtkHdfSeries& series) { series.show(); });
+  with_others([](VtkHdfSeries& series, const PointSnapshot&) { series.show(); });
   ranks_.on_root([&] { sync_folder_of(particles_.path()); });
   particles_.follow(points);
-  with_bodies([&](VtkHdfSeries& series) { series.follow(shapes); });
+  with_others([](VtkHdfSeries& series, const PointSnapshot& of) { series.follow(of); });
   ++snapshots_;
 }
 
 void SnapshotWriter::finish() {
   particles_.finish();
-  ranks_.on_root([&] { bodies_->finish(); });
+  ranks_.on_root([&] { bodies_->finish(), surfaces_->finish(); });
 }
 
 }  // namespace scree

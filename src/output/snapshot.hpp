@@ -36,26 +36,35 @@ struct BodySnapshot {
   std::span<const Vec3> origin{};  // of the body's frame [m]
 };
 
+// The meshes of walls and bodies, those that the writer was made with; on rank 0.
+struct SurfaceSnapshot {
+  std::span<const Vec3> position;  // of their points [m]
+  std::span<const Real> pressure;  // per triangle: what presses on it [Pa]
+  std::span<const Vec3> shear;     // what drags it along [Pa]
+};
+
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
-// bodies.xdmf. The files are complete, closed and on disk after every append, and readable at every instant,
-// a kill in the middle of an append included; the .xdmf may lack the last sixth of the snapshots until
-// finish(). All ranks write the particles, rank 0 the bodies; all functions are collective.
+// bodies.xdmf, and surfaces.vtkhdf + surfaces.xdmf where there are meshes. The files are complete, closed and
+// on disk after every append, and readable at every instant, a kill in the middle of an append included; the
+// .xdmf may lack the last sixth of the snapshots until finish(). All ranks write the particles, rank 0 the
+// others; all functions are collective.
 class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
   // cut off); 0 starts new files and removes old ones. options.fields: those of the particles beside
-  // the global id. options.names: of the bodies. Throws IoError where the files hold fewer snapshots, or
-  // other fields.
+  // the global id. options.names: of the bodies. options.triangles: of the meshes, on rank 0, where there are
+  // some. Throws IoError where the files hold fewer snapshots, other fields or other triangles.
   SnapshotWriter(const std::string& directory, const SeriesOptions& options);
   // Both throw IoError.
-  void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies);
+  void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,
+              const SurfaceSnapshot& surfaces = {});
   void finish();
   int snapshots() const { return snapshots_; }
 
  private:
   Ranks ranks_;
   VtkHdfSeries particles_;
-  std::optional<VtkHdfSeries> bodies_;  // on rank 0
+  std::optional<VtkHdfSeries> bodies_, surfaces_;  // on rank 0
   int snapshots_ = 0;
 };
 

@@ -19,6 +19,9 @@ namespace {
 const std::string kRoot = "/VTKHDF/";
 const std::string kSteps = "/VTKHDF/Steps/";
 const std::string kPointData = "/VTKHDF/PointData/";
+const std::string kCellData = "/VTKHDF/CellData/";
+const std::string kPointDataOffsets = "/VTKHDF/Steps/PointDataOffsets/";
+const std::string kCellDataOffsets = "/VTKHDF/Steps/CellDataOffsets/";
 constexpr std::int64_t kStepsPerChunk = 128;
 constexpr std::size_t kXdmfGrowth = 5;  // the .xdmf is written when it has grown by one in so many
 
@@ -30,18 +33,14 @@ void append_one(Hdf5File& file, const std::string& name, T value) {
 // Large enough to be written at the disk's speed, small enough not to bloat the file of a small run.
 std::int64_t points_per_chunk(std::int64_t points) { return std::clamp<std::int64_t>(points, 128, 65536); }
 
-void create_field(Hdf5File& file, const PointField& field, RowStorage storage) {
+void create_field(Hdf5File& file, const std::string& name, const PointField& field, RowStorage storage) {
   storage.width = field.width;
-  const auto create = [&]<class T>(const T*) {
-    file.create_rows<T>(kPointData + field.name, storage, field.label);
-  };
+  const auto create = [&]<class T>(const T*) { file.create_rows<T>(name, storage, field.label); };
   std::visit(create, field.values);
 }
 
-void write_field(SharedRows& file, const PointField& field, RowPart part) {
-  const auto write = [&](const auto* values) {
-    file.write(kPointData + field.name, field.width, part, values);
-  };
+void write_field(SharedRows& file, const std::string& name, const PointField& field, RowPart part) {
+  const auto write = [&](const auto* values) { file.write(name, field.width, part, values); };
   std::visit(write, field.values);
 }
 
@@ -60,18 +59,17 @@ void create_steps(Hdf5File& file) {
   create(std::int64_t{}, "PointOffsets", 1, "1", "first row of each snapshot in Points and in every field");
   create(std::int64_t{}, "CellOffsets", 4, "1",
          "first cell of each snapshot: vertices, lines, polygons, strips");
-  // A vertex has one connectivity id, so these are the same numbers.
+  // A vertex has one connectivity id, so these are the same numbers; of triangles both are 0.
   file.link(kSteps + "CellOffsets", kSteps + "ConnectivityIdOffsets");
   file.write_integer_attribute(kSteps, "NSteps", {0});
 }
 
-void create_topology(Hdf5File& file, const RowStorage& of_points) {
+void create_vertices(Hdf5File& file, const RowStorage& of_points) {
   const auto create = [&](const std::string& name, const RowStorage& storage,
                           const std::string& description) {
     file.create_rows<std::int64_t>(kRoot + name, storage, {"1", description});
   };
   const RowStorage of_parts{1, kStepsPerChunk};
-  create("NumberOfPoints", of_parts, "points of each part");
   create("Vertices/Connectivity", of_points, "point of each vertex, counted from the part's first");
   create("Vertices/Offsets", of_points,
          "first connectivity id of each vertex, and their number: one more row per part");
@@ -83,6 +81,27 @@ void create_topology(Hdf5File& file, const RowStorage& of_points) {
   file.link(kRoot + "Lines/NumberOfCells", kRoot + "Lines/NumberOfConnectivityIds");
   file.link(kRoot + "Lines", kRoot + "Polygons");
   file.link(kRoot + "Lines", kRoot + "Strips");
+}
+
+// All behind a snapshot: vertices, and the fields of points.
+void cut_points(Hdf5File& file, const SnapshotPlace& last) {
+  const std::int64_t parts = last.part + 1, cells = last.first_cell + last.points;
+  for (const char* name : {"NumberOfPoints", "Lines/NumberOfCells", "Lines/Offsets"}) {
+    file.resize_rows(kRoot + name, parts);
+  }
+  file.resize_rows(kRoot + "Vertices/Connectivity", cells);
+  file.resize_rows(kRoot + "Vertices/Offsets", cells + parts);
+  for (const std::string& name : file.dataset_names(kPointData)) {
+    file.resize_rows(kPointData + name, last.first_point + last.points);
+  }
+}
+
+// All behind so many snapshots: the fields of triangles.
+void cut_triangles(Hdf5File& file, const SeriesTriangles& triangles, std::int64_t snapshots) {
+  for (const std::string& name : file.dataset_names(kCellData)) {
+    if (!triangles.has(name)) file.resize_rows(kCellData + name, snapshots * triangles.count());
+  }
+  file.resize_rows(kSteps + "TriangleOffsets", snapshots);
 }
 
 // Row k of a part holds k.
@@ -113,6 +132,7 @@ VtkHdfSeries::VtkHdfSeries(const std::string& directory, const std::string& name
   options.ranks.together([&] {
     read_places();
     if (options.fields) require_fields();
+    if (options.triangles) require_triangles(Hdf5File(path(), Hdf5Access::read), *options.triangles);
   });
   if (snapshots() < keep) {
     throw IoError(fmt::format("{}: holds {} snapshots, but the restarted run has written {}", path(),
@@ -138,8 +158,9 @@ void VtkHdfSeries::read_places() {
       throw IoError(
           fmt::format("{}: snapshot {} refers to part {} of {}", path(), s, part[s], points.size()));
     }
-    places_[s] = {time[s], points[static_cast<std::size_t>(part[s])], first_point[s], part[s],
-                  first_cell[4 * s]};
+    places_[s] = {time[s],           points[static_cast<std::size_t>(part[s])],
+                  first_point[s],    part[s],
+                  first_cell[4 * s], static_cast<std::int64_t>(s)};
   }
 }
 
@@ -158,22 +179,17 @@ void VtkHdfSeries::cut(std::size_t keep) {
   remove_xdmf();  // it would refer to rows that are gone; the next append writes it
   places_.resize(keep);
   const SnapshotPlace last = places_.back();
-  const std::int64_t steps = static_cast<std::int64_t>(keep), parts = last.part + 1;
-  const std::int64_t cells = last.first_cell + last.points;
+  const std::int64_t steps = static_cast<std::int64_t>(keep);
   const auto shorten = [&](Hdf5File& file) {
     file.write_integer_attribute(kSteps, "NSteps", {steps});
     for (const char* name : {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets"}) {
       file.resize_rows(kSteps + name, steps);
     }
-    for (const char* name : {"NumberOfPoints", "Lines/NumberOfCells", "Lines/Offsets"}) {
-      file.resize_rows(kRoot + name, parts);
-    }
-    file.resize_rows(kRoot + "Vertices/Connectivity", cells);
-    file.resize_rows(kRoot + "Vertices/Offsets", cells + parts);
     file.resize_rows(kRoot + "Points", last.first_point + last.points);
-    for (const std::string& name : file.dataset_names(kPointData)) {
-      file.resize_rows(kPointData + name, last.first_point + last.points);
-    }
+    if (options_.triangles)
+      cut_triangles(file, *options_.triangles, steps);
+    else
+      cut_points(file, last);
   };
   file_.update({shorten, {}});
 }
@@ -184,15 +200,15 @@ void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
   file.write_integer_attribute("/VTKHDF", "Version", {2, 0});
   file.write_text_attribute("/VTKHDF", "Type", "PolyData");
   create_steps(file);
-  create_topology(file, storage);
+  file.create_rows<std::int64_t>(kRoot + "NumberOfPoints", {1, kStepsPerChunk}, {"1", "points of each part"});
+  if (options_.triangles)
+    create_triangles(file, *options_.triangles);
+  else
+    create_vertices(file, storage);
   RowStorage vectors = storage;
   vectors.width = 3;
   file.create_rows<Real>(kRoot + "Points", vectors, {"m", "position"});
-  for (const PointField& field : first.fields) {
-    create_field(file, field, storage);
-    // Every field has as many rows as Points, so it begins where they begin.
-    file.link(kSteps + "PointOffsets", kSteps + "PointDataOffsets/" + field.name);
-  }
+  lay_out_fields(file, first, storage);
   file.create_group("/Scree");
   file.write_text_attribute("/Scree", "title", options_.title);
   file.write_text_attribute("/Scree", "version", version());
@@ -200,8 +216,23 @@ void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
   if (!options_.names.empty()) file.write_text("/Scree/names", options_.names);
 }
 
+// The fields of points have as many rows as Points, so they begin where these begin.
+void VtkHdfSeries::lay_out_fields(Hdf5File& file, const PointSnapshot& first, RowStorage storage) const {
+  std::string offsets = kSteps + "PointOffsets";
+  if (options_.triangles) {
+    storage.chunk_rows = points_per_chunk(options_.triangles->count());
+    offsets = kSteps + "TriangleOffsets";
+    file.create_rows<std::int64_t>(offsets, {1, kStepsPerChunk},
+                                   {"1", "first row of each snapshot in the fields of the triangles"});
+  }
+  for (const PointField& field : first.fields) {
+    create_field(file, field_group() + field.name, field, storage);
+    file.link(offsets, (options_.triangles ? kCellDataOffsets : kPointDataOffsets) + field.name);
+  }
+}
+
 SnapshotPlace VtkHdfSeries::next_place(const PointSnapshot& snapshot) const {
-  SnapshotPlace place{snapshot.time, snapshot.points, 0, 0, 0};
+  SnapshotPlace place{snapshot.time, snapshot.points, 0, 0, 0, std::ssize(places_)};
   if (places_.empty()) return place;
   const SnapshotPlace& last = places_.back();
   place.first_point = last.first_point + last.points;
@@ -215,22 +246,34 @@ bool VtkHdfSeries::starts_part(const SnapshotPlace& place) const {
   return places_.empty() || place.part != places_.back().part;
 }
 
+void VtkHdfSeries::start_part(Hdf5File& file, const PointSnapshot& snapshot) const {
+  append_one(file, kRoot + "NumberOfPoints", snapshot.points);
+  if (options_.triangles) return;
+  add_rows(file, kRoot + "Vertices/Connectivity", snapshot.points);
+  add_rows(file, kRoot + "Vertices/Offsets", snapshot.points + 1);
+  append_one(file, kRoot + "Lines/NumberOfCells", std::int64_t{0});
+  append_one(file, kRoot + "Lines/Offsets", std::int64_t{0});
+}
+
+const std::string& VtkHdfSeries::field_group() const { return options_.triangles ? kCellData : kPointData; }
+
+RowPart VtkHdfSeries::field_rows(const SnapshotPlace& place, RowPart own) const {
+  if (!options_.triangles) return {place.first_point + own.first, own.count};
+  return {place.number * options_.triangles->count(), options_.triangles->count()};
+}
+
 void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
                              const SnapshotPlace& place) const {
   if (places_.empty()) lay_out(file, snapshot);
-  if (starts_part(place)) {
-    append_one(file, kRoot + "NumberOfPoints", snapshot.points);
-    add_rows(file, kRoot + "Vertices/Connectivity", snapshot.points);
-    add_rows(file, kRoot + "Vertices/Offsets", snapshot.points + 1);
-    append_one(file, kRoot + "Lines/NumberOfCells", std::int64_t{0});
-    append_one(file, kRoot + "Lines/Offsets", std::int64_t{0});
-  }
+  if (starts_part(place)) start_part(file, snapshot);
   add_rows(file, kRoot + "Points", snapshot.points);
-  for (const PointField& field : snapshot.fields) add_rows(file, kPointData + field.name, snapshot.points);
+  const RowPart rows = field_rows(place, {0, snapshot.points});
+  for (const PointField& field : snapshot.fields) add_rows(file, field_group() + field.name, rows.count);
   append_one(file, kSteps + "Values", snapshot.time);
   append_one(file, kSteps + "PartOffsets", place.part);
   append_one(file, kSteps + "NumberOfParts", std::int64_t{1});
   append_one(file, kSteps + "PointOffsets", place.first_point);
+  if (options_.triangles) append_one(file, kSteps + "TriangleOffsets", rows.first);
   const std::int64_t first_cell[4] = {place.first_cell, 0, 0, 0};
   file.append_rows(kSteps + "CellOffsets", first_cell, 1);
   file.write_integer_attribute(kSteps, "NSteps", {static_cast<std::int64_t>(places_.size()) + 1});
@@ -239,16 +282,16 @@ void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
 void VtkHdfSeries::write_rows(SharedRows& file, const PointSnapshot& snapshot,
                               const SnapshotPlace& place) const {
   const RowPart own = snapshot.own;
-  if (starts_part(place)) {
+  if (starts_part(place) && !options_.triangles) {
     write_numbers(file, kRoot + "Vertices/Connectivity", place.first_cell, own);
     // One more than there are vertices: the last rank's.
     const bool last = options_.ranks.rank() == options_.ranks.size() - 1;
     write_numbers(file, kRoot + "Vertices/Offsets", place.first_cell + place.part,
                   {own.first, own.count + (last ? 1 : 0)});
   }
-  const RowPart part{place.first_point + own.first, own.count};
-  file.write(kRoot + "Points", 3, part, snapshot.position);
-  for (const PointField& field : snapshot.fields) write_field(file, field, part);
+  file.write(kRoot + "Points", 3, {place.first_point + own.first, own.count}, snapshot.position);
+  for (const PointField& field : snapshot.fields)
+    write_field(file, field_group() + field.name, field, field_rows(place, own));
 }
 
 TwinFile::Change VtkHdfSeries::change(const PointSnapshot& snapshot) const {
@@ -274,7 +317,8 @@ void VtkHdfSeries::remove_xdmf() const {
 }
 
 void VtkHdfSeries::add_xdmf(const PointSnapshot& snapshot) {
-  const XdmfSeries series{name_, name_ + ".vtkhdf", &snapshot.fields};
+  const XdmfSeries series{name_, name_ + ".vtkhdf", &snapshot.fields,
+                          options_.triangles ? &*options_.triangles : nullptr};
   for (; xdmf_snapshots_ < places_.size(); ++xdmf_snapshots_) {
     xdmf_grids_ += xdmf_grid(series, places_[xdmf_snapshots_]);
   }

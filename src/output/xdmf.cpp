@@ -55,8 +55,8 @@ std::string slab(const XdmfSeries& series, const XdmfArray& array, std::int64_t 
       first, count, width, zero, one, source, type, end, vector ? 2 : 1);
 }
 
-XdmfArray field_array(const PointField& field) {
-  XdmfArray array{"PointData/" + field.name, field.width, "Float", 8};
+XdmfArray field_array(const std::string& group, const PointField& field) {
+  XdmfArray array{group + field.name, field.width, "Float", 8};
   if (std::holds_alternative<const int*>(field.values)) array.type = "Int", array.bytes = 4;
   if (std::holds_alternative<const GlobalId*>(field.values)) array.type = "Int", array.bytes = 8;
   return array;
@@ -66,21 +66,42 @@ const char* attribute_type(int width) {
   return width == 9 ? "Tensor" : width == 3 ? "Vector" : width == 1 ? "Scalar" : "Matrix";
 }
 
+std::string vertices(const XdmfSeries& series, const SnapshotPlace& place) {
+  return fmt::format(
+      "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}</Topology>\n",
+      place.points, slab(series, {"Vertices/Connectivity", 1, "Int", 8}, place.first_cell, place.points));
+}
+
+std::string triangles(const XdmfSeries& series) {
+  const std::int64_t count = series.triangles->count();
+  return fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>\n", count,
+                     slab(series, {"Polygons/Connectivity", 1, "Int", 8}, 0, 3 * count));
+}
+
+// With `count` values from `first` on.
+std::string attribute(const XdmfSeries& series, const std::string& name, const XdmfArray& array,
+                      std::int64_t first, std::int64_t count) {
+  return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
+                     escaped(name), attribute_type(array.width), series.triangles ? "Cell" : "Node",
+                     slab(series, array, first, count));
+}
+
 }  // namespace
 
 std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
   if (place.points == 0) return {};
   std::string text = fmt::format("<Grid Name=\"{}\"><Time Value=\"{}\"/>\n", series.name, place.time);
-  text += fmt::format(
-      "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}</Topology>\n",
-      place.points, slab(series, {"Vertices/Connectivity", 1, "Int", 8}, place.first_cell, place.points));
+  text += series.triangles ? triangles(series) : vertices(series, place);
   text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
                       slab(series, {"Points", 3, "Float", 8}, place.first_point, place.points));
-  for (const PointField& field : *series.fields) {
-    text += fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
-                        escaped(field.name), attribute_type(field.width),
-                        slab(series, field_array(field), place.first_point, place.points));
-  }
+  const std::int64_t count = series.triangles ? series.triangles->count() : place.points;
+  const std::int64_t first = series.triangles ? place.number * count : place.first_point;
+  for (const PointField& field : *series.fields)
+    text += attribute(series, field.name, field_array(series.triangles ? "CellData/" : "PointData/", field),
+                      first, count);
+  if (series.triangles)
+    for (const TriangleNumbers& numbers : series.triangles->numbers)
+      text += attribute(series, numbers.name, {"CellData/" + numbers.name, 1, "Int", 4}, 0, count);
   return text + "</Grid>\n";
 }
 

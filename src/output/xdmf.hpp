@@ -13,6 +13,7 @@ struct XdmfSeries {
   std::string name;
   std::string data_file;  // the .vtkhdf's name, in the same directory
   const std::vector<PointField>* fields = nullptr;
+  const SeriesTriangles* triangles = nullptr;  // of a series of triangles: the fields are theirs
 };
 
 // One snapshot's <Grid>; empty for a snapshot without points, which these readers cannot open.

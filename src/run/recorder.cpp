@@ -101,10 +101,16 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
     std::vector<HistoryColumn> heads;
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
+    if (!model.meshes.empty()) surfaces_.emplace(model);
   });
-  snapshots_.emplace(directory,
-                     SeriesOptions{model.title, static_cast<int>(state.snapshots), model.output.compression,
-                                   link.ranks(), model.output.fields, body_names(model)});
+  SeriesOptions options{model.title,
+                        static_cast<int>(state.snapshots),
+                        model.output.compression,
+                        link.ranks(),
+                        model.output.fields,
+                        body_names(model)};
+  if (surfaces_) options.triangles = surfaces_->triangles();
+  snapshots_.emplace(directory, options);
   if (writes_late()) backend.set_idle_work([this] { write_pending(); });
 }
 
@@ -168,8 +174,12 @@ void Recorder::balance(State& state, HistorySample& sample) const {
 void Recorder::snapshot(State& state) {
   write_pending();
   backend_.reports().start_output();
-  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}, {}};
+  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}, {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
+  if (!model_.meshes.empty()) {
+    const std::vector<TriangleLoad> loads = backend_.reports().triangle_loads();
+    if (surfaces_) next.surfaces = surfaces_->look(motion, loads);
+  }
   for (const int body : next.shapes.body) {
     next.angle.push_back(motion[body].angle);
     next.angular_velocity.push_back(motion[body].angular_velocity);
@@ -193,7 +203,8 @@ void Recorder::write_pending() {
   const ShapePack& s = snapshot.shapes;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
-                      s.force, s.contacts, snapshot.orientation, snapshot.spin, snapshot.origin});
+                      s.force, s.contacts, snapshot.orientation, snapshot.spin, snapshot.origin},
+                     {snapshot.surfaces.position, snapshot.surfaces.pressure, snapshot.surfaces.shear});
 }
 
 void Recorder::flush_history() {

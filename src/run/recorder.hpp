@@ -11,6 +11,7 @@
 #include "output/history.hpp"
 #include "output/snapshot.hpp"
 #include "run/history_columns.hpp"
+#include "run/mesh_surfaces.hpp"
 #include "run/records.hpp"
 #include "run/state.hpp"
 
@@ -48,6 +49,7 @@ class Recorder : public Records {
     std::vector<Real> angle, angular_velocity;  // of the shapes' bodies
     std::vector<Real> orientation;              // where bodies are spatial, likewise: quaternions
     std::vector<Vec3> spin, origin;             // angular velocities, global; origins of the frames
+    MeshSurfaces::Look surfaces;                // on rank 0, where there are meshes
   };
 
   bool writes_late() const;
@@ -57,6 +59,7 @@ class Recorder : public Records {
   const Model& model_;
   Backend& backend_;
   const BodyLink& link_;
+  std::optional<MeshSurfaces> surfaces_;  // on rank 0, where there are meshes
   std::vector<RecordedColumn> columns_;   // on rank 0
   std::optional<HistoryWriter> history_;  // likewise
   std::optional<SnapshotWriter> snapshots_;

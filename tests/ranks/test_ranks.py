@@ -71,7 +71,7 @@ class SameBitsTest(RanksTest):
                     for count in ("steps", "newton_iterations", "linear_iterations", "list_builds", "left"):
                         self.assertEqual(record["counts"][count], self.record(first)["counts"][count], count)
                     self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))
-                    for series in ("particles.vtkhdf", "bodies.vtkhdf"):
+                    for series in ("particles.vtkhdf", "bodies.vtkhdf", "surfaces.vtkhdf"):
                         self.assertEqual(self.datasets(output, series), self.datasets(first, series))
                     self.assertGreaterEqual(record["counts"]["steps"], 500 if "adaptive" in name else 1000)
                     migrated += record["counts"]["migrated"]
@@ -132,6 +132,9 @@ class SameBitsTest(RanksTest):
                 self.run_deck(DONE, 2, deck, parts, settings, "--restart", self.folder / parts / "checkpoint.h5")
                 self.assertEqual(self.hash(parts), self.hash(whole))
                 self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
+                surfaces = self.datasets(parts, "surfaces.vtkhdf")
+                self.assertEqual(surfaces, self.datasets(whole, "surfaces.vtkhdf"))
+                self.assertEqual(surfaces is not None, h5py is not None and name == "meshes")
                 counts = self.record(parts)["counts"]
                 self.assertGreaterEqual(counts["steps"], 1000)
                 self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])

@@ -145,6 +145,75 @@ def check_file(path, fields):
     return len(times)
 
 
+def history_columns(directory):
+    """{"group/name": values}"""
+    with h5py.File(directory / "history.h5", "r") as file:
+        columns = {}
+        file.visititems(lambda name, item: columns.update({name: item[:]}) if isinstance(item, h5py.Dataset) else None)
+        return columns
+
+
+def rotation(quaternion):
+    w, x, y, z = quaternion
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * w * cross + 2 * cross @ cross
+
+
+def check_surfaces(path, names, steps):
+    """The triangles of every step by VTK's reader against the raw data; that they move with their bodies as the
+    history says, and that what acts on them adds up to the force there. names: of the bodies, all in the history."""
+    reader = vtk.vtkHDFReader()
+    errors = ErrorCounter(reader)
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    require(reader.GetNumberOfSteps() == steps, f"{path}: {reader.GetNumberOfSteps()} steps for {steps}")
+    history = history_columns(path.parent)
+    with h5py.File(path, "r") as file:
+        check_attributes(file, path)
+        root = file["VTKHDF"]
+        triangles = root["Polygons/Connectivity"][:].reshape(-1, 3)
+        once = {name: root[f"CellData/{name}"][:] for name in ("surface", "body", "wall", "material", "triangle")}
+        start, pushed = root["Points"][: root["NumberOfPoints"][0]], 0
+        for step, time in enumerate(root["Steps/Values"][:]):
+            where = f"{path}, step {step}"
+            reader.SetStep(step)
+            reader.Update()
+            data = reader.GetOutput()
+            found = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+            require(np.array_equal(found, triangles), f"{where}: other triangles")
+            points = vtk_to_numpy(data.GetPoints().GetData())
+            first = step * len(start)
+            require(np.array_equal(points, root["Points"][first : first + len(start)]), f"{where}: Points differ")
+            values = {name: vtk_to_numpy(data.GetCellData().GetArray(name)) for name in (*once, "pressure", "shear")}
+            rows = slice(step * len(triangles), (step + 1) * len(triangles))
+            raw = once | {name: root[f"CellData/{name}"][rows] for name in ("pressure", "shear")}
+            for name, array in raw.items():
+                require(np.array_equal(values[name], array), f"{where}: {name} differs")
+            sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
+            area = np.cross(sides[:, 0], sides[:, 1]) / 2
+            force = raw["shear"] * np.linalg.norm(area, axis=1)[:, None] - raw["pressure"][:, None] * area
+            row = np.flatnonzero(history["step/time"] == time)
+            require(len(row) == 1, f"{where}: no row of the history")
+            for body, name in enumerate(names):
+                at = {column: history[f"bodies/{name}/{column}"][row[0]] for column in
+                      ("x", "y", "z", "e0", "e1", "e2", "e3")}
+                at0 = {column: history[f"bodies/{name}/{column}"][0] for column in at}
+                center, center0 = (np.array([a[c] for c in "xyz"]) for a in (at, at0))
+                turn, turn0 = (rotation([a[f"e{k}"] for k in range(4)]) for a in (at, at0))
+                of_body = np.unique(triangles[once["body"] == body])
+                moved = center + (start[of_body] - center0) @ (turn @ turn0.T).T
+                require(np.abs(points[of_body] - moved).max() < 1e-12, f"{where}: not with the body {name}")
+                told = np.array([history[f"contacts/{name}/f{c}"][row[0]] for c in "xyz"])
+                found = force[once["body"] == body].sum(axis=0)
+                # Of contacts at edges the triangle does not tell the normal.
+                close = np.linalg.norm(found - told) <= 0.05 * np.linalg.norm(told)
+                require(close, f"{where}: {found} N on {name} for {told} N")
+                pushed += np.linalg.norm(told) > 0
+    require(pushed > 0, f"{path}: nothing touches")
+    require(errors.count == 0, f"{path}: VTK reported {errors.count} errors")
+    print(f"{path}: {len(triangles)} triangles, with their bodies at {steps} steps: right")
+
+
 def particle_fields(directory):
     """{name: width} of what the run's deck wants."""
     deck = json.loads((directory / "run_record.json").read_text())["run"]["resolved_deck"]
@@ -163,6 +232,10 @@ def main():
     steps = check_file(directory / "particles.vtkhdf", particle_fields(directory))
     require(arguments.steps in (None, steps), f"{steps} snapshots where {arguments.steps} must be")
     bodies = arguments.result_directory / "bodies.vtkhdf"
+    surfaces = directory / "surfaces.vtkhdf"
+    if surfaces.exists():
+        with h5py.File(surfaces, "r") as file:
+            check_surfaces(surfaces, file["Scree/names"][()].decode().split(), steps)
     if bodies.exists():
         same = check_file(bodies, BODY_FIELDS) == steps
         require(same, "particles and bodies differ in their number of snapshots")

@@ -29,11 +29,20 @@ def raw_snapshots(path):
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
         for time, part, first in zip(steps["Values"][:], steps["PartOffsets"][:], steps["PointOffsets"][:]):
             rows = slice(first, first + root["NumberOfPoints"][part])
-            data = {name: field[rows] for name, field in root["PointData"].items()}
+            data = {name: field[rows] for name, field in root.get("PointData", {}).items()}
             data["Points"] = root["Points"][rows]
             if rows.stop > rows.start:
                 snapshots.append((time, data))
     return snapshots
+
+
+def raw_triangles(path, snapshot):
+    """{name: values} per triangle."""
+    with h5py.File(path, "r") as file:
+        root = file["VTKHDF"]
+        count = root["Polygons/NumberOfCells"][0]
+        first = {name: offsets[snapshot] for name, offsets in root["Steps/CellDataOffsets"].items()}
+        return {name: field[first[name] : first[name] + count] for name, field in root["CellData"].items()}
 
 
 def readers(path):
@@ -79,6 +88,24 @@ def check_series(directory, name):
     return simple.OpenDataFile(path), snapshots[-1][0]
 
 
+def check_surfaces(directory):
+    path = os.path.join(os.path.abspath(directory), "surfaces.xdmf")
+    data_path = os.path.join(directory, "surfaces.vtkhdf")
+    snapshots = raw_snapshots(data_path)
+    for kind, source in readers(path).items():
+        for step, (time, raw) in enumerate(snapshots):
+            source.UpdatePipeline(time)
+            data, where = servermanager.Fetch(source), f"{path}, {kind}, t = {time:g} s"
+            points = vtk_to_numpy(data.GetPoints().GetData())
+            require(np.array_equal(points, raw["Points"]), f"{where}: Points differ")
+            for name, values in raw_triangles(data_path, step).items():
+                array = data.GetCellData().GetArray(name)
+                require(array is not None, f"{where}: no field {name}")
+                require(np.array_equal(vtk_to_numpy(array), values), f"{where}: {name} differs")
+            require({data.GetCellType(k) for k in range(data.GetNumberOfCells())} == {5}, f"{where}: no triangles")
+    print(f"{path}: {len(snapshots)} steps: right in three readers", flush=True)
+
+
 def show(source, view, color):
     """As spheres of the stored radius; color is a field's name or an RGB triple."""
     glyph = simple.Glyph(
@@ -119,6 +146,8 @@ def main():
     if os.path.exists(os.path.join(directory, "bodies.xdmf")):
         bodies, _ = check_series(directory, "bodies")
         show(bodies, view, [0.85, 0.37, 0.01])
+    if os.path.exists(os.path.join(directory, "surfaces.xdmf")):
+        check_surfaces(directory)
     simple.Render(view)
     simple.ResetCamera(view)
     simple.SaveScreenshot(picture, view)

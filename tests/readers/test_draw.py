@@ -1,7 +1,7 @@
-"""Pictures and plots of three runs: a 2D one with particles and bodies, a 3D one without bodies, and one without
-particles.
+"""Pictures and plots of four runs: a 2D one with particles and bodies, a 3D one without bodies, one without particles,
+and a drum of triangles.
 
-    python3 tests/readers/test_draw.py NET_400 BOX_OF_SPHERES SLIDER_CRANK
+    python3 tests/readers/test_draw.py NET_400 BOX_OF_SPHERES SLIDER_CRANK DRUM_LIFTERS
 
 takes the folders of their results. Needs postprocess/requirements.txt."""
 
@@ -22,12 +22,13 @@ sys.path.insert(0, str(ROOT / "postprocess"))
 from mechanism import SHORT, Mechanism, shortest_tree, zigzags
 from model import GROUND, Model
 from plot_history import history_figure
-from render import Run, make_picture
+from render import Run, make_picture, save_picture, vtk_renders
 from results import read_history
 from scenes import BODY_COLOR, DiscScene, SphereScene, picture_axes
+from surfaces import sharp_edges
 from walls import cut, rectangle, section, solids
 
-NET, BOX, CRANK = (pathlib.Path(path).resolve() for path in sys.argv[1:4])
+NET, BOX, CRANK, DRUM = (pathlib.Path(path).resolve() for path in sys.argv[1:5])
 ORANGE = matplotlib.colors.to_rgb(BODY_COLOR)
 
 
@@ -153,6 +154,36 @@ class PictureTest(unittest.TestCase):
         self.assertLess(x_min, -0.2)
         self.assertGreater(x_max, 0.86)
         self.assertTrue(y_min < -0.2 and y_max > 0.2)
+
+
+class SurfaceTest(unittest.TestCase):
+    def test_a_drum_shows_what_it_holds(self):
+        """Against the same picture without its grains: most of those that the drum is in front of are seen."""
+        run = Run(DRUM)
+        run.surfaces = None
+        bare = self.image(run)
+        run = Run(DRUM)
+        drawn = self.image(run)
+        run.particles.rows = lambda snapshot, name, rows=run.particles.rows: rows(snapshot, name)[:0]
+        empty = self.image(run)
+
+        def differ(one, other):
+            return np.abs(one - other).max(axis=2) > 0.1
+        self.assertGreater(differ(drawn, bare).mean(), 0.1)  # the drum is there
+        self.assertGreater(differ(drawn, empty).mean(), 0.02)  # and what is in it
+
+    @staticmethod
+    def image(run):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "picture.png"
+            save_picture(make_picture(run, [len(run.particles) - 1], with_vtk=vtk_renders()), len(run.particles) - 1, path)
+            return pixels(path)
+
+    def test_edges_turn(self):
+        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1]], dtype=float)
+        triangles = np.array([[0, 1, 2], [2, 1, 3], [1, 0, 4]])  # a square in two, and one that stands on its side
+        self.assertEqual({tuple(map(int, edge)) for edge in sharp_edges(points, triangles)},
+                         {(0, 1), (0, 2), (1, 3), (2, 3), (0, 4), (1, 4)})
 
 
 class MechanismTest(unittest.TestCase):

@@ -30,6 +30,25 @@ int occurrences(const std::string& text, const std::string& word) {
   return count;
 }
 
+// Two triangles that share an edge.
+const SeriesTriangles kTriangles{{0, 1, 2, 2, 1, 3}, {{"body", "body of the mesh", {4, 4}}}};
+
+SnapshotWriter surface_writer(const ScratchDirectory& scratch, int keep,
+                              const SeriesTriangles& triangles = kTriangles) {
+  return {scratch.path(), {.title = "title", .keep = keep, .triangles = triangles}};
+}
+
+// Of snapshots from the writer's next one to `end`, whose values say where they belong.
+void write_surfaces(SnapshotWriter& writer, int end) {
+  for (int step = writer.snapshots(); step < end; ++step) {
+    const Real v = PredictableSnapshot::value(step, 0);
+    const std::vector<Vec3> corners{{v, 0, 0}, {v + 1, 0, 0}, {v, 1, 0}, {v + 1, 1, 0}}, shear{{v, 0, 1}, {}};
+    const std::vector<Real> pressure{v + 5, v + 6};
+    const PredictableSnapshot of(step, 2, 1);
+    writer.append(of.time, of.particles(), of.bodies(), {corners, pressure, shear});
+  }
+}
+
 }  // namespace
 
 TEST_CASE("snapshots of changing size return as written") {
@@ -65,11 +84,60 @@ TEST_CASE("bodies have a series of their own") {
   CHECK(file.read_array<Real>("/VTKHDF/PointData/angle")[9] == 2001);
 }
 
+TEST_CASE("triangles are written once, and their corners and what acts on them at every snapshot") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer = surface_writer(scratch, 0);
+  write_surfaces(writer, 3);
+  const Hdf5File file(scratch / "surfaces.vtkhdf", Hdf5Access::read);
+  const auto integers = [&](const char* name) { return file.read_array<std::int64_t>(name); };
+  CHECK(integers("/VTKHDF/Polygons/Connectivity") == kTriangles.corners);
+  CHECK(integers("/VTKHDF/Polygons/Offsets") == std::vector<std::int64_t>{0, 3, 6});
+  CHECK(integers("/VTKHDF/Steps/PointOffsets") == std::vector<std::int64_t>{0, 4, 8});
+  CHECK(integers("/VTKHDF/Steps/CellDataOffsets/shear") == std::vector<std::int64_t>{0, 2, 4});
+  CHECK(integers("/VTKHDF/Steps/CellDataOffsets/body") == std::vector<std::int64_t>{0, 0, 0});
+  CHECK(file.read_array<int>("/VTKHDF/CellData/body") == std::vector<int>{4, 4});
+  CHECK(file.read_array<Real>("/VTKHDF/CellData/pressure") ==
+        std::vector<Real>{5, 6, 1005, 1006, 2005, 2006});
+  CHECK(file.read_array<Real>("/VTKHDF/CellData/shear")[12] == 2000);
+  CHECK(file.rows("/VTKHDF/Points") == 12);
+}
+
+TEST_CASE("a restarted run goes on with the triangles that it has written, and with no others") {
+  ScratchDirectory scratch;
+  const auto contents = [&] {
+    const Hdf5File file(scratch / "surfaces.vtkhdf", Hdf5Access::read);
+    return std::pair(file.read_array<Real>("/VTKHDF/CellData/pressure"),
+                     file.read_array<std::int64_t>("/VTKHDF/Steps/TriangleOffsets"));
+  };
+  {
+    SnapshotWriter writer = surface_writer(scratch, 0);
+    write_surfaces(writer, 5);
+  }
+  const auto whole = contents();
+  {
+    SnapshotWriter writer = surface_writer(scratch, 2);
+    CHECK(contents().first.size() == 4);
+    CHECK(Hdf5File(scratch / "surfaces.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points") == 8);
+    write_surfaces(writer, 5);
+    writer.finish();
+  }
+  CHECK(contents() == whole);
+  CHECK(occurrences(file_text(scratch / "surfaces.xdmf"), "<Time") == 5);
+  SeriesTriangles others = kTriangles;
+  others.corners[5] = 0;
+  CHECK_THROWS_AS(surface_writer(scratch, 5, others), IoError);
+  others = kTriangles, others.numbers[0].values[1] = 3;
+  CHECK_THROWS_AS(surface_writer(scratch, 5, others), IoError);
+  std::filesystem::remove(scratch / "surfaces.vtkhdf");
+  SnapshotWriter writer = surface_writer(scratch, 5);
+  CHECK_THROWS_AS(write_surfaces(writer, 6), IoError);
+}
+
 TEST_CASE("every dataset says its unit and what it is") {
   ScratchDirectory scratch;
-  SnapshotWriter writer(scratch.path(), {.title = "a title with an ü", .keep = 0});
-  write_snapshots(writer, {2}, 1);
-  for (const char* name : {"particles.vtkhdf", "bodies.vtkhdf"}) {
+  SnapshotWriter writer(scratch.path(), {.title = "a title with an ü", .keep = 0, .triangles = kTriangles});
+  write_surfaces(writer, 1);
+  for (const char* name : {"particles.vtkhdf", "bodies.vtkhdf", "surfaces.vtkhdf"}) {
     const Hdf5File file(scratch / name, Hdf5Access::read);
     const auto datasets = file.dataset_names("/VTKHDF");
     CHECK(datasets.size() > 15);

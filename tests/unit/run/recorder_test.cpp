@@ -67,6 +67,7 @@ class FailingReports : public Reports {
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override {
     return of_.wall_contacts(walls);
   }
+  std::vector<TriangleLoad> triangle_loads() override { return of_.triangle_loads(); }
 
   bool failed = false;
 
@@ -302,6 +303,71 @@ shapes = [{ radius = 0.1 }, { radius = 0.05, offset = [0.2, 0.1, 0.3] }]
   }
   CHECK(norm(vec(origins, 1) - Vec3{0.3, 0, 0}) < 1e-15);
   CHECK(norm(vec(points, 8) - vec(points, 2)) > 0.2);
+}
+
+// A ball lies on a box that a body carries up, off the box's edges and diagonals; another one beside it.
+TEST_CASE("what presses on a mesh is told triangle by triangle, where they are") {
+  Recording<CpuBackend> run(R"(
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+[time]
+step = 1e-6
+control = "fixed"
+end = 1.0
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e4
+[[meshes]]
+name = "box"
+kind = "box"
+size = [0.4, 0.2, 0.1]
+offset = [0.1, 0.0, 0.0]
+[[bodies]]
+name = "lift"
+kind = "spatial"
+mass = 1e6
+inertia_tensor = [1e6, 1e6, 1e6, 0.0, 0.0, 0.0]
+position = [0.0, 0.0, 0.0]
+velocity = [0.0, 0.0, 0.5]
+meshes = [{ mesh = "box" }]
+[[particles]]
+name = "ball"
+kind = "list"
+positions = [[0.2, -0.05, 0.098], [0.2, 0.5, 0.0]]
+radius = 0.05
+density = 1000.0
+velocity = [0.0, 0.0, 0.5]
+)");
+  run.recorder->snapshot(run.state);
+  const Hdf5File file(run.folder.path() + "/surfaces.vtkhdf", Hdf5Access::read);
+  const auto corners = file.read_array<std::int64_t>("/VTKHDF/Polygons/Connectivity");
+  const auto points = file.read_array<Real>("/VTKHDF/Points"),
+             pressure = file.read_array<Real>("/VTKHDF/CellData/pressure"),
+             shear = file.read_array<Real>("/VTKHDF/CellData/shear");
+  REQUIRE(pressure.size() == 12);
+  REQUIRE(points.size() == 24);
+  int pressed = 0;
+  for (std::size_t t = 0; t < pressure.size(); ++t) {
+    if (pressure[t] == 0) continue;
+    ++pressed;
+    CHECK(std::abs(pressure[t] * (0.5 * 0.4 * 0.2) / (1e4 * 0.002) - 1) < 1e-9);
+    for (std::size_t k = 3 * t; k < 3 * t + 3; ++k) {
+      CHECK(points[3 * static_cast<std::size_t>(corners[k]) + 2] == 0.05);
+      CHECK(shear[k] == 0);
+    }
+  }
+  CHECK(pressed == 1);
+  const Real start = points[0], height = points[2];
+  for (int k = 0; k < 10; ++k) run.advance();
+  run.recorder->snapshot(run.state);
+  const auto later =
+      Hdf5File(run.folder.path() + "/surfaces.vtkhdf", Hdf5Access::read).read_array<Real>("/VTKHDF/Points");
+  REQUIRE(later.size() == 48);
+  CHECK(std::abs(later[24] - start) < 1e-12);
+  CHECK(std::abs(later[26] - height - 0.5 * run.state.clock.time) < 1e-9);
 }
 
 TEST_CASE("a snapshot that a failed device holds is given up once") {

@@ -1,0 +1,82 @@
+#include "run/mesh_surfaces.hpp"
+
+#include <algorithm>
+
+#include "base/mat3.hpp"
+#include "partition/subdomain.hpp"
+
+namespace scree {
+namespace {
+
+Real area(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
+  const Vec3 a = mesh.vertices[triangle.vertex[0]];
+  return Real(0.5) *
+         norm(cross(mesh.vertices[triangle.vertex[1]] - a, mesh.vertices[triangle.vertex[2]] - a));
+}
+
+}  // namespace
+
+MeshSurfaces::MeshSurfaces(const Model& model) : model_(model), surfaces_(model) {
+  for (Index s = 0; s < surfaces_.placed(); ++s) {
+    if (surfaces_.at(s).kind != SurfaceKind::mesh) continue;
+    const SurfaceMesh& mesh = *model.meshes[static_cast<std::size_t>(surfaces_.at(s).mesh)].surface;
+    parts_.push_back({s, points_, triangles_, &mesh});
+    points_ += mesh.vertices.size(), triangles_ += mesh.triangles.size();
+  }
+}
+
+SeriesTriangles MeshSurfaces::triangles() const {
+  SeriesTriangles all;
+  all.corners.resize(3 * triangles_);
+  all.numbers = {
+      {"surface", "mesh of a body or a wall, counted from 0 in this order", {}},
+      {"body", "body that the mesh belongs to, counted from 0 in the deck's order; -1: a wall's", {}},
+      {"wall", "wall that the mesh is, counted from 0 in the deck's order; -1: a body's", {}},
+      {"material", "material, counted from 0 in the deck's order", {}},
+      {"triangle", "number of the triangle in its file or shape, counted from 0", {}}};
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const Part& part = parts_[p];
+    const Surface& surface = surfaces_.at(part.surface);
+    const bool on_body = surfaces_.is_on_body(part.surface);
+    const int of_part[] = {static_cast<int>(p), on_body ? surface.carrier : -1,
+                           on_body ? -1 : surfaces_.number_of(part.surface), surface.material};
+    for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
+      const auto row = part.first_triangle + static_cast<std::size_t>(part.mesh->original[t]);
+      for (std::size_t k = 0; k < 3; ++k)
+        all.corners[3 * row + k] =
+            static_cast<std::int64_t>(part.first_point) + part.mesh->triangles[t].vertex[k];
+      for (std::size_t k = 0; k < 4; ++k) all.numbers[k].values.push_back(of_part[k]);
+      all.numbers[4].values.push_back(static_cast<int>(t));
+    }
+  }
+  return all;
+}
+
+// In the periodic box as particles are: the middle of the mesh in it, its triangles together.
+void MeshSurfaces::place(const Part& part, const BodyMotion& carrier, Vec3* position) const {
+  const Mat3 axes = rotation_matrix(orientation(carrier));
+  const Vec3 point = point_motion(carrier, surfaces_.at(part.surface).point).position,
+             middle = point + axes * (Real(0.5) * (part.mesh->box.min + part.mesh->box.max));
+  ImageCount unused;
+  const Vec3 shift = Subdomain(model_.space).wrap(middle, unused) - middle;
+  for (const Vec3 vertex : part.mesh->vertices) *position++ = point + axes * vertex + shift;
+}
+
+MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion,
+                                      std::span<const TriangleLoad> loads) const {
+  Look look{std::vector<Vec3>(points_), std::vector<Real>(triangles_), std::vector<Vec3>(triangles_)};
+  for (const Part& part : parts_)
+    place(part, motion[static_cast<std::size_t>(surfaces_.at(part.surface).carrier)],
+          look.position.data() + part.first_point);
+  for (const TriangleLoad& load : loads) {
+    const auto part = std::ranges::find(parts_, load.surface, &Part::surface);
+    const SurfaceMesh& mesh = *part->mesh;
+    const auto t = static_cast<std::size_t>(load.triangle);
+    const std::size_t row = part->first_triangle + static_cast<std::size_t>(mesh.original[t]);
+    const Real per_area = 1 / area(mesh, mesh.triangles[t]);
+    look.pressure[row] = per_area * load.normal, look.shear[row] = per_area * load.tangential;
+  }
+  return look;
+}
+
+}  // namespace scree

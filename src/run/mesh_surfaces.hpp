@@ -1,0 +1,45 @@
+// The meshes of walls and bodies as snapshots show them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dem/surfaces.hpp"
+#include "dem/triangle_sums.hpp"
+#include "model/body_exchange.hpp"
+#include "model/model.hpp"
+#include "output/series_triangles.hpp"
+
+namespace scree {
+
+// One after the other in the order of SurfaceSet, triangles in the order of the file or the shape.
+class MeshSurfaces {
+ public:
+  // Where they are at one instant, and what acts on them.
+  struct Look {
+    std::vector<Vec3> position;  // of the corners [m]
+    std::vector<Real> pressure;  // per triangle [Pa]
+    std::vector<Vec3> shear;     // likewise
+  };
+
+  // The model is kept.
+  explicit MeshSurfaces(const Model& model);
+  SeriesTriangles triangles() const;
+  // motion: of the carriers (bodies, then placed walls).
+  Look look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads) const;
+
+ private:
+  struct Part {
+    Index surface;                            // of the placed ones
+    std::size_t first_point, first_triangle;  // rows
+    const SurfaceMesh* mesh;
+  };
+  void place(const Part& part, const BodyMotion& carrier, Vec3* position) const;
+
+  const Model& model_;
+  SurfaceSet surfaces_;
+  std::vector<Part> parts_;
+  std::size_t points_ = 0, triangles_ = 0;
+};
+
+}  // namespace scree
