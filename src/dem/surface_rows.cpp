@@ -33,7 +33,8 @@ class EntryFinder {
       : sorted_(sorted), search_(search) {}
 
   std::vector<Entry> find() {
-    for (Index s = 0; s < search_.surfaces.placed(); ++s)
+    // None where only the particles' own list is asked for.
+    for (Index s = 0; s < static_cast<Index>(search_.places.placed.size()); ++s)
       for_each_shift(images_of(s), [&](Vec3 shift, std::int8_t image) {
         const Entry entry{0, search_.surfaces.number_of(s), image};
         switch (search_.places.placed[static_cast<std::size_t>(s)].kind) {
