@@ -66,8 +66,8 @@ TEST_CASE(
     const Body& block = model.bodies[0];
     REQUIRE(near(block.mass, 0.3 * 0.2 * 0.1 * 200, {.relative = 1e-14}));
     const Vec3 lever = cross(Vec3{0.1, 0.05, 0.05}, Vec3{0, 0, 1});
-    const Real inverse = 1 / 0.3 + 1 / block.mass + dot(lever, inverse(block.inertia_tensor) * lever);
-    const Real impulse = 2 * 2 / inverse;
+    const Real softness = 1 / 0.3 + 1 / block.mass + dot(lever, inverse(block.inertia_tensor) * lever);
+    const Real impulse = 2 * 2 / softness;
     const BodyMotion motion = run.multibody().motion(run.bodies())[0];
     const Vec3 spin = -impulse * (inverse(block.inertia_tensor) * lever);
     errors[k] = norm(global_spin(motion) - spin) / norm(spin);
