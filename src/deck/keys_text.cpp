@@ -18,8 +18,9 @@ constexpr const char* kLeftOut =
     "rolling and twisting are resisted in explicit steps (velocity-verlet) only. "
     "Bodies touch each other and walls without friction. "
     "Attraction is explicit, and not of bodies. All that touches is a disc (2D), "
-    "a sphere (3D) or a plane wall that stands still, the shapes of bodies included: no polygons, no "
-    "meshes. Bodies are rigid. Planar ones move along x and y and turn about z, in 3D too, and forces "
+    "a sphere (3D), a plane wall or a mesh of triangles, and meshes and walls that move are touched by "
+    "particles alone. Bodies are rigid. Planar ones move along x and y and turn about z, in 3D too, and "
+    "forces "
     "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
     "universal and all the other usual joints (`input/README.md`). Joints have motors, "
     "springs, stops and dry friction, but no play. All particles are there at the start: none flow in, "
@@ -92,7 +93,8 @@ std::string keys_text() {
   out += "\n";
   describe_table(out, deck_keys(), "(top of the deck)");
   describe_below(out, deck_keys(), "");
-  describe_table(out, time_function_keys(), "time function  (motion, actuator, fx, fy, torque)");
+  describe_table(out, time_function_keys(),
+                 "time function  (motion, actuator, fx, fy, torque, displacement, angle)");
   describe_table(out, distribution_keys(), "distribution  (radius, mass, density)");
   return out;
 }

@@ -280,9 +280,13 @@ void check_attraction(const DeckTable& contact, const Model& model) {
     if (model.integrator.precision == Precision::mixed)
       pair.fail(key, "needs integrator.precision = \"double\"");
     for (const Body& body : model.bodies)
-      if (!body.shapes.empty())
-        pair.fail(key,
-                  fmt::format("bodies do not attract particles yet, and body \"{}\" has shapes", body.name));
+      if (!body.shapes.empty() || !body.meshes.empty())
+        pair.fail(key, fmt::format("bodies do not attract particles yet, and body \"{}\" has {}", body.name,
+                                   body.shapes.empty() ? "meshes" : "shapes"));
+    for (const Wall& wall : model.walls)
+      if (wall.is_placed())
+        pair.fail(key, fmt::format("only planes at rest attract particles yet, and wall \"{}\" is none",
+                                   wall.name));
   }
 }
 
