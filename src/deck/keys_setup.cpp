@@ -349,7 +349,7 @@ const TableKeys& wall_keys() {
   static const TableKeys keys{
       "Walls inside the space: planes, solid behind them, or meshes. Nothing that touches a wall moves it; "
       "one "
-      "that is to respond is a body on a joint.",
+      "that is to respond is a body on a joint. The shapes of bodies go through walls that move or run.",
       {name_key().required().about("Name for messages and output.history_contacts."),
        vector("point", "m").left_out("mesh is given").about("Any point of the plane."),
        vector("normal", "")

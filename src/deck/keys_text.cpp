@@ -19,7 +19,8 @@ constexpr const char* kLeftOut =
     "Bodies touch each other and walls without friction. "
     "Attraction is explicit, and not of bodies and meshes. Particles are discs (2D) or spheres (3D): no "
     "polygons. They touch each other, planes, meshes and the shapes of bodies, which are discs or spheres; "
-    "meshes touch particles alone, not each other, planes or shapes. Walls stand still. Bodies are rigid. "
+    "meshes touch particles alone, not each other, planes or shapes, and so do walls that move. Bodies are "
+    "rigid. "
     "Planar ones move along x and y and turn about z, in 3D too, and forces "
     "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
     "universal and all the other usual joints (`input/README.md`). Joints have motors, "
@@ -93,7 +94,8 @@ std::string keys_text() {
   out += "\n";
   describe_table(out, deck_keys(), "(top of the deck)");
   describe_below(out, deck_keys(), "");
-  describe_table(out, time_function_keys(), "time function  (motion, actuator, fx, fy, torque)");
+  describe_table(out, time_function_keys(),
+                 "time function  (motion, actuator, fx, fy, torque, displacement, angle)");
   describe_table(out, distribution_keys(), "distribution  (radius, mass, density)");
   return out;
 }

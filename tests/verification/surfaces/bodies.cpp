@@ -38,7 +38,7 @@ Momenta momenta(const SimulationRun& run, const Model& model) {
   Momenta out;
   for (const Particle& p : run.particles()) {
     out.linear += p.mass * p.velocity;
-    out.angular += p.mass * cross(p.position, p.velocity) + p.inertia * p.angular_velocity;
+    out.angular += p.mass * cross(p.position, p.velocity) + p.moment_of_inertia * p.angular_velocity;
   }
   const std::vector<BodyMotion> motion = run.multibody().motion(run.bodies());
   for (std::size_t b = 0; b < motion.size(); ++b) {

@@ -44,6 +44,14 @@ TEST_CASE("motions of walls that mean nothing are refused, and the message names
   }
 }
 
+TEST_CASE("walls that run do not go with attraction yet") {
+  WallDeck deck;
+  deck.particles = "velocity-verlet", deck.grain = "positions = [[0, 0, 1]]\n";
+  deck.contact = "stiffness = 1e4\nattraction = 0.1\n";
+  deck.wall = kFloor + "surface_velocity = [1, 0, 0]\n";
+  CHECK(model_error(deck.text()).find("wall \"plate\" is none") != std::string::npos);
+}
+
 TEST_CASE("in 2D walls turn about z, and an axis is refused") {
   const auto deck = [](const std::string& axis) {
     return "[space]\ndimension = 2\nmin = [-1, -1]\nmax = [1, 1]\n[time]\nend = 1\nstep = 1e-3\n"
