@@ -1,4 +1,5 @@
-// A surface as triangles: what is read from a file or made from a few numbers, before anything is known of it.
+// A surface as triangles: what is read from a file or made from a few numbers, before anything is known of
+// it.
 #pragma once
 
 #include <array>
