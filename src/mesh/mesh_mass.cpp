@@ -27,8 +27,8 @@ struct Moments {
   Sym3 second;
 };
 
-// s s^T + a a^T + b b^T + c c^T with s = a + b + c: times the area / 12 the integral of x x^T over a triangle,
-// times the volume / 20 that over the tetrahedron of it and the origin.
+// s s^T + a a^T + b b^T + c c^T with s = a + b + c: times the area / 12 the integral of x x^T over a
+// triangle, times the volume / 20 that over the tetrahedron of it and the origin.
 Sym3 corner_squares(const std::array<Vec3, 3>& corner, Real weight) {
   Sym3 sum = outer(weight, corner[0] + corner[1] + corner[2]);
   for (const Vec3 c : corner) sum += outer(weight, c);
