@@ -182,7 +182,7 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) 
   const auto owned = static_cast<std::size_t>(p.owned);
   counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
   const EntrySearch in{p.position, p.active,  *p.grid,        p.starts, p.largest_radius + skin,
-                         skin,       numbers(), places_.data(), period_};
+                       skin,       numbers(), places_.data(), period_};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The entry past the end is read, though no sum depends on it.
   require_cuda(cudaMemsetAsync(counts_.data() + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
