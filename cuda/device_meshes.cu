@@ -10,10 +10,16 @@ namespace {
 // How many groups and triangles there are so far.
 enum Cursor { kGroups, kTriangles, kCursors };
 
-__device__ Vec3 place_in_frame(const MeshSearch& in, Index placed, Vec3 shift, Vec3 p) {
+// Calls visit(t) for the triangles of a placed mesh that the particle at p may touch.
+template <class Visit>
+__device__ void visit_near(const MeshSearch& in, const MeshView& mesh, Index placed, Vec3 shift, Vec4 p,
+                           const Visit& visit) {
   const PlacedSurface& surface = in.placed[placed];
   const SurfaceFrame& frame = in.frames[surface.frame];
-  return transposed_times(frame.axes, (place_beside(surface, frame, p) - shift) - surface.point);
+  for_each_place_beside(surface, frame, xyz(p), in.skin, [&](Vec3 place) {
+    for_each_triangle_near(mesh, transposed_times(frame.axes, (place - shift) - surface.point), p.w + in.skin,
+                           visit);
+  });
 }
 
 // Counts the particles near a mesh and the triangles that they are near.
@@ -29,8 +35,7 @@ struct CountNearItem {
     const Vec4 p = in.position[i];
     for_each_shift(in.period - frame.spanned, [&](Vec3 shift, std::int8_t) {
       Index triangles = 0;
-      for_each_triangle_near(mesh, place_in_frame(in, placed, shift, xyz(p)), p.w + in.skin,
-                             [&](Index) { ++triangles; });
+      visit_near(in, mesh, placed, shift, p, [&](Index) { ++triangles; });
       if (triangles > 0) atomicAdd(&cursors[kGroups], 1), atomicAdd(&cursors[kTriangles], triangles);
     });
   }
@@ -52,13 +57,12 @@ struct FindNearItem {
     const MeshView& mesh = meshes[frame.mesh];
     const Vec4 p = in.position[i];
     for_each_shift(in.period - frame.spanned, [&](Vec3 shift, std::int8_t image) {
-      const Vec3 c = place_in_frame(in, placed, shift, xyz(p));
       Index found = 0;
-      for_each_triangle_near(mesh, c, p.w + in.skin, [&](Index) { ++found; });
+      visit_near(in, mesh, placed, shift, p, [&](Index) { ++found; });
       if (found == 0) return;
       const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
       Index* to = triangles + first;
-      for_each_triangle_near(mesh, c, p.w + in.skin, [&](Index t) { *to++ = t; });
+      visit_near(in, mesh, placed, shift, p, [&](Index t) { *to++ = t; });
       const Index entries = slots_needed(mesh, triangles + first, found);
       near[g] = {i, number, placed, image};
       groups[g] = {0, entries, first, found};

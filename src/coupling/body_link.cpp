@@ -31,7 +31,7 @@ void BodyLink::solve_acceleration(MultibodyState& bodies, Real t) {
 }
 
 void BodyLink::take_wrench(MultibodyState& state) const {
-  state.wrench = end_wrench_;
+  state.wrench = has_driven_walls() ? end_wrench_ : wrench_of_bodies();
   state.slide_power.clear();
   if (!walls_.run()) return;
   for (std::size_t c = bodies_; c < end_wrench_.size(); ++c)

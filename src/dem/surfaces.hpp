@@ -10,6 +10,7 @@
 #include "base/vec3.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
+#include "partition/halo_plan.hpp"
 #include "partition/subdomain.hpp"
 #include "physics/contact_geometry.hpp"
 
@@ -115,6 +116,24 @@ SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& fra
   if (period == Vec3{}) return p;
   ImageCount unused;
   return wrap(surface.point + frame.axes * frame.middle - Real(0.5) * period, period, p, unused);
+}
+
+// Calls visit(place) for all that this may be while the particle moves by less than the margin [m].
+SCREE_HD_CALLER template <class Visit>
+SCREE_HD void for_each_place_beside(const PlacedSurface& surface, const SurfaceFrame& frame, Vec3 p,
+                                    Real margin, const Visit& visit) {
+  const Vec3 period = frame.spanned, place = place_beside(surface, frame, p);
+  visit(place);
+  if (period == Vec3{}) return;
+  const Vec3 from_middle = place - (surface.point + frame.axes * frame.middle);
+  const auto beyond = [&](Real x, Real length) { return std::abs(x) > length / 2 + margin; };
+  for_each_shift(period, [&](Vec3 shift, std::int8_t image) {
+    const Vec3 x = from_middle + shift;
+    if (image == kNoShift || (shift.x != 0 && beyond(x.x, period.x)) ||
+        (shift.y != 0 && beyond(x.y, period.y)) || (shift.z != 0 && beyond(x.z, period.z)))
+      return;
+    visit(place + shift);
+  });
 }
 
 // All placed surfaces at one instant; on the host.

@@ -68,7 +68,9 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   sizes.bodies.multipliers.resize(static_cast<std::size_t>(constraint_count(model)));
   sizes.bodies.memory.resize(static_cast<std::size_t>(memory_count(model)));
   const SurfaceSet surfaces(model);
-  sizes.bodies.wrench.resize(surfaces.carriers());
+  const bool driven =
+      std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.moves() || wall.runs(); });
+  sizes.bodies.wrench.resize(driven ? surfaces.carriers() : model.bodies.size());
   if (std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.runs(); }))
     sizes.bodies.slide_power.resize(surfaces.carriers() - model.bodies.size());
   // What contacts remember may be there or not, and so may rotation: no history is none.

@@ -53,10 +53,10 @@ const std::string kMesh =
     "\"floor\"\nmesh = "
     "\"floor\"\n";
 
-Checkpoint end_of(const Model& model) {
+State end_of(const Model& model) {
   SimulationRun run(model);
   run.run();
-  return pack(run.complete_state());
+  return run.complete_state();
 }
 
 }  // namespace
@@ -65,11 +65,12 @@ TEST_CASE(
     "however a plane along the axes is cut into triangles, grains that rub on it keep the plane's bits") {
   for (const std::string method : {"velocity-verlet", "hht"}) {
     const std::string deck = falling_grains(method);
-    const Checkpoint plane = end_of(model_of(deck + kPlane));
+    const State plane = end_of(model_of(deck + kPlane));
     const Model rectangle = model_of(deck + kMesh);
     for (const auto& [name, mesh] : triangulations()) {
       CAPTURE(method, name);
-      CHECK(differing_arrays(end_of(with_floor(rectangle, mesh)), plane) == "");
+      const State on_mesh = end_of(with_floor(rectangle, mesh));
+      CHECK(differing_arrays(pack(on_mesh), pack(plane)) == "");
     }
   }
 }
@@ -99,7 +100,7 @@ TEST_CASE("on a tilted plane of triangles grains go as on the analytic one") {
     const std::string deck = sliding_grain(text(0.0199 * normal), text(0.8 * along), text(-9.81 * normal));
     SimulationRun plane(
         model_of(deck + "[[walls]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = " + text(normal)));
-    Model tilted = model_of(deck + kMesh);
+    Model tilted = model_of(deck + kMesh, {"contact.max_start_overlap=1.0"});
     tilted = with_floor(tilted, turned(mapped(jittered_grid(30, 3),
                                               [](Vec3 v) {
                                                 return Vec3{4 * v.x - 2, 4 * v.y - 2, 0};

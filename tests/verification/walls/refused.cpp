@@ -49,7 +49,7 @@ TEST_CASE("walls that run do not go with attraction yet") {
   deck.particles = "velocity-verlet", deck.grain = "positions = [[0, 0, 1]]\n";
   deck.contact = "stiffness = 1e4\nattraction = 0.1\n";
   deck.wall = kFloor + "surface_velocity = [1, 0, 0]\n";
-  CHECK(model_error(deck.text()).find("wall \"plate\" is none") != std::string::npos);
+  CHECK(model_error(deck.text()).find("not wall \"plate\"") != std::string::npos);
 }
 
 TEST_CASE("in 2D walls turn about z, and an axis is refused") {
