@@ -22,12 +22,13 @@ struct MultibodyState {
   std::vector<Real> multipliers;   // lambda, joints' rows first, then drivers' [N, N m]
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
-  std::vector<BodyWrench> wrench;  // of the contacts at t_n, per body; where walls move or run, then per placed wall
-  std::vector<Real> slide_power;   // of the latter, where the surface of one runs along itself [W]
-  std::vector<Real> memory;        // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
-  Real dissipated = 0;             // in force elements since t = 0 [J]
-  Real integrator_loss = 0;        // taken out by HHT since t = 0 [J]
-  Real driver_work = 0;            // done by drivers, actuators, applied forces and walls since t = 0 [J]
+  std::vector<BodyWrench>
+      wrench;  // of the contacts at t_n, per body; where walls move or run, then per placed wall
+  std::vector<Real> slide_power;  // of the latter, where the surface of one runs along itself [W]
+  std::vector<Real> memory;       // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
+  Real dissipated = 0;            // in force elements since t = 0 [J]
+  Real integrator_loss = 0;       // taken out by HHT since t = 0 [J]
+  Real driver_work = 0;           // done by drivers, actuators, applied forces and walls since t = 0 [J]
 };
 
 // Size of one Newton iteration, scaled and dimensionless.
