@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A bed of spheres on an analytic plane, and on the same plane cut into triangles: time per step, and whether the states
-have the same bits.
+"""A bed of spheres on an analytic plane, and on the same plane cut into triangles: time per step, and whether the
+states have the same bits.
 Usage: mesh_bed.py SCREE [--backend cuda] [--side 100] [--steps 1000] [--edge 0.0107]"""
 
 import argparse
