@@ -98,7 +98,6 @@ void SurfaceSide::turn_frames() {
 }
 
 Real SurfaceSide::place() {
-  Real largest = 0;
   const std::vector<Mat3> before = axes();
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.at(s);
@@ -119,13 +118,7 @@ Real SurfaceSide::place() {
     step_turn_[s] = (surface.kind == SurfaceKind::sphere ? surface.radius : 1) * (placed.turn - turned);
   }
   turn_frames();
-  for (Index s = 0; s < size(); ++s) {
-    const bool turns = placed_[s].kind != SurfaceKind::sphere;
-    const Real moved =
-        turns ? displacement_of(placed_[s], step_[s], before[placed_[s].frame]) : norm(step_[s]);
-    if (!(moved <= largest)) largest = moved;  // a NaN stays
-  }
-  return largest;
+  return largest_displacement(step_, before);
 }
 
 // Both are linear in the place: corners of boxes go farthest. Of a plane what counts is how its distance from
@@ -169,19 +162,27 @@ void SurfaceSide::reopen_step() {
   place();
 }
 
-Real SurfaceSide::largest_displacement(const std::vector<PlacedSurface>& from,
-                                       const std::vector<Mat3>& axes) const {
-  Real largest = 0;
+Real SurfaceSide::largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from) const {
+  Real squared = 0;  // of spheres
+  Real largest = 0;  // of the others
   for (std::size_t s = 0; s < placed_.size(); ++s) {
-    const Vec3 moved = placed_[s].point - from[s].point;
+    const bool is_sphere = placed_[s].kind == SurfaceKind::sphere;
     const Real size =
-        placed_[s].kind == SurfaceKind::sphere
-            ? norm(moved)
-            : displacement_of(placed_[s], moved, axes[static_cast<std::size_t>(placed_[s].frame)]);
-    if (!(size <= largest)) largest = size;  // a NaN stays
-    if (std::isnan(largest)) break;
+        is_sphere ? dot(moved[s], moved[s])
+                  : displacement_of(placed_[s], moved[s], from[static_cast<std::size_t>(placed_[s].frame)]);
+    if (std::isnan(size)) return size;
+    Real& most = is_sphere ? squared : largest;
+    most = std::max(most, size);
   }
-  return largest;
+  return std::max(std::sqrt(squared), largest);
+}
+
+Real SurfaceSide::displacement_since(const std::vector<PlacedSurface>& then,
+                                     const std::vector<Mat3>& axes) const {
+  std::vector<Vec3> moved;
+  moved.reserve(placed_.size());
+  for (std::size_t s = 0; s < placed_.size(); ++s) moved.push_back(placed_[s].point - then[s].point);
+  return largest_displacement(moved, axes);
 }
 
 void SurfaceSide::take_loads(std::span<const InstantSums> of_particles) {

@@ -63,8 +63,8 @@ class SurfaceSide {
   // Start of an implicit step, to look back at.
   void keep_start();
   const std::vector<PlacedSurface>& start() const { return start_; }
-  Real step_displacement() const { return largest_displacement(start_, start_axes_); }    // [m]
-  Real list_displacement() const { return largest_displacement(listed_, listed_axes_); }  // of the list [m]
+  Real step_displacement() const { return displacement_since(start_, start_axes_); }    // [m]
+  Real list_displacement() const { return displacement_since(listed_, listed_axes_); }  // of the list [m]
 
   // What touches the surfaces at an instant, and over an implicit step: the backend hands over what its
   // particles do, in any order and a surface in any number of parts; rank 0 adds what the bodies do to each
@@ -97,8 +97,10 @@ class SurfaceSide {
  private:
   // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].
   Vec3 point_with(const std::vector<BodyMotion>& motion, Index surface) const;
-  // Of any place on a surface.
-  Real largest_displacement(const std::vector<PlacedSurface>& from, const std::vector<Mat3>& axes) const;
+  // Of any place on a surface [m].
+  // moved: of the surfaces' points; from: the axes of the frames before.
+  Real largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from) const;
+  Real displacement_since(const std::vector<PlacedSurface>& then, const std::vector<Mat3>& axes) const;
   Real displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const;
   std::vector<Mat3> axes() const;  // of the frames
   void turn_frames();

@@ -12,6 +12,7 @@
 #include "base/mat3.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/mesh_tree.hpp"
+#include "mesh/primitives.hpp"
 #include "mesh/surface_mesh.hpp"
 #include "mesh/triangle_mesh.hpp"
 
@@ -136,45 +137,7 @@ inline TriangleMesh tetrahedron() {
 }
 
 // An icosahedron whose triangles are quartered `level` times, its vertices on the sphere; outwards.
-inline TriangleMesh icosphere(int level, Real radius) {
-  const Real g = (1 + std::sqrt(5.0)) / 2;
-  TriangleMesh mesh{{{-1, g, 0},
-                     {1, g, 0},
-                     {-1, -g, 0},
-                     {1, -g, 0},
-                     {0, -1, g},
-                     {0, 1, g},
-                     {0, -1, -g},
-                     {0, 1, -g},
-                     {g, 0, -1},
-                     {g, 0, 1},
-                     {-g, 0, -1},
-                     {-g, 0, 1}},
-                    {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                     {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
-  const auto on_sphere = [&](Vec3 v) { return (radius / norm(v)) * v; };
-  mesh = mapped(mesh, on_sphere);
-  for (int i = 0; i < level; ++i) {
-    TriangleMesh finer;
-    std::map<std::pair<Index, Index>, Index> middles;
-    finer.vertices = mesh.vertices;
-    const auto middle = [&](Index a, Index b) {
-      const auto [place, is_new] =
-          middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<Index>(finer.vertices.size()));
-      if (is_new) finer.vertices.push_back(on_sphere(mesh.vertices[a] + mesh.vertices[b]));
-      return place->second;
-    };
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const Index ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-      for (const auto& triangle :
-           {std::array{a, ab, ca}, std::array{b, bc, ab}, std::array{c, ca, bc}, std::array{ab, bc, ca}})
-        finer.triangles.push_back(triangle);
-    }
-    mesh = finer;
-  }
-  return mesh;
-}
+inline TriangleMesh icosphere(int level, Real radius) { return sphere_mesh({radius, level}); }
 
 // A strip along a line in the plane y = 0, from y = 0 to `width`, `rows` squares wide; up is to the left of
 // the line, seen against y. The line is closed where its ends are the same point.
