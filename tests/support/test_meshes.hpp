@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <random>
-#include <tuple>
 #include <vector>
 
 #include "base/mat3.hpp"
@@ -15,6 +13,7 @@
 #include "mesh/primitives.hpp"
 #include "mesh/surface_mesh.hpp"
 #include "mesh/triangle_mesh.hpp"
+#include "mesh/weld.hpp"
 
 namespace scree {
 
@@ -44,23 +43,6 @@ class MeshRandom {
 
   std::mt19937 engine_;
 };
-
-// Vertices with the same coordinates become one.
-inline TriangleMesh welded(const TriangleMesh& mesh) {
-  TriangleMesh result;
-  std::map<std::tuple<Real, Real, Real>, Index> number;
-  for (const auto& triangle : mesh.triangles) {
-    auto& corners = result.triangles.emplace_back();
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 v = mesh.vertices[triangle[k]];
-      const auto [place, is_new] =
-          number.try_emplace({v.x, v.y, v.z}, static_cast<Index>(result.vertices.size()));
-      if (is_new) result.vertices.push_back(v);
-      corners[k] = place->second;
-    }
-  }
-  return result;
-}
 
 inline void append(TriangleMesh& mesh, const TriangleMesh& other) {
   const Index first = static_cast<Index>(mesh.vertices.size());
