@@ -177,6 +177,27 @@ struct MixedRequest {
   const Real* first_step;
 };
 
+// Contacts with placed surfaces at rest, as the steps of a run see them: the device alone knows which arrays
+// hold the open one.
+struct OpenStepLook {
+  const VerletControl* control;
+  const Real* first_step;  // as in VerletRequest
+  const Vec4 *position[2], *velocity[2], *spin[2];
+  HistoryViews history[2];  // they change arrays as the velocities do
+
+  // `in` as the open step has it; false where the run has stopped.
+  __device__ bool open(SurfaceViews& in) const {
+    if (control->stop) return false;
+    const int p = control->parity[0], v = control->parity[1];
+    in.position = p == 0 ? position[0] : position[1];
+    in.velocity = v == 0 ? velocity[0] : velocity[1];
+    in.spin = v == 0 ? spin[0] : spin[1];
+    in.history = v == 0 ? history[0] : history[1];
+    if (first_step != nullptr) in.history.step = *first_step + control->closed;
+    return true;
+  }
+};
+
 // Entries of one surface on a body, by_surface[first ... end - 1]: what a thread block evaluates and sums up.
 struct SurfaceChunk {
   Index surface;  // counts from the first surface on a body
@@ -213,6 +234,10 @@ class DeviceContactKernels {
   // to in each chunk.
   virtual void surface_loads(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              SurfaceLoad* loads, InstantSums* sums) const = 0;
+  // The same, for the first n entries by_surface, of whatever step is open when the kernel runs; nothing is
+  // summed up.
+  virtual void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& look, Index n,
+                                    SurfaceLoad* loads) const = 0;
   virtual void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                              const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const = 0;
   // Queues the sums over the first n items of WallContactItem; share: as exact_sums() wants it.

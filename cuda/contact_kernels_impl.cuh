@@ -115,6 +115,19 @@ __global__ void __launch_bounds__(kSurfaceThreads)
 }
 
 template <class Laws>
+struct LoadInRunItem {
+  SurfaceViews in;
+  OpenStepLook look;
+  Laws laws;
+  SurfaceLoad* loads;
+
+  __device__ void operator()(Index k) const {
+    SurfaceViews now = in;
+    if (look.open(now)) SurfaceLoadItem<Laws>{now, laws, loads}(k);
+  }
+};
+
+template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
   explicit ContactKernelsOf(Laws laws) : laws_(laws) {
@@ -147,6 +160,10 @@ class ContactKernelsOf : public DeviceContactKernels {
   void surface_loads(Device device, const SurfaceViews& in, const SurfaceChunks& chunks, SurfaceLoad* loads,
                      InstantSums* sums) const override {
     launch_surfaces(device, chunks, SurfaceLoadItem<Laws>{in, laws_, loads}, loads, sums);
+  }
+  void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& look, Index n,
+                            SurfaceLoad* loads) const override {
+    for_each(device, n, LoadInRunItem<Laws>{in, look, laws_, loads});
   }
   void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                      const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const override {

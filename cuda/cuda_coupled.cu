@@ -36,8 +36,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     }
     closed_step_ = {control_.open_position(), control_.open_velocity(), control_.open_spin()};
     control_.turn();
-    ++closed_;
-    items_.history.closed(closed_), items_.history.take_ahead();
+    items_.history.closed(++closed_);
     bodies_.side().close_step();
     return true;
   }
@@ -47,9 +46,9 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
 // beside it.
 void CudaExplicitRun::queue_loads() {
   workspace_.step_queued.record(items_.stream);
-  bodies_.queue_loads(
-      {control_.open_position(), control_.open_velocity(), control_.open_spin(), items_.history.views(), h_},
-      workspace_.step_queued);
+  bodies_.queue_loads({control_.open_position(), control_.open_velocity(), control_.open_spin(),
+                       items_.history.views(control_.velocity_parity() == 1), h_},
+                      workspace_.step_queued);
   items_.results.copy(&Results::control, bodies_.stream());
   bodies_.hold_until_found(items_.stream);
 }
@@ -59,8 +58,8 @@ void CudaExplicitRun::queue_loads() {
 // stream reads and writes it.
 void CudaExplicitRun::shape_contacts() {
   bodies_.side().reopen_step();
-  bodies_.find_loads_beside(
-      {closed_step_.position, closed_step_.velocity, closed_step_.spin, items_.history.views_before(), h_});
+  bodies_.find_loads_beside({closed_step_.position, closed_step_.velocity, closed_step_.spin,
+                             items_.history.views_before(control_.velocity_parity() == 1), h_});
   bodies_.side().close_step();
 }
 

@@ -34,8 +34,9 @@ CudaExplicitRun::~CudaExplicitRun() {
 }
 
 StepsTaken CudaExplicitRun::take_steps(Index most, bool keep_open, StageTimers& timers) {
-  return bodies_.have_surfaces() ? take_steps_with_bodies(most, keep_open, timers)
-                                 : take_steps_alone(most, keep_open, timers);
+  const bool follows = bodies_.have_surfaces() && !items_.surfaces.any_at_rest();
+  return follows ? take_steps_with_bodies(most, keep_open, timers)
+                 : take_steps_alone(most, keep_open, timers);
 }
 
 StepsTaken CudaExplicitRun::take_steps_alone(Index most, bool keep_open, StageTimers& timers) {
@@ -54,6 +55,7 @@ StepsTaken CudaExplicitRun::take_steps_alone(Index most, bool keep_open, StageTi
   const Index closed = c->closed - start;
   if (keep_open && !leaves()) return {closed, true};
   const auto scope = timers.time(Stage::contact_force);
+  if (bodies_.have_surfaces()) queue_loads();
   finish();
   return {closed + 1, false};
 }
@@ -90,13 +92,14 @@ void CudaExplicitRun::finish() {
   items_.lane.halo.update_motion(items_.device(), control_.open_position(), control_.open_velocity(),
                                  r.spin[control_.velocity_parity()], items_.owned);
   items_.kernels->verlet_finish(items_.device(), r, items_.results.at(&Results::largest));
-  items_.history.accepted(), bodies_.side().close_step();
+  items_.history.closed_last(), bodies_.side().close_step();
   if (!std::isfinite(items_.ranks.max(items_.results.fetch(&Results::largest))))
     items_.report_not_finite(now.force.data());
   if (control_.position_parity() == 1) std::swap(now.position, other.position);
   if (control_.velocity_parity() == 0) {  // velocities changed arrays
     std::swap(now.velocity, other.velocity);
     std::swap(now.angular_velocity, other.angular_velocity);
+    items_.history.take_ahead();
   }
   control_.at_home();
   items_.open_run = nullptr;

@@ -56,11 +56,6 @@ struct MixedSpinGhostItem {
   }
 };
 
-template <class T>
-std::string bytes(const T& value) {
-  return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
-}
-
 }  // namespace
 
 void MixedArrays::resize(std::size_t items, std::size_t owned, bool rotates) {
@@ -124,6 +119,15 @@ VerletRequest StepQueue::request() {
   return r;
 }
 
+OpenStepLook StepQueue::surface_look(const VerletRequest& r) {
+  return {r.control,
+          r.first_step,
+          {r.position[0], r.position[1]},
+          {r.velocity[0], r.velocity[1]},
+          {r.spin[0], r.spin[1]},
+          {items_.history.surface_views_in_run(false), items_.history.surface_views_in_run(true)}};
+}
+
 // Null unless particles rotate.
 Vec4* StepQueue::spins() const {
   return items_.model.rotates() ? items_.now.angular_velocity.data() : nullptr;
@@ -159,19 +163,22 @@ void StepQueue::bring_home() {
     if (control_.velocity_parity() == 1) {
       std::swap(items_.now.velocity, items_.other.velocity);
       std::swap(items_.now.angular_velocity, items_.other.angular_velocity);
+      items_.history.take_ahead();
     }
   }
   control_.at_home();
 }
 
-// queue_ghosts(device, k): the halo of the k-th step from now on; queue_rows(device, first, end): the kernel
-// of a step on these particles; key: all that the launches depend on. After each step the ranks share what
-// decides whether the next one may be taken.
-template <class QueueGhosts, class QueueRows>
-void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
-                              const QueueRows& queue_rows) {
+// queue_surfaces(device): a step's contacts with placed surfaces; queue_ghosts(device, k): the halo of the
+// k-th step from now on; queue_rows(device, first, end): the kernel of a step on these particles; key: all
+// that the launches depend on. After each step the ranks share what decides whether the next one may be
+// taken.
+template <class QueueSurfaces, class QueueGhosts, class QueueRows>
+void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+                              const QueueGhosts& queue_ghosts, const QueueRows& queue_rows) {
   if (items_.ranks.alone()) {
     workspace_.graph.queue(items_.stream, key, steps, [&] {
+      queue_surfaces(items_.device());
       queue_ghosts(items_.device(), 0);
       queue_rows(items_.device(), 0, items_.owned);
     });
@@ -180,6 +187,7 @@ void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueGh
   const Device halo{items_.lane.stream};
   items_.halo_after_rows();
   for (Index k = 0; k < steps; ++k) {
+    queue_surfaces(items_.device());
     // The first step waits for the host; steps behind a stop do nothing that a halo could hide behind.
     HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &items_.lane.clock : nullptr;
     items_.queue_beside_halo([&](Device on) { queue_ghosts(on, k); }, queue_rows, clock);
@@ -217,7 +225,20 @@ void StepQueue::queue_double(Index steps) {
     of_rows.rows = step_rows(first, end);
     items_.kernels->verlet_advance(on, of_rows);
   };
-  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo.entries()), steps, queue_ghosts, queue_rows);
+  const std::string key = key_of(r) + key_of(ghosts) + key_of(halo.entries());
+  const DeviceContactKernels& kernels = *items_.kernels;
+  DeviceSurfaces& surfaces = items_.surfaces;
+  if (!surfaces.any_at_rest())  // those that move have been looked at, if there are any
+    return queue_in_turn(
+        key, steps, [](Device) {}, queue_ghosts, queue_rows);
+  const OpenStepLook look = surface_look(r);
+  queue_in_turn(
+      key + surfaces.key_of_loads(kernels, look, h_), steps,
+      [&](Device on) {
+        surfaces.find_loads_in_run(on, kernels, look, h_);
+        items_.halo_after_rows();
+      },
+      queue_ghosts, queue_rows);
 }
 
 void StepQueue::queue_mixed(Index steps) {
@@ -252,7 +273,9 @@ void StepQueue::queue_mixed(Index steps) {
     of_rows.rows = step_rows(first, end);
     items_.kernels->mixed_advance(on, of_rows);
   };
-  queue_in_turn(bytes(r) + bytes(ghosts) + bytes(halo.entries()), steps, queue_ghosts, queue_rows);
+  const std::string key = key_of(r) + key_of(ghosts) + key_of(halo.entries());
+  queue_in_turn(
+      key, steps, [](Device) {}, queue_ghosts, queue_rows);
 }
 
 }  // namespace scree

@@ -57,9 +57,10 @@ class StepQueue {
   StepRows step_rows(Index first, Index end) const;
   void queue_double(Index steps);
   void queue_mixed(Index steps);
-  template <class QueueGhosts, class QueueRows>
-  void queue_in_turn(const std::string& key, Index steps, const QueueGhosts& queue_ghosts,
-                     const QueueRows& queue_rows);
+  template <class QueueSurfaces, class QueueGhosts, class QueueRows>
+  void queue_in_turn(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
+                     const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
+  OpenStepLook surface_look(const VerletRequest& step);
   Vec4* spins() const;
   void convert_to_mixed();
   void convert_from_mixed();

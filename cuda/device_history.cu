@@ -203,16 +203,24 @@ DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t s
   if (exists()) first_step_.resize(1), h_first_step_.resize(1);
 }
 
-HistoryViews DeviceHistory::views() {
+HistoryViews DeviceHistory::views(bool ahead) {
   if (!exists()) return {};
-  return {neighbors_.data(), ground_.data(),         bodies_.data(), ahead_.data(),
-          features_.data(),  features_ahead_.data(), step_};
+  HistoryViews views{neighbors_.data(), ground_.data(),         bodies_.data(), ahead_.data(),
+                     features_.data(),  features_ahead_.data(), step_};
+  if (ahead) std::swap(views.bodies, views.ahead), std::swap(views.features, views.features_ahead);
+  return views;
 }
 
-HistoryViews DeviceHistory::views_before() {
-  if (!exists()) return {};
-  return {nullptr,          nullptr,  ahead_.data(), bodies_.data(), features_ahead_.data(),
-          features_.data(), step_ - 1};
+HistoryViews DeviceHistory::views_before(bool ahead) {
+  HistoryViews views = this->views(!ahead);
+  views.neighbors = views.ground = nullptr, views.step = step_ - 1;
+  return views;
+}
+
+HistoryViews DeviceHistory::surface_views_in_run(bool ahead) {
+  HistoryViews views = this->views(ahead);
+  views.neighbors = views.ground = nullptr, views.step = 0;
+  return views;
 }
 
 // The number itself is the device's, and contacts with bodies are not this kernel's, so that the launches of

@@ -18,20 +18,24 @@ class DeviceHistory {
 
   bool exists() const { return numbers_ > 0; }
   bool at_slots() const { return at_slots_; }
-  // For walks on the list, outside a run of explicit steps.
-  HistoryViews views();
+  // For walks on the list, outside a run of explicit steps. ahead: what contacts with placed surfaces
+  // remember is in the arrays of what was evaluated ahead.
+  HistoryViews views(bool ahead = false);
 
   // In such a run steps are numbered on the device from where it began.
   void begin_run();
   const Real* first_step() const { return first_step_.data(); }
   HistoryViews views_in_run();
+  HistoryViews surface_views_in_run(bool ahead);            // of placed surfaces alone
   void closed(Index steps) { step_ = run_start_ + steps; }  // since the run began
-  void accepted() { step_ += 1, take_ahead(); }
-  // What was evaluated ahead of contacts with bodies holds; accepted() does this, closed() does not.
+  void accepted() { closed_last(), take_ahead(); }
+  void closed_last() { step_ += 1; }  // one more than closed() has said
+  // What was evaluated ahead of contacts with placed surfaces is what they remember; in a run that is so when
+  // the step's velocities are brought into the state's arrays.
   void take_ahead() { bodies_.swap(ahead_), features_.swap(features_ahead_); }
-  // For another look at the contacts with bodies over the step that was accepted last: from before it, to be
-  // held in place of what the step left.
-  HistoryViews views_before();
+  // For another look at the contacts with bodies over the step that was closed last: from before it, to be
+  // held in place of what the step left. ahead: where that is.
+  HistoryViews views_before(bool ahead);
 
   // The list as it is with the items where they are now, ghosts and surfaces on bodies included.
   struct Listed {

@@ -98,6 +98,17 @@ struct GroupItem {
   }
 };
 
+struct TouchInRunItem {
+  SurfaceViews in;
+  OpenStepLook look;
+  MeshTouch* touches;
+
+  __device__ void operator()(Index g) const {
+    SurfaceViews now = in;
+    if (look.open(now)) MeshTouchItem{now, touches}(g);
+  }
+};
+
 template <class T>
 const T* uploaded(DeviceArray<T>& array, const std::vector<T>& values, cudaStream_t stream) {
   array.upload(values, stream);
@@ -170,6 +181,10 @@ void DeviceMeshes::make_room_over_step(Index entries) {
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
   for_each(device, count_, MeshTouchItem{views, touches_.data()});
+}
+
+void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look) {
+  for_each(device, count_, TouchInRunItem{views, look, touches_.data()});
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

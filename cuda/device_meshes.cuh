@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "contact_kernels.cuh"
 #include "dem/mesh_rows.hpp"
 #include "dem/surface_items.hpp"
 #include "device.cuh"
@@ -42,6 +43,8 @@ class DeviceMeshes {
 
   // Queues the contacts now; the entries' arrays hold them.
   void touch(Device device, const SurfaceViews& views);
+  // The same of whatever explicit step is open when the kernel runs.
+  void touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look);
   // The same over an implicit step.
   void touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
                        const PlacedSurface* start_placed);
@@ -53,6 +56,7 @@ class DeviceMeshes {
   std::vector<MeshGroup> download_groups(cudaStream_t stream) const { return groups_.download(stream); }
   std::vector<MeshTouch> download_touches(cudaStream_t stream) const { return touches_.download(stream); }
 
+  Index groups() const { return count_; }
   MeshRows rows() const { return {groups_.data(), triangles_.data(), views_.data()}; }
   const MeshTouch* touches() const { return touches_.data(); }
   const MeshTouchBefore* before() const { return before_.data(); }

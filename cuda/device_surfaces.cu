@@ -4,6 +4,7 @@
 #include "dem/surface_rows.hpp"
 #include "device_surfaces.cuh"
 #include "for_each.cuh"
+#include "step_graph.cuh"
 
 namespace scree {
 namespace {
@@ -163,7 +164,7 @@ std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>&
 DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
     : period_(period), meshes_(model, stream), h_index_(1) {
   const SurfaceSet surfaces(model);
-  ground_ = surfaces.ground(), placed_count_ = surfaces.placed();
+  ground_ = surfaces.ground(), placed_count_ = surfaces.placed(), at_rest_ = surfaces.at_rest();
   planes_.upload(wall_planes(model), stream);
   for (Index s = 0; s < placed_count_; ++s)
     if (surfaces.at(s).kind == SurfaceKind::plane)
@@ -228,6 +229,7 @@ void DeviceSurfaces::group_by_surface(Device device) {
                                cudaMemcpyDeviceToHost, device.stream),
                "cudaMemcpyAsync");
   wait_for(device.stream);
+  placed_entries_ = starts[static_cast<std::size_t>(placed_count_)];
   h_chunks_.clear();
   for (Index s = 0; s < placed_count_; ++s)
     for (Index first = starts[s]; first < starts[s + 1]; first += kChunk)
@@ -280,6 +282,19 @@ void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kerne
   meshes_.touch(device, views);
   kernels.surface_loads(device, views, chunk_list(), loads_[which == Loads::of_step ? 0 : 1].data(),
                         h_load_sums_.data());
+}
+
+void DeviceSurfaces::find_loads_in_run(Device device, const DeviceContactKernels& kernels,
+                                       const OpenStepLook& look, Real h) {
+  const SurfaceViews views = entry_views(kernels, {nullptr, nullptr, nullptr, {}, h});
+  meshes_.touch_in_run(device, views, look);
+  kernels.surface_loads_in_run(device, views, look, placed_entries_, loads_[0].data());
+}
+
+std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look,
+                                         Real h) const {
+  return key_of(entry_views(kernels, {nullptr, nullptr, nullptr, {}, h})) + key_of(look) +
+         key_of(meshes_.groups()) + key_of(placed_entries_);
 }
 
 void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,

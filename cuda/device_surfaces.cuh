@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "brick_grid.cuh"
@@ -43,6 +44,7 @@ class DeviceSurfaces {
   // Fills the rows. places: of the surfaces now. Waits for the device.
   void build(Device device, const Particles& particles, const SurfacePlaces& places, Real skin);
   bool any_placed() const { return placed_count_ > 0; }
+  bool any_at_rest() const { return any_placed() && at_rest_; }  // SurfaceSet::at_rest()
   Index entries() const { return entries_; }
   SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
@@ -58,6 +60,11 @@ class DeviceSurfaces {
   // Queues the contacts with the surfaces on bodies, placed as they are, of particles as `look` has them;
   // their sums are on the way to the host, too.
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& look);
+  // Of surfaces at rest, for a run of explicit steps of length h: the loads of whatever step is open when the
+  // kernels run. key: all that their launches depend on.
+  void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& look,
+                         Real h);
+  std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look, Real h) const;
   void find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
                   const Vec4* velocity, const StepStart& start);
   // The same where contacts rub; `look`: at the end of the step.
@@ -88,9 +95,10 @@ class DeviceSurfaces {
   Vec3 period_;
   DeviceArray<WallPlane> planes_;
   Index ground_, placed_count_;
+  bool at_rest_;
   std::vector<Index> placed_planes_, plane_numbers_;  // among the placed surfaces
   DeviceMeshes meshes_;
-  Index entries_ = 0;
+  Index entries_ = 0, placed_entries_ = 0;
   DeviceArray<Index> counts_, offsets_, next_, surfaces_, particles_;
   DeviceArray<std::int8_t> images_;
   DeviceArray<unsigned char> space_;  // of library calls

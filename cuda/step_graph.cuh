@@ -8,6 +8,12 @@
 
 namespace scree {
 
+// Part of a key: of what a launch is given.
+template <class T>
+std::string key_of(const T& value) {
+  return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
 class StepGraph {
  public:
   static constexpr int kSteps = 16;  // in one graph

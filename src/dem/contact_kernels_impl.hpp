@@ -46,7 +46,7 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n,
              ContactSystemItem<Laws, PackedRows>{{in, laws_, {start}}, gravity, weights, out, matrix});
   }
-  void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const override {
+  [[gnu::flatten]] void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const override {
     for_each(Serial{}, n, SurfaceLoadItem<Laws>{in, laws_, loads});
   }
   void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,

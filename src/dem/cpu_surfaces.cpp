@@ -20,6 +20,27 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
   return sums;
 }
 
+// The triangles that particles touched last may be anywhere in memory: each is asked for some groups before
+// it is looked at, its corners as soon as it is there.
+void touch_ahead(const MeshTouchItem& item, Index groups) {
+  constexpr Index kAhead = 8;
+  const auto last_touched = [&](Index g, const auto& use) {
+    if (g >= groups) return;
+    const SurfaceViews& in = item.in;
+    const Index entry = in.meshes.groups[g].entry, t = item.touches[entry].triangle;
+    const MeshView& mesh = in.meshes.meshes[in.frames[in.placed[in.surface_of(entry)].frame].mesh];
+    if (t >= 0 && t < mesh.triangle_count) use(mesh, mesh.triangles[t]);
+  };
+  for (Index g = 0; g < groups; ++g) {
+    last_touched(g + 2 * kAhead,
+                 [](const MeshView&, const MeshTriangle& triangle) { __builtin_prefetch(&triangle); });
+    last_touched(g + kAhead, [](const MeshView& mesh, const MeshTriangle& triangle) {
+      for (const Index v : triangle.vertex) __builtin_prefetch(&mesh.vertices[v]);
+    });
+    item(g);
+  }
+}
+
 }  // namespace
 
 CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
@@ -51,11 +72,12 @@ void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows
   loads_.resize(rows.surfaces.size());
   if (!rows.groups.empty()) {
     touches_.resize(rows.surfaces.size());
-    for_each(Serial{}, static_cast<Index>(rows.groups.size()),
-             MeshTouchItem{entry_views(store, rows, look), touches_.data()});
+    touch_ahead({entry_views(store, rows, look), touches_.data()}, static_cast<Index>(rows.groups.size()));
   }
   kernels_.surface_loads(entry_views(store, rows, look), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());
+  const bool in_step = look.h > 0;
+  if (in_step && side_.surfaces().at_rest()) return;  // nothing there follows the sums
   side_.take_loads(sums_of<InstantSums>(loads_, rows, numbers()));
 }
 

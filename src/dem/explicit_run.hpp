@@ -31,9 +31,9 @@ class ExplicitRun {
   virtual ~ExplicitRun() = default;
 
   // While a step is open: closes up to `most` and opens the one after each, the last of them only if
-  // keep_open; it renews the list where needed. Bodies stay where they were placed, so that with bodies
-  // `most` is 1. Every Integrator::substeps from the start of the run a step of the bodies ends: there it
-  // stops, closed, if a particle is outside the space.
+  // keep_open; it renews the list where needed. Bodies and walls stay where they were placed: with any
+  // that move, or run, `most` is 1. Every Integrator::substeps from the start of the run a step of the bodies
+  // ends: there it stops, closed, if a particle is outside the space.
   virtual StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) = 0;
   // Contacts of the bodies' shapes, where they are placed now, with the particles as they were when the last
   // step was closed.

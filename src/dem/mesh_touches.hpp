@@ -80,9 +80,11 @@ struct MeshTouchItem {
     const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
     const Vec3 c = transposed_times(frame.axes, from_point);
     MeshContact found[kMeshSlots];
-    const int count = min_of(
-        find_mesh_contacts(mesh, c, p.w, in.meshes.triangles + group.first_triangle, group.triangles, found),
-        static_cast<int>(group.entries));
+    // It rests or rolls on the triangle that it touched last, if the list is no newer.
+    const int count =
+        min_of(find_mesh_contacts(mesh, c, p.w, in.meshes.triangles + group.first_triangle, group.triangles,
+                                  found, touches[group.entry].triangle, group.entries == 1),
+               static_cast<int>(group.entries));
     for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
     for (int k = 0; k < count; ++k) {
       MeshTouch& out = touches[group.entry + k];

@@ -12,7 +12,9 @@ std::vector<WallPlane> wall_planes(const Model& model) {
 }
 
 SurfaceSet::SurfaceSet(const Model& model)
-    : ground_(static_cast<Index>(model.walls.size())), carriers_(model.bodies.size()) {
+    : ground_(static_cast<Index>(model.walls.size())),
+      carriers_(model.bodies.size()),
+      at_rest_(model.bodies.empty()) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     for (const Shape& shape : model.bodies[b].shapes)
       surfaces_.push_back(
@@ -25,6 +27,7 @@ SurfaceSet::SurfaceSet(const Model& model)
   for (Index w = 0; w < ground_; ++w) {
     const Wall& wall = model.walls[static_cast<std::size_t>(w)];
     if (!wall.is_placed()) continue;
+    if (wall.moves() || wall.runs()) at_rest_ = false;
     surfaces_.push_back({wall.mesh < 0 ? SurfaceKind::plane : SurfaceKind::mesh,
                          static_cast<int>(carriers_++), wall.material, wall.point, wall.normal, 0,
                          wall.mesh});

@@ -53,10 +53,13 @@ class SurfaceSet {
   bool is_on_body(Index placed) const { return placed < on_bodies_; }
   // Bodies, and walls that are placed.
   std::size_t carriers() const { return carriers_; }
+  // Whether nothing that carries them ever moves, nor do surfaces run along themselves.
+  bool at_rest() const { return at_rest_; }
 
  private:
   Index ground_, on_bodies_ = 0;
   std::size_t carriers_;
+  bool at_rest_;
   std::vector<Surface> surfaces_;
   std::vector<Index> walls_;
 };

@@ -9,6 +9,7 @@
 #include "base/root.hpp"
 #include "base/vec3.hpp"
 #include "mesh/mesh_view.hpp"
+#include "mesh/triangle_edges.hpp"
 
 namespace scree {
 
@@ -24,17 +25,8 @@ struct MeshContact {
   Vec3 normal;     // unit, from the surface to the centre; inside a closed mesh outwards
 };
 
-// Twice the area between an edge e and a point d from its lower vertex, seen along the normal of a face:
-// above 0 to the left of the edge, where the face is that runs along it [m^2]. Faces and edges ask this
-// function alone, so that each place belongs to one of them.
-SCREE_HD Real left_of_edge(Vec3 d, Vec3 e, Vec3 normal) { return dot(d, cross(normal, e)); }
-
-// |x| + |y| + |z|: not less than the length, without a root.
-SCREE_HD Real rough_length(Vec3 a) { return std::abs(a.x) + std::abs(a.y) + std::abs(a.z); }
-
 namespace mesh_detail {
 
-inline constexpr Real kSideRoundOff = 0x1p-49;   // of left_of_edge, relative to rough lengths
 inline constexpr Real kWeakRoundOff = 0x1p-36;   // of corners of slivers, where regions meet at small angles
 inline constexpr Real kLeastSquare = 0x1p-1000;  // of a distance that has a direction [m^2]
 
@@ -68,37 +60,6 @@ SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const Mes
   if (a.distance != b.distance) return a.distance < b.distance;
   const int of_a = feature_type(mesh, a.feature), of_b = feature_type(mesh, b.feature);
   return of_a != of_b ? of_a < of_b : a.feature < b.feature;
-}
-
-// How far c lies to the inside of edge k of a triangle, seen along the normal of its part, times the length
-// of the edge; and what its round-off can be [m^2].
-struct EdgeSide {
-  Real inside, round_off;
-};
-
-SCREE_HD EdgeSide side_of_edge(const MeshView& mesh, const MeshTriangle& triangle, int k, Vec3 normal,
-                               Vec3 c) {
-  const Index from = triangle.vertex[k], to = triangle.vertex[k < 2 ? k + 1 : 0];
-  const bool reversed = triangle.flags & (kReversed << k);
-  const Vec3 low = mesh.vertices[reversed ? to : from], d = c - low,
-             e = mesh.vertices[reversed ? from : to] - low;
-  const Real left = left_of_edge(d, e, normal);
-  return {reversed ? -left : left, kSideRoundOff * rough_length(d) * rough_length(e)};
-}
-
-// Past which edges of a triangle c lies: bit k for edge k; 0: c is over the triangle. Across an edge to the
-// same plane round-off counts for both sides: it is the same contact.
-SCREE_HD unsigned edges_passed(const MeshView& mesh, const MeshTriangle& triangle, Vec3 normal, Vec3 c) {
-  unsigned passed = 0;
-  for (int k = 0; k < 3; ++k)
-    passed |= static_cast<unsigned>(side_of_edge(mesh, triangle, k, normal, c).inside <= 0) << k;
-  const unsigned inner = passed & triangle.flags;
-  for (int k = 0; k < 3 && inner != 0; ++k) {
-    if (!(inner & (kInnerEdge << k))) continue;
-    const EdgeSide side = side_of_edge(mesh, triangle, k, normal, c);
-    if (side.inside >= -side.round_off) passed &= ~(1u << k);
-  }
-  return passed;
 }
 
 // From the nearest point of an edge to c, if c lies in the edge's normal cone.
@@ -204,7 +165,11 @@ class MeshContactSearch {
   SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real reach, MeshContact* out)
       : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), depth_(reach), out_(out) {}
 
-  SCREE_HD int contacts_of(const Index* triangles, Index count) {
+  // likely: where the face that c is over may be found at once; -1: unknown. one_plane: all triangles lie in
+  // one, and own no feature.
+  SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely, bool one_plane) {
+    if (likely >= 0 && likely < mesh_.triangle_count) start_from(likely);
+    if (well_over_ >= 0 && one_plane && found_ > 0) return kept_ = found_;
     look(triangles, count);
     const Real nearest = found_ > 0 && out_[0].distance < nearest_weak_ ? out_[0].distance : nearest_weak_;
     if (behind_ >= 0 && depth_ < nearest) return inside();
@@ -222,12 +187,28 @@ class MeshContactSearch {
     for (Index i = 0; i < count; ++i) look_at(triangles[i]);
   }
 
-  SCREE_HD void look_at(Index t) {
+  // Where c is well over a triangle no other of its plane tells more.
+  SCREE_HD void start_from(Index t) {
     const MeshTriangle& triangle = mesh_.triangles[t];
     const MeshPart& part = mesh_.parts[triangle.part];
     const Real height = dot(c_ - part.point, part.normal);
+    if (!(std::abs(height) < reach_) || !mesh_detail::is_well_over(mesh_, triangle, part.normal, c_)) return;
+    add_face(t, triangle.part, part, height);
+    well_over_ = triangle.part;
+  }
+
+  SCREE_HD void look_at(Index t) {
+    const MeshTriangle& triangle = mesh_.triangles[t];
+    if (triangle.features == 0 && (weak_pass_ || triangle.part == well_over_)) return;
+    const MeshPart& part = mesh_.parts[triangle.part];
+    const Real height = dot(c_ - part.point, part.normal);
     if (!(std::abs(height) < reach_ + mesh_.flatness)) return;
-    if (triangle.features == 0 && (weak_pass_ || known(triangle.part, t))) return;
+    if (triangle.features == 0) {
+      if (std::abs(height) < reach_ && !known(triangle.part, t) &&
+          mesh_detail::is_over(mesh_, triangle, part.normal, c_))
+        add_face(t, triangle.part, part, height);
+      return;
+    }
     const unsigned passed = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
     if (passed != 0) return look_at_features(t, triangle, passed);
     // Over a triangle no cone of its edges and vertices can be.
@@ -347,7 +328,8 @@ class MeshContactSearch {
   Real nearest_weak_;  // of the vertices that hold but for round-off [m]
   Real depth_;         // of c behind the nearest face of a closed mesh that it is over from behind [m]
   Index behind_ = -1, behind_triangle_ = -1;
-  MeshContact* out_;  // kept ones, then candidates, each in order
+  Index well_over_ = -1;  // part of the triangle that c is well over, as far as that is known
+  MeshContact* out_;      // kept ones, then candidates, each in order
   int kept_ = 0, found_ = 0;
   bool left_out_ = false;  // candidates, for want of slots
   bool weak_pass_ = false;
@@ -356,10 +338,11 @@ class MeshContactSearch {
 // The contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and feature; the
 // nearest kMeshSlots, if there are more. triangles: all that are within reach of c; others change nothing.
 // Returns their number; what stands behind them in `out` is no contact. Inside a closed mesh it is the
-// nearest face alone, with a negative distance.
+// nearest face alone, with a negative distance. likely, one_plane: as in MeshContactSearch; they change
+// nothing but the time that it takes.
 SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real reach, const Index* triangles, Index count,
-                                MeshContact out[kMeshSlots]) {
-  return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count);
+                                MeshContact out[kMeshSlots], Index likely = -1, bool one_plane = false) {
+  return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count, likely, one_plane);
 }
 
 }  // namespace scree

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """A bed of spheres on an analytic plane, and on the same plane cut into triangles: time per step, and whether the
 states have the same bits.
-Usage: mesh_bed.py SCREE [--backend cuda] [--side 100] [--steps 1000] [--edge 0.0107]"""
+Usage: mesh_bed.py SCREE [--backend cuda] [--side 100] [--layers 100] [--steps 1000] [--edge 0.0107]
+One layer: every sphere touches the floor, and no other."""
 
 import argparse
 import json
@@ -34,9 +35,9 @@ tangential_damping_ratio = 0.1
 [[particles]]
 name = "bed"
 kind = "lattice"
-origin = [0.0105, 0.0105, 0.0101]
+origin = [0.0105, 0.0105, 0.00999]
 spacing = [0.021, 0.021, 0.01995]
-size = [{side}, {side}, {side}]
+size = [{side}, {side}, {layers}]
 radius = 0.01
 random_velocity = 0.05
 material = "grain"
@@ -62,11 +63,14 @@ def main():
     parser.add_argument("scree")
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--side", type=int, default=100)
+    parser.add_argument("--layers", type=int)
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--edge", type=float, default=0.0107)
     arguments = parser.parse_args()
     width = 0.021 * arguments.side
-    deck = DECK.format(width=width, height=0.03 * arguments.side, end=2e-5 * arguments.steps, side=arguments.side)
+    layers = arguments.layers or arguments.side
+    deck = DECK.format(width=width, height=0.1 + 0.03 * layers, end=2e-5 * arguments.steps, side=arguments.side,
+                       layers=layers)
     hashes = set()
     for name, wall in ("plane", PLANE), ("mesh", MESH.format(size=width + 0.3, middle=width / 2, edge=arguments.edge)):
         record = run(arguments.scree, arguments.backend, deck + wall)

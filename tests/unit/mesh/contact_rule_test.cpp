@@ -126,6 +126,31 @@ TEST_CASE("the nearest point of a sheet is a contact, also where regions meet") 
   }
 }
 
+TEST_CASE("where a face was touched last changes no contact") {
+  MeshRandom random(40);
+  for (const SurfaceMesh& surface :
+       {sheet_mesh(hills(6, 0, 1)), sheet_mesh(hills(6, 0.3, 2)), closed_mesh(drum_shell(12, 0.5, 1, 3)),
+        closed_mesh(block({0, 0, 0}, {1, 1, 1}, 4)), closed_mesh(potato(2, 0.1, 2))}) {
+    const MeshView view = surface.view();
+    int wrong = 0, in_one_plane = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 c = place_near(surface, 0.2, random);
+      const auto row = triangles_near(surface, c, 0.25);
+      const auto n = static_cast<Index>(row.size());
+      const bool one_plane = slots_needed(view, row.data(), n) == 1;
+      in_one_plane += one_plane;
+      const auto contacts = contacts_of_row(surface, c, 0.25, row);
+      for (Index likely = -1; likely <= view.triangle_count; likely += 1 + view.triangle_count / 40) {
+        std::vector<MeshContact> found(kMeshSlots);
+        found.resize(find_mesh_contacts(view, c, 0.25, row.data(), n, found.data(), likely, one_plane));
+        wrong += !same_contacts(found, contacts);
+      }
+    }
+    CHECK(wrong == 0);
+    CHECK((in_one_plane > 100 || view.part_count > 6));
+  }
+}
+
 TEST_CASE("the nearest point of a closed mesh is a contact from outside, from inside no edge") {
   MeshRandom random(42);
   for (const TriangleMesh& mesh :
