@@ -10,6 +10,7 @@ import pathlib
 import subprocess
 import tempfile
 
+SPACING, LAYER = 0.021, 0.01995  # of the lattice [m]
 DECK = """gravity = [0.0, 0.0, -9.81]
 [space]
 dimension = 3
@@ -36,7 +37,7 @@ tangential_damping_ratio = 0.1
 name = "bed"
 kind = "lattice"
 origin = [0.0105, 0.0105, 0.00999]
-spacing = [0.021, 0.021, 0.01995]
+spacing = [{spacing}, {spacing}, {layer}]
 size = [{side}, {side}, {layers}]
 radius = 0.01
 random_velocity = 0.05
@@ -49,10 +50,21 @@ MESH = ('[[meshes]]\nname = "floor"\nkind = "rectangle"\nsize = [{size}, {size}]
         'refine = {edge}\n[[walls]]\nname = "floor"\nmesh = "floor"\n')
 
 
-def run(scree, backend, deck):
+def deck(side, layers, steps):
+    """The bed without a floor."""
+    return DECK.format(width=SPACING * side, height=0.5 + 1.2 * LAYER * layers, end=2e-5 * steps, side=side, layers=layers,
+                       spacing=SPACING, layer=LAYER)
+
+
+def milliseconds(record, steps):
+    """Of a step, without the start and output."""
+    return f"{1e3 * sum(s['seconds'] for s in record['stages'] if s['stage'] != 'output') / steps:8.4f}"
+
+
+def run(scree, backend, text):
     with tempfile.TemporaryDirectory(prefix="scree_mesh_bed_") as folder:
         path = pathlib.Path(folder) / "deck.toml"
-        path.write_text(deck)
+        path.write_text(text)
         subprocess.run([scree, "run", path, "--backend", backend, "--output", folder, "--overwrite"], check=True,
                        stdout=subprocess.DEVNULL)
         return json.loads((pathlib.Path(folder) / "run_record.json").read_text())
@@ -67,17 +79,15 @@ def main():
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--edge", type=float, default=0.0107)
     arguments = parser.parse_args()
-    width = 0.021 * arguments.side
-    layers = arguments.layers or arguments.side
-    deck = DECK.format(width=width, height=0.1 + 0.03 * layers, end=2e-5 * arguments.steps, side=arguments.side,
-                       layers=layers)
+    width, layers = SPACING * arguments.side, arguments.layers or arguments.side
+    bed = deck(arguments.side, layers, arguments.steps)
     hashes = set()
     for name, wall in ("plane", PLANE), ("mesh", MESH.format(size=width + 0.3, middle=width / 2, edge=arguments.edge)):
-        record = run(arguments.scree, arguments.backend, deck + wall)
+        record = run(arguments.scree, arguments.backend, bed + wall)
         seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"]}
         hashes.add(record["run"]["state_hash"])
         print(f"{name:6} {1e3 * seconds['contact_force'] / arguments.steps:8.4f} ms a step, lists "
-              f"{1e3 * seconds['neighbors']:8.2f} ms in all")
+              f"{1e3 * seconds['neighbors']:8.2f} ms in all, {record['counts']['list_builds']} of them")
     print("the same state hash" if len(hashes) == 1 else "different state hashes")
 
 

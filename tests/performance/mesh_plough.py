@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Blades of triangles that plunge into a bed of spheres, and the same bed without them: time per step.
+Usage: mesh_plough.py SCREE [--backend cuda] [--side 200] [--steps 400] [--edge 0.011]"""
+
+import argparse
+
+import mesh_bed
+
+COLUMNS, ROWS = 5, 4
+SIZE = (0.4, 0.02, 0.4)  # of a blade [m]
+MESH = '[[meshes]]\nname = "blade"\nkind = "box"\nsize = {size}\nrefine = {edge}\n'
+BLADE = """[[bodies]]
+name = "blade{number}"
+kind = "spatial"
+position = [{x}, {y}, {z}]
+velocity = [0.5, 0.0, -0.5]
+solids = [{{ kind = "mesh", mesh = "blade", density = 7800.0 }}]
+meshes = [{{ mesh = "blade", material = "grain" }}]
+"""
+
+
+def blades(width, top, edge):
+    places = [(column, row) for row in range(ROWS) for column in range(COLUMNS)]
+    return MESH.format(size=list(SIZE), edge=edge) + "".join(
+        BLADE.format(number=k, x=width * (column + 0.5) / COLUMNS, y=width * (row + 0.5) / ROWS,
+                     z=top + SIZE[2] / 2 + 1e-4) for k, (column, row) in enumerate(places))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scree")
+    parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--side", type=int, default=200)
+    parser.add_argument("--steps", type=int, default=400)
+    parser.add_argument("--edge", type=float, default=0.011)
+    arguments = parser.parse_args()
+    deck = mesh_bed.deck(arguments.side, arguments.side, arguments.steps) + mesh_bed.PLANE
+    width, top = mesh_bed.SPACING * arguments.side, mesh_bed.LAYER * (arguments.side - 1) + 0.02
+    for name, extra in ("bed", ""), ("blades", blades(width, top, arguments.edge)):
+        record = mesh_bed.run(arguments.scree, arguments.backend, deck + extra)
+        print(f"{name:6} {mesh_bed.milliseconds(record, arguments.steps)} ms a step in all but output, "
+              f"{record['counts']['list_builds']} lists")
+
+
+if __name__ == "__main__":
+    main()
