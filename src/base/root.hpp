@@ -21,6 +21,14 @@ struct RootAndInverse {
 // in the form that rounds correctly (Markstein, IBM J. Res. Dev. 34, 1990). For normal numbers whose results
 // are normal.
 
+// The one divisor for which that form may be wrong has a mantissa of ones: its reciprocal lies just above the
+// middle between a power of two and the next number, which it is rounded to.
+__device__ inline Real rounded_reciprocal(Real x, Real near) {
+  constexpr long long kMantissa = (1ll << 52) - 1;
+  const bool ones = (__double_as_longlong(x) & kMantissa) == kMantissa;
+  return __longlong_as_double(__double_as_longlong(near) | static_cast<long long>(ones));
+}
+
 __device__ inline RootAndInverse<Real> root_and_inverse(Real x) {
   Real y;  // 1 / sqrt(x), some 20 bits at first
   asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
@@ -32,7 +40,7 @@ __device__ inline RootAndInverse<Real> root_and_inverse(Real x) {
   root = __fma_rn(__fma_rn(-root, root, x), 0.5 * y, root);
   Real inverse = __fma_rn(__fma_rn(-root, y, 1.0), y, y);
   inverse = __fma_rn(__fma_rn(-root, inverse, 1.0), inverse, inverse);
-  return {root, inverse};
+  return {root, rounded_reciprocal(root, inverse)};
 }
 
 // In single precision to some last bits.
@@ -45,7 +53,7 @@ __device__ inline Real reciprocal(Real x) {
   Real y;
   asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
   for (int pass = 0; pass < 3; ++pass) y = __fma_rn(__fma_rn(-x, y, 1.0), y, y);
-  return y;
+  return rounded_reciprocal(x, y);
 }
 
 #else
