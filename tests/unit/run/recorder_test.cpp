@@ -370,6 +370,77 @@ velocity = [0.0, 0.0, 0.5]
   CHECK(std::abs(later[26] - height - 0.5 * run.state.clock.time) < 1e-9);
 }
 
+// A ball that comes down on a tessellated box and slides over it.
+TEST_CASE("a snapshot has the works and the wear of triangles that the deck asks for, and nothing else") {
+  Recording<CpuBackend> run(R"(
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+[time]
+step = 1e-6
+control = "fixed"
+end = 1.0
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e4
+damping = 1.0
+friction = 0.1
+tangential_stiffness = 1e8
+wear_coefficient = 2e-12
+[[meshes]]
+name = "box"
+kind = "box"
+size = [0.4, 0.2, 0.1]
+offset = [0.1, 0.0, 0.0]
+refine = 0.05
+[[walls]]
+name = "box"
+mesh = "box"
+[[particles]]
+name = "ball"
+kind = "list"
+positions = [[0.2, -0.05, 0.098]]
+radius = 0.05
+density = 1000.0
+velocity = [0.3, 0.0, -0.4]
+[output]
+surface_fields = ["sliding_work", "wear_depth", "impact_work", "pressure"]
+)");
+  run.recorder->snapshot(run.state);
+  for (int k = 0; k < 10; ++k) run.advance();
+  run.recorder->snapshot(run.state);
+  const Hdf5File file(run.folder.path() + "/surfaces.vtkhdf", Hdf5Access::read);
+  const std::string cells = "/VTKHDF/CellData/";
+  const auto corners = file.read_array<std::int64_t>("/VTKHDF/Polygons/Connectivity");
+  const auto points = file.read_array<Real>("/VTKHDF/Points"),
+             pressure = file.read_array<Real>(cells + "pressure"),
+             impact = file.read_array<Real>(cells + "impact_work"),
+             sliding = file.read_array<Real>(cells + "sliding_work"),
+             wear = file.read_array<Real>(cells + "wear_depth");
+  CHECK(std::ranges::count(file.dataset_names(cells), "shear") == 0);
+  const std::size_t triangles = corners.size() / 3;
+  REQUIRE(impact.size() == 2 * triangles);
+  Real impacts = 0, slid = 0;
+  for (std::size_t t = 0; t < triangles; ++t) {
+    CHECK(impact[t] + sliding[t] + wear[t] == 0);  // nothing yet
+    const std::size_t now = triangles + t;
+    CHECK((impact[now] > 0) == (pressure[now] > 0));
+    impacts += impact[now], slid += sliding[now];
+    const auto corner = [&](std::size_t k) {
+      const Real* const x = &points[3 * static_cast<std::size_t>(corners[3 * t + k])];
+      return Vec3{x[0], x[1], x[2]};
+    };
+    const Real area = norm(cross(corner(1) - corner(0), corner(2) - corner(0))) / 2;
+    CHECK(std::abs(wear[now] * area - 2e-12 / 0.1 * sliding[now]) <= 1e-12 * wear[now] * area);
+  }
+  const Particle ball = run.backend.particles().records().at(0);
+  CHECK(slid > 0);
+  CHECK(std::abs(slid - ball.friction_loss) <= 1e-12 * slid);
+  CHECK(std::abs(impacts + slid - ball.contact_loss) <= 1e-12 * slid);
+}
+
 TEST_CASE("a snapshot that a failed device holds is given up once") {
   Recording<LateBackend> run;
   run.recorder->snapshot(run.state);
