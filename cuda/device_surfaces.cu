@@ -289,6 +289,7 @@ void DeviceSurfaces::find_loads_in_run(Device device, const DeviceContactKernels
   const SurfaceViews views = entry_views(kernels, {nullptr, nullptr, nullptr, {}, h});
   meshes_.touch_in_run(device, views, look);
   kernels.surface_loads_in_run(device, views, look, placed_entries_, loads_[0].data());
+  works_.book_in_run(device, views, meshes_.groups(), {loads_[0].data(), h, moves_}, look.control);
 }
 
 std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look,

@@ -62,7 +62,7 @@ class DeviceSurfaces {
   // their sums are on the way to the host, too.
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& look);
   // Of surfaces at rest, for a run of explicit steps of length h: the loads of whatever step is open when the
-  // kernels run. key: all that their launches depend on.
+  // kernels run, with the books at triangles. key: all that their launches depend on.
   void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& look,
                          Real h);
   std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look, Real h) const;

@@ -11,6 +11,18 @@ struct AtomicAdd {
   }
 };
 
+template <class Works>
+using BookItem = TriangleBookItem<Works, AtomicAdd>;
+
+struct BookInRunItem {
+  BookItem<ExplicitWorks> book;
+  const VerletControl* control;
+
+  __device__ void operator()(Index g) const {
+    if (!control->stop) book(g);
+  }
+};
+
 }  // namespace
 
 DeviceTriangleWorks::DeviceTriangleWorks(const Model& model, cudaStream_t stream) : works_(model) {
@@ -21,11 +33,16 @@ DeviceTriangleWorks::DeviceTriangleWorks(const Model& model, cudaStream_t stream
 
 template <class Works>
 void DeviceTriangleWorks::book(Device device, const SurfaceViews& in, Index groups, const Works& works) {
-  if (exist()) for_each(device, groups, TriangleBookItem<Works, AtomicAdd>{in, table(), works, sums_.data()});
+  if (exist()) for_each(device, groups, BookItem<Works>{in, table(), works, sums_.data()});
 }
 template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ExplicitWorks&);
 template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ImplicitWorks&);
 template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ImplicitRubbingWorks&);
+
+void DeviceTriangleWorks::book_in_run(Device device, const SurfaceViews& in, Index groups,
+                                      const ExplicitWorks& works, const VerletControl* control) {
+  if (exist()) for_each(device, groups, BookInRunItem{{in, table(), works, sums_.data()}, control});
+}
 
 void DeviceTriangleWorks::load(const std::vector<std::int64_t>& words, cudaStream_t stream) {
   if (exist()) sums_.upload(works_.sums(words), stream);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact_kernels.cuh"
 #include "dem/triangle_works.hpp"
 #include "device.cuh"
 #include "model/model.hpp"
@@ -18,6 +19,9 @@ class DeviceTriangleWorks {
   // Queues the books of a step that is closed, of the contacts of these groups as they were found last.
   template <class Works>
   void book(Device device, const SurfaceViews& in, Index groups, const Works& works);
+  // The same of whatever explicit step is open when the kernel runs: the run's next kernel closes it.
+  void book_in_run(Device device, const SurfaceViews& in, Index groups, const ExplicitWorks& works,
+                   const VerletControl* control);
 
   // As RankParticles has them; both wait.
   void load(const std::vector<std::int64_t>& words, cudaStream_t stream);
