@@ -53,6 +53,14 @@ void CudaBodies::take_loads() {
   side_.take_loads(items_.surfaces.load_sums());
 }
 
+// The next look of this stream writes where the books are read, and so does the next list, of the particles'
+// stream.
+void CudaBodies::book_loads(Real h) {
+  if (!items_.surfaces.works().exist()) return;
+  items_.surfaces.book_loads({stream_}, *items_.kernels, h);
+  booked_.record(stream_), booked_.hold(items_.stream);
+}
+
 void CudaBodies::find_loads_beside(const SurfaceLook& look) {
   if (!have_surfaces()) return;
   const Device beside{stream_};

@@ -36,6 +36,9 @@ class CudaBodies {
   void queue_loads(const SurfaceLook& look, const Event& ready);
   void hold_until_found(cudaStream_t stream) const { loads_found_.hold(stream); }
   void take_loads();
+  // Where the host knows that this step is closed, and its length h: books what its contacts have lost at
+  // triangles.
+  void book_loads(Real h);
   // The same where the step's kernel may still read its own. Waits.
   void find_loads_beside(const SurfaceLook& look);
   void reduce_wrench(std::vector<BodyWrench>& end) const { side_.reduce(end); }
@@ -44,7 +47,7 @@ class CudaBodies {
   CudaItems& items_;
   SurfaceSide side_;
   Stream stream_{Priority::urgent};
-  Event loads_found_;
+  Event loads_found_, booked_;
   DeviceArray<Vec3> step_, step_turn_;
 };
 

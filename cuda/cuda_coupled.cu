@@ -28,7 +28,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
       renew_list(timers);
       continue;
     }
-    bodies_.side().book_losses(h_);
+    bodies_.side().book_losses(h_), bodies_.book_loads(h_);
     if (!keep_open || before.leaves) {
       list_.set_bound(control.bound);
       finish();

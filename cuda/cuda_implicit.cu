@@ -271,6 +271,7 @@ void CudaImplicitStep::accept() {
   bodies_.find_steps(step_start());
   items_.kernels->books(items_.device(), items_.views(), items_.owned, step_start(), now.contact_loss.data(),
                         now.integrator_loss.data());
+  items_.surfaces.book_steps(items_.device(), *items_.kernels);
   items_.history.accepted();
   for_each(items_.device(), items_.owned,
            AcceptItem{step_views(), step_forces(), now.force.data(), now.integrator_loss.data()});

@@ -78,7 +78,7 @@ void CudaParticles::load(const std::vector<Particle>& records, const ShapeLosses
     for_each(items_.device(), n, ArrivalItem{records_.data(), views_of(items_.now), first});
   }
   wait_for(stream);
-  items_.history.load({}, items_.owned);
+  items_.history.load({}, items_.owned), load_works({});
   list_.outdate();
   // records() must work where no memory is left, and a kernel takes some when it is launched first.
   for_each(items_.device(), std::min<Index>(items_.owned, 1), record_item(0));

@@ -17,6 +17,10 @@ class CudaParticles : public RankParticles {
   void load_contacts(const KeptContacts& contacts) override { items_.history.load(contacts, items_.owned); }
   KeptContacts contacts() override;
   ShapeLosses shape_losses() const override { return bodies_.side().losses(); }
+  void load_works(const std::vector<std::int64_t>& words) override {
+    items_.surfaces.works().load(words, items_.stream);
+  }
+  std::vector<std::int64_t> works() override { return items_.surfaces.works().words(items_.stream); }
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
   std::vector<Leaver> outside() override;

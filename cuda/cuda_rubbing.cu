@@ -340,6 +340,7 @@ void CudaRubbingStep::accept() {
   items_.kernels->rubbing_books(
       items_.device(), items_.views(), items_.owned, rubbing_start(),
       {now.contact_loss.data(), now.integrator_loss.data(), now.friction_loss.data()});
+  items_.surfaces.book_rubs(items_.device(), *items_.kernels);
   items_.history.accepted();
   for_each(items_.device(), items_.owned,
            AcceptItem{step_views(), step_forces(), now.force.data(), now.integrator_loss.data()});

@@ -162,7 +162,7 @@ std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>&
 }  // namespace
 
 DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
-    : period_(period), meshes_(model, stream), h_index_(1) {
+    : period_(period), meshes_(model, stream), works_(model, stream), moves_(model.rotates()), h_index_(1) {
   const SurfaceSet surfaces(model);
   ground_ = surfaces.ground(), placed_count_ = surfaces.placed(), at_rest_ = surfaces.at_rest();
   planes_.upload(wall_planes(model), stream);
@@ -289,6 +289,7 @@ void DeviceSurfaces::find_loads_in_run(Device device, const DeviceContactKernels
   const SurfaceViews views = entry_views(kernels, {nullptr, nullptr, nullptr, {}, h});
   meshes_.touch_in_run(device, views, look);
   kernels.surface_loads_in_run(device, views, look, placed_entries_, loads_[0].data());
+  works_.book_in_run(device, views, meshes_.groups(), {loads_[0].data(), h, moves_}, look.control);
 }
 
 std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look,
@@ -316,6 +317,18 @@ void DeviceSurfaces::find_rubs(Device device, const DeviceContactKernels& kernel
   meshes_.touch_over_step(device, views, start.step.position, start_places_.data());
   kernels.surface_rubs(device, views, chunk_list(), {start, start_places_.data(), rubs_.data()},
                        h_step_sums_.data());
+}
+
+void DeviceSurfaces::book_loads(Device device, const DeviceContactKernels& kernels, Real h) {
+  works_.book(device, entry_views(kernels, {}), meshes_.groups(), ExplicitWorks{loads_[0].data(), h, moves_});
+}
+
+void DeviceSurfaces::book_steps(Device device, const DeviceContactKernels& kernels) {
+  works_.book(device, entry_views(kernels, {}), meshes_.groups(), ImplicitWorks{steps_.data()});
+}
+
+void DeviceSurfaces::book_rubs(Device device, const DeviceContactKernels& kernels) {
+  works_.book(device, entry_views(kernels, {}), meshes_.groups(), ImplicitRubbingWorks{rubs_.data()});
 }
 
 std::vector<InstantSums> DeviceSurfaces::load_sums() const { return touched(h_load_sums_); }

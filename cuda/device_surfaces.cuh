@@ -14,6 +14,7 @@
 #include "dem/triangle_sums.hpp"
 #include "device.cuh"
 #include "device_meshes.cuh"
+#include "device_triangle_works.cuh"
 
 namespace scree {
 
@@ -61,7 +62,7 @@ class DeviceSurfaces {
   // their sums are on the way to the host, too.
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& look);
   // Of surfaces at rest, for a run of explicit steps of length h: the loads of whatever step is open when the
-  // kernels run. key: all that their launches depend on.
+  // kernels run, with the books at triangles. key: all that their launches depend on.
   void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& look,
                          Real h);
   std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look, Real h) const;
@@ -70,6 +71,12 @@ class DeviceSurfaces {
   // The same where contacts rub; `look`: at the end of the step.
   void find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
                  const SurfaceLook& look);
+  // Queues the books at the triangles of a step that is closed, of the contacts found last: of the loads of
+  // the explicit step of length h, or over the implicit one.
+  void book_loads(Device device, const DeviceContactKernels& kernels, Real h);
+  void book_steps(Device device, const DeviceContactKernels& kernels);
+  void book_rubs(Device device, const DeviceContactKernels& kernels);
+  DeviceTriangleWorks& works() { return works_; }
   const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
   // The sums of the last contacts found, once the stream is done: a surface may come in several parts.
   std::vector<InstantSums> load_sums() const;
@@ -98,6 +105,8 @@ class DeviceSurfaces {
   bool at_rest_;
   std::vector<Index> placed_planes_, plane_numbers_;  // among the placed surfaces
   DeviceMeshes meshes_;
+  DeviceTriangleWorks works_;
+  bool moves_;  // whether particles rotate
   Index entries_ = 0, placed_entries_ = 0;
   DeviceArray<Index> counts_, offsets_, next_, surfaces_, particles_;
   DeviceArray<std::int8_t> images_;

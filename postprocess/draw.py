@@ -28,6 +28,11 @@ def arguments():
         metavar=("XMIN", "XMAX", "YMIN", "YMAX"),
         help="part of the plane to show, 2D only [m]; default: all but stray particles",
     )
+    parser.add_argument(
+        "--surfaces",
+        metavar="FIELD",
+        help="colour meshes by one of the run's output.surface_fields, such as wear_depth; 3D only, with VTK",
+    )
     parser.add_argument("--no-animation", action="store_true")
     parser.add_argument("--no-vtk", action="store_true", help="draw spheres without VTK, as shaded discs")
     parser.add_argument(
@@ -59,7 +64,7 @@ def main():
         from render import draw_run
 
         frames = 1 if chosen.no_animation else chosen.frames
-        for path in draw_run(directory, frames, chosen.view, not chosen.no_vtk):
+        for path in draw_run(directory, frames, chosen.view, not chosen.no_vtk, chosen.surfaces):
             print(path, flush=True)
 
 

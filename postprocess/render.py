@@ -80,6 +80,10 @@ class Picture:
             self.bar = self.figure.colorbar(scene.colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
             self.bar.set_label("particle speed [m/s]", fontsize=13)
             self.bar.ax.tick_params(labelsize=11)
+        if run.surfaces and run.surfaces.field:
+            bar = self.figure.colorbar(scene.surface_colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
+            bar.set_label(run.surfaces.label(), fontsize=13)
+            bar.ax.tick_params(labelsize=11)
         self.title = axes.set_title(" ", fontsize=14, loc="left")
         axes.tick_params(labelsize=11)
 
@@ -136,13 +140,17 @@ def save_animation(picture, snapshots, directory):
     return path
 
 
-def draw_run(directory, frames, view, with_vtk):
+def draw_run(directory, frames, view, with_vtk, surface_field=None):
     """Writes the final state and, with more than one frame, the animation; yields their paths."""
     run = Run(directory)
     if view and not run.model.planar:
         fail("--view is for runs in the plane")
     with_vtk = with_vtk and not run.model.planar and vtk_renders()
     last = len(run.particles) - 1
+    if surface_field:
+        if not with_vtk or not run.surfaces:
+            fail("--surfaces is for runs in space with meshes, drawn by VTK")
+        run.surfaces.color_by(surface_field, [*chosen_frames(len(run.particles), frames), last])
     seen = run.motion(last).known
     if run.surfaces:
         seen[run.surfaces.bodies] = True

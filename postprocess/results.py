@@ -53,6 +53,19 @@ class Series:
         """Of surfaces: what no snapshot changes, per triangle."""
         return self._root[f"CellData/{name}"][:]
 
+    def of_triangles(self, snapshot, name):
+        """Of surfaces: one snapshot's values of a field, of a vector its length."""
+        if f"CellData/{name}" not in self._root or f"Steps/CellDataOffsets/{name}" not in self._root:
+            fail(f"{self._file.filename}: holds no field {name}; the run's output.surface_fields must name it")
+        first = self._root[f"Steps/CellDataOffsets/{name}"][snapshot]
+        values = self._root[f"CellData/{name}"][first : first + len(self.triangles())]
+        return values if values.ndim == 1 else np.linalg.norm(values, axis=1)
+
+    def unit(self, name):
+        """Of a field of triangles."""
+        unit = self._root[f"CellData/{name}"].attrs["unit"]
+        return unit.decode() if isinstance(unit, bytes) else unit
+
     def has(self, name):
         """Whether the field is there."""
         return name in self._root["PointData"]

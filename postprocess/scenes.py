@@ -12,6 +12,7 @@ BODY_COLOR = "#e66100"
 EDGE_COLOR = "#303030"
 SURFACE_COLORS = {"walls": "#909090", "bodies": BODY_COLOR}
 SURFACE_OPACITY = 0.18  # what a drum holds shows
+SURFACE_MAP, COLORED_OPACITY = "YlOrRd", 0.95  # of meshes that are coloured by a field, at the end of its scale
 LIGHT = np.array([-0.4, 0.75, 0.53])  # where walls are lighter: right, up, towards the eye
 LONGEST_SIDE = 7.5  # of the axes [inch]
 SPREAD = 40  # snapshots in which bodies are looked for
@@ -271,6 +272,10 @@ class SphereScene:
     def set_up(self, axes, color_map, limit):
         self.map = plt.get_cmap(color_map)
         self.colors = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, limit), color_map)
+        if self.run.surfaces:
+            self.surface_colors = matplotlib.cm.ScalarMappable(
+                matplotlib.colors.Normalize(0, self.run.surfaces.limit), SURFACE_MAP
+            )
         axes.set_aspect("equal")
         axes.set_xlim(-self.half[0], self.half[0])
         axes.set_ylim(-self.half[1], self.half[1])
@@ -360,11 +365,21 @@ class SphereScene:
     def draw_surfaces(self, snapshot):
         if not self.run.surfaces:
             return
-        points, lines = self.run.surfaces.points(snapshot), self.run.surfaces.lines(snapshot)
-        for whose, triangles in self.run.surfaces.triangles.items():
+        surfaces = self.run.surfaces
+        points, lines = surfaces.points(snapshot), surfaces.lines(snapshot)
+        values = surfaces.values(snapshot) if surfaces.field else {}
+        for whose, triangles in surfaces.triangles.items():
             color = matplotlib.colors.to_rgb(SURFACE_COLORS[whose])
-            self.renderer.set_triangles(whose, points, triangles, color, SURFACE_OPACITY)
+            colors = self.field_colors(values[whose]) if values else None
+            self.renderer.set_triangles(whose, points, triangles, color, SURFACE_OPACITY, colors)
             self.renderer.set_lines(f"edges of {whose}", lines[whose], color, 0.0008 * self.extent)
+
+    def field_colors(self, values):
+        """Of triangles, the more opaque the larger their values [n][4] of 0 to 255."""
+        colors = self.surface_colors.to_rgba(values)
+        share = np.clip(values / self.run.surfaces.limit, 0, 1)
+        colors[:, 3] = SURFACE_OPACITY + (COLORED_OPACITY - SURFACE_OPACITY) * share
+        return (255 * colors).round().astype(np.uint8)
 
     def draw_discs(self, flat, radii, colors):
         """Far ones first and darker."""

@@ -105,8 +105,8 @@ class SphereRenderer:
         self._lines[style] = self._add(tube, color)
         self._lines[style].GetProperty().LightingOn()
 
-    def set_triangles(self, style, points, triangles, color, opacity):
-        """In place of those of the same style."""
+    def set_triangles(self, style, points, triangles, color, opacity, colors=None):
+        """In place of those of the same style. colors: [triangles][4] of 0 to 255, in place of the one."""
         if style in self._triangles:
             self._renderer.RemoveActor(self._triangles.pop(style))
         if len(triangles) == 0:
@@ -120,6 +120,11 @@ class SphereRenderer:
         data.SetPoints(corners)
         data.SetPolys(cells)
         self._triangles[style] = self._add(data, color)
+        if colors is not None:
+            data.GetCellData().SetScalars(numpy_to_vtk(np.ascontiguousarray(colors), deep=True))
+            self._triangles[style].GetMapper().ScalarVisibilityOn()
+            self._triangles[style].ForceTranslucentOn()
+            opacity = 1
         self._triangles[style].GetProperty().LightingOn()
         self._triangles[style].GetProperty().SetInterpolationToFlat()
         self._triangles[style].GetProperty().SetOpacity(opacity)

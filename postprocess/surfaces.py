@@ -24,11 +24,29 @@ class Surfaces:
 
     def __init__(self, series):
         self._series = series
+        self.field = None  # what colours them: a name, and the upper end of the scale
+        self.limit = 0.0
         triangles, body = series.triangles(), series.numbers("body")
         self.bodies = np.unique(body[body >= 0])  # those that have meshes
-        self.triangles = {"walls": triangles[body < 0], "bodies": triangles[body >= 0]}
+        self._rows = {"walls": body < 0, "bodies": body >= 0}
+        self.triangles = {whose: triangles[rows] for whose, rows in self._rows.items()}
         points = series.rows(0, "Points")
         self._edges = {whose: sharp_edges(points, found) for whose, found in self.triangles.items()}
+
+    def color_by(self, field, snapshots):
+        """The scale ends where, in one of these snapshots, all but a percent of what is above zero ends."""
+        self.field = field
+        values = [self._series.of_triangles(snapshot, field) for snapshot in snapshots]
+        self.limit = max((np.percentile(some, 99) for some in (all_[all_ > 0] for all_ in values) if len(some)),
+                         default=1.0)
+
+    def label(self):
+        return f"{self.field} [{self._series.unit(self.field)}]"
+
+    def values(self, snapshot):
+        """Of the field that colours them, by triangle, of walls and of bodies."""
+        values = self._series.of_triangles(snapshot, self.field)
+        return {whose: values[rows] for whose, rows in self._rows.items()}
 
     def points(self, snapshot):
         return self._series.rows(snapshot, "Points")

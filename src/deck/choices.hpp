@@ -228,6 +228,19 @@ inline constexpr auto kWords<Interpolation> =
                                         {"monotone", Interpolation::monotone},
                                         {"linear", Interpolation::linear}});
 
+// ---- output
+// --------------------------------------------------------------------------------------------------
+
+// What snapshots tell of each triangle of the meshes.
+enum class SurfaceField { pressure, shear, impact_work, sliding_work, wear_depth };
+template <>
+inline constexpr auto kWords<SurfaceField> =
+    std::to_array<Word<SurfaceField>>({{"pressure", SurfaceField::pressure},
+                                       {"shear", SurfaceField::shear},
+                                       {"impact_work", SurfaceField::impact_work},
+                                       {"sliding_work", SurfaceField::sliding_work},
+                                       {"wear_depth", SurfaceField::wear_depth}});
+
 // ---- particles
 // -----------------------------------------------------------------------------------------------
 

@@ -71,9 +71,15 @@ void CpuExplicitRun::shape_contacts() {
   items_.side.close_step();
 }
 
-void CpuExplicitRun::advance() {
+// Contacts with surfaces at the end of the open step, which the caller closes.
+void CpuExplicitRun::close_loads() {
   items_.find_loads(h_);
   items_.side.book_losses(h_);
+  items_.surfaces.book_loads(items_.store, items_.list.surfaces, h_);
+}
+
+void CpuExplicitRun::advance() {
+  close_loads();
   step_bound_ = std::sqrt(items_.kernels->verlet_advance(
       items_.views(), items_.listed_pairs(), items_.model.gravity, items_.layout.owned,
       views_of(items_.spare_position, items_.spare_velocity, items_.spare_spin)));
@@ -84,8 +90,7 @@ void CpuExplicitRun::advance() {
 }
 
 void CpuExplicitRun::finish() {
-  items_.find_loads(h_);
-  items_.side.book_losses(h_);
+  close_loads();
   std::vector<Vec3>& force = items_.store.force;
   const Real squared = items_.kernels->verlet_finish(
       items_.views(), items_.listed_pairs(), items_.model.gravity, items_.layout.owned,

@@ -17,6 +17,7 @@ class CpuExplicitRun : public ExplicitRun {
  private:
   VerletViews views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity, std::vector<Vec4>& spin);
   void share_step();
+  void close_loads();
   void advance();
   void finish();
 

@@ -205,6 +205,7 @@ void CpuImplicitStep::accept() {
                         store.integrator_loss.data());
   items_.history.accepted();
   items_.side.book_step();
+  items_.surfaces.book_steps(store, items_.list.surfaces);
   for_each(Serial{}, items_.layout.owned,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
 }

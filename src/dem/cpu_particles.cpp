@@ -14,6 +14,7 @@ void CpuParticles::load(const std::vector<Particle>& records, const ShapeLosses&
   count_on_rank(records.size(), items_.model.particles.totals);
   items_.store.load(records);
   items_.history.load({}, items_.store.owned);
+  items_.surfaces.load_works({});
   list_.outdate();
 }
 

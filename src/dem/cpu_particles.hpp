@@ -19,6 +19,8 @@ class CpuParticles : public RankParticles {
   }
   KeptContacts contacts() override;
   ShapeLosses shape_losses() const override { return items_.side.losses(); }
+  void load_works(const std::vector<std::int64_t>& words) override { items_.surfaces.load_works(words); }
+  std::vector<std::int64_t> works() override { return items_.surfaces.works(); }
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
   std::vector<Leaver> outside() override;

@@ -238,6 +238,7 @@ void CpuRubbingStep::accept() {
       {store.contact_loss.data(), store.integrator_loss.data(), store.friction_loss.data()});
   items_.history.accepted();
   items_.side.book_step();
+  items_.surfaces.book_rubs(store, items_.list.surfaces);
   for_each(Serial{}, n,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
   for_each(Serial{}, n,

@@ -45,7 +45,13 @@ void touch_ahead(const MeshTouchItem& item, Index groups) {
 
 CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
                          const ContactKernels& kernels)
-    : side_(side), kernels_(kernels), planes_(wall_planes(model)), period_(subdomain.period()) {}
+    : side_(side),
+      kernels_(kernels),
+      planes_(wall_planes(model)),
+      period_(subdomain.period()),
+      works_(model),
+      work_sums_(works_.sums({})),
+      moves_(model.rotates()) {}
 
 SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceRows& rows,
                                       const SurfaceLook& look) const {
@@ -118,6 +124,30 @@ void CpuSurfaces::find_rubs(const ParticleStore& store, const SurfaceRows& rows,
 
 std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) const {
   return scree::triangle_sums({rows.groups, rows.surfaces, touches_, loads_}, numbers());
+}
+
+template <class Works>
+void CpuSurfaces::book(const ParticleStore& store, const SurfaceRows& rows, const Works& works) {
+  if (!works_.exist()) return;
+  struct Add {
+    static void add(std::int64_t& word, std::int64_t piece) { word += piece; }
+  };
+  const TriangleWorkTable table{works_.first().data(), works_.wear().empty() ? nullptr : works_.wear().data(),
+                                works_.materials()};
+  for_each(Serial{}, static_cast<Index>(rows.groups.size()),
+           TriangleBookItem<Works, Add>{entry_views(store, rows, {}), table, works, work_sums_.data()});
+}
+
+void CpuSurfaces::book_loads(const ParticleStore& store, const SurfaceRows& rows, Real h) {
+  book(store, rows, ExplicitWorks{loads_.data(), h, moves_});
+}
+
+void CpuSurfaces::book_steps(const ParticleStore& store, const SurfaceRows& rows) {
+  book(store, rows, ImplicitWorks{steps_.data()});
+}
+
+void CpuSurfaces::book_rubs(const ParticleStore& store, const SurfaceRows& rows) {
+  book(store, rows, ImplicitRubbingWorks{rubs_.data()});
 }
 
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,

@@ -7,6 +7,7 @@
 #include "dem/particle_store.hpp"
 #include "dem/surface_rows.hpp"
 #include "dem/surface_side.hpp"
+#include "dem/triangle_works.hpp"
 
 namespace scree {
 
@@ -26,6 +27,15 @@ class CpuSurfaces {
                  const HistoryViews& history);
   // Of the last find_loads().
   std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
+  // Books at the triangles what the contacts found last have lost over a step that is closed: the explicit
+  // one of length h, or the implicit one.
+  void book_loads(const ParticleStore& store, const SurfaceRows& rows, Real h);
+  void book_steps(const ParticleStore& store, const SurfaceRows& rows);
+  void book_rubs(const ParticleStore& store, const SurfaceRows& rows);
+  std::vector<std::int64_t> works() const {
+    return works_.exist() ? works_.words(work_sums_) : std::vector<std::int64_t>{};
+  }
+  void load_works(const std::vector<std::int64_t>& words) { work_sums_ = works_.sums(words); }
   const SurfaceRub* rubs() const { return rubs_.data(); }  // per entry, of the last find_rubs()
 
   // What items see of particles at these places, with the contacts found last.
@@ -36,6 +46,8 @@ class CpuSurfaces {
  private:
   SurfaceViews entry_views(const ParticleStore& store, const SurfaceRows& rows,
                            const SurfaceLook& look) const;
+  template <class Works>
+  void book(const ParticleStore& store, const SurfaceRows& rows, const Works& works);
   void make_room(const SurfaceRows& rows);  // for the contacts with meshes
   // These, at both ends of a step.
   void touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start);
@@ -49,6 +61,9 @@ class CpuSurfaces {
   std::vector<SurfaceLoad> loads_;  // per entry
   std::vector<SurfaceStep> steps_;
   std::vector<SurfaceRub> rubs_;
+  TriangleWorks works_;
+  std::vector<TriangleWork> work_sums_;
+  bool moves_;  // whether particles rotate
 };
 
 }  // namespace scree

@@ -11,6 +11,7 @@
 #include "dem/mixed_items.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/output_fields.hpp"
+#include "dem/triangle_works.hpp"
 #include "dem/turning_items.hpp"
 #include "partition/halo.hpp"
 
@@ -135,6 +136,7 @@ std::size_t device_memory(const Model& model) {
     bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
     if (model.rotates()) bytes += n.items * 2 * sizeof(MixedSpin) + n.particles * sizeof(MixedSpinRest);
   }
+  bytes += static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
            static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
   return static_cast<std::size_t>(bytes);

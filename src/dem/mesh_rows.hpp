@@ -28,10 +28,10 @@ struct MeshTouch {
   bool touches;  // else nothing below has a meaning
   bool is_face;
   ContactGeometry geometry;
-  Vec3 contact;  // where forces act, from the surface's point [m]
-  Vec3 normal0;  // where the step began
-  Index feature, triangle;
-  Index from;  // entry whose memory the contact goes on from; -1: none
+  Vec3 contact;             // where forces act, from the surface's point [m]
+  Vec3 normal0;             // where the step began
+  Index feature, triangle;  // over a step, a contact that ended in it has the triangle of its start
+  Index from;               // entry whose memory the contact goes on from; -1: none
 };
 
 // The same contact where an implicit step began. One that was open then, or is open at the end, has no

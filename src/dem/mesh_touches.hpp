@@ -227,7 +227,7 @@ struct MeshStepTouchItem {
                       pair.contact,
                       pair0.geometry.normal(),
                       now.feature,
-                      now.triangle,
+                      now.triangle >= 0 ? now.triangle : was.triangle,
                       from};
     before[entry] = {pair0.geometry, pair0.contact};
   }

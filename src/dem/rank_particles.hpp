@@ -1,6 +1,7 @@
 // The particles of one rank: what a checkpoint stores of them, and those that leave the space.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "dem/kept_contacts.hpp"
@@ -11,7 +12,8 @@
 
 namespace scree {
 
-// All functions but load_contacts(), records(), contacts() and shape_losses() are collective (see Backend).
+// All functions but load_contacts(), records(), contacts(), shape_losses() and those of works are collective
+// (see Backend).
 class RankParticles {
  public:
   virtual ~RankParticles() = default;
@@ -26,6 +28,10 @@ class RankParticles {
   virtual void load_contacts(const KeptContacts& contacts) = 0;
   virtual KeptContacts contacts() = 0;
   virtual ShapeLosses shape_losses() const = 0;
+  // What contacts of this rank's particles have lost at the triangles of meshes: words of TriangleWorks, none
+  // where the output asks for none. Those of all ranks add up; a state's are loaded on rank 0, after load().
+  virtual void load_works(const std::vector<std::int64_t>& words) = 0;
+  virtual std::vector<std::int64_t> works() = 0;
 
   // Start: forces and accelerations of the loaded positions and velocities, on a list of these.
   virtual void initial_forces() = 0;

@@ -204,6 +204,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.history_coordinates = table.integer("history_coordinates");
   output.history_bushings = table.integer("history_bushings");
   output.fields = table.texts("fields");
+  build_surface_fields(table, model);
   for (const char* key : {"snapshot_interval", "history_interval", "checkpoint_interval"}) {
     const Real interval = table.real(key);
     if (interval > 0 && interval * kMostOutputs < model.time.end)

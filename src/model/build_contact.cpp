@@ -309,6 +309,7 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   // A neck turns with its partners: its law is one of contacts that rub.
   if (table.has("friction") || (law.neck && law.attracts())) contact.friction.resize(contact.laws.size());
   if (resists_rolling(table)) contact.rolling.resize(contact.laws.size());
+  take_wear(table, friction.friction, material, contact);
   for (int side = 0; side < 2; ++side) {
     const auto slot = static_cast<std::size_t>(material[side] * contact.materials() + material[1 - side]);
     if (given[slot] && (side == 0 || material[0] != material[1])) {

@@ -28,11 +28,14 @@ void build_joint_forces(const DeckTable& deck, Model& model, const ModelNames& n
 void build_particles(const DeckTable& deck, Model& model, const ModelNames& names, ModelSize& size,
                      const Share& share, Log& log);
 void build_contact(const DeckTable& deck, Model& model, const ModelNames& names);
+// The wear of a pair of these two materials.
+void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], Contact& contact);
 // Of a spring across the normal that the deck leaves out beside a linear stiffness [N/m]: two solid spheres
 // that touch swing across it as fast as along it.
 inline Real standard_slip_stiffness(Real stiffness) { return Real(2) / 7 * stiffness; }
 void build_steps(const DeckTable& deck, Model& model);  // after the contacts, from which the first may follow
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
+void build_surface_fields(const DeckTable& output, Model& model);
 void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output
 void build_parallel(const DeckTable& deck, Model& model);
 

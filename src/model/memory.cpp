@@ -36,10 +36,14 @@ Real bytes_per_particle(const Model& model) {
   return bytes;
 }
 
+Real bytes_per_triangle(const Model& model) {
+  return kBytesPerTriangle + (model.output.adds_up_works() ? kBytesPerWorks : 0);
+}
+
 Real bytes_of_meshes(const Model& model) {
   Real triangles = 0;
   for (const ModelMesh& mesh : model.meshes) triangles += static_cast<Real>(mesh.surface->triangles.size());
-  return kBytesPerTriangle * triangles;
+  return bytes_per_triangle(model) * triangles;
 }
 
 std::string counted(std::int64_t count, const std::string& one, const std::string& many) {

@@ -25,6 +25,10 @@ constexpr Real kBytesPerUnknown = 1000;
 
 // A triangle of a mesh while it is prepared, on every rank [B]; measured on spheres and refined drums.
 constexpr Real kBytesPerTriangle = 560;
+// What contacts lose at it, where the output asks for it: the sums of a run, of its last good state, and in
+// the order of snapshots and checkpoints, those as numbers, too [B].
+constexpr Real kBytesPerWorks = 420;
+Real bytes_per_triangle(const Model& model);
 // Of all meshes, on this rank [B].
 Real bytes_of_meshes(const Model& model);
 

@@ -213,6 +213,7 @@ DeckTable combined_pair(const DeckTable& contact, const std::string& name_a, con
   pair.take_mean("friction"), pair.take_tangential_stiffness(), pair.take_mean("tangential_damping_ratio");
   pair.take_mean("rolling_friction"), pair.take_series("rolling_stiffness");
   pair.take_mean("rolling_damping_ratio"), pair.take_mean("rolling_damping"), pair.take_twisting();
+  pair.take_mean("wear_coefficient");
   pair.take_adhesion(), pair.take_mean("attraction"), pair.take_mean("attraction_range");
   return pair.result();
 }

@@ -74,6 +74,7 @@ struct Contact {
   std::vector<KelvinVoigt> laws;           // [i * materials + j], symmetric
   std::vector<Friction> friction;          // likewise; empty: no contact rubs
   std::vector<RollingResistance> rolling;  // likewise; empty: none resists rolling
+  std::vector<Real> wear;                  // likewise: volume per work of friction [1/Pa]; empty: none wears
   std::vector<CombinedPair> combined;      // those of the pairs that are not the deck's
   Real reach = 0;                          // beyond touch, up to which partners are looked for [m]
   Real skin = 0;                           // neighbour list reaches this far past touching [m]
@@ -134,9 +135,19 @@ struct Output {
   std::int64_t history_coordinates = 0;  // joints with coordinates, the first so many
   std::int64_t history_bushings = 100;   // the first so many
   std::vector<std::string> fields;       // of particles in snapshots: names in dem/output_fields.hpp
-  std::vector<int> history_bodies;       // indices into Model::bodies
-  std::vector<GlobalId> history_particles;  // global ids
+  std::vector<SurfaceField> surface_fields;  // of triangles in snapshots, each once
+  std::vector<int> history_bodies;           // indices into Model::bodies
+  std::vector<GlobalId> history_particles;   // global ids
   std::vector<ContactTarget> history_contacts;
+
+  bool shows(SurfaceField field) const {
+    return std::ranges::find(surface_fields, field) != surface_fields.end();
+  }
+  // Whether what contacts lose at triangles is added up as time goes on.
+  bool adds_up_works() const {
+    return shows(SurfaceField::impact_work) || shows(SurfaceField::sliding_work) ||
+           shows(SurfaceField::wear_depth);
+  }
 };
 
 // Of the discs of a 2D model whose masses follow from densities; 0 where there are none.

@@ -1,5 +1,7 @@
 #include "output/series_triangles.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "base/error.hpp"
@@ -26,6 +28,18 @@ void create_no_cells(Hdf5File& file) {
   file.link(kRoot + "Vertices/NumberOfCells", kRoot + "Vertices/NumberOfConnectivityIds");
   file.link(kRoot + "Vertices", kRoot + "Lines");
   file.link(kRoot + "Vertices", kRoot + "Strips");
+}
+
+void require_fields(const Hdf5File& file, const SeriesTriangles& triangles) {
+  if (!triangles.fields) return;
+  std::vector<std::string> held = file.dataset_names(kCellData), wanted = *triangles.fields;
+  std::erase_if(held, [&](const std::string& name) { return triangles.has(name); });
+  std::ranges::sort(held), std::ranges::sort(wanted);
+  if (held == wanted) return;
+  throw IoError(
+      fmt::format("{}: holds the fields {}, but the restarted run is to write {}; keep output.surface_fields "
+                  "as it was, or choose another folder",
+                  file.path(), fmt::join(held, ", "), fmt::join(wanted, ", ")));
 }
 
 }  // namespace
@@ -61,6 +75,7 @@ void require_triangles(const Hdf5File& file, const SeriesTriangles& triangles) {
         file.path() +
         ": holds other triangles than the restarted run has; keep the meshes as they were, or choose "
         "another folder");
+  require_fields(file, triangles);
 }
 
 }  // namespace scree

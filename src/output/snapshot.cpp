@@ -65,9 +65,19 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
 PointSnapshot surface_points(Real time, const SurfaceSnapshot& surfaces) {
   const std::int64_t points = std::ssize(surfaces.position);
   PointSnapshot snapshot{time, points, {0, points}, components(surfaces.position), {}};
-  snapshot.fields = {
-      scalar("pressure", "Pa", "normal contact forces on the triangle over its area", surfaces.pressure),
-      vector("shear", "Pa", "tangential contact forces on the triangle over its area", surfaces.shear)};
+  const auto add_scalar = [&](const char* name, const char* unit, const char* description,
+                              std::span<const Real> values) {
+    if (!values.empty()) snapshot.fields.push_back(scalar(name, unit, description, values));
+  };
+  add_scalar("pressure", "Pa", "normal contact forces on the triangle over its area", surfaces.pressure);
+  if (!surfaces.shear.empty())
+    snapshot.fields.push_back(
+        vector("shear", "Pa", "tangential contact forces on the triangle over its area", surfaces.shear));
+  add_scalar("impact_work", "J", "taken by the damping of normal contact forces since t = 0",
+             surfaces.impact_work);
+  add_scalar("sliding_work", "J", "taken by friction since t = 0", surfaces.sliding_work);
+  add_scalar("wear_depth", "m", "volume worn off since t = 0 after Archard over the triangle's area",
+             surfaces.wear_depth);
   return snapshot;
 }
 

@@ -39,8 +39,11 @@ struct BodySnapshot {
 // The meshes of walls and bodies, those that the writer was made with; on rank 0.
 struct SurfaceSnapshot {
   std::span<const Vec3> position;  // of their points [m]
-  std::span<const Real> pressure;  // per triangle: what presses on it [Pa]
-  std::span<const Vec3> shear;     // what drags it along [Pa]
+  // Per triangle; empty: left out, of all snapshots of a series.
+  std::span<const Real> pressure;                       // what presses on it [Pa]
+  std::span<const Vec3> shear;                          // what drags it along [Pa]
+  std::span<const Real> impact_work{}, sliding_work{};  // lost there since t = 0 [J]
+  std::span<const Real> wear_depth{};                   // [m]
 };
 
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +

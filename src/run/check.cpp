@@ -241,7 +241,7 @@ std::string memory_line(const Model& model, int ranks) {
       "are free here "
       "({})\n",
       megabytes(particles + unknowns + ranks * meshes), most, per_particle, kBytesPerUnknown,
-      meshes == 0 ? "" : fmt::format(", {} B per triangle on every rank", kBytesPerTriangle),
+      meshes == 0 ? "" : fmt::format(", {} B per triangle on every rank", bytes_per_triangle(model)),
       megabytes(bound.bytes), bound.set_by);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "dem/surfaces.hpp"
+#include "dem/triangle_works.hpp"
 #include "model/body_layout.hpp"
 #include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
@@ -53,6 +54,14 @@ void check_row_group(const std::string& path, const std::string& group,
     if (!expected.count(name)) refuse(path, fmt::format("dataset {}/{} is not known", group, name));
 }
 
+std::size_t triangles_of(const SurfaceSet& surfaces, const Model& model) {
+  std::size_t triangles = 0;
+  for (Index s = 0; s < surfaces.placed(); ++s)
+    if (surfaces.at(s).kind == SurfaceKind::mesh)
+      triangles += model.meshes[static_cast<std::size_t>(surfaces.at(s).mesh)].surface->triangles.size();
+  return triangles;
+}
+
 }  // namespace
 
 void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
@@ -73,6 +82,8 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   sizes.bodies.wrench.resize(driven ? surfaces.carriers() : model.bodies.size());
   if (std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.runs(); }))
     sizes.bodies.slide_power.resize(surfaces.carriers() - model.bodies.size());
+  if (checkpoint.integers.count(kWorksName) > 0)
+    sizes.works.resize(kWordsPerTriangle * triangles_of(surfaces, model));
   // What contacts remember may be there or not, and so may rotation: no history is none.
   sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
   Checkpoint expected = pack(sizes);

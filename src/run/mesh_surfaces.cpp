@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/mat3.hpp"
+#include "dem/triangle_works.hpp"
 #include "partition/subdomain.hpp"
 
 namespace scree {
@@ -27,6 +28,8 @@ MeshSurfaces::MeshSurfaces(const Model& model) : model_(model), surfaces_(model)
 
 SeriesTriangles MeshSurfaces::triangles() const {
   SeriesTriangles all;
+  all.fields.emplace();
+  for (const SurfaceField field : model_.output.surface_fields) all.fields->push_back(word_of(field));
   all.corners.resize(3 * triangles_);
   all.numbers = {
       {"surface", "mesh of a body or a wall, counted from 0 in this order", {}},
@@ -62,9 +65,35 @@ void MeshSurfaces::place(const Part& part, const BodyMotion& carrier, Vec3* posi
   for (const Vec3 vertex : part.mesh->vertices) *position++ = point + axes * vertex + shift;
 }
 
-MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion,
-                                      std::span<const TriangleLoad> loads) const {
-  Look look{std::vector<Vec3>(points_), std::vector<Real>(triangles_), std::vector<Vec3>(triangles_)};
+void MeshSurfaces::take_works(const std::vector<std::int64_t>& works, Look& look) const {
+  const std::vector<TriangleWorkValues> values = work_values(works);
+  const auto show = [&](SurfaceField field, std::vector<Real>& to, const auto& value) {
+    if (!model_.output.shows(field)) return;
+    to.resize(triangles_);
+    for (const Part& part : parts_)
+      for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
+        const std::size_t row = part.first_triangle + static_cast<std::size_t>(part.mesh->original[t]);
+        to[row] = value(values[row], *part.mesh, part.mesh->triangles[t]);
+      }
+  };
+  using Values = TriangleWorkValues;
+  show(SurfaceField::impact_work, look.impact_work,
+       [](const Values& of, const SurfaceMesh&, const MeshTriangle&) { return of.impact; });
+  show(SurfaceField::sliding_work, look.sliding_work,
+       [](const Values& of, const SurfaceMesh&, const MeshTriangle&) { return of.sliding; });
+  show(SurfaceField::wear_depth, look.wear_depth,
+       [](const Values& of, const SurfaceMesh& mesh, const MeshTriangle& triangle) {
+         return of.worn / area(mesh, triangle);
+       });
+}
+
+MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
+                                      const std::vector<std::int64_t>& works) const {
+  Look look{};
+  look.position.resize(points_);
+  if (model_.output.shows(SurfaceField::pressure)) look.pressure.resize(triangles_);
+  if (model_.output.shows(SurfaceField::shear)) look.shear.resize(triangles_);
+  take_works(works, look);
   for (const Part& part : parts_)
     place(part, motion[static_cast<std::size_t>(surfaces_.at(part.surface).carrier)],
           look.position.data() + part.first_point);
@@ -74,7 +103,8 @@ MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion,
     const auto t = static_cast<std::size_t>(load.triangle);
     const std::size_t row = part->first_triangle + static_cast<std::size_t>(mesh.original[t]);
     const Real per_area = 1 / area(mesh, mesh.triangles[t]);
-    look.pressure[row] = per_area * load.normal, look.shear[row] = per_area * load.tangential;
+    if (!look.pressure.empty()) look.pressure[row] = per_area * load.normal;
+    if (!look.shear.empty()) look.shear[row] = per_area * load.tangential;
   }
   return look;
 }

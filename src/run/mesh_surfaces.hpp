@@ -1,6 +1,7 @@
 // The meshes of walls and bodies as snapshots show them.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,15 +19,19 @@ class MeshSurfaces {
   // Where they are at one instant, and what acts on them.
   struct Look {
     std::vector<Vec3> position;  // of the corners [m]
-    std::vector<Real> pressure;  // per triangle [Pa]
-    std::vector<Vec3> shear;     // likewise
+    // Per triangle, those that the output shows.
+    std::vector<Real> pressure;                   // [Pa]
+    std::vector<Vec3> shear;                      // likewise
+    std::vector<Real> impact_work, sliding_work;  // [J]
+    std::vector<Real> wear_depth;                 // [m]
   };
 
   // The model is kept.
   explicit MeshSurfaces(const Model& model);
   SeriesTriangles triangles() const;
-  // motion: of the carriers (bodies, then placed walls).
-  Look look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads) const;
+  // motion: of the carriers (bodies, then placed walls); works: of all ranks, none where none is shown.
+  Look look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
+            const std::vector<std::int64_t>& works) const;
 
  private:
   struct Part {
@@ -34,6 +39,7 @@ class MeshSurfaces {
     std::size_t first_point, first_triangle;  // rows
     const SurfaceMesh* mesh;
   };
+  void take_works(const std::vector<std::int64_t>& works, Look& look) const;
   void place(const Part& part, const BodyMotion& carrier, Vec3* position) const;
 
   const Model& model_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "dem/triangle_works.hpp"
 #include "model/connections.hpp"
 #include "partition/id_order.hpp"
 #include "run/balance.hpp"
@@ -177,8 +178,12 @@ void Recorder::snapshot(State& state) {
   PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}, {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
   if (!model_.meshes.empty()) {
-    const std::vector<TriangleLoad> loads = backend_.reports().triangle_loads();
-    if (surfaces_) next.surfaces = surfaces_->look(motion, loads);
+    const Output& output = model_.output;
+    std::vector<TriangleLoad> loads;
+    if (output.shows(SurfaceField::pressure) || output.shows(SurfaceField::shear))
+      loads = backend_.reports().triangle_loads();
+    const std::vector<std::int64_t> works = all_works(backend_.particles().works(), link_.ranks());
+    if (surfaces_) next.surfaces = surfaces_->look(motion, loads, works);
   }
   for (const int body : next.shapes.body) {
     next.angle.push_back(motion[body].angle);
@@ -201,10 +206,12 @@ void Recorder::write_pending() {
   const ParticleOutput p =
       in_id_order(link_.ranks(), model_.particles.totals.count, backend_.reports().output());
   const ShapePack& s = snapshot.shapes;
+  const MeshSurfaces::Look& surfaces = snapshot.surfaces;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
                       s.force, s.contacts, snapshot.orientation, snapshot.spin, snapshot.origin},
-                     {snapshot.surfaces.position, snapshot.surfaces.pressure, snapshot.surfaces.shear});
+                     {surfaces.position, surfaces.pressure, surfaces.shear, surfaces.impact_work,
+                      surfaces.sliding_work, surfaces.wear_depth});
 }
 
 void Recorder::flush_history() {

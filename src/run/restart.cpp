@@ -141,6 +141,14 @@ void check_allowed(const Differences& differences, const Model& model, const Run
                   options.restart, listed(refused)));
 }
 
+void check_works(const Checkpoint& checkpoint, const Model& model, const RunOptions& options) {
+  if (!model.output.adds_up_works() || checkpoint.integers.count(kWorksName) > 0) return;
+  throw InputError(fmt::format(
+      "--restart {}: output.surface_fields asks for works or wear, which count from t = 0, and the run that "
+      "wrote the checkpoint has not added them up",
+      options.restart));
+}
+
 // The deck's values hold from now on. What the state carries on from the steps before belongs to the old
 // ones, forces and accelerations to the old model.
 void apply(const Differences& differences, const Model& model, Restart& restart) {
@@ -192,6 +200,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     differences = differences_until(checkpoint, options);
     check_allowed(differences, model, options);
     check_datasets(checkpoint, model, {"changes", "deck", "fingerprint", kHash});
+    check_works(checkpoint, model, options);
   });
   restart.state = unpack(checkpoint, ranks);
   check_state(restart.state, options.restart, model.particles.totals.count, ranks);
@@ -199,6 +208,7 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     if (differences.empty()) check_constants(restart.state, options.restart, model.particles.totals);
   });
   check_hash(restart.state, checkpoint, ranks);
+  if (!model.output.adds_up_works()) restart.state.works = {};
   // Of a version that did not count them: from here on.
   MultibodyState& bodies = restart.state.bodies;
   const auto angles = static_cast<std::size_t>(counted_angles(model));

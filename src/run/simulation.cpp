@@ -10,6 +10,7 @@
 #include <ctime>
 
 #include "dem/particle_store.hpp"
+#include "dem/triangle_works.hpp"
 #include "model/memory.hpp"
 #include "output/results_folder.hpp"
 #include "output/run_record.hpp"
@@ -140,7 +141,8 @@ void Simulation::load_state() {
   if (restart_.changed) take_constants(model_.particles, state_.particles);
   backend_->particles().load(state_.particles, state_.shapes);
   backend_->particles().load_contacts(state_.contacts);
-  state_.particles = {}, state_.contacts = {};
+  if (ranks_.is_root()) backend_->particles().load_works(state_.works);
+  state_.particles = {}, state_.contacts = {}, state_.works = {};
 }
 
 // Of the bodies' velocities, on rank 0.
@@ -167,12 +169,13 @@ void Simulation::bring_into_id_order(State& state) const {
 
 void Simulation::checkpoint(State& state, const std::string& name) {
   recorder_->flush();
+  state.works = all_works(std::move(state.works), ranks_);
   state_hash_ = hash_of_all(state, ranks_);
   bring_into_id_order(state);
   Checkpoint out = pack(state);
   add_restart_texts(out, options_, state_hash_, restart_.changes);
   write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
-  state.particles = {}, state.contacts = {};
+  state.particles = {}, state.contacts = {}, state.works = {};
 }
 
 // Warns once.

@@ -32,6 +32,9 @@ class Writer {
   void if_any(const char* name, const std::vector<Real>& values) {
     if (!values.empty()) (*this)(name, values);
   }
+  void if_any(const char* name, const std::vector<std::int64_t>& values) {
+    if (!values.empty()) out_.integers[name] = values;
+  }
   void poses(const std::vector<Real>& position, std::size_t angles) {
     const auto end = position.end() - static_cast<std::ptrdiff_t>(angles);
     out_.reals[kPositions].assign(position.begin(), end);
@@ -56,6 +59,9 @@ class Reader {
   void operator()(const char* name, std::vector<Real>& values) { values = in_.real_array(name); }
   void if_any(const char* name, std::vector<Real>& values) {
     if (in_.reals.count(name) > 0) (*this)(name, values);
+  }
+  void if_any(const char* name, std::vector<std::int64_t>& values) {
+    if (in_.integers.count(name) > 0) values = in_.integer_array(name);
   }
   void poses(std::vector<Real>& position, std::size_t& angles) {
     position = in_.real_array(kPositions);
@@ -93,6 +99,9 @@ class Hasher {
     for (const Real value : values) hash_.add(value);
   }
   void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
+  void if_any(const char*, const std::vector<std::int64_t>& values) {
+    for (const std::int64_t value : values) hash_.add(value);
+  }
   // Of the angles the turns, where one has been round: all else of them follows from the bodies' poses.
   void poses(const std::vector<Real>& position, std::size_t angles) {
     const auto turns = [](Real angle) { return std::nearbyint(angle / (2 * M_PI)); };
@@ -120,6 +129,7 @@ class FiniteCheck {
     for (const Real value : values) check(name, value);
   }
   void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
+  void if_any(const char*, const std::vector<std::int64_t>&) {}
   void poses(const std::vector<Real>& position, std::size_t) { (*this)(kPositions, position); }
   void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
     for (const BodyWrench& w : wrenches)
@@ -187,6 +197,7 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("shapes/contact_loss", state.shapes.contact_loss);
   visit("shapes/loss_power", state.shapes.loss_power);
   visit("shapes/integrator_loss", state.shapes.integrator_loss);
+  visit.if_any(kWorksName, state.works);
   visit("carried_out/left", state.carried_out.left);
   visit("carried_out/removed", state.carried_out.removed);
   visit("carried_out/energy", state.carried_out.energy);

@@ -30,12 +30,17 @@ struct State {
   FieldsThere there;      // of these
   KeptContacts contacts;  // of these, where the law remembers something
   ShapeLosses shapes;
+  // Lost at the triangles of meshes (TriangleWorks), where the output asks for it; in a checkpoint those of
+  // all ranks. Between checkpoints they live in the backend, too.
+  std::vector<std::int64_t> works;
   CarriedOut carried_out;
   BalanceState balance;
   // Taken so far; all of them are on disk before a checkpoint with these counts is.
   std::int64_t history_rows = 0, snapshots = 0;
 };
 
+// The dataset of State::works.
+inline constexpr const char* kWorksName = "surfaces/works";
 // Which fields the checkpoint's particles have.
 FieldsThere fields_there(const Checkpoint& in);
 // With this rank's particles; to be used as long as the state is there, and the same.

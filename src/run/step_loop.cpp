@@ -147,9 +147,11 @@ void StepLoop::keep_good_state() {
   good_.reset();                   // two copies are not needed
   std::vector<Particle> particles = std::move(complete_state().particles);
   KeptContacts contacts = std::move(state_.contacts);
-  state_.particles = {}, state_.contacts = {};
+  std::vector<std::int64_t> works = std::move(state_.works);
+  state_.particles = {}, state_.contacts = {}, state_.works = {};
   good_ = state_;
   good_->particles = std::move(particles), good_->contacts = std::move(contacts);
+  good_->works = std::move(works);
   good_age_ = parts_.seconds();
   good_cost_ = good_age_ - start;
 }
@@ -161,6 +163,7 @@ State& StepLoop::complete_state() {
   state_.there = fields_there(parts_.model);
   state_.contacts = parts_.backend.particles().contacts();
   state_.shapes = parts_.backend.particles().shape_losses();
+  state_.works = parts_.backend.particles().works();
   return state_;
 }
 

@@ -4,7 +4,7 @@ Usage: SCREE=path/to/scree python3 test_meshes.py"""
 import struct
 import unittest
 
-from test_cli import BAD_INPUT, DONE, CommandLineTest
+from test_cli import BAD_INPUT, DONE, IO_FAILED, CommandLineTest
 
 DECK = """gravity = [0.0, 0.0, -9.8066]
 
@@ -129,7 +129,14 @@ class BadDeckTest(MeshTest):
         body = 'bodies=[{name="b",kind="spatial",position=[0,0,0.5],%s}]'
         mass = "mass=1.0,inertia_tensor=[1,1,1,0,0,0]"
         attraction = 'contact.pairs=[{stiffness=1e5,attraction=1e-3,attraction_range=1e-3}]'
+        works = 'output.surface_fields=["sliding_work","wear_depth"]'
         cases = [
+            (['output.surface_fields=["slidng_work"]'], 'there is no field "slidng_work" of surfaces; did you mean'),
+            (['output.surface_fields=["shear","shear"]'], '"shear" is repeated'),
+            ([works, "walls=[]", "meshes=[]"], "only triangles have works and wear, and the deck has no meshes"),
+            ([works], "wear_depth needs a pair in contact.pairs with a wear_coefficient above 0"),
+            (["contact.pairs.0.wear_coefficient=1e-12"], "wear_coefficient=1e-12: needs friction above 0 beside it"),
+            (["contact.pairs.0.wear_coefficient=-1e-12"], "wear_coefficient must be a number of at least 0"),
             (["walls.rock.mesh=rocks"], "no mesh named \"rocks\""),
             (["walls.rock.normal=[0,0,1]"], "not used together with mesh"),
             ([body % (mass + ',meshes=[{mesh="sand"}]')], "no mesh named \"sand\""),
@@ -186,6 +193,23 @@ class ReportTest(MeshTest):
                 (['meshes=[{name="rock",kind="sphere",radius=0.5,levels=1}]'], "beside the smooth surface")]:
             with self.subTest(settings=settings):
                 self.assertIn(text, self.report(*settings)[1])
+
+    def test_works_count_from_the_start_and_keep_their_file(self):
+        def setting(*fields):
+            return "--set", f"output.surface_fields={list(fields)}".replace("'", '"')
+        self.run_deck(DONE, "out")
+        self.run_deck(DONE, "works", *setting("impact_work"))
+        longer = ("--set", "time.end=2e-3")
+
+        def restart(output):
+            return "--restart", self.folder / output / "checkpoint_end.h5", *longer
+        message = self.run_deck(BAD_INPUT, "other", *restart("out"), *setting("impact_work")).stderr
+        self.assertIn("works or wear, which count from t = 0", message)
+        message = self.run_deck(IO_FAILED, "works", *restart("works"), *setting("sliding_work")).stderr
+        for word in ("surfaces.vtkhdf", "impact_work", "sliding_work", "keep output.surface_fields as it was"):
+            self.assertIn(word, message)
+        self.run_deck(DONE, "more", *restart("works"), *setting("sliding_work", "pressure"))
+        self.run_deck(DONE, "none", *restart("works"))
 
     def test_a_run_goes_on_with_the_same_mesh_alone(self):
         self.run_deck(DONE, "out")

@@ -173,6 +173,7 @@ def check_surfaces(path, names, steps):
         root = file["VTKHDF"]
         triangles = root["Polygons/Connectivity"][:].reshape(-1, 3)
         once = {name: root[f"CellData/{name}"][:] for name in ("surface", "body", "wall", "material", "triangle")}
+        fields = [name for name in root["CellData"] if name not in once]
         start, pushed = root["Points"][: root["NumberOfPoints"][0]], 0
         for step, time in enumerate(root["Steps/Values"][:]):
             where = f"{path}, step {step}"
@@ -184,9 +185,9 @@ def check_surfaces(path, names, steps):
             points = vtk_to_numpy(data.GetPoints().GetData())
             first = step * len(start)
             require(np.array_equal(points, root["Points"][first : first + len(start)]), f"{where}: Points differ")
-            values = {name: vtk_to_numpy(data.GetCellData().GetArray(name)) for name in (*once, "pressure", "shear")}
+            values = {name: vtk_to_numpy(data.GetCellData().GetArray(name)) for name in (*once, *fields)}
             rows = slice(step * len(triangles), (step + 1) * len(triangles))
-            raw = once | {name: root[f"CellData/{name}"][rows] for name in ("pressure", "shear")}
+            raw = once | {name: root[f"CellData/{name}"][rows] for name in fields}
             for name, array in raw.items():
                 require(np.array_equal(values[name], array), f"{where}: {name} differs")
             sides = points[triangles[:, 1:]] - points[triangles[:, :1]]

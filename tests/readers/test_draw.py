@@ -172,6 +172,20 @@ class SurfaceTest(unittest.TestCase):
         self.assertGreater(differ(drawn, bare).mean(), 0.1)  # the drum is there
         self.assertGreater(differ(drawn, empty).mean(), 0.02)  # and what is in it
 
+    def test_a_field_colours_the_triangles_that_have_some(self):
+        plain, run = self.image(Run(DRUM)), Run(DRUM)
+        snapshots = range(len(run.particles))
+        run.surfaces.color_by("wear_depth", snapshots)
+        self.assertEqual(run.surfaces.label(), "wear_depth [m]")
+        values = [run.surfaces.values(snapshot)["bodies"] for snapshot in snapshots]
+        self.assertEqual(values[0].max(), 0)
+        self.assertTrue((values[-1] >= values[1]).all())  # it only grows
+        self.assertTrue(0 < run.surfaces.limit <= values[-1].max())
+        if vtk_renders():
+            self.assertGreater((np.abs(self.image(run) - plain).max(axis=2) > 0.1).mean(), 0.1)
+        with self.assertRaises(SystemExit):
+            run.surfaces.color_by("speed", snapshots)
+
     @staticmethod
     def image(run):
         with tempfile.TemporaryDirectory() as folder:

@@ -128,6 +128,10 @@ TEST_CASE("a restarted run goes on with the triangles that it has written, and w
   CHECK_THROWS_AS(surface_writer(scratch, 5, others), IoError);
   others = kTriangles, others.numbers[0].values[1] = 3;
   CHECK_THROWS_AS(surface_writer(scratch, 5, others), IoError);
+  others = kTriangles, others.fields = {"shear", "pressure"};
+  CHECK_NOTHROW(surface_writer(scratch, 5, others));
+  others.fields->emplace_back("sliding_work");
+  CHECK_THROWS_AS(surface_writer(scratch, 5, others), IoError);
   std::filesystem::remove(scratch / "surfaces.vtkhdf");
   SnapshotWriter writer = surface_writer(scratch, 5);
   CHECK_THROWS_AS(write_surfaces(writer, 6), IoError);

@@ -51,6 +51,7 @@ State awkward_state() {
   }
   s.there = {true, true};
   s.shapes = {n.real(), n.real()};
+  for (int k = 0; k < 30; ++k) s.works.push_back(k % 2 == 0 ? n.integer() : -n.integer());
   s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(), {{n.real(), n.real(), n.real()}}};
   s.balance.open = true, s.balance.start = n.real(), s.balance.exchanged = n.real();
   s.balance.last = {n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real()};
@@ -87,6 +88,7 @@ TEST_CASE("what a checkpoint holds is the state") {
   CHECK(same_bits(after.bodies.driver_work, before.bodies.driver_work));
   CHECK(differing_fields(after.particles, before.particles) == "");
   CHECK(same_bits(after.shapes.loss_power, before.shapes.loss_power));
+  CHECK(after.works == before.works);
   CHECK(after.carried_out.removed == before.carried_out.removed);
   CHECK(after.balance.open);
   CHECK(same_bits(after.balance.last.entries(), before.balance.last.entries()));
@@ -100,6 +102,16 @@ TEST_CASE("the hash is of what was computed, not of what was written") {
   CHECK(state_hash(other, true) == state_hash(state, true));
   ++other.counts.steps;
   CHECK(state_hash(other, true) != state_hash(state, true));
+}
+
+TEST_CASE("works of triangles are hashed where there are some, and else no part of a checkpoint") {
+  const State state = awkward_state();
+  State other = state;
+  ++other.works[7];
+  CHECK(state_hash(other, true) != state_hash(state, true));
+  other.works.clear();
+  CHECK(!pack(other).integers.contains(kWorksName));
+  CHECK(unpack(pack(other)).works.empty());
 }
 
 TEST_CASE("the hash is of every field that changes in time, and of no other") {

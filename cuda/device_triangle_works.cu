@@ -1,0 +1,55 @@
+#include "device_triangle_works.cuh"
+#include "for_each.cuh"
+
+namespace scree {
+namespace {
+
+// Integers add up to the same bits in whatever order the threads come.
+struct AtomicAdd {
+  __device__ static void add(std::int64_t& word, std::int64_t piece) {
+    atomicAdd(reinterpret_cast<unsigned long long*>(&word), static_cast<unsigned long long>(piece));
+  }
+};
+
+template <class Works>
+using BookItem = TriangleBookItem<Works, AtomicAdd>;
+
+struct BookInRunItem {
+  BookItem<ExplicitWorks> book;
+  const VerletControl* control;
+
+  __device__ void operator()(Index g) const {
+    if (!control->stop) book(g);
+  }
+};
+
+}  // namespace
+
+DeviceTriangleWorks::DeviceTriangleWorks(const Model& model, cudaStream_t stream) : works_(model) {
+  if (!exist()) return;
+  first_.upload(works_.first(), stream), wear_.upload(works_.wear(), stream);
+  load({}, stream);
+}
+
+template <class Works>
+void DeviceTriangleWorks::book(Device device, const SurfaceViews& in, Index groups, const Works& works) {
+  if (exist()) for_each(device, groups, BookItem<Works>{in, table(), works, sums_.data()});
+}
+template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ExplicitWorks&);
+template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ImplicitWorks&);
+template void DeviceTriangleWorks::book(Device, const SurfaceViews&, Index, const ImplicitRubbingWorks&);
+
+void DeviceTriangleWorks::book_in_run(Device device, const SurfaceViews& in, Index groups,
+                                      const ExplicitWorks& works, const VerletControl* control) {
+  if (exist()) for_each(device, groups, BookInRunItem{{in, table(), works, sums_.data()}, control});
+}
+
+void DeviceTriangleWorks::load(const std::vector<std::int64_t>& words, cudaStream_t stream) {
+  if (exist()) sums_.upload(works_.sums(words), stream);
+}
+
+std::vector<std::int64_t> DeviceTriangleWorks::words(cudaStream_t stream) const {
+  return exist() ? works_.words(sums_.download(stream)) : std::vector<std::int64_t>{};
+}
+
+}  // namespace scree

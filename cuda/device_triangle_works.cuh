@@ -1,0 +1,41 @@
+// What contacts have lost at the triangles of meshes since t = 0, on the device: TriangleWorks of a rank.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "contact_kernels.cuh"
+#include "dem/triangle_works.hpp"
+#include "device.cuh"
+#include "model/model.hpp"
+
+namespace scree {
+
+class DeviceTriangleWorks {
+ public:
+  DeviceTriangleWorks(const Model& model, cudaStream_t stream);
+  bool exist() const { return works_.exist(); }
+
+  // Queues the books of a step that is closed, of the contacts of these groups as they were found last.
+  template <class Works>
+  void book(Device device, const SurfaceViews& in, Index groups, const Works& works);
+  // The same of whatever explicit step is open when the kernel runs: the run's next kernel closes it.
+  void book_in_run(Device device, const SurfaceViews& in, Index groups, const ExplicitWorks& works,
+                   const VerletControl* control);
+
+  // As RankParticles has them; both wait.
+  void load(const std::vector<std::int64_t>& words, cudaStream_t stream);
+  std::vector<std::int64_t> words(cudaStream_t stream) const;
+
+ private:
+  TriangleWorkTable table() const {
+    return {first_.data(), works_.wear().empty() ? nullptr : wear_.data(), works_.materials()};
+  }
+
+  TriangleWorks works_;
+  DeviceArray<std::int64_t> first_;
+  DeviceArray<Real> wear_;
+  DeviceArray<TriangleWork> sums_;
+};
+
+}  // namespace scree

@@ -1,0 +1,80 @@
+// Sum of doubles at binary places that never move: as long as a run and beyond it, the same bits in any order
+// and for any split, over ranks, restarts, and threads that add at the same time.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "base/hd.hpp"
+#include "base/types.hpp"
+
+namespace scree {
+
+// Limbs of 32 binary places, the lowest of them 2^-96; each term is cut there, adds a whole number to three
+// limbs at most, and must be below 2^32 in size. Beside the limbs stands how many terms were not, or not
+// finite: the sum is then a NaN. Limbs take 2^31 terms between one normalize() and the next. Unlike ExactSum
+// it need not know the largest term, and words of parts add up by integer addition, atomic or not.
+class FixedSum {
+ public:
+  static constexpr int kLimbs = 4, kBad = kLimbs, kWords = kLimbs + 1;
+
+  // Calls put(word, whole number) for what the term adds to the words.
+  template <class Put>
+  SCREE_HD static void for_each_piece(Real term, const Put& put) {
+    std::int64_t bits;
+    std::memcpy(&bits, &term, sizeof bits);
+    const auto exponent = static_cast<int>(bits >> kMantissaBits & kExponentMask);
+    if (exponent >= kTooLarge) return put(kBad, std::int64_t{1});
+    int place = exponent - kLowestPlace;  // of the mantissa's last bit, counted from the lowest
+    if (exponent == 0 || place <= -kMantissaBits - 1) return;
+    std::uint64_t mantissa = (static_cast<std::uint64_t>(bits) & kMantissaMask) | kHiddenBit;
+    if (place < 0) mantissa >>= -place, place = 0;
+    const int first = place / kLimbBits, shift = place % kLimbBits;
+    const std::int64_t sign = bits < 0 ? -1 : 1;
+    // Its 84 bits at most, from the first limb on.
+    const std::uint64_t pieces[] = {mantissa << shift & kLimbMask,
+                                    mantissa >> (kLimbBits - shift) & kLimbMask,
+                                    mantissa >> kLimbBits >> (kLimbBits - shift)};
+    for (int k = 0; k < 3; ++k)
+      if (pieces[k] != 0) put(first + k, sign * static_cast<std::int64_t>(pieces[k]));
+  }
+
+  SCREE_HD void add(Real term) {
+    for_each_piece(term, [this](int k, std::int64_t piece) { word[k] += piece; });
+  }
+  void add(const FixedSum& part) {
+    for (int k = 0; k < kWords; ++k) word[k] += part.word[k];
+  }
+  // Carries what limbs have past their places upwards: the same number, of which there is one such form.
+  void normalize() {
+    for (int k = 0; k + 1 < kLimbs; ++k) {
+      const std::int64_t past = word[k] >> kLimbBits;  // rounded down
+      word[k] -= past * (std::int64_t{1} << kLimbBits), word[k + 1] += past;
+    }
+  }
+  // The sum, rounded once.
+  Real value() const {
+    if (word[kBad] != 0) return NAN;
+    FixedSum sum = *this;
+    sum.normalize();
+    __int128 whole = sum.word[3];
+    whole = (whole << kLimbBits) + sum.word[2], whole = (whole << kLimbBits) + sum.word[1];
+    const bool fits = whole >> 94 == 0 || whole >> 94 == -1;
+    if (fits) return std::ldexp(static_cast<Real>((whole << kLimbBits) + sum.word[0]), -3 * kLimbBits);
+    // The lowest limb is past the last of 94 bits: all that counts is whether it is zero.
+    return std::ldexp(static_cast<Real>(whole | (sum.word[0] != 0)), -2 * kLimbBits);
+  }
+
+  std::int64_t word[kWords] = {};  // limbs, the lowest first; number of bad terms
+
+ private:
+  static constexpr int kMantissaBits = 52, kLimbBits = 32, kExponentBias = 1023, kExponentMask = 0x7ff;
+  static constexpr int kTooLarge = kExponentBias + 32;  // exponent of 2^32
+  static constexpr int kLowestPlace = kExponentBias + kMantissaBits - 3 * kLimbBits;
+  static constexpr std::uint64_t kLimbMask = (std::uint64_t(1) << kLimbBits) - 1,
+                                 kHiddenBit = std::uint64_t(1) << kMantissaBits,
+                                 kMantissaMask = kHiddenBit - 1;
+};
+
+}  // namespace scree
