@@ -79,65 +79,93 @@ struct MeshTouchItem {
     const Vec4 p = in.position[i];
     const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
     const Vec3 c = transposed_times(frame.axes, from_point);
-    MeshContact found[kMeshSlots];
-    // It rests or rolls on the triangle that it touched last, if the list is no newer.
-    const int count =
-        min_of(find_mesh_contacts(mesh, c, p.w, in.meshes.triangles + group.first_triangle, group.triangles,
-                                  found, touches[group.entry].triangle, group.entries == 1),
-               static_cast<int>(group.entries));
-    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
-    for (int k = 0; k < count; ++k) {
-      MeshTouch& out = touches[group.entry + k];
-      const FeaturePair pair = feature_pair(mesh, found[k], frame.axes, c, p.w);
-      out = {pair.geometry.overlap > 0,
-             is_face(mesh, found[k].feature),
-             pair.geometry,
-             pair.contact,
-             pair.geometry.normal(),
-             found[k].feature,
-             found[k].triangle,
-             -1};
-    }
-    if (in.history.bodies == nullptr) return;
     const Vec3 travel = in.h > 0 ? in.h * xyz(in.velocity[i]) - surface.travel : Vec3{};
     const Vec3 c0 = in.h > 0 ? transposed_times(frame.before, from_point - travel) : c;
-    const Mat3& axes0 = in.h > 0 ? frame.before : frame.axes;
-    go_on(group, mesh, {found, count}, axes0, c0, p.w);
+    const Sphere sphere{mesh, frame.axes, in.h > 0 ? frame.before : frame.axes, c, c0, p.w};
+    // It rests or rolls on the triangle that it touched last, if the list is no newer.
+    const Index last = touches[group.entry].triangle;
+    if (group.entries == 1 && stay(group.entry, sphere, last)) return;
+    MeshContact found[kMeshSlots];
+    const int count = min_of(find_mesh_contacts(mesh, c, p.w, in.meshes.triangles + group.first_triangle,
+                                                group.triangles, found, last),
+                             static_cast<int>(group.entries));
+    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
+    for (int k = 0; k < count; ++k) put(group.entry + k, sphere, found[k]);
+    if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
   }
 
  private:
+  // How it lies in the frame of the mesh, now and where the step began.
+  struct Sphere {
+    const MeshView& mesh;
+    const Mat3 &axes, &axes0;
+    Vec3 c, c0;
+    Real radius;
+
+    // Of a contact with this feature where the step began; side: as in mesh_feature_at().
+    SCREE_HD Vec3 normal0_of(Index feature, Vec3 side) const {
+      return normal0_of(mesh_feature_at(mesh, feature, c0, side));
+    }
+    SCREE_HD Vec3 normal0_of(const MeshContact& contact) const {
+      return feature_pair(mesh, contact, axes0, c0, radius).geometry.normal();
+    }
+  };
+  SCREE_HD void put(Index entry, const Sphere& of, const MeshContact& found) const {
+    const FeaturePair pair = feature_pair(of.mesh, found, of.axes, of.c, of.radius);
+    touches[entry] = {pair.geometry.overlap > 0,
+                      is_face(of.mesh, found.feature),
+                      pair.geometry,
+                      pair.contact,
+                      pair.geometry.normal(),
+                      found.feature,
+                      found.triangle,
+                      -1};
+  }
+  SCREE_HD bool remembers(Index entry) const {
+    return in.history.bodies[std::int64_t{entry} * in.records].w == in.history.step;
+  }
+  // The only entry of its group, which is then near one plane and no edge of it. False: not on that face, or
+  // not only.
+  SCREE_HD bool stay(Index entry, const Sphere& sphere, Index triangle) const {
+    MeshContact face;
+    if (!stays_over(sphere.mesh, triangle, sphere.c, sphere.radius, face)) return false;
+    const bool goes_on = in.history.bodies != nullptr && remembers(entry);
+    if (goes_on && in.history.features[entry] != face.feature) return false;
+    put(entry, sphere, face);
+    if (in.history.bodies != nullptr) touches[entry].normal0 = sphere.normal0_of(face.feature, face.normal);
+    if (goes_on) touches[entry].from = entry;
+    return true;
+  }
   struct Found {
     const MeshContact* contacts;
     int count;
   };
   // Finds what the contacts go on from; of those that do, and of the others, the normals where the step
   // began.
-  SCREE_HD void go_on(const MeshGroup& group, const MeshView& mesh, const Found& found, const Mat3& axes0,
-                      Vec3 c0, Real radius) const {
+  SCREE_HD void go_on(const MeshGroup& group, const Sphere& sphere, const Found& found) const {
+    const MeshView& mesh = sphere.mesh;
     RememberedTouches old;
     for (Index e = group.entry; e < group.entry + group.entries; ++e) {
-      if (in.history.bodies[std::int64_t{e} * in.records].w != in.history.step) continue;
+      if (!remembers(e)) continue;
       const Index feature = in.history.features[e];
       old.entry[old.count] = e;
-      old.contact[old.count++] = mesh_feature_at(mesh, feature, c0, side_of(found, mesh, feature));
+      old.contact[old.count++] = mesh_feature_at(mesh, feature, sphere.c0, side_of(found, mesh, feature));
     }
     for (const Kinship kin : {Kinship::same, Kinship::same_patch, Kinship::neighbour})
       for (int k = 0; k < found.count && old.count > 0; ++k) {
         MeshTouch& out = touches[group.entry + k];
         if (out.from >= 0) continue;
         const Real overlap = out.geometry.overlap;
-        const Real close = std::sqrt((overlap > 0 ? 2 * overlap : 0) / radius);
+        const Real close = std::sqrt((overlap > 0 ? 2 * overlap : 0) / sphere.radius);
         const int before = find_kin(mesh, found.contacts[k], old, kin, close);
         if (before < 0) continue;
         out.from = old.entry[before];
-        out.normal0 = normal_of(mesh, old.contact[before], axes0, c0, radius);
+        out.normal0 = sphere.normal0_of(old.contact[before]);
         old.take_out(before);
       }
     for (int k = 0; k < found.count; ++k) {
       MeshTouch& out = touches[group.entry + k];
-      if (out.from < 0)
-        out.normal0 = normal_of(mesh, mesh_feature_at(mesh, out.feature, c0, found.contacts[k].normal), axes0,
-                                c0, radius);
+      if (out.from < 0) out.normal0 = sphere.normal0_of(out.feature, found.contacts[k].normal);
     }
   }
   // What a remembered feature of a sheet is seen along.
@@ -147,10 +175,6 @@ struct MeshTouchItem {
     return found.count > 0          ? found.contacts[0].normal
            : is_face(mesh, feature) ? mesh.parts[feature].normal
                                     : Vec3{};
-  }
-  SCREE_HD static Vec3 normal_of(const MeshView& mesh, const MeshContact& contact, const Mat3& axes, Vec3 c,
-                                 Real radius) {
-    return feature_pair(mesh, contact, axes, c, radius).geometry.normal();
   }
   SCREE_HD static int min_of(int a, int b) { return a < b ? a : b; }
 };

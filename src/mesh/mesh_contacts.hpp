@@ -159,17 +159,28 @@ SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index co
   return needed < kMeshSlots ? needed : kMeshSlots;
 }
 
+// Whether c, less than `reach` away, is well over this triangle, -1 for none, from outside: `face` is then
+// the contact with its plane, and no other triangle of that plane tells more.
+SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real reach, MeshContact& face) {
+  if (t < 0 || t >= mesh.triangle_count) return false;
+  const MeshTriangle& triangle = mesh.triangles[t];
+  const MeshPart& part = mesh.parts[triangle.part];
+  const Real height = dot(c - part.point, part.normal);
+  if (!(std::abs(height) < reach) || (height < 0 && !mesh.sheet)) return false;
+  if (!mesh_detail::is_well_over(mesh, triangle, part.normal, c)) return false;
+  face = {triangle.part, t, std::abs(height), part.point, height >= 0 ? part.normal : opposite(part.normal)};
+  return true;
+}
+
 // Looks at the triangles of a row once or, where there are more contacts than slots, several times.
 class MeshContactSearch {
  public:
   SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real reach, MeshContact* out)
       : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), depth_(reach), out_(out) {}
 
-  // likely: where the face that c is over may be found at once; -1: unknown. one_plane: all triangles lie in
-  // one, and own no feature.
-  SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely, bool one_plane) {
-    if (likely >= 0 && likely < mesh_.triangle_count) start_from(likely);
-    if (well_over_ >= 0 && one_plane && found_ > 0) return kept_ = found_;
+  // likely: a triangle that c may be over; -1: unknown.
+  SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely) {
+    if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face)) well_over_ = face.feature, add(face);
     look(triangles, count);
     const Real nearest = found_ > 0 && out_[0].distance < nearest_weak_ ? out_[0].distance : nearest_weak_;
     if (behind_ >= 0 && depth_ < nearest) return inside();
@@ -185,16 +196,6 @@ class MeshContactSearch {
   SCREE_HD void look(const Index* triangles, Index count) {
     left_out_ = false;
     for (Index i = 0; i < count; ++i) look_at(triangles[i]);
-  }
-
-  // Where c is well over a triangle no other of its plane tells more.
-  SCREE_HD void start_from(Index t) {
-    const MeshTriangle& triangle = mesh_.triangles[t];
-    const MeshPart& part = mesh_.parts[triangle.part];
-    const Real height = dot(c_ - part.point, part.normal);
-    if (!(std::abs(height) < reach_) || !mesh_detail::is_well_over(mesh_, triangle, part.normal, c_)) return;
-    add_face(t, triangle.part, part, height);
-    well_over_ = triangle.part;
   }
 
   SCREE_HD void look_at(Index t) {
@@ -338,11 +339,11 @@ class MeshContactSearch {
 // The contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and feature; the
 // nearest kMeshSlots, if there are more. triangles: all that are within reach of c; others change nothing.
 // Returns their number; what stands behind them in `out` is no contact. Inside a closed mesh it is the
-// nearest face alone, with a negative distance. likely, one_plane: as in MeshContactSearch; they change
-// nothing but the time that it takes.
+// nearest face alone, with a negative distance. likely: a triangle that c may be over; it changes nothing but
+// the time that this takes.
 SCREE_HD int find_mesh_contacts(const MeshView& mesh, Vec3 c, Real reach, const Index* triangles, Index count,
-                                MeshContact out[kMeshSlots], Index likely = -1, bool one_plane = false) {
-  return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count, likely, one_plane);
+                                MeshContact out[kMeshSlots], Index likely = -1) {
+  return MeshContactSearch(mesh, c, reach, out).contacts_of(triangles, count, likely);
 }
 
 }  // namespace scree
