@@ -59,6 +59,9 @@ void check_alike(const Model& made, const Model& given) {
   CHECK((r.friction == s.friction && r.stiffness == s.stiffness && r.damping == s.damping));
   CHECK((r.stiffness_factor == s.stiffness_factor && r.damping_ratio == s.damping_ratio));
   CHECK(r.twisting_friction == s.twisting_friction);
+  const auto slot = static_cast<std::size_t>(made.contact.materials());
+  CHECK(made.contact.wear.empty() == given.contact.wear.empty());
+  if (!made.contact.wear.empty()) CHECK(made.contact.wear[slot] == given.contact.wear[slot]);
 }
 
 void check_becomes(const std::string& made, const std::string& of_a, const std::string& of_b,
@@ -126,6 +129,9 @@ TEST_CASE("a pair that is not given follows from the like ones, key by key") {
   check_becomes("arithmetic", soft + "friction = 0.5\nrolling_friction = 0.25\n",
                 hard + "friction = 0.5\nrolling_friction = 0.25\ntwisting_friction = 0.25\n",
                 both + "friction = 0.5\nrolling_friction = 0.25\ntwisting_friction = 0.375\n");
+  check_becomes("arithmetic", soft + "friction = 0.5\nwear_coefficient = 1e-12\n",
+                hard + "friction = 0.5\nwear_coefficient = 3e-12\n",
+                both + "friction = 0.5\nwear_coefficient = 2e-12\n");
   check_becomes("arithmetic", soft + "attraction = 1.0\nattraction_range = 1e-3\n",
                 hard + "attraction = 2.0\nattraction_range = 2e-3\n",
                 both + "attraction = 1.5\nattraction_range = 1.5e-3\n");
@@ -175,6 +181,7 @@ TEST_CASE("every key of a pair is mixed") {
                                           "rolling_damping_ratio",
                                           "rolling_damping",
                                           "twisting_friction",
+                                          "wear_coefficient",
                                           "work_of_adhesion",
                                           "surface_energy",
                                           "adhesion",
