@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from model import GROUND, JOINT_KINDS, SLIDES, turned
+from model import GROUND, JOINT_KINDS, SLIDES, Motion, turned
 
 COILS = 6  # of a spring
 SHORT = 4  # springs shorter than so many units are straight lines
+BARREL = 0.6  # of a hydraulic cylinder, over its length at t = 0
 MOST_POINTS = 2000  # of a body for which bars are looked for
 
 
@@ -40,6 +41,14 @@ def zigzags(ends, width):
         + share[None, :, None] * along[:, None]
         + side[None, :, None] * (swing * across)[:, None]
     )
+
+
+def barrels(ends, start_lengths):
+    """The thick parts [n][2][3] of cylinders between ends [n][2][3], from the first end on."""
+    along = ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    share = np.minimum(BARREL * start_lengths / np.maximum(length, 1e-300), 0.9)
+    return np.stack([ends[:, 0], ends[:, 0] + share[:, None] * along], axis=1)
 
 
 class Mechanism:
@@ -84,6 +93,12 @@ class Mechanism:
         ends[:, 1] -= period * np.round(apart / np.where(period > 0, period, np.inf))
         return ends, pairs, turned(axes, motion.rotations[pairs[:, 0]])
 
+    def _start_lengths(self, motion):
+        """Of the cylinders whose bodies are known in this motion [m]."""
+        start = self.model.start
+        ends = self._ends(Motion(start.origins, start.rotations, motion.known), "cylinder")[0]
+        return np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+
     def draw(self, snapshot):
         """({style: lines [n][points][3]}, {joint's kind: points [n][3]}); "held" are points on the ground."""
         motion = self.motion(snapshot)
@@ -91,8 +106,10 @@ class Mechanism:
         shown = motion.known[owner]
         bars = motion.places(owner[shown][:, None], local[shown])
         lines = {"bar": bars, "spring": zigzags(self._ends(motion, "spring")[0], self.unit)}
+        lines["rod"] = self._ends(motion, "cylinder")[0]
+        lines["barrel"] = barrels(lines["rod"], self._start_lengths(motion))
         points, held, guides = {}, [], []
-        for kind in (*JOINT_KINDS, "torsional", "spring"):
+        for kind in (*JOINT_KINDS, "torsional", "spring", "cylinder"):
             ends, pairs, axes = self._ends(motion, kind)
             held.append(ends[pairs == GROUND] if kind != "torsional" else np.empty((0, 3)))
             if kind == "distance":
@@ -105,6 +122,6 @@ class Mechanism:
             points[kind] = ends[:, 1]
             if kind == "torsional":  # at the centre of a body
                 points[kind] = np.where(pairs[:, 1:] == GROUND, ends[:, 0], ends[:, 1])
-        points["distance"] = points["spring"] = np.empty((0, 3))
+        points["distance"] = points["spring"] = points["cylinder"] = np.empty((0, 3))
         points["held"], lines["guide"] = np.concatenate(held), np.concatenate(guides)
         return lines, points

@@ -14,6 +14,7 @@ JOINT_KINDS = ("revolute", "translational", "fixed", "distance", "spherical", "u
                "cylindrical", "screw", "planar", "point-on-line", "point-on-plane")
 SLIDES = ("translational", "cylindrical", "screw", "point-on-line")  # along an axis
 SPRING_TABLES = {"spring_dampers": "spring", "torsional_spring_dampers": "torsional"}
+UNDRIVEN = (None, 0, {"kind": "constant", "value": 0})  # actuators of springs that are no more than springs
 
 
 def in_space(vector):
@@ -199,7 +200,7 @@ class Model:
             add(table["type"], table, common=table["type"] != "distance")
         for key, kind in SPRING_TABLES.items():
             for table in deck.get(key, []):
-                add(kind, table, common=False)
+                add(kind if table.get("actuator") in UNDRIVEN else "cylinder", table, common=False)
         self.connections = {kind: found.arrays() for kind, found in self.connections.items()}
 
     @property

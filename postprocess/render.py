@@ -3,6 +3,7 @@
 import pathlib
 import subprocess
 import sys
+from dataclasses import dataclass
 
 import matplotlib
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from model import read_model
 from results import fail, open_series, read_history
-from scenes import DiscScene, SphereScene
+from scenes import WALL_OPACITY, DiscScene, SphereScene
 from surfaces import Surfaces
 
 COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
@@ -70,11 +71,11 @@ def speed_limit(particles, snapshots):
 class Picture:
     """One figure whose scene changes from snapshot to snapshot."""
 
-    def __init__(self, scene, run, snapshots):
+    def __init__(self, scene, run, snapshots, fastest):
         self.scene, self.run = scene, run
         width, height = scene.size()
         self.figure, axes = plt.subplots(figsize=(width + 1.6, height + 1.1), dpi=120, layout="constrained")
-        scene.set_up(axes, COLOR_MAP, speed_limit(run.particles, snapshots))
+        scene.set_up(axes, COLOR_MAP, fastest)
         self.bar = None
         if any(len(run.particles.rows(snapshot, "radius")) for snapshot in snapshots):
             self.bar = self.figure.colorbar(scene.colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
@@ -108,12 +109,22 @@ def counted(count, one, many):
     return f"{count:,} {one if count == 1 else many}"
 
 
-def make_picture(run, snapshots, view=None, with_vtk=False):
+@dataclass
+class Look:
+    """What a user may choose of pictures."""
+
+    view: list | None = None  # part of the plane, of runs in it [m]
+    opacity: float = WALL_OPACITY  # of meshes on bodies
+    fastest: float | None = None  # upper end of the colour scale [m/s]
+    surfaces: str | None = None  # field by which meshes are coloured
+
+
+def make_picture(run, snapshots, with_vtk=False, look=Look()):
     if run.model.planar:
-        scene = DiscScene(run, snapshots, view)
+        scene = DiscScene(run, snapshots, look.view)
     else:
-        scene = SphereScene(run, snapshots, with_vtk)
-    return Picture(scene, run, snapshots)
+        scene = SphereScene(run, snapshots, with_vtk, look.opacity)
+    return Picture(scene, run, snapshots, look.fastest or speed_limit(run.particles, snapshots))
 
 
 def save_picture(picture, snapshot, path):
@@ -140,17 +151,17 @@ def save_animation(picture, snapshots, directory):
     return path
 
 
-def draw_run(directory, frames, view, with_vtk, surface_field=None):
+def draw_run(directory, frames, with_vtk, look):
     """Writes the final state and, with more than one frame, the animation; yields their paths."""
     run = Run(directory)
-    if view and not run.model.planar:
+    if look.view and not run.model.planar:
         fail("--view is for runs in the plane")
     with_vtk = with_vtk and not run.model.planar and vtk_renders()
     last = len(run.particles) - 1
-    if surface_field:
+    if look.surfaces:
         if not with_vtk or not run.surfaces:
             fail("--surfaces is for runs in space with meshes, drawn by VTK")
-        run.surfaces.color_by(surface_field, [*chosen_frames(len(run.particles), frames), last])
+        run.surfaces.color_by(look.surfaces, [*chosen_frames(len(run.particles), frames), last])
     seen = run.motion(last).known
     if run.surfaces:
         seen[run.surfaces.bodies] = True
@@ -159,8 +170,8 @@ def draw_run(directory, frames, view, with_vtk, surface_field=None):
         print(f"{counted(unseen, 'body', 'bodies')} without shapes and not in output.history_bodies: not drawn",
               file=sys.stderr)
     path = pathlib.Path(directory) / "final.png"
-    save_picture(make_picture(run, [last], view, with_vtk), last, path)
+    save_picture(make_picture(run, [last], with_vtk, look), last, path)
     yield path
     chosen = chosen_frames(len(run.particles), frames)
     if len(chosen) > 1:
-        yield save_animation(make_picture(run, chosen, view, with_vtk), chosen, pathlib.Path(directory))
+        yield save_animation(make_picture(run, chosen, with_vtk, look), chosen, pathlib.Path(directory))

@@ -11,7 +11,7 @@ from walls import section, solids
 BODY_COLOR = "#e66100"
 EDGE_COLOR = "#303030"
 SURFACE_COLORS = {"walls": "#909090", "bodies": BODY_COLOR}
-SURFACE_OPACITY = 0.18  # what a drum holds shows
+WALL_OPACITY = 0.18  # of meshes: what is behind them shows
 SURFACE_MAP, COLORED_OPACITY = "YlOrRd", 0.95  # of meshes that are coloured by a field, at the end of its scale
 LIGHT = np.array([-0.4, 0.75, 0.53])  # where walls are lighter: right, up, towards the eye
 LONGEST_SIDE = 7.5  # of the axes [inch]
@@ -25,6 +25,8 @@ LINES = {
     "guide": ("#606060", 1.0, True),
     "spring": ("#404040", 1.0, True),
     "distance": ("#202020", 2.0, True),
+    "rod": ("#b0b0b0", 3.0, True),
+    "barrel": ("#505050", 6.0, True),
 }
 # Joints: marker, its fill.
 JOINTS = {
@@ -237,8 +239,10 @@ def picture_axes(up):
 class SphereScene:
     """Parallel projection, so that one scale bar holds everywhere; gravity points down."""
 
-    def __init__(self, run, snapshots, use_vtk):
+    def __init__(self, run, snapshots, use_vtk, opacity=WALL_OPACITY):
+        """opacity: of meshes on bodies."""
         self.run, self.use_vtk = run, use_vtk
+        self.opacity = {"walls": WALL_OPACITY, "bodies": opacity}
         self.axes_of_picture = picture_axes(run.model.up)
         self.box = (run.model.low, run.model.high)
         low, high = union(self.box, body_bounds(run, snapshots))
@@ -325,8 +329,8 @@ class SphereScene:
         )
 
     def draw_directions(self, axes):
-        """Where x, y and z point, in the lower right corner."""
-        origin = np.array([0.82, -0.86]) * self.half
+        """Where x, y and z point, above the scale bar: in the other corner the space is nearest to the eye."""
+        origin = np.array([-0.93, -0.78]) * self.half
         length = 0.13 * self.half.min()
         for name, direction in zip("xyz", self.axes_of_picture[:2].T):
             tip = origin + length * direction
@@ -371,14 +375,14 @@ class SphereScene:
         for whose, triangles in surfaces.triangles.items():
             color = matplotlib.colors.to_rgb(SURFACE_COLORS[whose])
             colors = self.field_colors(values[whose]) if values else None
-            self.renderer.set_triangles(whose, points, triangles, color, SURFACE_OPACITY, colors)
+            self.renderer.set_triangles(whose, points, triangles, color, self.opacity[whose], colors)
             self.renderer.set_lines(f"edges of {whose}", lines[whose], color, 0.0008 * self.extent)
 
     def field_colors(self, values):
         """Of triangles, the more opaque the larger their values [n][4] of 0 to 255."""
         colors = self.surface_colors.to_rgba(values)
         share = np.clip(values / self.run.surfaces.limit, 0, 1)
-        colors[:, 3] = SURFACE_OPACITY + (COLORED_OPACITY - SURFACE_OPACITY) * share
+        colors[:, 3] = WALL_OPACITY + (COLORED_OPACITY - WALL_OPACITY) * share
         return (255 * colors).round().astype(np.uint8)
 
     def draw_discs(self, flat, radii, colors):

@@ -126,6 +126,8 @@ class SphereRenderer:
             self._triangles[style].ForceTranslucentOn()
             opacity = 1
         self._triangles[style].GetProperty().LightingOn()
+        self._triangles[style].GetProperty().SetAmbient(0.3)  # what is turned from the light is not black
+        self._triangles[style].GetProperty().SetDiffuse(0.7)
         self._triangles[style].GetProperty().SetInterpolationToFlat()
         self._triangles[style].GetProperty().SetOpacity(opacity)
 

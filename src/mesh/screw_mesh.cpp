@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "mesh/mesh_builder.hpp"
 #include "mesh/primitives.hpp"
@@ -11,15 +12,17 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// Its section at one height: the free core, and the flight as a fan of `radial_segments_` by
-// `sector_segments_` patches, whose edges on the flight's faces are so short that a face's patches, which are
-// twisted, are flat to second order.
+// A left-handed one. Its section at one height: the free core, and the flight as a fan of `radial_segments_`
+// by `sector_segments_` patches, whose edges on the flight's faces are so short that a face's patches, which
+// are twisted, are flat to second order. Strips split the core's patches along z where the sections turn this
+// way; the other way they would cut off a chord of two segments.
 class Screw {
  public:
   explicit Screw(const ScrewShape& shape)
       : shape_(shape),
-        half_sector_(kPi * shape.thickness / std::abs(shape.pitch)),
-        layers_(segments_of(shape.length / std::abs(shape.pitch), 1)),
+        rise_(std::abs(shape.pitch)),
+        half_sector_(kPi * shape.thickness / rise_),
+        layers_(segments_of(shape.length / rise_, 1)),
         core_segments_(segments_of(1 - half_sector_ / kPi, 2)),
         sector_segments_(segments_of(half_sector_ / kPi, 1)),
         radial_segments_(segments_of((1 - shape.core_radius / shape.flight_radius) / (2 * kPi), 1)) {}
@@ -58,7 +61,7 @@ class Screw {
     return ring;
   }
   Layer layer(Index k) {
-    const Real z = shape_.length * (Real(k) / layers_ - Real(0.5)), turned = 2 * kPi * z / shape_.pitch;
+    const Real z = shape_.length * (Real(k) / layers_ - Real(0.5)), turned = -2 * kPi * z / rise_;
     const Real first = turned - half_sector_, second = turned + half_sector_;
     Layer layer{{}, {}, {}, {}, z, turned};
     layer.core = arc(shape_.core_radius, second, first + 2 * kPi, core_segments_, z);
@@ -112,13 +115,23 @@ class Screw {
   }
 
   const ScrewShape& shape_;
+  Real rise_;         // of a turn
   Real half_sector_;  // [rad], of the flight's section
   Index layers_, core_segments_, sector_segments_, radial_segments_;
   MeshBuilder builder_;
 };
 
+void mirror(TriangleMesh& mesh) {
+  for (Vec3& v : mesh.vertices) v.y = -v.y;
+  for (auto& corners : mesh.triangles) std::swap(corners[1], corners[2]);
+}
+
 }  // namespace
 
-TriangleMesh screw_mesh(const ScrewShape& shape) { return Screw(shape).mesh(); }
+TriangleMesh screw_mesh(const ScrewShape& shape) {
+  TriangleMesh mesh = Screw(shape).mesh();
+  if (shape.pitch > 0) mirror(mesh);
+  return mesh;
+}
 
 }  // namespace scree

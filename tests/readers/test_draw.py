@@ -1,7 +1,7 @@
-"""Pictures and plots of four runs: a 2D one with particles and bodies, a 3D one without bodies, one without particles,
-and a drum of triangles.
+"""Pictures and plots of runs: a 2D one with particles and bodies, a 3D one without bodies, one without particles, and
+four mechanisms of triangles.
 
-    python3 tests/readers/test_draw.py NET_400 BOX_OF_SPHERES SLIDER_CRANK DRUM_LIFTERS
+    python3 tests/readers/test_draw.py NET_400 BOX_OF_SPHERES SLIDER_CRANK DRUM_LIFTERS EXCAVATOR SCREW_LIFT WHEEL_RIG
 
 takes the folders of their results. Needs postprocess/requirements.txt."""
 
@@ -19,16 +19,16 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "postprocess"))
 
-from mechanism import SHORT, Mechanism, shortest_tree, zigzags
+from mechanism import SHORT, Mechanism, barrels, shortest_tree, zigzags
 from model import GROUND, Model
 from plot_history import history_figure
-from render import Run, make_picture, save_picture, vtk_renders
+from render import Look, Run, make_picture, save_picture, vtk_renders
 from results import read_history
-from scenes import BODY_COLOR, DiscScene, SphereScene, picture_axes
+from scenes import BODY_COLOR, WALL_OPACITY, DiscScene, SphereScene, picture_axes
 from surfaces import sharp_edges
 from walls import cut, rectangle, section, solids
 
-NET, BOX, CRANK, DRUM = (pathlib.Path(path).resolve() for path in sys.argv[1:5])
+NET, BOX, CRANK, DRUM, EXCAVATOR, SCREW, WHEEL = (pathlib.Path(path).resolve() for path in sys.argv[1:8])
 ORANGE = matplotlib.colors.to_rgb(BODY_COLOR)
 
 
@@ -164,7 +164,7 @@ class SurfaceTest(unittest.TestCase):
         bare = self.image(run)
         run = Run(DRUM)
         drawn = self.image(run)
-        run.particles.rows = lambda snapshot, name, rows=run.particles.rows: rows(snapshot, name)[:0]
+        self.shrink_grains(run)
         empty = self.image(run)
 
         def differ(one, other):
@@ -186,12 +186,36 @@ class SurfaceTest(unittest.TestCase):
         with self.assertRaises(SystemExit):
             run.surfaces.color_by("speed", snapshots)
 
+    def test_an_opaque_drum_hides_what_it_holds(self):
+        run = Run(DRUM)
+        drawn = self.image(run, 1.0)
+        self.shrink_grains(run)
+        shown = (np.abs(drawn - self.image(run, 1.0)).max(axis=2) > 0.1).mean()
+        self.assertEqual(shown < 1e-3, vtk_renders())  # without VTK there are edges alone
+
+    def test_an_opacity_is_a_share_and_a_speed_above_zero(self):
+        for option, values in (("--opacity", ("1.1", "-0.1", "nan", "x")), ("--fastest", ("0", "-1", "inf", "nan"))):
+            for wrong in values:
+                run = draw(DRUM, f"{option}={wrong}")
+                self.assertEqual(run.returncode, 2)
+                self.assertIn(option, run.stderr)
+
+    def test_the_colour_scale_ends_where_it_is_told_to(self):
+        run = Run(DRUM)
+        self.assertEqual(make_picture(run, [0], look=Look(fastest=0.3)).scene.colors.norm.vmax, 0.3)
+
     @staticmethod
-    def image(run):
+    def image(run, opacity=WALL_OPACITY):
         with tempfile.TemporaryDirectory() as folder:
             path, last = pathlib.Path(folder) / "picture.png", len(run.particles) - 1
-            save_picture(make_picture(run, [last], with_vtk=vtk_renders()), last, path)
+            save_picture(make_picture(run, [last], vtk_renders(), Look(opacity=opacity)), last, path)
             return pixels(path)
+
+    @staticmethod
+    def shrink_grains(run):
+        """Out of sight; without any the picture would be laid out in another way."""
+        rows = run.particles.rows
+        run.particles.rows = lambda snapshot, name: rows(snapshot, name) * (1e-6 if name == "radius" else 1)
 
     def test_edges_turn(self):
         points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1]], dtype=float)
@@ -233,6 +257,21 @@ class MechanismTest(unittest.TestCase):
         self.assertAlmostEqual(np.abs(long[:, 0]).max(), 0.05)
         self.assertAlmostEqual(np.abs(short[:, 0]).max(), 0)
         np.testing.assert_array_equal(long[[0, -1]], ends[0])
+
+    def test_springs_with_actuators_are_cylinders(self):
+        bodies = [{"name": "rod", "kind": "planar", "position": [2.0, 0.0], "angle": 0.0, "spacing": [0.0, 0.0]}]
+        step = {"kind": "step", "value": 0.0, "end_value": 9.0, "start": 0.0, "end": 1.0}
+        springs = [{"bodies": ["ground", "rod"], "points": [[0.0, y], [2.0, y]], "actuator": actuator}
+                   for y, actuator in ((0.0, 0.0), (1.0, step), (2.0, {"kind": "constant", "value": 0.0}))]
+        model = Model(deck(bodies=bodies, spring_dampers=springs))
+        columns = {"step/time": [0, 1], "bodies/rod/x": [2, 4], "bodies/rod/y": [0, 0], "bodies/rod/z": [0, 0],
+                   "bodies/rod/angle": [0, 0]}
+        history = {name: (values,) for name, values in columns.items()}
+        lines, _ = Mechanism(model, lambda time: model.motion(time, None, 0, history), 0.01).draw(1.0)
+        self.assertEqual(len(lines["spring"]), 2)
+        np.testing.assert_allclose(lines["rod"], [[[0, 1, 0], [4, 1, 0]]])
+        np.testing.assert_allclose(lines["barrel"], [[[0, 1, 0], [1.2, 1, 0]]])  # 0.6 of what it was long
+        np.testing.assert_allclose(barrels(lines["rod"] / 4, np.array([2.0])), [[[0, 0.25, 0], [0.9, 0.25, 0]]])
 
     def test_bars_are_the_shortest(self):
         points = np.array([[0, 0, 0], [3, 0, 0], [1, 0, 0], [2, 0, 0]], dtype=float)
@@ -286,6 +325,36 @@ class MechanismTest(unittest.TestCase):
         history = {f"bodies/rod/{name}": ([value, value],) for name, value in values.items()} | {"step/time": ([0, 1],)}
         motion = model.motion(0.5, None, 0, history)
         np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 3], [0, 1, 2]], atol=1e-15)
+
+
+class ExampleTest(unittest.TestCase):
+    """The mechanisms among the examples do what their decks say, also before they touch a grain."""
+
+    def test_an_excavator_moves_by_its_cylinders(self):
+        run = Run(EXCAVATOR)
+        mechanism, last = Mechanism(run.model, run.motion, 0.01), len(run.particles) - 1
+        pairs, local, _ = run.model.connections["revolute"]
+        self.assertEqual(len(pairs), 6)
+        for snapshot in range(last + 1):
+            ends = run.motion(snapshot).places(pairs, local)
+            np.testing.assert_allclose(ends[:, 0], ends[:, 1], atol=1e-9)  # the loop of four of them is closed
+
+        def lengths(snapshot):
+            rods = mechanism.draw(snapshot)[0]["rod"]
+            return np.linalg.norm(rods[:, 1] - rods[:, 0], axis=1)
+        # Actuators over stiffness at 0.9 s; loads and speeds take some mm.
+        np.testing.assert_allclose(lengths(last) - lengths(0), [-0.04, 0.0122, -0.0012], atol=0.004)
+
+    def test_a_screw_is_turned_by_its_motor(self):
+        history = read_history(SCREW)
+        self.assertAlmostEqual(history["coordinates/bearing/angle_rate"][0][-1], 25, delta=0.1)
+        self.assertTrue((np.abs(history["efforts/motor/effort"][0]) <= 0.5).all())
+
+    def test_a_wheel_spins_faster_than_it_rolls(self):
+        history = read_history(WHEEL)
+        way, angle = (history[f"coordinates/{name}"][0] for name in ("rails/displacement", "axle/angle"))
+        self.assertAlmostEqual(way[-1], 0.06, places=9)
+        np.testing.assert_allclose(0.08 * angle, way, atol=1e-9)
 
 
 class WallTest(unittest.TestCase):

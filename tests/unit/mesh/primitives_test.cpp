@@ -154,6 +154,20 @@ TEST_CASE("round primitives converge at order 2") {
   }
 }
 
+TEST_CASE("right-handed screws are as round as left-handed ones") {
+  const Real core = 0.12, length = 2;
+  for (const Real pitch : {0.7, -0.7}) {
+    const TriangleMesh mesh = screw_mesh({core, 0.42, pitch, 0.05, length, length, 32});
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 p = mesh.vertices[a], q = mesh.vertices[b], r = mesh.vertices[c], sum = p + q + r;
+      const Real farthest = std::max({std::hypot(p.x, p.y), std::hypot(q.x, q.y), std::hypot(r.x, r.y)});
+      if (farthest > core * 1.001 || std::abs(sum.z) > 2.7) continue;  // the ends
+      const Vec3 normal = cross(q - p, r - p), radial{sum.x, sum.y, 0};
+      CHECK(dot(normal, radial) > 0.99 * norm(normal) * norm(radial));
+    }
+  }
+}
+
 TEST_CASE("circles are as symmetric as numbers can be") {
   for (const Index n : {3, 4, 5, 8, 12, 100}) {
     for (Index k = 0; k < n; ++k) {
