@@ -52,8 +52,8 @@ MESH = ('[[meshes]]\nname = "floor"\nkind = "rectangle"\nsize = [{size}, {size}]
 
 def deck(side, layers, steps):
     """The bed without a floor."""
-    return DECK.format(width=SPACING * side, height=0.5 + 1.2 * LAYER * layers, end=2e-5 * steps, side=side, layers=layers,
-                       spacing=SPACING, layer=LAYER)
+    return DECK.format(width=SPACING * side, height=0.5 + 1.2 * LAYER * layers, end=2e-5 * steps, side=side,
+                       layers=layers, spacing=SPACING, layer=LAYER)
 
 
 def milliseconds(record, steps):
