@@ -18,6 +18,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
       list_.build(items_.model.contact.skin, timers), control_.resume();
     const auto scope = timers.time(Stage::contact_force);
     queue_loads();
+    items_.results.copy(&Results::control, bodies_.stream());
     if (keep_open) queue_.queue(1);
     items_.idle();
     bodies_.take_loads();
@@ -42,14 +43,13 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
   }
 }
 
-// Queues the open step's contacts with bodies, which its kernel reads; what they sum to goes to the host
-// beside it.
+// Queues the open step's contacts with placed surfaces, which its kernel reads; what they sum to goes to the
+// host beside it.
 void CudaExplicitRun::queue_loads() {
   workspace_.step_queued.record(items_.stream);
   bodies_.queue_loads({control_.open_position(), control_.open_velocity(), control_.open_spin(),
                        items_.history.views(control_.velocity_parity() == 1), h_},
                       workspace_.step_queued);
-  items_.results.copy(&Results::control, bodies_.stream());
   bodies_.hold_until_found(items_.stream);
 }
 

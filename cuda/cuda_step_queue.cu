@@ -231,6 +231,7 @@ void StepQueue::queue_double(Index steps) {
   if (!surfaces.any_at_rest())  // those that move have been looked at, if there are any
     return queue_in_turn(
         key, steps, [](Device) {}, queue_ghosts, queue_rows);
+  surfaces.make_room_in_run(items_.device(), steps);
   const OpenStepLook look = surface_look(r);
   queue_in_turn(
       key + surfaces.key_of_loads(kernels, look, h_), steps,

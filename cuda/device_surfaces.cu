@@ -284,6 +284,10 @@ void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kerne
                         h_load_sums_.data());
 }
 
+void DeviceSurfaces::make_room_in_run(Device device, Index steps) {
+  works_.make_room(device, std::int64_t{steps} * placed_entries_);
+}
+
 void DeviceSurfaces::find_loads_in_run(Device device, const DeviceContactKernels& kernels,
                                        const OpenStepLook& look, Real h) {
   const SurfaceViews views = entry_views(kernels, {nullptr, nullptr, nullptr, {}, h});
@@ -320,14 +324,17 @@ void DeviceSurfaces::find_rubs(Device device, const DeviceContactKernels& kernel
 }
 
 void DeviceSurfaces::book_loads(Device device, const DeviceContactKernels& kernels, Real h) {
+  works_.make_room(device, placed_entries_);
   works_.book(device, entry_views(kernels, {}), meshes_.groups(), ExplicitWorks{loads_[0].data(), h, moves_});
 }
 
 void DeviceSurfaces::book_steps(Device device, const DeviceContactKernels& kernels) {
+  works_.make_room(device, placed_entries_);
   works_.book(device, entry_views(kernels, {}), meshes_.groups(), ImplicitWorks{steps_.data()});
 }
 
 void DeviceSurfaces::book_rubs(Device device, const DeviceContactKernels& kernels) {
+  works_.make_room(device, placed_entries_);
   works_.book(device, entry_views(kernels, {}), meshes_.groups(), ImplicitRubbingWorks{rubs_.data()});
 }
 

@@ -63,6 +63,7 @@ class DeviceSurfaces {
   void find_loads(Device device, const DeviceContactKernels& kernels, Loads which, const SurfaceLook& look);
   // Of surfaces at rest, for a run of explicit steps of length h: the loads of whatever step is open when the
   // kernels run, with the books at triangles. key: all that their launches depend on.
+  void make_room_in_run(Device device, Index steps);  // before so many of them are queued
   void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& look,
                          Real h);
   std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look, Real h) const;

@@ -31,6 +31,11 @@ DeviceTriangleWorks::DeviceTriangleWorks(const Model& model, cudaStream_t stream
   load({}, stream);
 }
 
+void DeviceTriangleWorks::make_room(Device device, std::int64_t contacts) {
+  if (exist() && !terms_.take(contacts))
+    for_each(device, static_cast<Index>(works_.triangles()), NormalizeItem{sums_.data()});
+}
+
 template <class Works>
 void DeviceTriangleWorks::book(Device device, const SurfaceViews& in, Index groups, const Works& works) {
   if (exist()) for_each(device, groups, BookItem<Works>{in, table(), works, sums_.data()});

@@ -16,6 +16,8 @@ class DeviceTriangleWorks {
   DeviceTriangleWorks(const Model& model, cudaStream_t stream);
   bool exist() const { return works_.exist(); }
 
+  // Before so many contacts are booked.
+  void make_room(Device device, std::int64_t contacts);
   // Queues the books of a step that is closed, of the contacts of these groups as they were found last.
   template <class Works>
   void book(Device device, const SurfaceViews& in, Index groups, const Works& works);
@@ -36,6 +38,7 @@ class DeviceTriangleWorks {
   DeviceArray<std::int64_t> first_;
   DeviceArray<Real> wear_;
   DeviceArray<TriangleWork> sums_;
+  TermCount terms_;
 };
 
 }  // namespace scree

@@ -13,11 +13,12 @@ namespace scree {
 
 // Limbs of 32 binary places, the lowest of them 2^-96; each term is cut there, adds a whole number to three
 // limbs at most, and must be below 2^32 in size. Beside the limbs stands how many terms were not, or not
-// finite: the sum is then a NaN. Limbs take 2^31 terms between one normalize() and the next. Unlike ExactSum
+// finite: the sum is then a NaN. Limbs take kMostTerms between one normalize() and the next. Unlike ExactSum
 // it need not know the largest term, and words of parts add up by integer addition, atomic or not.
 class FixedSum {
  public:
   static constexpr int kLimbs = 4, kBad = kLimbs, kWords = kLimbs + 1;
+  static constexpr std::int64_t kMostTerms = (std::int64_t{1} << 31) - 1;  // between two normalize()
 
   // Calls put(word, whole number) for what the term adds to the words.
   template <class Put>
@@ -47,7 +48,7 @@ class FixedSum {
     for (int k = 0; k < kWords; ++k) word[k] += part.word[k];
   }
   // Carries what limbs have past their places upwards: the same number, of which there is one such form.
-  void normalize() {
+  SCREE_HD void normalize() {
     for (int k = 0; k + 1 < kLimbs; ++k) {
       const std::int64_t past = word[k] >> kLimbBits;  // rounded down
       word[k] -= past * (std::int64_t{1} << kLimbBits), word[k + 1] += past;

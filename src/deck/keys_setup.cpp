@@ -228,7 +228,7 @@ const TableKeys& contact_keys() {
            .about("mu of the spring against spinning about the normal, which slides at 2/3 a mu F, a: radius "
                   "of contact, sqrt(R* d) (Marshall, 2009)."),
        real("wear_coefficient", "1/Pa")
-           .at_least(0)
+           .within(0, 1)
            .left_out("nothing wears")
            .about("k/H of Archard's law (1953) for the output's wear_depth: the volume that a mesh loses is "
                   "k/H F s, F: normal force, s: the way that slides, found as the work of friction over F's "

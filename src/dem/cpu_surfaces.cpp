@@ -134,6 +134,8 @@ void CpuSurfaces::book(const ParticleStore& store, const SurfaceRows& rows, cons
   };
   const TriangleWorkTable table{works_.first().data(), works_.wear().empty() ? nullptr : works_.wear().data(),
                                 works_.materials()};
+  if (!terms_.take(static_cast<std::int64_t>(rows.surfaces.size())))
+    for_each(Serial{}, static_cast<Index>(works_.triangles()), NormalizeItem{work_sums_.data()});
   for_each(Serial{}, static_cast<Index>(rows.groups.size()),
            TriangleBookItem<Works, Add>{entry_views(store, rows, {}), table, works, work_sums_.data()});
 }

@@ -63,6 +63,7 @@ class CpuSurfaces {
   std::vector<SurfaceRub> rubs_;
   TriangleWorks works_;
   std::vector<TriangleWork> work_sums_;
+  TermCount terms_;
   bool moves_;  // whether particles rotate
 };
 

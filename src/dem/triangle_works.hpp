@@ -103,6 +103,27 @@ struct TriangleBookItem {
   }
 };
 
+// How many terms sums may have got since they were normalized.
+class TermCount {
+ public:
+  // Counts so many more; false: the sums must be normalized before.
+  bool take(std::int64_t more) {
+    terms_ += more;
+    if (terms_ <= FixedSum::kMostTerms) return true;
+    terms_ = more;
+    return false;
+  }
+
+ private:
+  std::int64_t terms_ = 0;
+};
+struct NormalizeItem {
+  TriangleWork* sums;
+  SCREE_HD void operator()(Index triangle) const {
+    for (FixedSum& sum : sums[triangle].of) sum.normalize();
+  }
+};
+
 // The same on the host: which triangles there are, and their sums as a state keeps them.
 class TriangleWorks {
  public:

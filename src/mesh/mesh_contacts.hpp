@@ -186,6 +186,7 @@ class MeshContactSearch {
     if (behind_ >= 0 && depth_ < nearest) return inside();
     const bool any_weak = nearest_weak_ < reach_;
     keep();
+    well_over_ = -1;  // its face may be among those that were left out
     for (; left_out_ && kept_ < kMeshSlots; keep()) look(triangles, count);
     if (any_weak && kept_ < kMeshSlots) add_weak(triangles, count);
     return kept_;

@@ -29,8 +29,10 @@ void build_surface_fields(const DeckTable& output, Model& model) {
       output.fail(key, fmt::format("\"{}\" is repeated; every entry must be another one", name));
     model.output.surface_fields.push_back(field);
   }
-  if (model.output.adds_up_works() && model.meshes.empty())
-    output.fail(key, "only triangles have works and wear, and the deck has no meshes");
+  const bool any = std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.mesh >= 0; }) ||
+                   std::ranges::any_of(model.bodies, [](const Body& body) { return !body.meshes.empty(); });
+  if (model.output.adds_up_works() && !any)
+    output.fail(key, "only triangles have works and wear, and no wall or body has a mesh");
   if (model.output.shows(SurfaceField::wear_depth) && model.contact.wear.empty())
     output.fail(key, "wear_depth needs a pair in contact.pairs with a wear_coefficient above 0");
 }

@@ -36,10 +36,13 @@ void require_fields(const Hdf5File& file, const SeriesTriangles& triangles) {
   std::erase_if(held, [&](const std::string& name) { return triangles.has(name); });
   std::ranges::sort(held), std::ranges::sort(wanted);
   if (held == wanted) return;
+  const auto words = [](const std::vector<std::string>& names) {
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  };
   throw IoError(
       fmt::format("{}: holds the fields {}, but the restarted run is to write {}; keep output.surface_fields "
                   "as it was, or choose another folder",
-                  file.path(), fmt::join(held, ", "), fmt::join(wanted, ", ")));
+                  file.path(), words(held), words(wanted)));
 }
 
 }  // namespace

@@ -82,8 +82,10 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   sizes.bodies.wrench.resize(driven ? surfaces.carriers() : model.bodies.size());
   if (std::ranges::any_of(model.walls, [](const Wall& wall) { return wall.runs(); }))
     sizes.bodies.slide_power.resize(surfaces.carriers() - model.bodies.size());
+  // A model that does not ask for works leaves them, whatever meshes they are of.
   if (checkpoint.integers.count(kWorksName) > 0)
-    sizes.works.resize(kWordsPerTriangle * triangles_of(surfaces, model));
+    sizes.works.resize(model.output.adds_up_works() ? kWordsPerTriangle * triangles_of(surfaces, model)
+                                                    : checkpoint.integer_array(kWorksName).size());
   // What contacts remember may be there or not, and so may rotation: no history is none.
   sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
   Checkpoint expected = pack(sizes);

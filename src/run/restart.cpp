@@ -141,8 +141,16 @@ void check_allowed(const Differences& differences, const Model& model, const Run
                   options.restart, listed(refused)));
 }
 
-void check_works(const Checkpoint& checkpoint, const Model& model, const RunOptions& options) {
-  if (!model.output.adds_up_works() || checkpoint.integers.count(kWorksName) > 0) return;
+void check_works(const Checkpoint& checkpoint, const Differences& differences, const Model& model,
+                 const RunOptions& options) {
+  if (!model.output.adds_up_works()) return;
+  for (const DeckDifference& difference : differences)
+    if (difference.pattern.find("mesh") != std::string::npos)
+      throw InputError(fmt::format(
+          "--restart {}: output.surface_fields asks for works or wear, which are those of the triangles that "
+          "the checkpoint was written with; other meshes are not allowed: {}",
+          options.restart, to_text(difference)));
+  if (checkpoint.integers.count(kWorksName) > 0) return;
   throw InputError(fmt::format(
       "--restart {}: output.surface_fields asks for works or wear, which count from t = 0, and the run that "
       "wrote the checkpoint has not added them up",
@@ -199,8 +207,8 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
   ranks.together([&] {
     differences = differences_until(checkpoint, options);
     check_allowed(differences, model, options);
+    check_works(checkpoint, differences, model, options);
     check_datasets(checkpoint, model, {"changes", "deck", "fingerprint", kHash});
-    check_works(checkpoint, model, options);
   });
   restart.state = unpack(checkpoint, ranks);
   check_state(restart.state, options.restart, model.particles.totals.count, ranks);

@@ -133,10 +133,10 @@ class BadDeckTest(MeshTest):
         cases = [
             (['output.surface_fields=["slidng_work"]'], 'there is no field "slidng_work" of surfaces; did you mean'),
             (['output.surface_fields=["shear","shear"]'], '"shear" is repeated'),
-            ([works, "walls=[]", "meshes=[]"], "only triangles have works and wear, and the deck has no meshes"),
+            ([works, "walls=[]", "meshes=[]"], "only triangles have works and wear, and no wall or body has a mesh"),
             ([works], "wear_depth needs a pair in contact.pairs with a wear_coefficient above 0"),
             (["contact.pairs.0.wear_coefficient=1e-12"], "wear_coefficient=1e-12: needs friction above 0 beside it"),
-            (["contact.pairs.0.wear_coefficient=-1e-12"], "wear_coefficient must be a number of at least 0"),
+            (["contact.pairs.0.wear_coefficient=-1e-12"], "wear_coefficient must be a number from 0 to 1"),
             (["walls.rock.mesh=rocks"], "no mesh named \"rocks\""),
             (["walls.rock.normal=[0,0,1]"], "not used together with mesh"),
             ([body % (mass + ',meshes=[{mesh="sand"}]')], "no mesh named \"sand\""),
@@ -210,6 +210,10 @@ class ReportTest(MeshTest):
             self.assertIn(word, message)
         self.run_deck(DONE, "more", *restart("works"), *setting("sliding_work", "pressure"))
         self.run_deck(DONE, "none", *restart("works"))
+        other = ("--allow-changes", "--set", "meshes.rock.refine=0.1")
+        message = self.run_deck(BAD_INPUT, "refined", *restart("works"), *setting("impact_work"), *other).stderr
+        self.assertIn("other meshes are not allowed: meshes.rock.refine", message)
+        self.run_deck(DONE, "refined", *restart("works"), *other)
 
     def test_a_run_goes_on_with_the_same_mesh_alone(self):
         self.run_deck(DONE, "out")

@@ -154,6 +154,38 @@ TEST_CASE("where a face was touched last changes no contact") {
   }
 }
 
+// More nearer facets than there are slots, which are one contact, crowd the floor out of the first look.
+TEST_CASE("where a face was touched last changes no contact beside many that are nearer") {
+  constexpr int kFacets = 64;
+  constexpr Real kHalf = 0.45 * M_PI, kReach = 0.95;
+  TriangleMesh mesh;  // a concave wall beside a fine floor
+  for (int k = 0; k <= kFacets; ++k) {
+    const Real angle = -kHalf + 2 * kHalf * k / kFacets;
+    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0.02});
+    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 2});
+  }
+  for (Index a = 0; a < 2 * kFacets; a += 2)
+    mesh.triangles.push_back({a, a + 1, a + 2}), mesh.triangles.push_back({a + 2, a + 1, a + 3});
+  append(mesh, plate({-1.1, -1.1, 0}, {2.2, 0, 0}, {0, 2.2, 0}, 22, 22));
+  const SurfaceMesh surface = sheet_mesh(mesh);
+  MeshRandom random(1);
+  int wrong = 0, with_floor = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 c{random.in(0.05, 0.2), random.in(-0.05, 0.05), random.in(0.9, 0.95)};
+    const auto row = triangles_near(surface, c, kReach);
+    const auto contacts = contacts_of_row(surface, c, kReach, row);
+    with_floor += contacts.size() > 1;
+    for (const Index likely : row) {
+      std::vector<MeshContact> found(kMeshSlots);
+      found.resize(find_mesh_contacts(surface.view(), c, kReach, row.data(), static_cast<Index>(row.size()),
+                                      found.data(), likely));
+      wrong += !same_contacts(found, contacts);
+    }
+  }
+  CHECK(with_floor > 50);
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("the nearest point of a closed mesh is a contact from outside, from inside no edge") {
   MeshRandom random(42);
   for (const TriangleMesh& mesh :
