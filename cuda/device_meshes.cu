@@ -16,8 +16,9 @@ __device__ void visit_near(const MeshSearch& in, const MeshView& mesh, Index pla
                            const Visit& visit) {
   const PlacedSurface& surface = in.placed[placed];
   const SurfaceFrame& frame = in.frames[surface.frame];
-  for_each_place_beside(surface, frame, xyz(p), in.skin, [&](Vec3 place) {
-    for_each_triangle_near(mesh, transposed_times(frame.axes, (place - shift) - surface.point), p.w + in.skin,
+  const Real past = mesh_skin(p.w, in.skin);
+  for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
+    for_each_triangle_near(mesh, transposed_times(frame.axes, (place - shift) - surface.point), p.w + past,
                            visit);
   });
 }

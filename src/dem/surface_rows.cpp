@@ -139,9 +139,10 @@ const MeshView& triangles_near(const SurfacePlaces& places, Index s, Vec4 p, Vec
   const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
   const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
-  for_each_place_beside(surface, frame, xyz(p), skin, [&](Vec3 place) {
+  const Real past = mesh_skin(p.w, skin);
+  for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
     const Vec3 c = transposed_times(frame.axes, (place - shift) - surface.point);
-    for_each_triangle_near(mesh, c, p.w + skin, [&](Index t) { triangles.push_back(t); });
+    for_each_triangle_near(mesh, c, p.w + past, [&](Index t) { triangles.push_back(t); });
   });
   return mesh;
 }

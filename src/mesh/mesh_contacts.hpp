@@ -145,6 +145,14 @@ SCREE_HD MeshContact mesh_feature_at(const MeshView& mesh, Index feature, Vec3 c
   return contact;
 }
 
+// How far past touch the triangles of a row are looked for [m]. What was touched in the step before is among
+// them, as contacts go on from there, even where the skin is shorter than the way of a step: no step should
+// take a particle farther than this part of its radius.
+SCREE_HD Real mesh_skin(Real radius, Real skin) {
+  constexpr Real kLeastShare = Real(1) / 16;
+  return skin > kLeastShare * radius ? skin : kLeastShare * radius;
+}
+
 // How many contacts, at most kMeshSlots, could come of these triangles.
 SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index count) {
   int needed = 0, parts = 0;
