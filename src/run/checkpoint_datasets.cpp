@@ -54,14 +54,6 @@ void check_row_group(const std::string& path, const std::string& group,
     if (!expected.count(name)) refuse(path, fmt::format("dataset {}/{} is not known", group, name));
 }
 
-std::size_t triangles_of(const SurfaceSet& surfaces, const Model& model) {
-  std::size_t triangles = 0;
-  for (Index s = 0; s < surfaces.placed(); ++s)
-    if (surfaces.at(s).kind == SurfaceKind::mesh)
-      triangles += model.meshes[static_cast<std::size_t>(surfaces.at(s).mesh)].surface->triangles.size();
-  return triangles;
-}
-
 }  // namespace
 
 void check_datasets(const Checkpoint& checkpoint, const Model& model, const std::vector<std::string>& texts) {
@@ -84,7 +76,7 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
     sizes.bodies.slide_power.resize(surfaces.carriers() - model.bodies.size());
   // A model that does not ask for works leaves them, whatever meshes they are of.
   if (checkpoint.integers.count(kWorksName) > 0)
-    sizes.works.resize(model.output.adds_up_works() ? kWordsPerTriangle * triangles_of(surfaces, model)
+    sizes.works.resize(model.output.adds_up_works() ? kWordsPerTriangle * TriangleWorks(model).triangles()
                                                     : checkpoint.integer_array(kWorksName).size());
   // What contacts remember may be there or not, and so may rotation: no history is none.
   sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
