@@ -134,16 +134,21 @@ struct VerletControl {
 
 inline constexpr int kStepBlock = 128;  // threads of a block of an explicit step
 
-// Blocks of a launch for the particles [first, end); one for none of them.
-inline unsigned step_blocks(Index first, Index end) {
-  return std::max(1u, blocks_for(end - first, kStepBlock));
-}
-
-// The particles [first, end) of a launch; first: a multiple of kStepBlock.
+// The particles of a launch: one or more blocks of kStepBlock of them.
 struct StepRows {
-  Index first, end;
+  const Index* blocks;  // their numbers; null: those from first_block on
+  Index first_block;
+  unsigned launched;     // blocks of the launch
+  Index end;             // of all particles
   bool follows;          // the step before, on the same stream: the launch is all of its step
   unsigned step_blocks;  // of all launches of the step; the last one to end closes it
+
+  // Of this thread; from `end` on there is none.
+  __device__ Index particle() const {
+    const auto launched_block = static_cast<Index>(blockIdx.x);
+    const Index block = blocks != nullptr ? blocks[launched_block] : first_block + launched_block;
+    return block * kStepBlock + static_cast<Index>(threadIdx.x);
+  }
 };
 
 // Two arrays each for position, velocity and angular velocity: a step reads one and writes the other.

@@ -257,7 +257,7 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   // Whether so many particles have room side by side on the GPU, with so many blocks on a multiprocessor.
   bool several_at_once(const StepRows& rows, int blocks) const {
-    const bool fits = step_blocks(rows.first, rows.end) <= multiprocessors_ * static_cast<unsigned>(blocks);
+    const bool fits = rows.launched <= multiprocessors_ * static_cast<unsigned>(blocks);
     return launches().several_at_once.value_or(fits);
   }
   void advance_in_mixed(Device device, const MixedRequest& r) const {
@@ -272,7 +272,7 @@ class ContactKernelsOf : public DeviceContactKernels {
     overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     overlap.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t config{};
-    config.gridDim = step_blocks(r.rows.first, r.rows.end), config.blockDim = kStepBlock;
+    config.gridDim = r.rows.launched, config.blockDim = kStepBlock;
     config.stream = device.stream, config.attrs = &overlap,
     config.numAttrs = overlaps_ && r.rows.follows ? 1 : 0;
     require_cuda(cudaLaunchKernelEx(&config, kernel, r, laws_), "explicit step");

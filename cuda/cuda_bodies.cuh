@@ -31,10 +31,10 @@ class CudaBodies {
   void take_steps(Real h);
 
   // Beside an explicit step, behind `ready`: places the surfaces, and queues the contacts with the particles
-  // as `look` has them. The step's kernel reads them, behind hold_until_found(); take_loads() waits for
+  // as `look` has them. The step's kernel reads them, behind loads_found(); take_loads() waits for
   // their sums.
   void queue_loads(const SurfaceLook& look, const Event& ready);
-  void hold_until_found(cudaStream_t stream) const { loads_found_.hold(stream); }
+  const Event& loads_found() const { return loads_found_; }
   void take_loads();
   // Where the host knows that this step is closed, and its length h: books what its contacts have lost at
   // triangles.

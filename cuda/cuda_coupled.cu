@@ -19,7 +19,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     const auto scope = timers.time(Stage::contact_force);
     queue_loads();
     items_.results.copy(&Results::control, bodies_.stream());
-    if (keep_open) queue_.queue(1);
+    if (keep_open) queue_.queue(1, &bodies_.loads_found());
     items_.idle();
     bodies_.take_loads();
     const VerletControl& control = control_.seen();
@@ -31,6 +31,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     }
     bodies_.side().book_losses(h_), bodies_.book_loads(h_);
     if (!keep_open || before.leaves) {
+      bodies_.loads_found().hold(items_.stream);
       list_.set_bound(control.bound);
       finish();
       return false;
@@ -50,7 +51,6 @@ void CudaExplicitRun::queue_loads() {
   bodies_.queue_loads({control_.open_position(), control_.open_velocity(), control_.open_spin(),
                        items_.history.views(control_.velocity_parity() == 1), h_},
                       workspace_.step_queued);
-  bodies_.hold_until_found(items_.stream);
 }
 
 // Beside the step that was queued last: its kernel reads the same arrays, but contacts of its own. What

@@ -55,7 +55,8 @@ StepsTaken CudaExplicitRun::take_steps_alone(Index most, bool keep_open, StageTi
   const Index closed = c->closed - start;
   if (keep_open && !leaves()) return {closed, true};
   const auto scope = timers.time(Stage::contact_force);
-  if (bodies_.have_surfaces()) queue_loads(), bodies_.book_loads(h_);
+  if (bodies_.have_surfaces())
+    queue_loads(), bodies_.book_loads(h_), bodies_.loads_found().hold(items_.stream);
   finish();
   return {closed + 1, false};
 }

@@ -42,11 +42,11 @@ void CudaItems::reorder(const Index* order, Index n) {
 }
 
 void CudaItems::halo_after_rows() {
-  if (!ranks.alone()) lane.rows_done.record(stream), lane.rows_done.hold(lane.stream);
+  if (!ranks.alone()) fork_lane();
 }
 
 void CudaItems::rows_after_halo() {
-  if (!ranks.alone()) lane.done.record(lane.stream), lane.done.hold(stream);
+  if (!ranks.alone()) join_lane();
 }
 
 void CudaItems::report_not_finite(const Vec3* force) {

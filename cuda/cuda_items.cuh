@@ -15,6 +15,7 @@
 #include "particle_arrays.cuh"
 #include "partition/decomposition.hpp"
 #include "partition/subdomain.hpp"
+#include "step_parts.cuh"
 
 namespace scree {
 
@@ -55,11 +56,16 @@ struct CudaItems {
   }
   void refresh_ghosts() { refresh_ghosts(device()); }
   // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.
-  // One rank alone does not use that stream.
+  void fork_lane() { lane.rows_done.record(stream), lane.rows_done.hold(lane.stream); }
+  void join_lane() { lane.done.record(lane.stream), lane.done.hold(stream); }
+  // The same for halos, for which one rank alone does not use that stream.
   void halo_after_rows();
   void rows_after_halo();
   template <class QueueGhosts, class QueueRows>
   void queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows, HaloClock* clock);
+  template <class QueueGhosts, class QueueEarly, class QueueLate>
+  void queue_around_halo(const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
+                         const QueueLate& queue_late, HaloClock* clock);
 
   // Queues sums of terms over the particles; see DeviceResults::totals.
   template <int N, class Item>
@@ -85,6 +91,7 @@ struct CudaItems {
   Index owned = 0;
   ItemLayout layout;   // without its list of ghosts
   Index interior = 0;  // the first so many particles, whole blocks of them, meet no ghosts and are none
+  StepParts parts;     // of explicit steps
   HaloLane lane;
   DeviceList list;
   DeviceHistory history;
@@ -124,9 +131,7 @@ void CudaItems::queue_sums(const Item& item, ExactSums<N> Results::*sums) {
 
 // Queues a pass over the particles that needs their ghosts: queue_ghosts(device), queue_rows(device, first,
 // end). With several ranks the interior, which meets no ghosts, is computed while the halo is under way, and
-// the rest beside it as soon as that is there. Both streams stand where the pass may begin; afterwards the
-// halo's stands behind it, so that the next halo begins before the next rows fill the GPU. clock: if given,
-// it looks.
+// the rest beside it as soon as that is there.
 template <class QueueGhosts, class QueueRows>
 void CudaItems::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRows& queue_rows,
                                   HaloClock* clock) {
@@ -135,13 +140,27 @@ void CudaItems::queue_beside_halo(const QueueGhosts& queue_ghosts, const QueueRo
     queue_rows(device(), 0, owned);
     return;
   }
+  queue_around_halo(
+      queue_ghosts,
+      [&](Device on) {
+        if (interior > 0) queue_rows(on, 0, interior);
+      },
+      [&](Device on) { queue_rows(on, interior, owned); }, clock);
+}
+
+// The same of several ranks, where queue_early(device) and queue_late(device) queue the rows of the interior,
+// and the rest. Both streams stand where the pass may begin; afterwards the halo's stands behind it, so that
+// the next halo begins before the next rows fill the GPU. clock: if given, it looks.
+template <class QueueGhosts, class QueueEarly, class QueueLate>
+void CudaItems::queue_around_halo(const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
+                                  const QueueLate& queue_late, HaloClock* clock) {
   if (clock != nullptr) clock->begin(lane.stream);
-  if (interior > 0) queue_rows(device(), 0, interior);
+  queue_early(device());
   if (clock != nullptr) clock->interior_done(stream);
   queue_ghosts({lane.stream});
   if (clock != nullptr) clock->end(lane.stream);
-  queue_rows({lane.stream}, interior, owned);
-  halo_after_rows();
+  queue_late({lane.stream});
+  fork_lane();
 }
 
 }  // namespace scree

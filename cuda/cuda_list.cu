@@ -204,10 +204,12 @@ void CudaList::find_rows(Real skin) {
   copy_async(built_at_.data(), items_.now.position.data(), items, items_.stream);
   owners_.note_rows();
   items_.history.take_slots(items_.listed());
-  if (items_.model.integrator.particles == ParticleIntegrator::hht)
+  if (items_.model.integrator.particles == ParticleIntegrator::hht) {
     step_arrays_.resize(items_);
-  else
+  } else {
     items_.list.pruned_rows();  // makes room for them
+    items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
+  }
 }
 
 // Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:

@@ -56,6 +56,10 @@ struct MixedSpinGhostItem {
   }
 };
 
+void hold_until(const Event* event, Device on) {
+  if (event != nullptr) event->hold(on.stream);
+}
+
 }  // namespace
 
 void MixedArrays::resize(std::size_t items, std::size_t owned, bool rotates) {
@@ -82,21 +86,11 @@ PrunedViews StepQueue::pruned_views(const Vec4* position) {
   return views;
 }
 
-// The launch of a step on the particles [first, end): all of them, or one of the step's two parts.
-StepRows StepQueue::step_rows(Index first, Index end) const {
-  const bool alone = items_.ranks.alone();
-  const Index owned = items_.owned, interior = items_.interior;
-  const bool in_parts = !alone && interior > 0;
-  const unsigned blocks =
-      in_parts ? step_blocks(0, interior) + step_blocks(interior, owned) : step_blocks(0, owned);
-  return {first, end, alone, blocks};
-}
-
 VerletRequest StepQueue::request() {
   ParticleArrays &now = items_.now, &other = items_.other;
   VerletRequest r{};
   r.in = pruned_views(nullptr);
-  r.rows = step_rows(0, items_.owned), r.active = items_.layout.active, r.gravity = items_.model.gravity;
+  r.rows = items_.parts.whole(), r.active = items_.layout.active, r.gravity = items_.model.gravity;
   r.position[0] = now.position.data(), r.position[1] = other.position.data();
   r.velocity[0] = now.velocity.data(), r.velocity[1] = other.velocity.data();
   r.spin[0] = now.angular_velocity.data(), r.spin[1] = other.angular_velocity.data();
@@ -169,28 +163,46 @@ void StepQueue::bring_home() {
   control_.at_home();
 }
 
-// queue_surfaces(device): a step's contacts with placed surfaces; queue_ghosts(device, k): the halo of the
-// k-th step from now on; queue_rows(device, first, end): the kernel of a step on these particles; key: all
-// that the launches depend on. After each step the ranks share what decides whether the next one may be
-// taken.
+// queue_surfaces(device): what the rows beside placed surfaces wait for; queue_ghosts(device, k): the halo of
+// the k-th step from now on; queue_rows(device, rows): the kernel of a step on these; key: all that the
+// launches depend on.
 template <class QueueSurfaces, class QueueGhosts, class QueueRows>
 void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
                               const QueueGhosts& queue_ghosts, const QueueRows& queue_rows) {
-  if (items_.ranks.alone()) {
-    workspace_.graph.queue(items_.stream, key, steps, [&] {
-      queue_surfaces(items_.device());
-      queue_ghosts(items_.device(), 0);
-      queue_rows(items_.device(), 0, items_.owned);
-    });
-    return;
+  const Device rows = items_.device(), lane{items_.lane.stream};
+  const StepParts& parts = items_.parts;
+  const auto queue_late = [&](Device on) {
+    if (parts.apart()) queue_surfaces(on);
+    queue_rows(on, parts.late());
+  };
+  if (!items_.ranks.alone()) {
+    const auto queue_early = [&](Device on) {
+      if (parts.early().launched > 0) queue_rows(on, parts.early());
+    };
+    return queue_with_ranks(steps, queue_surfaces, queue_ghosts, queue_early, queue_late);
   }
+  workspace_.graph.queue(items_.stream, key, steps, [&] {
+    queue_ghosts(rows, 0);
+    if (!parts.apart()) return queue_surfaces(rows), queue_rows(rows, parts.whole());
+    items_.fork_lane();
+    queue_late(lane);
+    queue_rows(rows, parts.early());
+    items_.join_lane();
+  });
+}
+
+// The same of several ranks. After each step they share what decides whether the next one may be taken.
+template <class QueueSurfaces, class QueueGhosts, class QueueEarly, class QueueLate>
+void StepQueue::queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces,
+                                 const QueueGhosts& queue_ghosts, const QueueEarly& queue_early,
+                                 const QueueLate& queue_late) {
   const Device halo{items_.lane.stream};
   items_.halo_after_rows();
   for (Index k = 0; k < steps; ++k) {
-    queue_surfaces(items_.device());
+    if (!items_.parts.apart()) queue_surfaces(items_.device()), items_.halo_after_rows();
     // The first step waits for the host; steps behind a stop do nothing that a halo could hide behind.
     HaloClock* clock = k == std::min<Index>(1, steps - 1) ? &items_.lane.clock : nullptr;
-    items_.queue_beside_halo([&](Device on) { queue_ghosts(on, k); }, queue_rows, clock);
+    items_.queue_around_halo([&](Device on) { queue_ghosts(on, k); }, queue_early, queue_late, clock);
     items_.lane.halo.max(halo, control_.on_device()->shared, 2);
     control_.close(halo);
     items_.rows_after_halo();
@@ -199,7 +211,7 @@ void StepQueue::queue_in_turn(const std::string& key, Index steps, const QueueSu
 }
 
 // The host knows where the steps that are queued find their ghosts: behind a stop nothing is read any more.
-void StepQueue::queue_double(Index steps) {
+void StepQueue::queue_double(Index steps, const Event* loads_found) {
   DeviceHalo& halo = items_.lane.halo;
   const VerletRequest r = request();
   const auto field = [&](int buffer, Vec4* const(&of)[2], int parity) {
@@ -220,33 +232,29 @@ void StepQueue::queue_double(Index steps) {
     for_each(on, halo.entries(), spins);
     halo.exchange(on, position, ghosts.velocity[parity], spins.spin[parity]);
   };
-  const auto queue_rows = [&](Device on, Index first, Index end) {
+  const auto queue_rows = [&](Device on, const StepRows& rows) {
     VerletRequest of_rows = r;
-    of_rows.rows = step_rows(first, end);
+    of_rows.rows = rows;
     items_.kernels->verlet_advance(on, of_rows);
   };
-  const std::string key = key_of(r) + key_of(ghosts) + key_of(halo.entries());
+  const std::string key = key_of(r) + key_of(items_.parts.early()) + key_of(ghosts) + key_of(halo.entries());
   const DeviceContactKernels& kernels = *items_.kernels;
   DeviceSurfaces& surfaces = items_.surfaces;
-  if (!surfaces.any_at_rest())  // those that move have been looked at, if there are any
+  if (!surfaces.any_at_rest())
     return queue_in_turn(
-        key, steps, [](Device) {}, queue_ghosts, queue_rows);
+        key, steps, [&](Device on) { hold_until(loads_found, on); }, queue_ghosts, queue_rows);
   surfaces.make_room_in_run(items_.device(), steps);
   const OpenStepLook look = surface_look(r);
   queue_in_turn(
       key + surfaces.key_of_loads(kernels, look, h_), steps,
-      [&](Device on) {
-        surfaces.find_loads_in_run(on, kernels, look, h_);
-        items_.halo_after_rows();
-      },
-      queue_ghosts, queue_rows);
+      [&](Device on) { surfaces.find_loads_in_run(on, kernels, look, h_); }, queue_ghosts, queue_rows);
 }
 
-void StepQueue::queue_mixed(Index steps) {
+void StepQueue::queue_mixed(Index steps, const Event* loads_found) {
   if (!mixed_) convert_to_mixed();
   DeviceHalo& halo = items_.lane.halo;
   MixedRequest r{};
-  r.in = pruned_views(items_.now.position.data()), r.rows = step_rows(0, items_.owned);
+  r.in = pruned_views(items_.now.position.data()), r.rows = items_.parts.whole();
   r.active = items_.layout.active;
   r.gravity = items_.model.gravity;
   r.state = workspace_.arrays.views(), r.grid = mixed_->quanta, r.h = h_;
@@ -269,14 +277,14 @@ void StepQueue::queue_mixed(Index steps) {
     for_each(on, halo.entries(), spins);
     halo.exchange(on, ghosts.place[parity], ghosts.motion[parity], spins.spin[parity]);
   };
-  const auto queue_rows = [&](Device on, Index first, Index end) {
+  const auto queue_rows = [&](Device on, const StepRows& rows) {
     MixedRequest of_rows = r;
-    of_rows.rows = step_rows(first, end);
+    of_rows.rows = rows;
     items_.kernels->mixed_advance(on, of_rows);
   };
-  const std::string key = key_of(r) + key_of(ghosts) + key_of(halo.entries());
+  const std::string key = key_of(r) + key_of(items_.parts.early()) + key_of(ghosts) + key_of(halo.entries());
   queue_in_turn(
-      key, steps, [](Device) {}, queue_ghosts, queue_rows);
+      key, steps, [&](Device on) { hold_until(loads_found, on); }, queue_ghosts, queue_rows);
 }
 
 }  // namespace scree

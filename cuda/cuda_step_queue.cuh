@@ -39,8 +39,11 @@ class StepQueue {
       : items_(items), list_(list), control_(control), workspace_(workspace), h_(h) {}
 
   // Queues so many steps, each closed and the next opened, behind each other and their halos. Those behind a
-  // stop do nothing.
-  void queue(Index steps) { workspace_.mixed ? queue_mixed(steps) : queue_double(steps); }
+  // stop do nothing. loads_found: of surfaces that move, when their contacts with the particles are there;
+  // null for surfaces at rest, whose contacts are queued with each step.
+  void queue(Index steps, const Event* loads_found = nullptr) {
+    workspace_.mixed ? queue_mixed(steps, loads_found) : queue_double(steps, loads_found);
+  }
   // A step in double.
   VerletRequest request();
   bool in_mixed() const { return mixed_.has_value(); }
@@ -54,12 +57,14 @@ class StepQueue {
     Index start;  // steps closed when it was brought there
   };
   PrunedViews pruned_views(const Vec4* position);
-  StepRows step_rows(Index first, Index end) const;
-  void queue_double(Index steps);
-  void queue_mixed(Index steps);
+  void queue_double(Index steps, const Event* loads_found);
+  void queue_mixed(Index steps, const Event* loads_found);
   template <class QueueSurfaces, class QueueGhosts, class QueueRows>
   void queue_in_turn(const std::string& key, Index steps, const QueueSurfaces& queue_surfaces,
                      const QueueGhosts& queue_ghosts, const QueueRows& queue_rows);
+  template <class QueueSurfaces, class QueueGhosts, class QueueEarly, class QueueLate>
+  void queue_with_ranks(Index steps, const QueueSurfaces& queue_surfaces, const QueueGhosts& queue_ghosts,
+                        const QueueEarly& queue_early, const QueueLate& queue_late);
   OpenStepLook surface_look(const VerletRequest& step);
   Vec4* spins() const;
   void convert_to_mixed();

@@ -12,14 +12,14 @@ enum Cursor { kGroups, kTriangles, kCursors };
 
 // Calls visit(t) for the triangles of a placed mesh that the particle at p may touch.
 template <class Visit>
-__device__ void visit_near(const MeshSearch& in, const MeshView& mesh, Index placed, Vec3 shift, Vec4 p,
+__device__ void visit_near(const MeshSearch& in, const MeshView& mesh, const CellsNear& cells, Vec4 p,
                            const Visit& visit) {
-  const PlacedSurface& surface = in.placed[placed];
+  const PlacedSurface& surface = in.placed[cells.placed];
   const SurfaceFrame& frame = in.frames[surface.frame];
-  const Real past = mesh_skin(p.w, in.skin);
+  const Real past = mesh_skin(p.w, cells.skin);
   for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
-    for_each_triangle_near(mesh, transposed_times(frame.axes, (place - shift) - surface.point), p.w + past,
-                           visit);
+    for_each_triangle_near(mesh, transposed_times(frame.axes, (place - cells.shift) - surface.point),
+                           p.w + past, visit);
   });
 }
 
@@ -27,16 +27,14 @@ __device__ void visit_near(const MeshSearch& in, const MeshView& mesh, Index pla
 struct CountNearItem {
   MeshSearch in;
   const MeshView* meshes;
-  Index placed;
+  CellsNear cells;
   Index* cursors;
 
-  __device__ void operator()(Index i) const {
-    const SurfaceFrame& frame = in.frames[in.placed[placed].frame];
-    const MeshView& mesh = meshes[frame.mesh];
-    const Vec4 p = in.position[i];
-    for_each_shift(in.period - frame.spanned, [&](Vec3 shift, std::int8_t) {
+  __device__ void operator()(Index c) const {
+    const MeshView& mesh = meshes[in.frames[in.placed[cells.placed].frame].mesh];
+    cells.for_each_particle(in, c, [&](Index i) {
       Index triangles = 0;
-      visit_near(in, mesh, placed, shift, p, [&](Index) { ++triangles; });
+      visit_near(in, mesh, cells, in.position[i], [&](Index) { ++triangles; });
       if (triangles > 0) atomicAdd(&cursors[kGroups], 1), atomicAdd(&cursors[kTriangles], triangles);
     });
   }
@@ -46,26 +44,25 @@ struct CountNearItem {
 struct FindNearItem {
   MeshSearch in;
   const MeshView* meshes;
-  Index placed, number;
+  CellsNear cells;
   Index* cursors;
   NearMesh* near;
   MeshGroup* groups;
   Index* triangles;
   Index* counts;  // of entries per particle
 
-  __device__ void operator()(Index i) const {
-    const SurfaceFrame& frame = in.frames[in.placed[placed].frame];
-    const MeshView& mesh = meshes[frame.mesh];
-    const Vec4 p = in.position[i];
-    for_each_shift(in.period - frame.spanned, [&](Vec3 shift, std::int8_t image) {
+  __device__ void operator()(Index c) const {
+    const MeshView& mesh = meshes[in.frames[in.placed[cells.placed].frame].mesh];
+    cells.for_each_particle(in, c, [&](Index i) {
+      const Vec4 p = in.position[i];
       Index found = 0;
-      visit_near(in, mesh, placed, shift, p, [&](Index) { ++found; });
+      visit_near(in, mesh, cells, p, [&](Index) { ++found; });
       if (found == 0) return;
       const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
       Index* to = triangles + first;
-      visit_near(in, mesh, placed, shift, p, [&](Index t) { *to++ = t; });
+      visit_near(in, mesh, cells, p, [&](Index t) { *to++ = t; });
       const Index entries = slots_needed(mesh, triangles + first, found);
-      near[g] = {i, number, placed, image};
+      near[g] = {i, cells.number, cells.image};
       groups[g] = {0, entries, first, found};
       atomicAdd(&counts[i], entries);
     });
@@ -110,6 +107,16 @@ struct TouchInRunItem {
   }
 };
 
+// Whether a cell of the grid reaches into the box.
+bool meets(const CellGrid& grid, const Box& box) {
+  const auto along = [](Real origin, Real inverse_size, Index cells, Real min, Real max) {
+    return max >= origin && min <= origin + static_cast<Real>(cells) / inverse_size;
+  };
+  return along(grid.origin.x, grid.inverse_size.x, grid.cells[0], box.min.x, box.max.x) &&
+         along(grid.origin.y, grid.inverse_size.y, grid.cells[1], box.min.y, box.max.y) &&
+         (grid.layer || along(grid.origin.z, grid.inverse_size.z, grid.cells[2], box.min.z, box.max.z));
+}
+
 template <class T>
 const T* uploaded(DeviceArray<T>& array, const std::vector<T>& values, cudaStream_t stream) {
   array.upload(values, stream);
@@ -118,7 +125,7 @@ const T* uploaded(DeviceArray<T>& array, const std::vector<T>& values, cudaStrea
 
 }  // namespace
 
-DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream) : cursors_(kCursors) {
+DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream) : surfaces_(model), cursors_(kCursors) {
   std::vector<MeshView> views;
   meshes_.reserve(model.meshes.size());
   for (const ModelMesh& mesh : model.meshes) {
@@ -136,18 +143,36 @@ DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream) : cursors_(k
     view.boxes = uploaded(to.boxes, from.boxes, stream);
   }
   views_.upload(views, stream);
-  const SurfaceSet surfaces(model);
-  for (Index s = 0; s < surfaces.placed(); ++s)
-    if (surfaces.at(s).kind == SurfaceKind::mesh)
-      instances_.push_back(s), numbers_.push_back(surfaces.number_of(s));
+  for (Index s = 0; s < surfaces_.placed(); ++s)
+    if (surfaces_.at(s).kind == SurfaceKind::mesh) instances_.push_back(s);
 }
 
-void DeviceMeshes::find(Device device, const MeshSearch& search, Index* counts) {
+// Where the search looks, mesh by mesh and image by image.
+std::vector<CellsNear> DeviceMeshes::cells_near_meshes(const MeshSearch& search, const SurfacePlaces& places,
+                                                       Real largest_radius) const {
+  std::vector<CellsNear> near;
+  for (const Index s : instances_) {
+    const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
+    const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
+    const Real skin = surfaces_.skin_of(s, search.skin);
+    for_each_shift(search.period - frame.spanned, [&](Vec3 shift, std::int8_t image) {
+      const Box box = box_near(places, s, shift, largest_radius, skin);
+      if (meets(search.grid.cells.space, box))
+        near.push_back(
+            {s, surfaces_.number_of(s), skin, shift, image, cells_near(search.grid.cells.own, box)});
+    });
+  }
+  return near;
+}
+
+void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePlaces& places,
+                        Real largest_radius, Index* counts) {
   count_ = 0;
   if (instances_.empty()) return;
+  const std::vector<CellsNear> near = cells_near_meshes(search, places, largest_radius);
   cursors_.zero(device.stream);
-  for (const Index s : instances_)
-    for_each(device, search.active, CountNearItem{search, views_.data(), s, cursors_.data()});
+  for (const CellsNear& cells : near)
+    for_each(device, cells.count(), CountNearItem{search, views_.data(), cells, cursors_.data()});
   copy_async(h_counts_.data(), cursors_.data(), kCursors, device.stream);
   wait_for(device.stream);
   if (h_counts_[kTriangles] < 0)
@@ -157,10 +182,10 @@ void DeviceMeshes::find(Device device, const MeshSearch& search, Index* counts) 
   groups_.resize_with_spare(static_cast<std::size_t>(count_));
   triangles_.resize_with_spare(static_cast<std::size_t>(h_counts_[kTriangles]));
   cursors_.zero(device.stream);
-  for (std::size_t k = 0; k < instances_.size(); ++k)
-    for_each(device, search.active,
-             FindNearItem{search, views_.data(), instances_[k], numbers_[k], cursors_.data(), near_.data(),
-                          groups_.data(), triangles_.data(), counts});
+  for (const CellsNear& cells : near)
+    for_each(device, cells.count(),
+             FindNearItem{search, views_.data(), cells, cursors_.data(), near_.data(), groups_.data(),
+                          triangles_.data(), counts});
 }
 
 void DeviceMeshes::fill(Device device, Index* next, Index* surfaces, std::int8_t* images) {

@@ -4,9 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "brick_grid.cuh"
 #include "contact_kernels.cuh"
 #include "dem/mesh_rows.hpp"
 #include "dem/surface_items.hpp"
+#include "dem/surface_rows.hpp"
+#include "dem/surfaces.hpp"
 #include "device.cuh"
 #include "model/model.hpp"
 
@@ -15,18 +18,40 @@ namespace scree {
 // A particle near a mesh, before its row is there.
 struct NearMesh {
   Index particle, surface;  // the latter by its number
-  Index placed;
   std::int8_t image;
 };
 
-// Where the search finds particles and placed surfaces; device.
+// Where the search finds particles, in the order of their cells, and placed surfaces; device.
 struct MeshSearch {
   const Vec4* position;
-  Index active;
-  Real skin;  // how far past touch surfaces are looked for [m]
+  BrickGrid grid;
+  const Index* starts;  // [cells + 1]
+  Real skin;            // how far past touch surfaces at rest are looked for [m]
   Vec3 period;
   const PlacedSurface* placed;
   const SurfaceFrame* frames;
+};
+
+// Cells in which particles may be near a mesh that is moved by the shift.
+struct CellsNear {
+  Index placed, number;  // of the surface
+  Real skin;             // how far past touch it is looked for [m]
+  Vec3 shift;
+  std::int8_t image;
+  CellRange range;
+
+  Index count() const {
+    return (range.upper.x - range.lower.x + 1) * (range.upper.y - range.lower.y + 1) *
+           (range.upper.z - range.lower.z + 1);
+  }
+  // Calls visit(i) for the particles in the c-th of them.
+  template <class Visit>
+  __device__ void for_each_particle(const MeshSearch& in, Index c, const Visit& visit) const {
+    const Index nx = range.upper.x - range.lower.x + 1, ny = range.upper.y - range.lower.y + 1;
+    const Index key =
+        in.grid.key(range.lower.x + c % nx, range.lower.y + c / nx % ny, range.lower.z + c / (nx * ny));
+    for (Index i = in.starts[key]; i < in.starts[key + 1]; ++i) visit(i);
+  }
 };
 
 class DeviceMeshes {
@@ -35,9 +60,11 @@ class DeviceMeshes {
   bool exist() const { return !meshes_.empty(); }
 
   // For a new list, in this order. Finds who is near what, and adds to counts[particle] the entries that they
-  // need; waits. Then: writes these entries to the rows, of which next[particle] are free from then on. Then,
-  // with the rows in order: which entries belong together.
-  void find(Device device, const MeshSearch& search, Index* counts);
+  // need; waits. places: the host's; largest_radius: of the particles [m]. Then: writes these entries to the
+  // rows, of which next[particle] are free from then on. Then, with the rows in order: which entries belong
+  // together.
+  void find(Device device, const MeshSearch& search, const SurfacePlaces& places, Real largest_radius,
+            Index* counts);
   void fill(Device device, Index* next, Index* surfaces, std::int8_t* images);
   void group(Device device, const Index* offsets, const Index* surfaces, const std::int8_t* images);
 
@@ -72,10 +99,14 @@ class DeviceMeshes {
     DeviceArray<MeshBox> boxes;
   };
 
+  std::vector<CellsNear> cells_near_meshes(const MeshSearch& search, const SurfacePlaces& places,
+                                           Real largest_radius) const;
+
   std::vector<Arrays> meshes_;
   DeviceArray<MeshView> views_;
-  std::vector<Index> instances_, numbers_;  // placed surfaces that are meshes, and their numbers
-  Index count_ = 0;                         // of groups
+  SurfaceSet surfaces_;
+  std::vector<Index> instances_;  // placed surfaces that are meshes
+  Index count_ = 0;               // of groups
   DeviceArray<NearMesh> near_;
   DeviceArray<MeshGroup> groups_;
   DeviceArray<Index> triangles_, cursors_;

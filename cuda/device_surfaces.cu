@@ -175,11 +175,11 @@ void DeviceSurfaces::build(Device device, const Particles& particles, const Surf
                            Real skin) {
   material_ = particles.material;
   place(device, places);
-  find_entries(device, particles, skin);
+  find_entries(device, particles, places, skin);
   if (any_placed()) group_by_surface(device);
 }
 
-void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) {
+void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePlaces& places, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
   const EntrySearch in{p.position, p.active,  *p.grid,        p.starts, p.largest_radius + skin,
@@ -192,7 +192,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) 
     count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts_.data());
   require_cuda(cudaGetLastError(), "surfaces near particles");
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts_.data()});
-  meshes_.find(device, {p.position, p.active, skin, period_, places_.data(), frames_.data()}, counts_.data());
+  meshes_.find(device, {p.position, *p.grid, p.starts, skin, period_, places_.data(), frames_.data()}, places,
+               p.largest_radius, counts_.data());
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(
         cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), offsets_.data(), p.owned + 1, device.stream),

@@ -95,7 +95,7 @@ class DeviceSurfaces {
   }
 
  private:
-  void find_entries(Device device, const Particles& particles, Real skin);
+  void find_entries(Device device, const Particles& particles, const SurfacePlaces& places, Real skin);
   void group_by_surface(Device device);
   SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceLook& look) const;

@@ -96,7 +96,7 @@ __global__ void __launch_bounds__(kStepBlock, verlet_blocks(kAtOnce))
   __shared__ VerletStage::Shared shared;
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
-  const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const Index i = r.rows.particle(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const VerletStage stage(shared, first, min(static_cast<Index>(warpSize), r.rows.end - first));
   Vec3* const acceleration = stage.load(r.state.acceleration);
   VerletAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
@@ -148,7 +148,7 @@ __global__ void __launch_bounds__(kStepBlock, kRubbingBlocks)
   } shared[kStepBlock / kSlice];  // of a warp each
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
-  const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const Index i = r.rows.particle(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const bool idle = i >= r.rows.end;
   auto& room = shared[threadIdx.x / kSlice];
   const auto views =
@@ -194,7 +194,7 @@ __global__ void __launch_bounds__(kStepBlock, mixed_blocks(kAtOnce))
   const int parity = r.control->parity[0];
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
-  const Index i = r.rows.first + thread_index();
+  const Index i = r.rows.particle();
   Real d_squared = 0;
   if (i < r.rows.end) {
     const MixedAdvanceItem<Laws, PrunedRows<kAtOnce>> item{
@@ -222,7 +222,7 @@ __global__ void __launch_bounds__(kStepBlock, kMixedRubbingBlocks)
   __shared__ WarpContactsOf<float, Laws> contacts[kStepBlock / kSlice];
   __shared__ BlockLargest largest_of_step;
   largest_of_step.clear();
-  const Index i = r.rows.first + thread_index(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
+  const Index i = r.rows.particle(), first = i - static_cast<Index>(threadIdx.x) % warpSize;
   const bool idle = i >= r.rows.end;
   const auto views = at_open_step<Laws>(
       warp_views(r.in, r.control->rows, r.control->margin, &contacts[threadIdx.x / kSlice], idle), r);

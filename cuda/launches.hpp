@@ -11,6 +11,9 @@ struct Launches {
   // Which form of an explicit step's kernel runs, see PrunedRows: several entries of a row at once, or one by
   // one; unset: as the particles fit on the GPU.
   std::optional<bool> several_at_once;
+  // Whether an explicit step's particles away from placed surfaces are launched by themselves, see StepParts;
+  // unset: if that pays.
+  std::optional<bool> in_parts;
 };
 
 // Of the program; to be changed only while there is no backend.

@@ -18,7 +18,8 @@ cudaGraphExec_t StepGraph::keep(const std::string& key, cudaGraph_t captured) {
   oldest_ = (oldest_ + 1) % entries_.size();
   if (entry.graph != nullptr) cudaGraphExecDestroy(entry.graph);
   entry = {key, nullptr};
-  const cudaError_t status = cudaGraphInstantiate(&entry.graph, captured, 0);
+  const cudaError_t status =
+      cudaGraphInstantiate(&entry.graph, captured, cudaGraphInstantiateFlagUseNodePriority);
   cudaGraphDestroy(captured);
   require_cuda(status, "cudaGraphInstantiate");
   return entry.graph;

@@ -1,6 +1,7 @@
 #include "dem/surface_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/countable.hpp"
@@ -69,12 +70,14 @@ class EntryFinder {
       if (surface_pair(placed(s), shift, position(i)).geometry.overlap > -search_.skin) add(entry, i, 1);
   }
   void add_near_mesh(Index s, Vec3 shift, Entry entry) {
-    for (Index i = 0; i < sorted_.active; ++i) {
+    const Real skin = search_.surfaces.skin_of(s, search_.skin);
+    const Box box = box_near(search_.places, s, shift, sorted_.largest_radius, skin);
+    for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
       triangles_.clear();
-      const MeshView& mesh = triangles_near(search_.places, s, position(i), shift, search_.skin, triangles_);
+      const MeshView& mesh = triangles_near(search_.places, s, position(i), shift, skin, triangles_);
       if (!triangles_.empty())
         add(entry, i, slots_needed(mesh, triangles_.data(), static_cast<Index>(triangles_.size())));
-    }
+    });
   }
   void add(Entry entry, Index particle, int times) {
     entry.particle = particle;
@@ -126,13 +129,33 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
       ++end;
     const auto first = static_cast<Index>(rows.triangles.size());
     triangles_near(search.places, s, sorted.position[static_cast<std::size_t>(i)],
-                   image_shift(rows.images[entry], search.period), search.skin, rows.triangles);
+                   image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin),
+                   rows.triangles);
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
     rows.groups.push_back({entry, end - entry, first, last - first});
   }
 }
 
+Vec3 magnitudes(Vec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
+
 }  // namespace
+
+Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin) {
+  constexpr Real kRoundOff = 1e-9;  // of turning the box, with plenty to spare
+  const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
+  const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
+  const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
+  const MeshBox& of_mesh = mesh.boxes[mesh.level_start[mesh.levels - 1]];
+  const Vec3 half = Real(0.5) * (of_mesh.max - of_mesh.min);
+  const Vec3 middle = surface.point + shift + frame.axes * (of_mesh.min + half);
+  const Vec3 turned{dot(magnitudes(frame.axes.x), half), dot(magnitudes(frame.axes.y), half),
+                    dot(magnitudes(frame.axes.z), half)};
+  const Real reach = radius + mesh_skin(radius, skin) + kRoundOff * (norm(half) + norm(middle));
+  const auto along = [&](Real size, Real period) { return period != 0 ? kInfinity : size + reach; };
+  const Vec3 to_sides{along(turned.x, frame.spanned.x), along(turned.y, frame.spanned.y),
+                      along(turned.z, frame.spanned.z)};
+  return {middle - to_sides, middle + to_sides};
+}
 
 const MeshView& triangles_near(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin,
                                std::vector<Index>& triangles) {

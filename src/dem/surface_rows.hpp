@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/box.hpp"
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "dem/contact_walk.hpp"
@@ -50,6 +51,14 @@ SCREE_HD CellRange cells_near(const CellGrid& grid, Vec3 p, Real reach) {
   return {grid.nearest_place(p - Vec3{reach, reach, reach}),
           grid.nearest_place(p + Vec3{reach, reach, reach})};
 }
+// The same of particles in a box.
+inline CellRange cells_near(const CellGrid& grid, const Box& box) {
+  return {grid.nearest_place(box.min), grid.nearest_place(box.max)};
+}
+
+// In which the centres are of particles no larger than `radius` that come within `skin` of the mesh of the
+// placed surface s, moved by the shift [m]. Along periods that the mesh spans it has no ends.
+Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin);
 
 // What a row may hold.
 struct SurfaceSearch {

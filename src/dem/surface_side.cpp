@@ -118,7 +118,7 @@ Real SurfaceSide::place() {
     step_turn_[s] = (surface.kind == SurfaceKind::sphere ? surface.radius : 1) * (placed.turn - turned);
   }
   turn_frames();
-  return largest_displacement(step_, before);
+  return largest_displacement(step_, before, kMeshWear);
 }
 
 // Both are linear in the place: corners of boxes go farthest. Of a plane what counts is how its distance from
@@ -162,14 +162,16 @@ void SurfaceSide::reopen_step() {
   place();
 }
 
-Real SurfaceSide::largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from) const {
+Real SurfaceSide::largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from,
+                                       Real of_mesh) const {
   Real squared = 0;  // of spheres
   Real largest = 0;  // of the others
   for (std::size_t s = 0; s < placed_.size(); ++s) {
     const bool is_sphere = placed_[s].kind == SurfaceKind::sphere;
-    const Real size =
-        is_sphere ? dot(moved[s], moved[s])
-                  : displacement_of(placed_[s], moved[s], from[static_cast<std::size_t>(placed_[s].frame)]);
+    const Real size = is_sphere ? dot(moved[s], moved[s])
+                                : (placed_[s].kind == SurfaceKind::mesh ? of_mesh : 1) *
+                                      displacement_of(placed_[s], moved[s],
+                                                      from[static_cast<std::size_t>(placed_[s].frame)]);
     if (std::isnan(size)) return size;
     Real& most = is_sphere ? squared : largest;
     most = std::max(most, size);
@@ -177,12 +179,12 @@ Real SurfaceSide::largest_displacement(std::span<const Vec3> moved, std::span<co
   return std::max(std::sqrt(squared), largest);
 }
 
-Real SurfaceSide::displacement_since(const std::vector<PlacedSurface>& then,
-                                     const std::vector<Mat3>& axes) const {
+Real SurfaceSide::displacement_since(const std::vector<PlacedSurface>& then, const std::vector<Mat3>& axes,
+                                     Real of_mesh) const {
   std::vector<Vec3> moved;
   moved.reserve(placed_.size());
   for (std::size_t s = 0; s < placed_.size(); ++s) moved.push_back(placed_[s].point - then[s].point);
-  return largest_displacement(moved, axes);
+  return largest_displacement(moved, axes, of_mesh);
 }
 
 void SurfaceSide::take_loads(std::span<const InstantSums> of_particles) {

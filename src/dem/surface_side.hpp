@@ -43,7 +43,8 @@ class SurfaceSide {
   void bring_into_box();
   // What bodies can touch, until a surface has moved by half the skin.
   void build_list(Real skin);
-  // Moves the surfaces to where the bodies are; returns the largest displacement of a place on one [m].
+  // Moves the surfaces to where the bodies are; returns how much of the list that takes, as the displacement
+  // of a particle that takes as much [m].
   Real place();
   // One entry per placed surface.
   const std::vector<PlacedSurface>& placed() const { return placed_; }
@@ -63,8 +64,10 @@ class SurfaceSide {
   // Start of an implicit step, to look back at.
   void keep_start();
   const std::vector<PlacedSurface>& start() const { return start_; }
-  Real step_displacement() const { return displacement_since(start_, start_axes_); }    // [m]
-  Real list_displacement() const { return displacement_since(listed_, listed_axes_); }  // of the list [m]
+  // Of any place on a surface since then [m].
+  Real step_displacement() const { return displacement_since(start_, start_axes_, 1); }
+  // Since the list was built, as place() counts [m].
+  Real list_displacement() const { return displacement_since(listed_, listed_axes_, kMeshWear); }
 
   // What touches the surfaces at an instant, and over an implicit step: the backend hands over what its
   // particles do, in any order and a surface in any number of parts; rank 0 adds what the bodies do to each
@@ -97,10 +100,11 @@ class SurfaceSide {
  private:
   // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].
   Vec3 point_with(const std::vector<BodyMotion>& motion, Index surface) const;
-  // Of any place on a surface [m].
+  // Of any place on a surface, on meshes times of_mesh [m].
   // moved: of the surfaces' points; from: the axes of the frames before.
-  Real largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from) const;
-  Real displacement_since(const std::vector<PlacedSurface>& then, const std::vector<Mat3>& axes) const;
+  Real largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from, Real of_mesh) const;
+  Real displacement_since(const std::vector<PlacedSurface>& then, const std::vector<Mat3>& axes,
+                          Real of_mesh) const;
   Real displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const;
   std::vector<Mat3> axes() const;  // of the frames
   void turn_frames();

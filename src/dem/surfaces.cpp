@@ -29,8 +29,8 @@ SurfaceSet::SurfaceSet(const Model& model)
     if (!wall.is_placed()) continue;
     if (wall.moves() || wall.runs()) at_rest_ = false;
     surfaces_.push_back({wall.mesh < 0 ? SurfaceKind::plane : SurfaceKind::mesh,
-                         static_cast<int>(carriers_++), wall.material, wall.point, wall.normal, 0,
-                         wall.mesh});
+                         static_cast<int>(carriers_++), wall.material, wall.point, wall.normal, 0, wall.mesh,
+                         wall.moves()});
     walls_.push_back(w);
   }
 }

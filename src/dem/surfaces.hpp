@@ -27,7 +27,14 @@ struct Surface {
   Vec3 normal;   // of a plane: unit, into its free side
   Real radius;   // of a sphere [m]
   int mesh = 0;  // of a mesh: index into Model::meshes
+  bool moves = true;
 };
+
+// Meshes that move are looked for so many times as far past touch as other surfaces: corners of theirs go far
+// while particles hardly do, and rows of triangles are cheap beside a new list.
+inline constexpr Real kMeshSkins = 2;
+// What a list must cover of their motion, as that of a particle: which has half a skin, and they all beyond.
+inline constexpr Real kMeshWear = 1 / (2 * kMeshSkins - 1);
 
 // A wall in the form the items read. Of a plane at rest that is all; `placed`: of another wall its number
 // among the placed surfaces, else -1.
@@ -51,6 +58,11 @@ class SurfaceSet {
     return placed < on_bodies_ ? ground_ + placed : walls_[static_cast<std::size_t>(placed - on_bodies_)];
   }
   bool is_on_body(Index placed) const { return placed < on_bodies_; }
+  // How far past touch it is looked for where planes at rest are by `skin` [m].
+  Real skin_of(Index placed, Real skin) const {
+    const Surface& surface = at(placed);
+    return surface.kind == SurfaceKind::mesh && surface.moves ? kMeshSkins * skin : skin;
+  }
   // Bodies, and walls that are placed.
   std::size_t carriers() const { return carriers_; }
   // Whether nothing that carries them ever moves, nor do surfaces run along themselves.

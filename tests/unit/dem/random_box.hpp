@@ -8,6 +8,7 @@
 
 #include "dem/backend.hpp"
 #include "dem/particle_store.hpp"
+#include "dem/surfaces.hpp"
 #include "model/model.hpp"
 #include "model/random.hpp"
 #include "partition/halo.hpp"
@@ -150,7 +151,16 @@ inline Model dense_box(const BoxCase& box, ParticleIntegrator integrator, int pa
 
 inline std::vector<BodyMotion> motion_of(const std::vector<Body>& bodies) {
   std::vector<BodyMotion> motion;
-  for (const Body& b : bodies) motion.push_back({b.position, b.velocity, b.angle, b.angular_velocity});
+  for (const Body& b : bodies) motion.push_back(start_motion(b));
+  return motion;
+}
+
+// Of all that carries surfaces; walls are at rest.
+inline std::vector<BodyMotion> carriers_of(const Model& model) {
+  std::vector<BodyMotion> motion = motion_of(model.bodies);
+  BodyMotion wall;
+  wall.kind = BodyKind::spatial;
+  motion.resize(SurfaceSet(model).carriers(), wall);
   return motion;
 }
 
@@ -160,7 +170,7 @@ struct LoadedBox {
                      std::unique_ptr<Backend> (*make)(const Model&, const Ranks&) = make_test_backend)
       : model(of),
         records(initial_records(model.particles, Subdomain(model.space))),
-        motion(motion_of(model.bodies)),
+        motion(carriers_of(model)),
         backend(make(model, {})) {
     backend->particles().load(records, {});
     backend->list().place_bodies(motion);

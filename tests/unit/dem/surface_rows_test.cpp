@@ -7,8 +7,11 @@
 
 #include "dem/neighbor_list.hpp"
 #include "dem/surface_side.hpp"
+#include "mesh/mesh_contacts.hpp"
+#include "mesh/mesh_tree.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
+#include "support/models.hpp"
 
 namespace scree {
 
@@ -27,7 +30,7 @@ struct BuiltRows {
         subdomain(model.space),
         side(model, subdomain, {}),
         builder(model),
-        motion(motion_of(model.bodies)) {
+        motion(carriers_of(model)) {
     side.set_motion(motion);
     side.bring_into_box();
     side.place();
@@ -69,6 +72,79 @@ std::vector<Entry> expected_row(const BuiltRows& built, Index i) {
     ++surface;
   }
   return row;
+}
+
+// A beam of triangles on a body that lies askew across periodic sides, a ring on the ground, and grains.
+const char* const kGrainsAndMeshes = R"(
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+x_min = "periodic"
+x_max = "periodic"
+z_min = "periodic"
+z_max = "periodic"
+leaving = "drift"
+[time]
+end = 1.0
+step = 1e-4
+[integrator]
+particles = "velocity-verlet"
+[[materials]]
+name = "grain"
+[[contact.pairs]]
+stiffness = 1e4
+damping = 1.0
+[[meshes]]
+name = "beam"
+kind = "box"
+size = [1.2, 0.1, 0.05]
+refine = 0.1
+[[meshes]]
+name = "ring"
+kind = "pipe"
+radius = 0.5
+inner_radius = 0.4
+length = 0.2
+segments = 24
+[[walls]]
+name = "ring"
+mesh = "ring"
+[[bodies]]
+name = "beam"
+kind = "spatial"
+position = [0.9, 0.2, -0.9]
+quaternion = [0.8, 0.36, 0.48, 0.0]
+solids = [{ kind = "mesh", mesh = "beam", density = 1000.0 }]
+meshes = [{ mesh = "beam" }]
+[[particles]]
+name = "grains"
+kind = "random"
+count = 5000
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+radius = { kind = "uniform", min = 0.02, max = 0.05 }
+density = 1000.0
+seed = 3
+)";
+
+// The triangles that come within `past` of particle i, image by image, as the groups have them.
+std::vector<std::vector<Index>> triangles_in_reach(const BuiltRows& built, Index i, Index s, Real past) {
+  const SurfacePlaces places = built.side.places();
+  const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
+  const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
+  const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
+  const Vec4 p = built.store.position[i];
+  const Real limit = (p.w + past) * (p.w + past);
+  std::vector<std::vector<Index>> groups;
+  for_each_shift(built.subdomain.period(), [&](Vec3 shift, std::int8_t) {
+    std::vector<Index> near;
+    for (Index t = 0; t < mesh.triangle_count; ++t)
+      if (is_nearer(mesh, t, transposed_times(frame.axes, xyz(p) - shift - surface.point), limit))
+        near.push_back(t);
+    if (!near.empty()) groups.push_back(near);
+  });
+  return groups;
 }
 
 }  // namespace
@@ -126,6 +202,29 @@ TEST_CASE(
     found += built.row(i).size();
   }
   CHECK(found > 300);
+}
+
+TEST_CASE("rows hold the triangles that come near a particle, farther out of meshes that move") {
+  const BuiltRows built(model_of(kGrainsAndMeshes));
+  const SurfaceRows& rows = built.list.surfaces;
+  std::size_t found = 0, images = 0;
+  for (Index s = 0; s < built.side.size(); ++s) {
+    const bool moves = built.side.surfaces().is_on_body(s);
+    std::vector<std::vector<std::vector<Index>>> of_particle(static_cast<std::size_t>(built.layout.active));
+    for (const MeshGroup& g : rows.groups) {
+      if (rows.surfaces[g.entry] != built.side.surfaces().number_of(s)) continue;
+      const auto first = rows.triangles.begin() + g.first_triangle;
+      of_particle[static_cast<std::size_t>(rows.particles[g.entry])].emplace_back(first, first + g.triangles);
+      ++found, images += rows.images[g.entry] != kNoShift;
+    }
+    for (Index i = 0; i < built.layout.active; ++i) {
+      CAPTURE(s, i);
+      const Real past = mesh_skin(built.store.position[i].w, moves ? kMeshSkins * kSkin : kSkin);
+      CHECK(of_particle[static_cast<std::size_t>(i)] == triangles_in_reach(built, i, s, past));
+    }
+  }
+  CHECK(found > 50);
+  CHECK(images > 10);
 }
 
 }  // namespace scree

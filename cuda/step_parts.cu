@@ -1,0 +1,53 @@
+#include <thrust/iterator/counting_iterator.h>
+
+#include <algorithm>
+#include <cub/device/device_partition.cuh>
+
+#include "for_each.cuh"
+#include "step_parts.cuh"
+
+namespace scree {
+namespace {
+
+// Launches of their own take longer than they save where fewer blocks than these go ahead on a
+// multiprocessor.
+constexpr unsigned kLeastBlocks = 8;
+
+// Whether a block of particles meets neither ghosts nor placed surfaces.
+struct EarlyItem {
+  SurfaceList surfaces;
+  Index owned, interior;
+  unsigned char* early;
+
+  __device__ void operator()(Index block) const {
+    const Index first = block * kStepBlock, end = min(first + kStepBlock, owned);
+    bool meets = end > interior;
+    for (Index k = surfaces.offsets[first]; k < surfaces.offsets[end] && !meets; ++k)
+      meets = !surfaces.numbers.at_rest(surfaces.surfaces[k]);
+    early[block] = !meets;
+  }
+};
+
+}  // namespace
+
+void StepParts::find(Device device, const DeviceSurfaces& surfaces, Index owned, Index interior, bool alone) {
+  owned_ = owned, alone_ = alone, apart_ = false;
+  all_ = std::max(1u, blocks_for(owned, kStepBlock));
+  early_ = alone ? 0 : static_cast<unsigned>(interior / kStepBlock);
+  if (!surfaces.any_placed() || owned == 0) return;
+  const auto blocks = static_cast<Index>(all_);
+  blocks_.resize(all_), early_flags_.resize(all_);
+  for_each(device, blocks, EarlyItem{surfaces.list(), owned, alone ? owned : interior, early_flags_.data()});
+  with_space(space_, [&](void* at, std::size_t& bytes) {
+    require_cuda(
+        cub::DevicePartition::Flagged(at, bytes, thrust::counting_iterator<Index>(0), early_flags_.data(),
+                                      blocks_.data(), count_.data(), blocks, device.stream),
+        "partition");
+  });
+  const auto found = static_cast<unsigned>(count_.download(device.stream)[0]);
+  const bool pays = found >= kLeastBlocks * multiprocessors_;
+  apart_ = found > 0 && found < all_ && launches().in_parts.value_or(pays);
+  if (apart_) early_ = found;
+}
+
+}  // namespace scree
