@@ -162,7 +162,12 @@ std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>&
 }  // namespace
 
 DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
-    : period_(period), meshes_(model, stream), works_(model, stream), moves_(model.rotates()), h_index_(1) {
+    : period_(period),
+      reach_(model.contact.reach),
+      meshes_(model, stream),
+      works_(model, stream),
+      moves_(model.rotates()),
+      h_index_(1) {
   const SurfaceSet surfaces(model);
   ground_ = surfaces.ground(), placed_count_ = surfaces.placed(), at_rest_ = surfaces.at_rest();
   planes_.upload(wall_planes(model), stream);
@@ -272,7 +277,8 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels, co
           look.history,
           records_of(kernels.history()),
           look.spin,
-          look.h};
+          look.h,
+          reach_};
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,

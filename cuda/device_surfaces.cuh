@@ -101,6 +101,7 @@ class DeviceSurfaces {
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceLook& look) const;
 
   Vec3 period_;
+  Real reach_;  // Contact::reach [m]
   DeviceArray<WallPlane> planes_;
   Index ground_, placed_count_;
   bool at_rest_;

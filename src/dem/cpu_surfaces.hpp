@@ -55,6 +55,7 @@ class CpuSurfaces {
   SurfaceSide& side_;
   const ContactKernels& kernels_;
   std::vector<WallPlane> planes_;
+  Real reach_;  // Contact::reach [m]
   Vec3 period_;
   std::vector<MeshTouch> touches_;  // per entry; empty without meshes
   std::vector<MeshTouchBefore> touches_before_;
