@@ -162,7 +162,7 @@ std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>&
 }  // namespace
 
 DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
-    : period_(period),
+    : box_{model.space.min, period},
       reach_(model.contact.reach),
       meshes_(model, stream),
       works_(model, stream),
@@ -187,8 +187,8 @@ void DeviceSurfaces::build(Device device, const Particles& particles, const Surf
 void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
-  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts, p.largest_radius + skin,
-                       skin,       numbers(), places_.data(), period_};
+  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts,   p.largest_radius + skin,
+                       skin,       numbers(), places_.data(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The entry past the end is read, though no sum depends on it.
   require_cuda(cudaMemsetAsync(counts_.data() + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
@@ -197,7 +197,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, Real skin) 
     count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts_.data());
   require_cuda(cudaGetLastError(), "surfaces near particles");
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts_.data()});
-  meshes_.find(device, {p.position, p.active, skin, period_, places_.data(), frames_.data()}, counts_.data());
+  meshes_.find(device, {p.position, p.active, skin, box_.period, places_.data(), frames_.data()},
+               counts_.data());
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(
         cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), offsets_.data(), p.owned + 1, device.stream),
@@ -273,7 +274,7 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels, co
           meshes_.rows(),
           meshes_.touches(),
           meshes_.before(),
-          period_,
+          box_,
           look.history,
           records_of(kernels.history()),
           look.spin,

@@ -50,7 +50,7 @@ CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, Surface
       kernels_(kernels),
       planes_(wall_planes(model)),
       reach_(model.contact.reach),
-      period_(subdomain.period()),
+      box_{model.space.min, subdomain.period()},
       works_(model),
       work_sums_(works_.sums({})),
       moves_(model.rotates()) {}
@@ -68,7 +68,7 @@ SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceR
           {rows.groups.data(), rows.triangles.data(), places.meshes.data()},
           touches_.data(),
           touches_before_.data(),
-          period_,
+          box_,
           look.history,
           records_of(kernels_.history()),
           look.spin,

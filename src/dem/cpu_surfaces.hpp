@@ -56,7 +56,7 @@ class CpuSurfaces {
   const ContactKernels& kernels_;
   std::vector<WallPlane> planes_;
   Real reach_;  // Contact::reach [m]
-  Vec3 period_;
+  PeriodicBox box_;
   std::vector<MeshTouch> touches_;  // per entry; empty without meshes
   std::vector<MeshTouchBefore> touches_before_;
   std::vector<SurfaceLoad> loads_;  // per entry

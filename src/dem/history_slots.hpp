@@ -117,6 +117,10 @@ struct PeriodicBox {
     wrap(min, period, p, count);
     return count;
   }
+  SCREE_HD Vec3 wrapped(Vec3 p) const {
+    ImageCount unused;
+    return wrap(min, period, p, unused);
+  }
   // The same with images along the other axes alone.
   SCREE_HD PeriodicBox without(Vec3 spanned) const { return {min, period - spanned}; }
   // Number of the image of what lies at q and `image` periods on, beside p.

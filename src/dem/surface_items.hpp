@@ -29,14 +29,14 @@ struct SurfaceViews {
   MeshRows meshes;
   const MeshTouch* touches;  // per entry with a mesh, as they are now
   const MeshTouchBefore* before;
-  Vec3 period;  // [m]
+  PeriodicBox box;
   HistoryViews history{};
   int records = 0;             // per contact that is remembered
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
   Real h = 0;                  // SurfaceLook
   Real reach = 0;              // Contact::reach [m]
 
-  SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], period); }
+  SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
   SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
   SCREE_HD Index goes_on_from(const PlacedSurface& surface, Index entry) const {
     return surface.kind == SurfaceKind::mesh ? touches[entry].from : entry;
@@ -69,8 +69,10 @@ SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface&
     const MeshTouch& touch = in.touches[entry];
     return {{touch.geometry, touch.contact}, false, touch.is_face, touch.touches};
   }
-  const SurfacePair pair = surface_pair(surface, in.shift_of(entry), p);
   const bool is_sphere = surface.kind == SurfaceKind::sphere;
+  // A plane has no images: where it is touched must not depend on when the particle was last wrapped.
+  const SurfacePair pair = is_sphere ? surface_pair(surface, in.shift_of(entry), p)
+                                     : surface_pair(surface, {}, vec4(in.box.wrapped(xyz(p)), p.w));
   return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
 }
 // Walls, edges and corners have no curvature that Hertz's law knows.
