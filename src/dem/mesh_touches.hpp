@@ -66,7 +66,8 @@ SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const Rememb
 
 // For the g-th group: the contacts of its particle with its mesh at an instant or, with in.h above 0, over
 // the explicit step that ends there. kReaches: also what lies within in.reach of touch, of which the law says
-// whether it is a contact; what the particle touches is the same by either.
+// whether it is a contact. What the particle touches is the same by either, unless its centre is deeper than
+// its radius inside a closed mesh.
 template <bool kReaches>
 struct MeshTouchItem {
   SurfaceViews in;

@@ -71,8 +71,7 @@ SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface&
   }
   const bool is_sphere = surface.kind == SurfaceKind::sphere;
   // A plane has no images: where it is touched must not depend on when the particle was last wrapped.
-  const SurfacePair pair = is_sphere ? surface_pair(surface, in.shift_of(entry), p)
-                                     : surface_pair(surface, {}, vec4(in.box.wrapped(xyz(p)), p.w));
+  const SurfacePair pair = surface_pair(surface, is_sphere ? in.shift_of(entry) : in.box.beyond(xyz(p)), p);
   return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
 }
 // Walls, edges and corners have no curvature that Hertz's law knows.

@@ -153,7 +153,7 @@ class BadDeckTest(MeshTest):
             (["meshes.rock.scale=0"], "must be"),
             (["meshes.rock.feature_angle=2"], "must be"),
             (["meshes.rock.refine=1e-6"], "triangles"),
-            ([attraction], 'attraction = 0.001: needs integrator.particles = "velocity-verlet"'),
+            ([attraction, "integrator.particles=hht"], 'needs integrator.particles = "velocity-verlet"'),
             (["particles.0.positions=[[0.1,0.1,0.1]]"], "particle 0 and wall \"rock\" overlap at t = 0 by 2 of"),
         ]
         for settings, text in cases:
