@@ -52,6 +52,7 @@ struct NamedRows {
     const Index s = surfaces.surfaces[entry];
     if (surfaces.numbers.at_rest(s)) return row_key(surface_id(s));
     const PlacedSurface& surface = surfaces.placed[surfaces.numbers.placed(s)];
+    if (surface.kind == SurfaceKind::plane) return row_key(surface_id(s));  // it has no images
     const PeriodicBox of =
         surface.kind == SurfaceKind::mesh ? box.without(surfaces.frames[surface.frame].spanned) : box;
     return row_key(surface_id(s, feature), of.image_beside(p, surface.point, surfaces.images[entry]));

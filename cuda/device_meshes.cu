@@ -96,6 +96,7 @@ struct GroupItem {
   }
 };
 
+template <bool kReaches>
 struct TouchInRunItem {
   SurfaceViews in;
   OpenStepLook look;
@@ -103,7 +104,7 @@ struct TouchInRunItem {
 
   __device__ void operator()(Index g) const {
     SurfaceViews now = in;
-    if (look.open(now)) MeshTouchItem{now, touches}(g);
+    if (look.open(now)) MeshTouchItem<kReaches>{now, touches}(g);
   }
 };
 
@@ -206,11 +207,17 @@ void DeviceMeshes::make_room_over_step(Index entries) {
 }
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
-  for_each(device, count_, MeshTouchItem{views, touches_.data()});
+  if (views.reach > 0)
+    for_each(device, count_, MeshTouchItem<true>{views, touches_.data()});
+  else
+    for_each(device, count_, MeshTouchItem<false>{views, touches_.data()});
 }
 
 void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look) {
-  for_each(device, count_, TouchInRunItem{views, look, touches_.data()});
+  if (views.reach > 0)
+    for_each(device, count_, TouchInRunItem<true>{views, look, touches_.data()});
+  else
+    for_each(device, count_, TouchInRunItem<false>{views, look, touches_.data()});
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

@@ -162,7 +162,12 @@ std::vector<SurfaceSums<kTerms>> touched(const PinnedArray<SurfaceSums<kTerms>>&
 }  // namespace
 
 DeviceSurfaces::DeviceSurfaces(const Model& model, Vec3 period, cudaStream_t stream)
-    : period_(period), meshes_(model, stream), works_(model, stream), moves_(model.rotates()), h_index_(1) {
+    : box_{model.space.min, period},
+      reach_(model.contact.reach),
+      meshes_(model, stream),
+      works_(model, stream),
+      moves_(model.rotates()),
+      h_index_(1) {
   const SurfaceSet surfaces(model);
   ground_ = surfaces.ground(), placed_count_ = surfaces.placed(), at_rest_ = surfaces.at_rest();
   planes_.upload(wall_planes(model), stream);
@@ -182,8 +187,8 @@ void DeviceSurfaces::build(Device device, const Particles& particles, const Surf
 void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePlaces& places, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
   counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
-  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts, p.largest_radius + skin,
-                       skin,       numbers(), places_.data(), period_};
+  const EntrySearch in{p.position, p.active,  *p.grid,        p.starts,   p.largest_radius + skin,
+                       skin,       numbers(), places_.data(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The entry past the end is read, though no sum depends on it.
   require_cuda(cudaMemsetAsync(counts_.data() + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
@@ -192,8 +197,8 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
     count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts_.data());
   require_cuda(cudaGetLastError(), "surfaces near particles");
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts_.data()});
-  meshes_.find(device, {p.position, *p.grid, p.starts, skin, period_, places_.data(), frames_.data()}, places,
-               p.largest_radius, counts_.data());
+  meshes_.find(device, {p.position, *p.grid, p.starts, skin, box_.period, places_.data(), frames_.data()},
+               places, p.largest_radius, counts_.data());
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(
         cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), offsets_.data(), p.owned + 1, device.stream),
@@ -269,11 +274,12 @@ SurfaceViews DeviceSurfaces::entry_views(const DeviceContactKernels& kernels, co
           meshes_.rows(),
           meshes_.touches(),
           meshes_.before(),
-          period_,
+          box_,
           look.history,
           records_of(kernels.history()),
           look.spin,
-          look.h};
+          look.h,
+          reach_};
 }
 
 void DeviceSurfaces::find_loads(Device device, const DeviceContactKernels& kernels, Loads which,

@@ -100,7 +100,8 @@ class DeviceSurfaces {
   SurfaceChunks chunk_list() const { return {chunks_.data(), static_cast<Index>(h_chunks_.size())}; }
   SurfaceViews entry_views(const DeviceContactKernels& kernels, const SurfaceLook& look) const;
 
-  Vec3 period_;
+  PeriodicBox box_;
+  Real reach_;  // Contact::reach [m]
   DeviceArray<WallPlane> planes_;
   Index ground_, placed_count_;
   bool at_rest_;

@@ -23,9 +23,9 @@ const TableKeys& output_keys() {
            .about(
                "What snapshots hold of each triangle of the meshes. pressure [Pa] and shear [Pa], a vector: "
                "normal and tangential forces of particles on it at that time over its area. Since t = 0, "
-               "added up in each step: impact_work [J], what the damping of normal forces has taken there; "
-               "sliding_work [J], what friction has; wear_depth [m], the volume that Archard's law wears "
-               "off (wear_coefficient of the pairs) over the area."),
+               "added up in each step: impact_work [J], what the damping of normal forces, with the making "
+               "of necks, has taken there; sliding_work [J], what friction has; wear_depth [m], the volume "
+               "that Archard's law wears off (wear_coefficient of the pairs) over the area."),
        real("history_interval", "s")
            .at_least(0)
            .otherwise("0.0")

@@ -238,7 +238,9 @@ const TableKeys& contact_keys() {
            .left_out("the two do not stick")
            .about(
                "w, beside Hertz's law: what parting the two surfaces takes. What attracts may pull, whatever "
-               "`tension` says, and friction counts the pull as load. In explicit steps, double precision."),
+               "`tension` says, and friction counts the pull as load. In explicit steps, double precision. "
+               "Particles are attracted by each other and by all that they touch; bodies attract neither "
+               "each other nor walls."),
        real("surface_energy", "J/m^2")
            .at_least(0)
            .left_out("work_of_adhesion is given, or none")

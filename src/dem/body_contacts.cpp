@@ -28,6 +28,14 @@ SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
   return SortedBins(PointCells(min, max, 2 * radius + skin, points.size()), points);
 }
 
+// Bodies neither attract each other nor are they attracted by walls: these contacts follow the laws without
+// attraction, with tension as the dampers of laws with it have.
+Contact without_attraction(Contact contact) {
+  for (KelvinVoigt& law : contact.laws)
+    if (law.attracts()) law = law.without_attraction(), law.tension = true;
+  return contact;
+}
+
 }  // namespace
 
 ContactSum make_wall_contact(const Real* sums) {
@@ -40,7 +48,7 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
       surfaces_(surfaces),
       subdomain_(subdomain),
       rule_(model),
-      kernels_(make_contact_kernels(model.contact)),
+      kernels_(make_contact_kernels(without_attraction(model.contact))),
       planes_(wall_planes(model)) {}
 
 // Per surface, in order.

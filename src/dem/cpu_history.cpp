@@ -14,6 +14,7 @@ std::int64_t CpuHistory::surface_key(const Listed& at, Vec3 p, Index entry, Inde
   const Index s = rows.surfaces[entry];
   if (at.numbers.at_rest(s)) return row_key(surface_id(s));
   const PlacedSurface& surface = at.places.placed[static_cast<std::size_t>(at.numbers.placed(s))];
+  if (surface.kind == SurfaceKind::plane) return row_key(surface_id(s));  // it has no images
   const PeriodicBox box =
       surface.kind == SurfaceKind::mesh
           ? box_.without(at.places.frames[static_cast<std::size_t>(surface.frame)].spanned)

@@ -22,7 +22,8 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
 
 // The triangles that particles touched last may be anywhere in memory: each is asked for some groups before
 // it is looked at, its corners as soon as it is there.
-void touch_ahead(const MeshTouchItem& item, Index groups) {
+template <bool kReaches>
+void touch_ahead(const MeshTouchItem<kReaches>& item, Index groups) {
   constexpr Index kAhead = 8;
   const auto last_touched = [&](Index g, const auto& use) {
     if (g >= groups) return;
@@ -48,7 +49,8 @@ CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, Surface
     : side_(side),
       kernels_(kernels),
       planes_(wall_planes(model)),
-      period_(subdomain.period()),
+      reach_(model.contact.reach),
+      box_{model.space.min, subdomain.period()},
       works_(model),
       work_sums_(works_.sums({})),
       moves_(model.rotates()) {}
@@ -66,11 +68,12 @@ SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceR
           {rows.groups.data(), rows.triangles.data(), places.meshes.data()},
           touches_.data(),
           touches_before_.data(),
-          period_,
+          box_,
           look.history,
           records_of(kernels_.history()),
           look.spin,
-          look.h};
+          look.h,
+          reach_};
 }
 
 void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows, const SurfaceLook& look) {
@@ -78,7 +81,12 @@ void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows
   loads_.resize(rows.surfaces.size());
   if (!rows.groups.empty()) {
     touches_.resize(rows.surfaces.size());
-    touch_ahead({entry_views(store, rows, look), touches_.data()}, static_cast<Index>(rows.groups.size()));
+    const SurfaceViews views = entry_views(store, rows, look);
+    const auto groups = static_cast<Index>(rows.groups.size());
+    if (reach_ > 0)
+      touch_ahead(MeshTouchItem<true>{views, touches_.data()}, groups);
+    else
+      touch_ahead(MeshTouchItem<false>{views, touches_.data()}, groups);
   }
   kernels_.surface_loads(entry_views(store, rows, look), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());

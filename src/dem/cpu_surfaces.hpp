@@ -55,7 +55,8 @@ class CpuSurfaces {
   SurfaceSide& side_;
   const ContactKernels& kernels_;
   std::vector<WallPlane> planes_;
-  Vec3 period_;
+  Real reach_;  // Contact::reach [m]
+  PeriodicBox box_;
   std::vector<MeshTouch> touches_;  // per entry; empty without meshes
   std::vector<MeshTouchBefore> touches_before_;
   std::vector<SurfaceLoad> loads_;  // per entry

@@ -117,6 +117,13 @@ struct PeriodicBox {
     wrap(min, period, p, count);
     return count;
   }
+  // By how much a place is beyond the box that was in it when the list was built.
+  SCREE_HD Vec3 beyond(Vec3 p) const {
+    const auto axis = [](Real x, Real start, Real length) {
+      return x < start ? -length : x >= start + length ? length : 0;
+    };
+    return {axis(p.x, min.x, period.x), axis(p.y, min.y, period.y), axis(p.z, min.z, period.z)};
+  }
   // The same with images along the other axes alone.
   SCREE_HD PeriodicBox without(Vec3 spanned) const { return {min, period - spanned}; }
   // Number of the image of what lies at q and `image` periods on, beside p.

@@ -65,7 +65,10 @@ SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const Rememb
 }
 
 // For the g-th group: the contacts of its particle with its mesh at an instant or, with in.h above 0, over
-// the explicit step that ends there.
+// the explicit step that ends there. kReaches: also what lies within in.reach of touch, of which the law says
+// whether it is a contact. What the particle touches is the same by either, unless its centre is deeper than
+// its radius inside a closed mesh.
+template <bool kReaches>
 struct MeshTouchItem {
   SurfaceViews in;
   MeshTouch* touches;  // per entry
@@ -86,9 +89,10 @@ struct MeshTouchItem {
     const Index last = touches[group.entry].triangle;
     if (group.entries == 1 && stay(group.entry, sphere, last)) return;
     MeshContact found[kMeshSlots];
-    const int count = min_of(find_mesh_contacts(mesh, c, p.w, in.meshes.triangles + group.first_triangle,
-                                                group.triangles, found, last),
-                             static_cast<int>(group.entries));
+    const int count =
+        min_of(find_mesh_contacts(mesh, c, searched(p.w), in.meshes.triangles + group.first_triangle,
+                                  group.triangles, found, last),
+               static_cast<int>(group.entries));
     for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
     for (int k = 0; k < count; ++k) put(group.entry + k, sphere, found[k]);
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
@@ -112,7 +116,7 @@ struct MeshTouchItem {
   };
   SCREE_HD void put(Index entry, const Sphere& of, const MeshContact& found) const {
     const FeaturePair pair = feature_pair(of.mesh, found, of.axes, of.c, of.radius);
-    touches[entry] = {pair.geometry.overlap > 0,
+    touches[entry] = {pair.geometry.overlap > (kReaches ? -in.reach : 0),
                       is_face(of.mesh, found.feature),
                       pair.geometry,
                       pair.contact,
@@ -121,6 +125,8 @@ struct MeshTouchItem {
                       found.triangle,
                       -1};
   }
+  // How far from its centre a sphere of this radius may have contacts [m].
+  SCREE_HD Real searched(Real radius) const { return kReaches ? radius + in.reach : radius; }
   SCREE_HD bool remembers(Index entry) const {
     return in.history.bodies[std::int64_t{entry} * in.records].w == in.history.step;
   }
@@ -128,7 +134,7 @@ struct MeshTouchItem {
   // not only.
   SCREE_HD bool stay(Index entry, const Sphere& sphere, Index triangle) const {
     MeshContact face;
-    if (!stays_over(sphere.mesh, triangle, sphere.c, sphere.radius, face)) return false;
+    if (!stays_over(sphere.mesh, triangle, sphere.c, searched(sphere.radius), face)) return false;
     const bool goes_on = in.history.bodies != nullptr && remembers(entry);
     if (goes_on && in.history.features[entry] != face.feature) return false;
     put(entry, sphere, face);

@@ -29,13 +29,14 @@ struct SurfaceViews {
   MeshRows meshes;
   const MeshTouch* touches;  // per entry with a mesh, as they are now
   const MeshTouchBefore* before;
-  Vec3 period;  // [m]
+  PeriodicBox box;
   HistoryViews history{};
   int records = 0;             // per contact that is remembered
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
   Real h = 0;                  // SurfaceLook
+  Real reach = 0;              // Contact::reach [m]
 
-  SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], period); }
+  SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
   SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
   SCREE_HD Index goes_on_from(const PlacedSurface& surface, Index entry) const {
     return surface.kind == SurfaceKind::mesh ? touches[entry].from : entry;
@@ -61,15 +62,17 @@ struct SurfaceTouch {
   bool touches;
 };
 
-SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface& surface, Index entry,
-                                    Vec4 p) {
+// reach: how far beyond touch the two may have a contact, in.reach or 0 [m].
+SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface& surface, Index entry, Vec4 p,
+                                    Real reach) {
   if (surface.kind == SurfaceKind::mesh) {
     const MeshTouch& touch = in.touches[entry];
     return {{touch.geometry, touch.contact}, false, touch.is_face, touch.touches};
   }
-  const SurfacePair pair = surface_pair(surface, in.shift_of(entry), p);
   const bool is_sphere = surface.kind == SurfaceKind::sphere;
-  return {pair, is_sphere, !is_sphere, pair.geometry.overlap > 0};
+  // A plane has no images: where it is touched must not depend on when the particle was last wrapped.
+  const SurfacePair pair = surface_pair(surface, is_sphere ? in.shift_of(entry) : in.box.beyond(xyz(p)), p);
+  return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
 }
 // Walls, edges and corners have no curvature that Hertz's law knows.
 SCREE_HD PairSize surface_size(const PlacedSurface& surface, Real radius, Real mass) {
@@ -91,7 +94,7 @@ struct SurfaceLoadItem {
     const PlacedSurface& surface = in.placed[in.surface_of(entry)];
     const Vec4 p = in.position[i], u = in.velocity[i];
     SurfaceLoad& out = loads[entry];
-    const SurfaceTouch touch = surface_touch(in, surface, entry, p);
+    const SurfaceTouch touch = surface_touch(in, surface, entry, p, kReaches<Law> ? in.reach : 0);
     out.touches = touch.touches;
     if (!out.touches) return in.template remember_none<Law>(entry);
     const PairState state{touch.pair.geometry, xyz(u) - surface.velocity_at(touch.pair.contact),
@@ -101,6 +104,8 @@ struct SurfaceLoadItem {
       find_moving(law, state, touch, surface, entry);
     else
       find_load(law, state, surface, entry);
+    if constexpr (kReaches<Law>)
+      if (!out.touches) return;
     out.arm = Law::kMoves && touch.is_sphere ? surface.arm : surface.arm + touch.pair.contact;
     out.slide_power = Law::kMoves ? slide_power(touch, surface, out.load.force) : 0;
     out.particle_arm = contact_arm(state);
@@ -111,6 +116,10 @@ struct SurfaceLoadItem {
                           Index entry) const {
     SurfaceLoad& out = loads[entry];
     if constexpr (Law::kHistory == 0) {
+      if constexpr (kReaches<Law>) {
+        out.touches = law.closed(state, {});
+        if (!out.touches) return;
+      }
       out.load = law.load(state);
     } else {
       const auto load = LoadOf{}(law, state, old(surface, entry));
@@ -123,21 +132,36 @@ struct SurfaceLoadItem {
     return in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry));
   }
 
+  // Of those in reach of each other the law says which have a contact.
+  SCREE_HD static bool is_closed(const Law& law, const PairState& state, const ContactHistory& before) {
+    if constexpr (kReaches<Law>)
+      return law.closed(state, before);
+    else
+      return true;
+  }
   SCREE_HD void find_moving(const Law& law, const PairState& state, const SurfaceTouch& touch,
                             const PlacedSurface& surface, Index entry) const {
     const ContactHistory before = old(surface, entry);
+    const bool closed = is_closed(law, state, before);
+    if (!closed) {
+      in.template remember_none<Law>(entry);
+      loads[entry].touches = in.h > 0 && Law::breaks(before);  // for what the step that parts the two loses
+      if (!loads[entry].touches) return;
+    }
     MovingPair pair = moving_pair(state, touch, surface, entry);
     if (in.h > 0) {
       if (!touch.is_sphere && in.frames[surface.frame].runs())
         add_slide(pair.motion, in.frames[surface.frame].middle_slide());
       const ContactOutcome outcome = law.load(pair, before);
-      take(law, pair, outcome, outcome.history, entry);
-      in.template remember<Law>(surface, entry, outcome.history);
+      take(outcome, entry);
+      loads[entry].energy = closed ? EnergyOf{}(law, pair, outcome.history) : ContactEnergy{};
+      if (closed) in.template remember<Law>(surface, entry, outcome.history);
     } else {
       InstantPair at = at_instant(pair, xyz(in.spin[in.entries.particles[entry]]), surface.spin);
       if (!touch.is_sphere && in.frames[surface.frame].runs())
         at.slip_rate -= pair.motion.leverage * slide_at(touch, surface);
-      take(law, at, law.load(at, before), before, entry);
+      take(law.load(at, before), entry);
+      loads[entry].energy = EnergyOf{}(law, at, before);
     }
   }
   // A sphere of a body moves as another particle does: its force acts at its centre, with a couple about
@@ -174,10 +198,8 @@ struct SurfaceLoadItem {
     if (touch.is_sphere || !in.frames[surface.frame].runs()) return 0;
     return -dot(force, slide_at(touch, surface));
   }
-  SCREE_HD void take(const Law& law, const PairState& state, const ContactOutcome& outcome,
-                     const ContactHistory& history, Index entry) const {
+  SCREE_HD void take(const ContactOutcome& outcome, Index entry) const {
     loads[entry].load = outcome.load, loads[entry].losses = outcome.losses();
-    loads[entry].energy = EnergyOf{}(law, state, history);
   }
 };
 
@@ -189,7 +211,7 @@ struct SurfacePath {
 
 SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& surface,
                                   const PlacedSurface& before, Index entry, Vec4 p, Vec4 p0) {
-  SurfacePath out{surface_touch(in, surface, entry, p), {}, {}};
+  SurfacePath out{surface_touch(in, surface, entry, p, 0), {}, {}};
   if (surface.kind == SurfaceKind::mesh) {
     out.start = out.now;
     if (!out.now.touches) return out;  // at neither end
@@ -197,7 +219,7 @@ SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& s
     out.start.pair = {at.geometry, at.contact};
     out.start.touches = at.geometry.overlap > 0, out.now.touches = out.now.pair.geometry.overlap > 0;
   } else {
-    out.start = surface_touch(in, before, entry, p0);
+    out.start = surface_touch(in, before, entry, p0, 0);
   }
   out.travel = (xyz(p) - xyz(p0)) - (surface.point - before.point);
   if (!out.now.is_sphere) out.travel -= in.frames[surface.frame].travel_about(out.now.pair.contact);

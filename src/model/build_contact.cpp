@@ -279,13 +279,6 @@ void check_attraction(const DeckTable& contact, const Model& model) {
       pair.fail(key, "needs integrator.particles = \"velocity-verlet\"");
     if (model.integrator.precision == Precision::mixed)
       pair.fail(key, "needs integrator.precision = \"double\"");
-    for (const Body& body : model.bodies)
-      if (!body.shapes.empty() || !body.meshes.empty())
-        pair.fail(key, fmt::format("bodies do not attract particles yet, and body \"{}\" has {}", body.name,
-                                   body.shapes.empty() ? "meshes" : "shapes"));
-    for (const Wall& wall : model.walls)
-      if (wall.is_placed())
-        pair.fail(key, fmt::format("only planes at rest attract particles yet, not wall \"{}\"", wall.name));
   }
 }
 

@@ -100,7 +100,7 @@ std::string too_fine(const Model& model, const ModelMesh& mesh) {
 }  // namespace
 
 Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius) {
-  const Real reach = radius + model.contact.skin, area = area_of(mesh);
+  const Real reach = radius + model.contact.reach + model.contact.skin, area = area_of(mesh);
   const auto count = static_cast<Real>(mesh.triangles.size());
   const Real cap = std::numbers::pi_v<Real> * (reach * reach - radius * radius);
   if (model.space.dimension == 3) {

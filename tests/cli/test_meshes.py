@@ -153,8 +153,7 @@ class BadDeckTest(MeshTest):
             (["meshes.rock.scale=0"], "must be"),
             (["meshes.rock.feature_angle=2"], "must be"),
             (["meshes.rock.refine=1e-6"], "triangles"),
-            ([attraction], "only planes at rest attract particles yet, not wall \"rock\""),
-            ([attraction, "walls=[]", body % (mass + ',meshes=[{mesh="rock"}]')], "body \"b\" has meshes"),
+            ([attraction, "integrator.particles=hht"], 'needs integrator.particles = "velocity-verlet"'),
             (["particles.0.positions=[[0.1,0.1,0.1]]"], "particle 0 and wall \"rock\" overlap at t = 0 by 2 of"),
         ]
         for settings, text in cases:

@@ -24,6 +24,8 @@ MESHES = [HERE / "meshes.toml", "parallel.imbalance=0.0"]
 # The same with all that triangles add up.
 WORKS = ['output.surface_fields=["pressure", "shear", "impact_work", "sliding_work", "wear_depth"]',
          "contact.pairs.0.wear_coefficient=1e-12"]
+# Powder that sticks to walls, meshes and bodies.
+STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
 # The cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
@@ -37,6 +39,7 @@ MAIN_CASES = {
     "rubbing after Hertz and Mindlin": ([HERE / "rubbing_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
                                         (1, 2, 3, 4)),
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (1, 2, 4)),
+    "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, "time.end=2e-3"], (1, 2, 4)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
     # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
     "rubbing on bodies": ([HERE / "rubbing_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
@@ -168,7 +171,8 @@ class SameBitsTest(RanksTest):
 
     def test_lists_built_often_and_seldom_give_the_bits_of_rubbing_particles(self):
         cases = {deck: [] for deck in ("rubbing", "rubbing_hertz", "rolling", "rubbing_bodies", "spatial_elements",
-                                    "meshes", "mesh_walls")}
+                                    "meshes", "mesh_walls", "sticky_meshes")}
+        size = {"sticky_meshes": 0.02}  # of a deck's lengths
         cases["meshes"] = [*WORKS, "contact.pairs.1.wear_coefficient=3e-12"]
         cases["spatial_bodies"] = [*IMPLICIT, *FIXED, "integrator.substeps=1", "time.end=0.04"]  # steps begin anew
         for deck, overrides in cases.items():
@@ -176,7 +180,7 @@ class SameBitsTest(RanksTest):
             for skin in (1e-5, 1e-3, 8e-3):
                 output = f"{deck} {skin}"
                 self.run_deck(DONE, 2, HERE / f"{deck}.toml", output,
-                              [*overrides, f"contact.skin={skin}", "output.history_csv=true"])
+                              [*overrides, f"contact.skin={skin * size.get(deck, 1)}", "output.history_csv=true"])
                 first = f"{deck} 1e-05"
                 self.assertEqual(self.hash(output), self.hash(first), deck)
                 self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))

@@ -154,6 +154,31 @@ TEST_CASE("where a face was touched last changes no contact") {
   }
 }
 
+// What reaches beyond touch must leave what is touched as it is.
+TEST_CASE("a wider look finds what a narrower one does, and what lies farther after it") {
+  constexpr Real kRadius = 0.2;
+  MeshRandom random(43);
+  for (const SurfaceMesh& surface :
+       {sheet_mesh(hills(6, 0, 1)), sheet_mesh(hills(6, 0.3, 2)), sheet_mesh(hills(6, 2, 3)),
+        closed_mesh(drum_shell(12, 0.5, 1, 3)), closed_mesh(block({0, 0, 0}, {1, 1, 1}, 4)),
+        closed_mesh(potato(2, 0.1, 2))}) {
+    int wrong = 0, farther = 0;
+    for (int i = 0; i < 10000; ++i) {
+      const Vec3 c = place_near(surface, 1.3 * kRadius, random);
+      const auto touched = contacts_at(surface, c, kRadius);
+      auto found = contacts_at(surface, c, kRadius * random.in(1, 1.3));
+      const auto beyond = std::find_if(found.begin(), found.end(), [](const MeshContact& contact) {
+        return !(std::abs(contact.distance) < kRadius);  // or too deep inside
+      });
+      farther += beyond != found.end();
+      found.erase(beyond, found.end());
+      wrong += !same_contacts(found, touched);
+    }
+    CHECK(wrong == 0);
+    CHECK(farther > 300);
+  }
+}
+
 // More nearer facets than there are slots, which are one contact, crowd the floor out of the first look.
 TEST_CASE("where a face was touched last changes no contact beside many that are nearer") {
   constexpr int kFacets = 64;

@@ -106,10 +106,6 @@ TEST_CASE("what attraction does not go with is told with its remedy") {
     CHECK(contains(model_error(hertz(keys), {"integrator.particles=hht"}),
                    "needs integrator.particles = \"velocity-verlet\""));
     CHECK(contains(model_error(hertz(keys), {"integrator.precision=mixed"}), "\"double\""));
-    CHECK(contains(
-        model_error(hertz(keys) + "[[bodies]]\nname = \"ball\"\nposition = [0.0, 0.8, 0.0]\nmass = 1.0\n"
-                                  "inertia = 1.0\nshapes = [{ radius = 0.05, material = \"soft\" }]\n"),
-        "body \"ball\" has shapes"));
   }
 }
 

@@ -52,6 +52,10 @@ const std::string kMesh =
     "[[meshes]]\nname = \"floor\"\nkind = \"rectangle\"\nsize = [2.0, 2.0]\n[[walls]]\nname = "
     "\"floor\"\nmesh = "
     "\"floor\"\n";
+// A plane that is placed anew in every step, where it was; a state has the force on it.
+const std::string kStill =
+    "motions = [{ type = \"translation\", direction = [1, 0, 0], displacement = 0 }]\n";
+const std::string kWrench = "bodies/wrench ";
 
 State end_of(const Model& model) {
   SimulationRun run(model);
@@ -73,6 +77,48 @@ TEST_CASE(
       CHECK(differing_arrays(pack(on_mesh), pack(plane)) == "");
     }
   }
+}
+
+TEST_CASE(
+    "grains that stick to a plane of triangles, or to one that is placed anew, keep the bits of one at "
+    "rest") {
+  const std::string powder =
+      "[[materials]]\nname = \"powder\"\nyoung_modulus = 1e6\npoisson_ratio = 0.3\n[[contact.pairs]]\n"
+      "restitution = 0.6\n";
+  const std::string rubs = "friction = 0.4\ntangential_damping_ratio = 0.1\n";
+  const std::string pull = "[[contact.pairs]]\nstiffness = 1e4\nrestitution = 0.6\nattraction = 0.3\n";
+  const std::vector<std::string> laws = {
+      powder + "work_of_adhesion = 20\n",
+      powder + "work_of_adhesion = 5\nrolling_friction = 0.2\ntwisting_friction = 0.2\n" + rubs,
+      powder + "work_of_adhesion = 5\nadhesion = \"dmt\"\n" + rubs,
+      pull,
+      pull + "attraction_range = 1e-3\n",
+      pull + "attraction_range = 1e-3\n" + rubs};
+  const std::vector<std::pair<std::string, TriangleMesh>> cut = triangulations();
+  for (const std::string& law : laws) {
+    CAPTURE(law);
+    const std::string deck = falling_grains("velocity-verlet", law);
+    const State plane = end_of(model_of(deck + kPlane));
+    const Model rectangle = model_of(deck + kMesh);
+    for (const std::size_t k : {1u, 3u, 6u}) {
+      CAPTURE(cut[k].first);
+      const State on_mesh = end_of(with_floor(rectangle, cut[k].second));
+      CHECK(differing_arrays(pack(on_mesh), pack(plane)) == "");
+    }
+    const State on_placed = end_of(model_of(deck + kPlane + kStill));
+    CHECK(differing_arrays(pack(on_placed), pack(plane)) == kWrench);
+  }
+}
+
+TEST_CASE("grains that slide through periodic sides keep their springs on a plane that is placed anew") {
+  const std::string slick = "[[contact.pairs]]\nstiffness = 1e4\nrestitution = 0.6\nfriction = 0.02\n";
+  const std::string deck = falling_grains("velocity-verlet", slick);
+  Model still = model_of(deck + kPlane + kStill);
+  const State at_rest = end_of(model_of(deck + kPlane)), placed = end_of(still);
+  CHECK(differing_arrays(pack(placed), pack(at_rest)) == kWrench);
+  still.contact.skin = 1e-9;  // particles are wrapped in every step
+  const State wrapped = end_of(still);
+  CHECK(differing_arrays(pack(wrapped), pack(placed)) == "");
 }
 
 TEST_CASE("the upper side of a block keeps the plane's bits of places, velocities and spins") {

@@ -44,12 +44,14 @@ TEST_CASE("motions of walls that mean nothing are refused, and the message names
   }
 }
 
-TEST_CASE("walls that run do not go with attraction yet") {
+TEST_CASE("walls that run attract particles in explicit steps alone") {
   WallDeck deck;
-  deck.particles = "velocity-verlet", deck.grain = "positions = [[0, 0, 1]]\n";
-  deck.contact = "stiffness = 1e4\nattraction = 0.1\n";
+  deck.grain = "positions = [[0, 0, 1]]\n", deck.contact = "stiffness = 1e4\nattraction = 0.1\n";
   deck.wall = kFloor + "surface_velocity = [1, 0, 0]\n";
-  CHECK(model_error(deck.text()).find("not wall \"plate\"") != std::string::npos);
+  CHECK(model_error(deck.text()).find("needs integrator.particles = \"velocity-verlet\"") !=
+        std::string::npos);
+  deck.particles = "velocity-verlet";
+  CHECK(deck.model().attracts());
 }
 
 TEST_CASE("in 2D walls turn about z, and an axis is refused") {
