@@ -1,6 +1,7 @@
 """Bad meshes and bad decks of meshes, each with its message; what `scree check` says of good ones.
 Usage: SCREE=path/to/scree python3 test_meshes.py"""
 
+import json
 import struct
 import unittest
 
@@ -221,6 +222,78 @@ class ReportTest(MeshTest):
         self.run_deck(DONE, "more", *longer)
         self.write("rock.stl", stl(FACES, [(x, y, z + 0.1) for x, y, z in CORNERS]))
         self.assertIn("meshes.rock.file", self.run_deck(BAD_INPUT, "other", *longer).stderr)
+
+
+TRAY = """gravity = [0.0, 0.0, -9.8066]
+
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+leaving = "drift"
+
+[time]
+end = 1.0
+step = 5e-4
+
+[integrator]
+particles = "velocity-verlet"
+
+[[contact.pairs]]
+stiffness = 1e5
+restitution = 0.5
+
+[[meshes]]
+name = "tray"
+kind = "box"
+size = [0.4, 0.4, 0.1]
+offset = [0.0, 0.0, 0.6]
+
+[[walls]]
+name = "tray"
+mesh = "tray"
+
+[[walls.motions]]
+type = "translation"
+direction = [0.0, 0.0, 1.0]
+displacement = { kind = "step", end_value = 0.5, start = 0.0, end = 0.8 }
+
+[[particles]]
+kind = "list"
+positions = [[0.0, 0.0, 0.71]]
+radius = 0.05
+mass = 1.0
+
+[[particles]]
+kind = "list"
+positions = [[0.6, 0.0, 0.9]]
+velocity = [0.0, 0.0, 4.0]
+radius = 0.05
+mass = 1.0
+"""
+
+
+class LostLoadTest(CommandLineTest):
+    """A tray lifts a grain out of the space; another one flies out beside it, before."""
+
+    def warnings(self, output):
+        return json.loads((self.folder / output / "run_record.json").read_text())["warnings"]
+
+    def test_what_is_carried_out_of_the_space_is_warned_of_at_once_and_when_it_is_lost(self):
+        deck = self.write("tray.toml", TRAY)
+        early = "wall \"tray\" reaches beyond an open side of the space"
+        self.assertIn(early, self.expect(DONE, "check", deck).stderr)
+        for launcher in ((), TWO_RANKS):
+            with self.subTest(launcher=launcher):
+                text = self.expect(DONE, "run", deck, "--output", self.folder / "out", "--overwrite",
+                                   launcher=launcher).stderr
+                first, lost = self.warnings("out")
+                self.assertIn(early, first)
+                self.assertIn("particle 0 leaves the space at t = ", lost)
+                self.assertIn("at the surfaces of wall \"tray\": particles that leave are searched no longer", lost)
+                self.assertEqual(text.count(lost), 1)
+        result = self.expect(DONE, "run", deck, "--output", self.folder / "in", "--set", "space.max=[1,1,2]")
+        self.assertEqual((result.stderr, self.warnings("in")), ("", []))
 
 
 if __name__ == "__main__":
