@@ -93,7 +93,7 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
         build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
     check_features(table, *surface);
     model.meshes.push_back({table.text("name"), surface});
-    names.triangles.push_back(planar || is_sheet(table) ? TriangleMesh{} : mesh);
+    names.triangles.push_back({planar ? TriangleMesh{} : mesh, is_sheet(table)});
   }
 }
 
