@@ -34,7 +34,7 @@ struct ModelNames {
   NameMap materials, meshes, bodies, joints;
   std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
   std::map<std::string, NamedMarker> markers;
-  std::vector<Real> densities;          // of the materials [kg/m^3], 0 where not given
+  std::vector<Real> densities;       // of the materials [kg/m^3], 0 where not given
   std::vector<NamedMesh> triangles;  // of the meshes
 };
 

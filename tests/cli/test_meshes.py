@@ -2,6 +2,8 @@
 Usage: SCREE=path/to/scree python3 test_meshes.py"""
 
 import json
+import math
+import re
 import struct
 import unittest
 
@@ -58,6 +60,30 @@ def stl(faces, corners=CORNERS):
                                                                 (corners[c] for c in face)) +
                    "endloop\nendfacet\n" for face in faces)
     return f"solid rock\n{rows}endsolid rock\n"
+
+
+def ball(radius, inwards=False, around=48, up=24):
+    """A sphere about (0.5, 0, 0) as an STL of its facets."""
+    def point(i, j):
+        return (0.5 + radius * math.sin(math.pi * j / up) * math.cos(2 * math.pi * (i % around) / around),
+                radius * math.sin(math.pi * j / up) * math.sin(2 * math.pi * (i % around) / around),
+                radius * math.cos(math.pi * j / up) if 0 < j < up else radius * (1 - 2 * (j > 0)))
+    places = {}
+    corners = []
+
+    def number(i, j):
+        place = point(i if 0 < j < up else 0, j)
+        key = tuple(round(x, 9) for x in place)
+        if key not in places:
+            places[key] = len(corners)
+            corners.append(place)
+        return places[key]
+    faces = []
+    for i in range(around):
+        for j in range(up):
+            a, b, c, d = number(i, j), number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)
+            faces += [face for face in ((a, b, c), (a, c, d)) if len(set(face)) == 3]
+    return stl([face[::-1] for face in faces] if inwards else faces, corners)
 
 
 def binary_stl(count, faces):
@@ -154,6 +180,8 @@ class BadDeckTest(MeshTest):
             (["meshes.rock.scale=0"], "must be"),
             (["meshes.rock.feature_angle=2"], "must be"),
             (["meshes.rock.refine=1e-6"], "triangles"),
+            (["meshes.rock.coarsen=0"], "meshes.rock.coarsen must be a number above 0"),
+            (['meshes=[{name="rock",kind="sphere",radius=0.1,coarsen=0.01}]'], "not used with kind = \"sphere\""),
             ([attraction], "only planes at rest attract particles yet, not wall \"rock\""),
             ([attraction, "walls=[]", body % (mass + ',meshes=[{mesh="rock"}]')], "body \"b\" has meshes"),
             (["particles.0.positions=[[0.1,0.1,0.1]]"], "particle 0 and wall \"rock\" overlap at t = 0 by 2 of"),
@@ -184,6 +212,25 @@ class ReportTest(MeshTest):
         self.assertIn('mesh           "rock": 12 triangles, 8 vertices, 1 shell, closed; '
                       '(0, 0, 0) to (0.1, 0.1, 0.1) m, area 0.06 m^2, volume 0.001 m^3, as a solid 1 kg', report)
         self.assertNotIn("warning", warnings)
+
+    def test_a_file_made_coarser(self):
+        self.write("rock.stl", ball(0.2))
+        report, _ = self.report("meshes.rock.coarsen=0.005")
+        coarser = re.search(r"made coarser, from (\d+) triangles, which are up to (\S+) m beside", report)
+        before, moved = coarser.groups()
+        self.assertEqual(int(before), 48 * 2 * 23)
+        self.assertLessEqual(float(moved), 0.005)
+        count = int(re.search(r'"rock": (\d+) triangles', report)[1])
+        self.assertLess(count, int(before) // 4)
+        fine = int(re.search(r'"rock": (\d+) triangles', self.report("meshes.rock.coarsen=0.005",
+                                                                    "meshes.rock.refine=0.02")[0])[1])
+        self.assertGreater(fine, count)
+        self.assertNotIn("made coarser", self.report()[0])
+        # A wall of 5 mm: its sides come to cut through each other.
+        self.write("rock.stl", ball(0.2) + ball(0.195, inwards=True))
+        self.report("meshes.rock.coarsen=0.001")
+        message = self.expect(BAD_INPUT, "check", self.deck, "--set", "meshes.rock.coarsen=0.05").stderr
+        self.assertIn("meshes.rock.coarsen=0.05: is too large, the coarser mesh is no surface: ", message)
 
     def test_warnings(self):
         for settings, text in [
