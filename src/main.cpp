@@ -29,6 +29,7 @@
 #include "run/signals.hpp"
 #include "run/simulation.hpp"
 #include "run/step_trials.hpp"
+#include "run/surfaces_outside.hpp"
 
 namespace scree {
 namespace {
@@ -105,8 +106,9 @@ Deck checked_deck(const Arguments& arguments) {
   return deck;
 }
 
-void warn_of_steps(const Model& model, Log& log) {
-  if (const std::string warning = step_warning(model); !warning.empty()) log.warning(warning);
+void warn_of_run(const Model& model, Log& log) {
+  for (const std::string& warning : {step_warning(model), outside_at_start(model)})
+    if (!warning.empty()) log.warning(warning);
 }
 
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
@@ -121,7 +123,7 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
                          strsignal(signal)));
     return ExitCode::stopped_by_signal;
   }
-  warn_of_steps(model, log);
+  warn_of_run(model, log);
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
   RunOptions options{arguments.backend,       directory,      arguments.restart,
@@ -142,7 +144,7 @@ ExitCode check(const Arguments& arguments) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
   const Model model = build_model(checked_deck(arguments), log, RanksShare(ranks));
-  warn_of_steps(model, log);
+  warn_of_run(model, log);
   std::string constraints = "solver         none";
   if (!model.bodies.empty()) {
     naming_deck(arguments.deck, [&] {

@@ -113,6 +113,17 @@ inline constexpr auto kWords<SolidKind> = std::to_array<Word<SolidKind>>({{"sphe
                                                                           {"capsule", SolidKind::capsule},
                                                                           {"mesh", SolidKind::mesh}});
 
+// What a mesh that is a solid stands for.
+enum class MeshInertia {
+  exact,   // what it encloses
+  convex,  // what its convex hull encloses
+  shell    // a skin on it
+};
+template <>
+inline constexpr auto kWords<MeshInertia> = std::to_array<Word<MeshInertia>>({{"exact", MeshInertia::exact},
+                                                                              {"convex", MeshInertia::convex},
+                                                                              {"shell", MeshInertia::shell}});
+
 enum class MeshKind { file, box, cylinder, cone, sphere, capsule, plate, pipe, drum, screw, rectangle, line };
 template <>
 inline constexpr auto kWords<MeshKind> = std::to_array<Word<MeshKind>>({{"file", MeshKind::file},

@@ -46,8 +46,18 @@ const TableKeys& solid_keys() {
         "touch nothing; where two overlap, both count.",
         {choice<SolidKind>("kind").required().about("Sphere. Box: along x, y and z of its own frame. "
                                                     "Cylinder, capsule: along z; a capsule ends in two "
-                                                    "half spheres. Mesh: what a closed mesh encloses."),
+                                                    "half spheres. Mesh: one of the meshes."),
          text("mesh").only_for(meshes).required().about("Name of one of the meshes."),
+         choice<MeshInertia>("inertia")
+             .only_for(meshes)
+             .otherwise_choice(MeshInertia::exact)
+             .about("Exact: what the mesh encloses, if it is closed. Convex: what its convex hull encloses. "
+                    "Shell: a skin on the mesh, closed or not."),
+         real("thickness", "m")
+             .only_for(meshes)
+             .above(0)
+             .left_out("inertia is not \"shell\"")
+             .about("Of the skin, of which half lies on either side."),
          real("radius", "m").only_for(round).above(0).required().about("Radius."),
          real("length", "m")
              .only_for(long_ones)

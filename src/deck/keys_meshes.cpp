@@ -102,6 +102,12 @@ const TableKeys& mesh_keys() {
              "Whether the last point is joined to the first, counterclockwise around what is solid."),
          boolean("sheet").only_for(files).otherwise("false").about(
              "Whether the surface has two sides and may have free edges; else it encloses a solid."),
+         real("coarsen", "m")
+             .only_for(files)
+             .above(0)
+             .left_out("triangles as they are")
+             .about("Triangles are joined as long as no vertex of the file is farther than this beside what "
+                    "is left; sharp edges (feature_angle) and free ones stay. Before refine."),
          real("refine", "m")
              .above(0)
              .left_out("triangles as they are")

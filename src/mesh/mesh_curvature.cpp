@@ -1,7 +1,11 @@
 #include "mesh/mesh_curvature.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+
+#include "base/mat3.hpp"
 
 namespace scree {
 namespace {
@@ -9,33 +13,102 @@ namespace {
 // A sag of less, over the extent of the mesh, may be of coordinates with 7 digits: slivers of a plane that
 // such a file bends are no curves. Circles of more than some 2000 facets are not judged for this.
 constexpr Real kLeastSag = 1e-6;
+// How much of a turn is left to the next one of the same curve, at least: it is all between the facets of a
+// cylinder, a half between equilateral triangles, a third in the twisted faces of a screw.
+constexpr Real kTurnsOn = 0.2;
 
-// Of each part [m].
-std::vector<Vec3> centroids(const MeshTopology& topology, const MeshParts& parts) {
-  std::vector<Vec3> sum(parts.parts.size());
-  std::vector<Real> area(parts.parts.size());
+struct PartShape {
+  Vec3 middle;  // centroid [m]
+  Real area = 0;
+};
+
+std::vector<PartShape> shapes_of(const MeshTopology& topology, const MeshParts& parts) {
+  std::vector<PartShape> shapes(parts.parts.size());
   for (std::size_t t = 0; t < topology.mesh.triangles.size(); ++t) {
     const auto& v = topology.mesh.triangles[t];
     const Vec3 a = topology.mesh.vertices[v[0]], b = topology.mesh.vertices[v[1]],
-               c = topology.mesh.vertices[v[2]];
-    const Real weight = norm(cross(b - a, c - a));
-    const Index part = parts.part_of[t];
-    sum[part] +=
-        weight / 3 *
-        ((a - parts.parts[part].point) + (b - parts.parts[part].point) + (c - parts.parts[part].point));
-    area[part] += weight;
+               c = topology.mesh.vertices[v[2]], origin = parts.parts[parts.part_of[t]].point;
+    PartShape& shape = shapes[parts.part_of[t]];
+    const Real area = norm(cross(b - a, c - a)) / 2;
+    shape.middle += area / 3 * ((a - origin) + (b - origin) + (c - origin));
+    shape.area += area;
   }
-  for (std::size_t p = 0; p < sum.size(); ++p)
-    sum[p] = parts.parts[p].point + (area[p] > 0 ? 1 / area[p] : 0) * sum[p];
-  return sum;
+  for (std::size_t p = 0; p < shapes.size(); ++p)
+    shapes[p].middle =
+        parts.parts[p].point + (shapes[p].area > 0 ? 1 / shapes[p].area : 0) * shapes[p].middle;
+  return shapes;
 }
 
 Real distance_from_line(Vec3 p, Vec3 a, Vec3 b) { return norm(cross(p - a, b - a)) / norm(b - a); }
 
+// An edge over which a smooth patch turns from part `one` to part `other`.
+struct Turn {
+  Index one, other, low, high;  // parts; vertices of the edge
+  Real angle, length;           // [rad], [m]
+  bool concave;                 // seen from outside
+  Vec3 axis;                    // along the edge
+  Real border = 0;              // length of all edges between the two parts [m]
+};
+
+std::pair<Index, Index> parts_of(const Turn& turn) { return std::minmax({turn.one, turn.other}); }
+
+void set_borders(std::vector<Turn>& turns) {
+  std::ranges::stable_sort(turns, {}, parts_of);
+  for (std::size_t first = 0, last = 0; first < turns.size(); first = last) {
+    Real border = 0;
+    for (; last < turns.size() && parts_of(turns[last]) == parts_of(turns[first]); ++last)
+      border += turns[last].length;
+    for (std::size_t t = first; t < last; ++t) turns[t].border = border;
+  }
+}
+
+std::vector<Turn> smooth_turns(const MeshTopology& topology, const MeshParts& parts,
+                               const std::vector<PartShape>& shapes, Real cosine) {
+  std::vector<Turn> turns;
+  for (const MeshEdge& edge : topology.edges) {
+    if (!topology.joins_two(edge)) continue;
+    const auto uses = topology.uses_of(edge);
+    const Index one = parts.part_of[uses[0].triangle], other = parts.part_of[uses[1].triangle];
+    const Vec3 n = parts.parts[one].normal, m = parts.parts[other].normal;
+    if (one == other || !(dot(n, m) > cosine)) continue;
+    const Vec3 a = topology.mesh.vertices[edge.low], along = topology.mesh.vertices[edge.high] - a;
+    const Real angle = std::atan2(norm(cross(n, m)), dot(n, m)), length = norm(along);
+    turns.push_back({one, other, edge.low, edge.high, angle, length, dot(shapes[other].middle - a, n) > 0,
+                     (1 / length) * along});
+  }
+  set_borders(turns);
+  return turns;
+}
+
+// How a patch bends at the borders of one part, about any direction: sums of angle, length and the square of
+// the edge's direction.
+struct Bending {
+  Sym3 all, convex;  // concave turns count as they are; as less than nothing [rad m]
+};
+
+std::vector<Bending> bendings_of(const std::vector<Turn>& turns, std::size_t parts) {
+  std::vector<Bending> bendings(parts);
+  for (const Turn& turn : turns)
+    for (const Index part : {turn.one, turn.other}) {
+      const Real weight = turn.angle * turn.length;
+      bendings[part].all += outer(weight, turn.axis);
+      bendings[part].convex += outer(turn.concave ? -weight : weight, turn.axis);
+    }
+  return bendings;
+}
+
+Real about(const Sym3& bending, Vec3 axis) { return dot(axis, bending * axis); }
+
+// Whether a turn is of a curve: the patch goes on turning at the other borders of both parts, about the same
+// direction or aslant. Else it is a crease, of a plane or of a curve that is much flatter.
+bool is_of_curve(const Turn& turn, const Bending& one, const Bending& other) {
+  const Real here = turn.angle * turn.border;
+  return std::min(about(one.all, turn.axis), about(other.all, turn.axis)) >= (1 + kTurnsOn) * here;
+}
+
 }  // namespace
 
 MeshCurvature mesh_curvature(const MeshTopology& topology, const MeshParts& parts, Real cosine, bool sheet) {
-  const std::vector<Vec3> middle = centroids(topology, parts);
   const std::vector<Vec3>& vertices = topology.mesh.vertices;
   Vec3 low = vertices.front(), high = low;
   for (const Vec3 v : vertices) {
@@ -43,21 +116,29 @@ MeshCurvature mesh_curvature(const MeshTopology& topology, const MeshParts& part
     high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
   }
   const Real least_sag = kLeastSag * norm(high - low);
+  const std::vector<PartShape> shapes = shapes_of(topology, parts);
+  const std::vector<Turn> turns = smooth_turns(topology, parts, shapes, cosine);
+  const std::vector<Bending> bendings = bendings_of(turns, shapes.size());
   MeshCurvature result;
-  for (const MeshEdge& edge : topology.edges) {
-    if (!topology.joins_two(edge)) continue;
-    const auto uses = topology.uses_of(edge);
-    const Index one = parts.part_of[uses[0].triangle], other = parts.part_of[uses[1].triangle];
-    const Vec3 n = parts.parts[one].normal, m = parts.parts[other].normal;
-    if (one == other || !(dot(n, m) > cosine)) continue;
-    const Real turn = std::atan2(norm(cross(n, m)), dot(n, m));
-    const Vec3 a = vertices[edge.low], b = vertices[edge.high];
-    const Real near = distance_from_line(middle[one], a, b), far = distance_from_line(middle[other], a, b);
-    const Real sag = 2 * std::min(near, far) * turn / 8;
+  for (const Turn& turn : turns) {
+    const PartShape &one = shapes[turn.one], &other = shapes[turn.other];
+    const Bending &here = bendings[turn.one], &there = bendings[turn.other];
+    if (!is_of_curve(turn, here, there)) continue;
+    // What is on the border of the two parts belongs to them by half.
+    Sym3 convex = here.convex;
+    convex += there.convex;
+    const Real share = 1 / (2 * (one.area + other.area)),
+               curvature = share * std::abs(about(convex, turn.axis));
+    const Vec3 a = vertices[turn.low], b = vertices[turn.high];
+    const Real width =
+        2 * std::min(distance_from_line(one.middle, a, b), distance_from_line(other.middle, a, b));
+    const Real sag = curvature * width * width / 8;
     if (!(sag > least_sag)) continue;
     result.sag = std::max(result.sag, sag);
-    if (sheet || dot(middle[other] - a, n) > 0)
-      result.concave_radius = std::min(result.concave_radius, (near + far) / turn);
+    const std::array<Real, 3> principal = principal_values(convex);
+    const Real concave = share * std::max(-principal.front(), sheet ? principal.back() : 0);
+    if (concave * width * width / 8 > least_sag)
+      result.concave_radius = std::min(result.concave_radius, 1 / concave);
   }
   return result;
 }

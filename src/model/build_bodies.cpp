@@ -7,7 +7,9 @@
 #include <set>
 #include <tuple>
 
+#include "base/error.hpp"
 #include "base/rotation.hpp"
+#include "mesh/convex_hull.hpp"
 #include "mesh/mesh_mass.hpp"
 #include "model/body_exchange.hpp"
 #include "model/build_parts.hpp"
@@ -35,13 +37,29 @@ void check_mass_keys(const DeckTable& table, bool spatial) {
     if (solid && table.has(key)) table.fail(key, "follows from solids; leave it out");
 }
 
+MassProperties hull_mass(const DeckTable& table, const TriangleMesh& mesh, Real density) {
+  try {
+    return solid_mesh_mass(convex_hull(mesh.vertices), density);
+  } catch (const InputError& error) {
+    table.fail("inertia", error.what());
+  }
+}
+
 MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real density) {
-  const int mesh = find_name(names.meshes, table, "mesh", "mesh");
-  const TriangleMesh& triangles = names.triangles[static_cast<std::size_t>(mesh)];
-  if (triangles.triangles.empty())
+  const int number = find_name(names.meshes, table, "mesh", "mesh");
+  const auto& [mesh, sheet] = names.triangles[static_cast<std::size_t>(number)];
+  const MeshInertia kind = table.choice<MeshInertia>("inertia");
+  if (mesh.triangles.empty())
+    table.fail("mesh", "is a line, which encloses no volume; give the body's mass and inertia instead");
+  if (sheet && kind == MeshInertia::exact)
     table.fail("mesh",
-               "is a sheet or a line, which encloses no volume; give the body's mass and inertia instead");
-  return solid_mesh_mass(triangles, density);
+               "is a sheet, which encloses no volume; inertia = \"convex\" or \"shell\", or give the body's "
+               "mass and inertia instead");
+  if ((kind == MeshInertia::shell) != table.has("thickness"))
+    table.fail("thickness", kind == MeshInertia::shell ? "missing; inertia is \"shell\""
+                                                       : "not used without inertia = \"shell\"");
+  if (kind == MeshInertia::shell) return shell_mesh_mass(mesh, density * table.real("thickness"));
+  return kind == MeshInertia::convex ? hull_mass(table, mesh, density) : solid_mesh_mass(mesh, density);
 }
 
 Real density_of(const DeckTable& table, const ModelNames& names) {
@@ -181,7 +199,7 @@ void note_mesh_solids(const DeckTable& body, const ModelNames& names, Model& mod
   for (const DeckTable& solid : body.tables("solids")) {
     if (solid.choice<SolidKind>("kind") != SolidKind::mesh) continue;
     const auto mesh = static_cast<std::size_t>(find_name(names.meshes, solid, "mesh", "mesh"));
-    const Real mass = density_of(solid, names) * mesh_volume(names.triangles[mesh]);
+    const Real mass = mesh_mass(solid, names, density_of(solid, names)).mass;
     std::vector<Real>& masses = model.meshes[mesh].solid_masses;
     if (std::ranges::find(masses, mass) == masses.end()) masses.push_back(mass);
   }

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/host_memory.hpp"
+#include "mesh/coarsen.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/mesh_mass.hpp"
 #include "mesh/refine.hpp"
@@ -41,19 +42,37 @@ void check_room(const DeckTable& table, const TriangleMesh& mesh) {
                            least, kBytesPerTriangle * least / 1e9, free / 1e9));
 }
 
-// Welded and checked; in 2D lines were refined when they were drawn.
-TriangleMesh surface_of(const DeckTable& table, Real half_depth) {
+TriangleMesh made_finer(const DeckTable& table, const TriangleMesh& mesh) {
+  check_room(table, mesh);
+  try {
+    return refined(mesh, table.real("refine"));
+  } catch (const InputError& error) {
+    table.fail("refine", error.what());
+  }
+}
+
+// Surfaces that come close to each other may meet in the coarser mesh.
+TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
+  CoarseMesh coarse = coarsened(mesh, table.real("coarsen"), table.real("feature_angle"));
+  const std::vector<std::string> troubles = mesh_troubles(coarse.mesh, is_sheet(table));
+  if (!troubles.empty())
+    table.fail("coarsen",
+               fmt::format("is too large, the coarser mesh is no surface: {}", fmt::join(troubles, "; ")));
+  note.triangles_before = mesh.triangles.size(), note.moved = coarse.moved;
+  return std::move(coarse.mesh);
+}
+
+// Welded and checked, made coarser and finer; in 2D lines were refined when they were drawn. note: gets what
+// became of the triangles.
+TriangleMesh surface_of(const DeckTable& table, Real half_depth, ModelMesh& note) {
   const TriangleMesh mesh = make_mesh(table, half_depth);
   LooselyWelded joined{welded(mesh), {}};
   if (table.has("weld")) joined = welded_within(mesh, table.real("weld"));
   check(table, joined.mesh, joined.numbers);
-  if (!table.has("refine") || table.choice<MeshKind>("kind") == MeshKind::line) return joined.mesh;
-  check_room(table, joined.mesh);
-  try {
-    return refined(joined.mesh, table.real("refine"));
-  } catch (const InputError& error) {
-    table.fail("refine", error.what());
-  }
+  TriangleMesh surface = std::move(joined.mesh);
+  if (table.has("coarsen")) surface = made_coarser(table, surface, note);
+  const bool drawn = table.choice<MeshKind>("kind") == MeshKind::line;
+  return table.has("refine") && !drawn ? made_finer(table, surface) : surface;
 }
 
 void check_features(const DeckTable& table, const SurfaceMesh& mesh) {
@@ -88,12 +107,13 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
       table.fail("kind",
                  planar ? "must be \"line\", as space.dimension = 2" : "\"line\" needs space.dimension = 2");
     add_name(names.meshes, table.text("name"), static_cast<int>(model.meshes.size()), table);
-    const TriangleMesh mesh = surface_of(table, half_depth);
-    const auto surface = std::make_shared<const SurfaceMesh>(
+    ModelMesh made{table.text("name"), nullptr};
+    const TriangleMesh mesh = surface_of(table, half_depth, made);
+    made.surface = std::make_shared<const SurfaceMesh>(
         build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
-    check_features(table, *surface);
-    model.meshes.push_back({table.text("name"), surface});
-    names.triangles.push_back(planar || is_sheet(table) ? TriangleMesh{} : mesh);
+    check_features(table, *made.surface);
+    model.meshes.push_back(made);
+    names.triangles.push_back({planar ? TriangleMesh{} : mesh, is_sheet(table)});
   }
 }
 

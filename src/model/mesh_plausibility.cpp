@@ -15,7 +15,7 @@ namespace scree {
 namespace {
 
 constexpr Real kMostOfCurve = 0.5;  // radius of a particle over that of a concave surface
-constexpr Real kMostSag = 0.5;      // over the largest overlap: so far the force errs where it is greatest
+constexpr Real kMostSag = 0.1;      // over the largest overlap: so far the force errs where it is greatest
 constexpr Real kMostTrianglesNear = 64;
 
 Real area_of(const SurfaceMesh& mesh) {
@@ -79,11 +79,11 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
   const Real sag = mesh.surface->curvature.sag, overlap = largest_overlap(model, materials);
   if (overlap == 0 || !(sag > kMostSag * overlap)) return "";
   return fmt::format(
-      "mesh \"{}\": its facets are up to {:.3g} m beside the smooth surface that they stand for, and "
-      "overlaps "
-      "are up to {:.3g} m: forces there are those of facets; finer ones have a quarter of that at half the "
-      "length",
-      mesh.name, sag, overlap);
+      "mesh \"{}\": its facets are up to {:.3g} m beside the smooth surface that they stand for, {:.2g} % of "
+      "the "
+      "{:.3g} m by which impacts overlap it, and forces err by as much: facets of half the length have a "
+      "quarter",
+      mesh.name, sag, 100 * sag / overlap, overlap);
 }
 
 std::string too_fine(const Model& model, const ModelMesh& mesh) {

@@ -60,6 +60,8 @@ struct ModelMesh {
   std::string name;  // for messages
   std::shared_ptr<const SurfaceMesh> surface;
   std::vector<Real> solid_masses{};  // of solids that it stands for, each number once [kg]
+  std::size_t triangles_before = 0;  // it was made coarser; else 0
+  Real moved = 0;                    // the farthest that a vertex was then beside it [m]
 };
 
 // A pair of materials that the deck does not give, made by contact.mixing.

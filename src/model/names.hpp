@@ -24,12 +24,18 @@ struct NamedMarker {
   Marker marker;
 };
 
+// Triangles that a solid may be made of; none of lines.
+struct NamedMesh {
+  TriangleMesh mesh;
+  bool sheet = false;
+};
+
 struct ModelNames {
   NameMap materials, meshes, bodies, joints;
   std::map<std::string, std::vector<int>> rows;  // bodies of a row in order; a single body is a row of one
   std::map<std::string, NamedMarker> markers;
-  std::vector<Real> densities;          // of the materials [kg/m^3], 0 where not given
-  std::vector<TriangleMesh> triangles;  // of the meshes; none of those that enclose no volume
+  std::vector<Real> densities;       // of the materials [kg/m^3], 0 where not given
+  std::vector<NamedMesh> triangles;  // of the meshes
 };
 
 // Index of the name that `table.key` holds. what: "material", "body", ... for the message. Throws InputError

@@ -54,6 +54,12 @@ std::string mass_text(const ModelMesh& mesh) {
   return text;
 }
 
+std::string coarser_line(const ModelMesh& mesh) {
+  if (mesh.triangles_before == 0) return "";
+  return fmt::format("               made coarser, from {} triangles, which are up to {:.3g} m beside it\n",
+                     mesh.triangles_before, mesh.moved);
+}
+
 std::string curvature_line(const Model& model, const ModelMesh& mesh) {
   const MeshCurvature& curvature = mesh.surface->curvature;
   std::string text;
@@ -78,7 +84,7 @@ std::string mesh_lines(const Model& model) {
     const ModelMesh& mesh = model.meshes[m];
     lines += fmt::format("mesh           \"{}\": {}{}\n", mesh.name,
                          planar ? line_text(*mesh.surface) : size_text(*mesh.surface), mass_text(mesh)) +
-             curvature_line(model, mesh);
+             coarser_line(mesh) + curvature_line(model, mesh);
   }
   if (model.meshes.size() > kMeshesShown)
     lines += fmt::format("               and {} more\n", model.meshes.size() - kMeshesShown);

@@ -21,6 +21,7 @@
 #include "run/recorder.hpp"
 #include "run/restart.hpp"
 #include "run/step_loop.hpp"
+#include "run/surfaces_outside.hpp"
 
 namespace scree {
 namespace {
@@ -54,7 +55,8 @@ class Simulation {
         state_(std::move(restart_.state)),
         backend_(choose_backend(model, ranks_, options.backend, log)),
         link_(model, ranks_),
-        step_(model, *backend_, link_, timers_) {
+        step_(model, *backend_, link_, timers_),
+        surfaces_outside_(model) {
     ranks_.on_root([&] { folder_.claim(); });
     start_or_resume();
     ranks_.on_root([&] { folder_.clear(); });
@@ -81,6 +83,7 @@ class Simulation {
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
   void watch_bodies(const State& state);
+  void watch_leavers(const std::vector<Leaver>& leavers);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
   void keep_last_good_state(StepLoop& loop);
   ExitCode finish(const std::string& status, ExitCode code);
@@ -107,7 +110,8 @@ class Simulation {
   double loop_seconds_ = 0;
   Real start_time_ = 0;
   int tenths_reported_ = 0;
-  bool body_left_ = false;
+  bool body_left_ = false, load_lost_ = false;
+  const SurfacesOutside surfaces_outside_;
   std::string state_hash_;
   std::int64_t list_entries_ = 0, migrated_ = 0;  // of all ranks
 };
@@ -190,6 +194,14 @@ void Simulation::watch_bodies(const State& state) {
                     model_.bodies[outside.first].name, state.clock.time));
 }
 
+// Warns once, on every rank.
+void Simulation::watch_leavers(const std::vector<Leaver>& leavers) {
+  if (load_lost_) return;
+  const std::string warning = surfaces_outside_.warning(leavers, link_.motion(), state_.clock.time);
+  load_lost_ = !warning.empty();
+  if (load_lost_) log_.warning(warning);
+}
+
 void Simulation::progress(const State& state, Real h) {
   const double since = std::chrono::duration<double>(Clock::now() - last_progress_).count();
   const Real share = (state.clock.time - start_time_) / (model_.time.end - start_time_);
@@ -226,7 +238,11 @@ ExitCode Simulation::run_to_the_end() {
                         counted(model_.particles.totals.count, "particle", "particles"),
                         counted(std::ssize(model_.bodies), "body", "bodies"), backend_->description(),
                         link_.multibody() ? link_.multibody()->solver_description() : "none"));
-  const LoopParts parts{model_, *backend_, link_, step_, *recorder_, timers_};
+  const LoopParts parts{
+      model_,         *backend_,
+      link_,          step_,
+      *recorder_,     timers_,
+      steady_seconds, [this](const std::vector<Leaver>& leavers) { watch_leavers(leavers); }};
   StepLoop loop(
       parts, state_, [this](State& s) { checkpoint(s, "checkpoint.h5"); },
       [this](const State& s, Real h) {

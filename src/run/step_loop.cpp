@@ -116,6 +116,7 @@ void StepLoop::leave() {
     const auto scope = parts_.timers.time(Stage::migrate);
     const std::vector<Leaver> leavers = parts_.step.check_inside();
     if (leavers.empty()) return;
+    parts_.leaving(leavers);
     parts_.backend.particles().take_out(leavers);
     book_leavers(leavers, parts_.model.space.leaving, state_.carried_out);
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "base/log.hpp"
 #include "coupling/coupled_step.hpp"
@@ -28,6 +29,8 @@ struct LoopParts {
   Records& records;
   StageTimers& timers;
   std::function<double()> seconds = steady_seconds;  // a clock that never goes back
+  // Called with the particles that leave the space, where they leave.
+  std::function<void(const std::vector<Leaver>&)> leaving = [](const std::vector<Leaver>&) {};
 };
 
 // Explicit steps of the bodies to take at once, where the last ones took so many seconds each. mixed: that of

@@ -1,6 +1,9 @@
 """Bad meshes and bad decks of meshes, each with its message; what `scree check` says of good ones.
 Usage: SCREE=path/to/scree python3 test_meshes.py"""
 
+import json
+import math
+import re
 import struct
 import unittest
 
@@ -57,6 +60,30 @@ def stl(faces, corners=CORNERS):
                                                                 (corners[c] for c in face)) +
                    "endloop\nendfacet\n" for face in faces)
     return f"solid rock\n{rows}endsolid rock\n"
+
+
+def ball(radius, inwards=False, around=48, up=24):
+    """A sphere about (0.5, 0, 0) as an STL of its facets."""
+    def point(i, j):
+        return (0.5 + radius * math.sin(math.pi * j / up) * math.cos(2 * math.pi * (i % around) / around),
+                radius * math.sin(math.pi * j / up) * math.sin(2 * math.pi * (i % around) / around),
+                radius * math.cos(math.pi * j / up) if 0 < j < up else radius * (1 - 2 * (j > 0)))
+    places = {}
+    corners = []
+
+    def number(i, j):
+        place = point(i if 0 < j < up else 0, j)
+        key = tuple(round(x, 9) for x in place)
+        if key not in places:
+            places[key] = len(corners)
+            corners.append(place)
+        return places[key]
+    faces = []
+    for i in range(around):
+        for j in range(up):
+            a, b, c, d = number(i, j), number(i, j + 1), number(i + 1, j + 1), number(i + 1, j)
+            faces += [face for face in ((a, b, c), (a, c, d)) if len(set(face)) == 3]
+    return stl([face[::-1] for face in faces] if inwards else faces, corners)
 
 
 def binary_stl(count, faces):
@@ -154,6 +181,8 @@ class BadDeckTest(MeshTest):
             (["meshes.rock.feature_angle=2"], "must be"),
             (["meshes.rock.refine=1e-6"], "triangles"),
             ([attraction, "integrator.particles=hht"], 'needs integrator.particles = "velocity-verlet"'),
+            (["meshes.rock.coarsen=0"], "meshes.rock.coarsen must be a number above 0"),
+            (['meshes=[{name="rock",kind="sphere",radius=0.1,coarsen=0.01}]'], "not used with kind = \"sphere\""),
             (["particles.0.positions=[[0.1,0.1,0.1]]"], "particle 0 and wall \"rock\" overlap at t = 0 by 2 of"),
         ]
         for settings, text in cases:
@@ -182,6 +211,25 @@ class ReportTest(MeshTest):
         self.assertIn('mesh           "rock": 12 triangles, 8 vertices, 1 shell, closed; '
                       '(0, 0, 0) to (0.1, 0.1, 0.1) m, area 0.06 m^2, volume 0.001 m^3, as a solid 1 kg', report)
         self.assertNotIn("warning", warnings)
+
+    def test_a_file_made_coarser(self):
+        self.write("rock.stl", ball(0.2))
+        report, _ = self.report("meshes.rock.coarsen=0.005")
+        coarser = re.search(r"made coarser, from (\d+) triangles, which are up to (\S+) m beside", report)
+        before, moved = coarser.groups()
+        self.assertEqual(int(before), 48 * 2 * 23)
+        self.assertLessEqual(float(moved), 0.005)
+        count = int(re.search(r'"rock": (\d+) triangles', report)[1])
+        self.assertLess(count, int(before) // 4)
+        fine = int(re.search(r'"rock": (\d+) triangles', self.report("meshes.rock.coarsen=0.005",
+                                                                    "meshes.rock.refine=0.02")[0])[1])
+        self.assertGreater(fine, count)
+        self.assertNotIn("made coarser", self.report()[0])
+        # A wall of 5 mm: its sides come to cut through each other.
+        self.write("rock.stl", ball(0.2) + ball(0.195, inwards=True))
+        self.report("meshes.rock.coarsen=0.001")
+        message = self.expect(BAD_INPUT, "check", self.deck, "--set", "meshes.rock.coarsen=0.05").stderr
+        self.assertIn("meshes.rock.coarsen=0.05: is too large, the coarser mesh is no surface: ", message)
 
     def test_warnings(self):
         for settings, text in [
@@ -220,6 +268,78 @@ class ReportTest(MeshTest):
         self.run_deck(DONE, "more", *longer)
         self.write("rock.stl", stl(FACES, [(x, y, z + 0.1) for x, y, z in CORNERS]))
         self.assertIn("meshes.rock.file", self.run_deck(BAD_INPUT, "other", *longer).stderr)
+
+
+TRAY = """gravity = [0.0, 0.0, -9.8066]
+
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+leaving = "drift"
+
+[time]
+end = 1.0
+step = 5e-4
+
+[integrator]
+particles = "velocity-verlet"
+
+[[contact.pairs]]
+stiffness = 1e5
+restitution = 0.5
+
+[[meshes]]
+name = "tray"
+kind = "box"
+size = [0.4, 0.4, 0.1]
+offset = [0.0, 0.0, 0.6]
+
+[[walls]]
+name = "tray"
+mesh = "tray"
+
+[[walls.motions]]
+type = "translation"
+direction = [0.0, 0.0, 1.0]
+displacement = { kind = "step", end_value = 0.5, start = 0.0, end = 0.8 }
+
+[[particles]]
+kind = "list"
+positions = [[0.0, 0.0, 0.71]]
+radius = 0.05
+mass = 1.0
+
+[[particles]]
+kind = "list"
+positions = [[0.6, 0.0, 0.9]]
+velocity = [0.0, 0.0, 4.0]
+radius = 0.05
+mass = 1.0
+"""
+
+
+class LostLoadTest(CommandLineTest):
+    """A tray lifts a grain out of the space; another one flies out beside it, before."""
+
+    def warnings(self, output):
+        return json.loads((self.folder / output / "run_record.json").read_text())["warnings"]
+
+    def test_what_is_carried_out_of_the_space_is_warned_of_at_once_and_when_it_is_lost(self):
+        deck = self.write("tray.toml", TRAY)
+        early = "wall \"tray\" reaches beyond an open side of the space"
+        self.assertIn(early, self.expect(DONE, "check", deck).stderr)
+        for launcher in ((), TWO_RANKS):
+            with self.subTest(launcher=launcher):
+                text = self.expect(DONE, "run", deck, "--output", self.folder / "out", "--overwrite",
+                                   launcher=launcher).stderr
+                first, lost = self.warnings("out")
+                self.assertIn(early, first)
+                self.assertIn("particle 0 leaves the space at t = ", lost)
+                self.assertIn("at the surfaces of wall \"tray\": particles that leave are searched no longer", lost)
+                self.assertEqual(text.count(lost), 1)
+        result = self.expect(DONE, "run", deck, "--output", self.folder / "in", "--set", "space.max=[1,1,2]")
+        self.assertEqual((result.stderr, self.warnings("in")), ("", []))
 
 
 if __name__ == "__main__":

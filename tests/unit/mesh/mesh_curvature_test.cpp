@@ -2,6 +2,7 @@
 #include "mesh/mesh_curvature.hpp"
 
 #include "mesh/primitives.hpp"
+#include "mesh/refine.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "support/test_meshes.hpp"
@@ -41,6 +42,22 @@ TEST_CASE("spheres from inside, sheets from either side, fillets beside planes")
     trough.push_back({std::sin(k * M_PI / 32) * 0.1, 0.1 - 0.1 * std::cos(k * M_PI / 32), 0});
   trough.push_back({0.1, 2, 0});
   CHECK(curvature_of(extruded_line_mesh(trough, false, 4), true).concave_radius == Approx(0.1).epsilon(0.01));
+}
+
+TEST_CASE("the flight of a screw is as hollow along a slant as a helicoid is at its core") {
+  const Real rise = 0.07 / (2 * M_PI), core = 0.012, helicoid = (rise * rise + core * core) / rise;
+  for (const Index n : {48, 96}) {
+    const MeshCurvature screw = curvature_of(screw_mesh({core, 0.042, 0.07, 0.005, 0.2, 0.2, n}));
+    CHECK(screw.concave_radius > helicoid);
+    CHECK(screw.concave_radius < (1 + 32.0 / n) * helicoid);
+  }
+}
+
+TEST_CASE("a crease between planes is no curve, however finely they are cut") {
+  const TriangleMesh roof = refined(extruded_line_mesh({{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}}, false, 1), 0.2);
+  const MeshCurvature crease = curvature_of(roof, true);
+  CHECK(crease.sag == 0);
+  CHECK(crease.concave_radius == kInfinity);
 }
 
 TEST_CASE("planes that coordinates of seven digits bend are no curves") {

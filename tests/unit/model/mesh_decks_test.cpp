@@ -70,6 +70,25 @@ TEST_CASE("a body made of a box of triangles weighs what the box does") {
               whole);
 }
 
+TEST_CASE("a solid is what its mesh encloses, what the hull of that encloses, or a skin") {
+  const std::string open = "kind = \"rectangle\"\nsize = [0.2, 0.3]";
+  const auto of = [](const std::string& keys) {
+    return "{ kind = \"mesh\", mesh = \"made\", density = 800.0, " + keys + " }";
+  };
+  const std::string convex = of("inertia = \"convex\""), skin = of("inertia = \"shell\", thickness = 1e-3");
+  const std::string pipe = body_of("kind = \"pipe\"\nradius = 0.2\ninner_radius = 0.1\nlength = 0.3", convex);
+  check_equal(body(pipe), body(body_of("kind = \"cylinder\"\nradius = 0.2\nlength = 0.3", kOfMesh)));
+  CHECK(model_of(pipe).meshes.front().solid_masses.front() == Approx(body(pipe).mass));
+  CHECK(body(body_of("kind = \"box\"\nsize = [0.1, 0.2, 0.3]", skin)).mass == Approx(800e-3 * 0.22));
+  CHECK(body(body_of(open, skin)).mass == Approx(800e-3 * 0.06));
+  CHECK(contains(model_error(body_of(open, kOfMesh)), "is a sheet, which encloses no volume"));
+  CHECK(contains(model_error(body_of(open, convex)), "lie in one plane: their convex hull has no volume"));
+  CHECK(contains(model_error(body_of(open, of("inertia = \"shell\""))), "thickness: missing"));
+  CHECK(contains(model_error(body_of(open, of("thickness = 0.1"))), "which encloses no volume"));
+  CHECK(contains(model_error(body_of("kind = \"box\"\nsize = [1, 1, 1]", of("thickness = 0.1"))),
+                 "not used without inertia = \"shell\""));
+}
+
 TEST_CASE("round bodies made of triangles converge to their closed forms at order 2") {
   const Real radius = 0.3, length = 0.4, density = 800, mass = density * M_PI * radius * radius * length;
   Real before = 0;
