@@ -1,4 +1,4 @@
-"""The final state of a run and an animation of it, without a display."""
+"""Pictures of a run at its snapshots, and animations of them, without a display."""
 
 import pathlib
 import subprocess
@@ -13,10 +13,10 @@ import matplotlib.animation
 import matplotlib.pyplot as plt
 import numpy as np
 
-from model import read_model
-from results import fail, open_series, read_history
-from scenes import WALL_OPACITY, DiscScene, SphereScene
-from surfaces import Surfaces
+from scree.errors import ScreeError
+from scree.pictures.model import Model
+from scree.pictures.scenes import WALL_OPACITY, DiscScene, SphereScene
+from scree.pictures.surfaces import Surfaces
 
 COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
 FRAMES_PER_SECOND = 25
@@ -27,9 +27,7 @@ def vtk_renders():
     probe = pathlib.Path(__file__).with_name("spheres.py")
     if subprocess.run([sys.executable, probe], capture_output=True).returncode == 0:
         return True
-    print(
-        "VTK cannot render here (is libegl1 installed?): spheres are drawn as shaded discs", file=sys.stderr
-    )
+    print("VTK cannot render here (is libegl1 installed?): spheres are drawn as shaded discs", file=sys.stderr)
     return False
 
 
@@ -38,22 +36,29 @@ def chosen_frames(count, limit):
     return np.unique(np.linspace(0, count - 1, min(count, limit)).round().astype(int))
 
 
-class Run:
-    """What a run left in its folder."""
+class DrawnRun:
+    """What pictures show of a run."""
 
-    def __init__(self, directory):
-        self.model = read_model(directory)
-        self.particles = open_series(directory, "particles")
+    def __init__(self, run):
+        self.model = Model(run.deck)
+        self.particles = run.series("particles")
         if self.particles is None:
-            fail(f"{directory}: no particles.vtkhdf there")
-        self.bodies = open_series(directory, "bodies")
-        surfaces = open_series(directory, "surfaces")
+            raise ScreeError(f"{run.folder}: holds no snapshots")
+        self.bodies = run.series("bodies")
+        surfaces = run.series("surfaces")
         self.surfaces = Surfaces(surfaces) if surfaces else None
         bare = any(len(offsets) == 0 for offsets in self.model.offsets)
-        self.history = read_history(directory) if bare else {}
+        self.history = run.history if bare else {}
 
     def motion(self, snapshot):
         return self.model.motion(self.particles.times[snapshot], self.bodies, snapshot, self.history)
+
+    def unseen(self):
+        """How many bodies no result tells the place of."""
+        seen = self.motion(len(self.particles) - 1).known
+        if self.surfaces:
+            seen[self.surfaces.bodies] = True
+        return int((~seen).sum())
 
 
 def speed_limit(particles, snapshots):
@@ -117,14 +122,26 @@ class Look:
     opacity: float = WALL_OPACITY  # of meshes on bodies
     fastest: float | None = None  # upper end of the colour scale [m/s]
     surfaces: str | None = None  # field by which meshes are coloured
+    with_vtk: bool = True  # spheres are drawn by VTK, where it can
+
+    def fit(self, drawn, snapshots):
+        """Makes ready for pictures of this run at these snapshots. Throws ScreeError where it cannot look like this."""
+        if self.view and not drawn.model.planar:
+            raise ScreeError("a view is for runs in the plane")
+        self.with_vtk = self.with_vtk and not drawn.model.planar and vtk_renders()
+        if self.surfaces:
+            if not self.with_vtk or not drawn.surfaces:
+                raise ScreeError("surfaces are coloured in runs in space with meshes, drawn by VTK")
+            drawn.surfaces.color_by(self.surfaces, snapshots)
 
 
-def make_picture(run, snapshots, with_vtk=False, look=Look()):
-    if run.model.planar:
-        scene = DiscScene(run, snapshots, look.view)
+def make_picture(drawn, snapshots, look):
+    """A picture that fits all of these snapshots. look: fitted."""
+    if drawn.model.planar:
+        scene = DiscScene(drawn, snapshots, look.view)
     else:
-        scene = SphereScene(run, snapshots, with_vtk, look.opacity)
-    return Picture(scene, run, snapshots, look.fastest or speed_limit(run.particles, snapshots))
+        scene = SphereScene(drawn, snapshots, look.with_vtk, look.opacity)
+    return Picture(scene, drawn, snapshots, look.fastest or speed_limit(drawn.particles, snapshots))
 
 
 def save_picture(picture, snapshot, path):
@@ -133,45 +150,26 @@ def save_picture(picture, snapshot, path):
     plt.close(picture.figure)
 
 
-def save_animation(picture, snapshots, directory):
-    """Returns the file's path."""
-    if matplotlib.animation.FFMpegWriter.isAvailable():
-        path = directory / "animation.mp4"
-        # Players want even numbers of pixels and this pixel format.
-        options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "20"]
-        writer = matplotlib.animation.FFMpegWriter(fps=FRAMES_PER_SECOND, codec="libx264", extra_args=options)
-    else:
-        path = directory / "animation.gif"
-        writer = matplotlib.animation.PillowWriter(fps=FRAMES_PER_SECOND)
+def animation_writer(format, frames_per_second):
+    """format: "mp4" or "gif"."""
+    if format == "gif":
+        return matplotlib.animation.PillowWriter(fps=frames_per_second)
+    if not has_ffmpeg():
+        raise ScreeError("an mp4 needs the program ffmpeg; make a gif instead")
+    # Players want even numbers of pixels and this pixel format.
+    options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "20"]
+    return matplotlib.animation.FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=options)
+
+
+def has_ffmpeg():
+    return matplotlib.animation.FFMpegWriter.isAvailable()
+
+
+def save_animation(picture, snapshots, path, frames_per_second=FRAMES_PER_SECOND):
+    """The path ends in .mp4 or .gif."""
+    writer = animation_writer(path.suffix[1:], frames_per_second)
     with writer.saving(picture.figure, path, dpi=picture.figure.dpi):
         for snapshot in snapshots:
             picture.draw(snapshot)
             writer.grab_frame()
     plt.close(picture.figure)
-    return path
-
-
-def draw_run(directory, frames, with_vtk, look):
-    """Writes the final state and, with more than one frame, the animation; yields their paths."""
-    run = Run(directory)
-    if look.view and not run.model.planar:
-        fail("--view is for runs in the plane")
-    with_vtk = with_vtk and not run.model.planar and vtk_renders()
-    last = len(run.particles) - 1
-    if look.surfaces:
-        if not with_vtk or not run.surfaces:
-            fail("--surfaces is for runs in space with meshes, drawn by VTK")
-        run.surfaces.color_by(look.surfaces, [*chosen_frames(len(run.particles), frames), last])
-    seen = run.motion(last).known
-    if run.surfaces:
-        seen[run.surfaces.bodies] = True
-    unseen = int((~seen).sum())
-    if unseen:
-        print(f"{counted(unseen, 'body', 'bodies')} without shapes and not in output.history_bodies: not drawn",
-              file=sys.stderr)
-    path = pathlib.Path(directory) / "final.png"
-    save_picture(make_picture(run, [last], with_vtk, look), last, path)
-    yield path
-    chosen = chosen_frames(len(run.particles), frames)
-    if len(chosen) > 1:
-        yield save_animation(make_picture(run, chosen, with_vtk, look), chosen, pathlib.Path(directory))
