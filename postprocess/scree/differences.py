@@ -54,6 +54,7 @@ def over(largest: float, scale: float) -> float:
 
 def history_differences(one: Run, other: Run) -> Iterator[Difference]:
     a, b = one.history, other.history
+    a.read(), b.read()  # all at once
     for name in sorted(set(a) ^ set(b)):
         yield Difference(name, f"in {one.folder if name in a else other.folder} alone")
     shared = min(a.rows, b.rows)

@@ -63,7 +63,7 @@ def label(dataset: h5py.Dataset) -> tuple[str, str]:
 
 
 def datasets(file: h5py.File | h5py.Group) -> dict[str, h5py.Dataset]:
-    """All below, by their paths."""
+    """All below by their paths, each once: one that has several names, under one of them."""
     found: dict[str, h5py.Dataset] = {}
 
     def add(path: str, item: object) -> None:

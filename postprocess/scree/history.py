@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import pathlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -76,10 +76,14 @@ class History(Mapping[str, Quantity]):
         if name not in self._labels:
             near = [path for path in self if name.split("/")[-1] in path][:5]
             raise KeyError(f"no column {name}" + (f"; there are {', '.join(near)}" if near else ""))
-        self._load([name])
-        return Quantity(self._read[name], *self._labels[name])
+        return self.read(name)[name]
 
-    def _load(self, names: Sequence[str]) -> None:
+    def read(self, *names: str) -> dict[str, Quantity]:
+        """Columns of these names, or all, from one look into the files."""
+        self._load(names or self._labels)
+        return {name: Quantity(self._read[name], *self._labels[name]) for name in names or self._labels}
+
+    def _load(self, names: Iterable[str]) -> None:
         wanted = [name for name in names if name not in self._read]
         if not wanted:
             return
@@ -94,9 +98,6 @@ class History(Mapping[str, Quantity]):
                     raise ScreeError(f"{file.path}: has fewer rows than when it was opened; refresh() the run")
                 values[name].append(column)
         self._read.update({name: np.concatenate(columns) for name, columns in values.items()})
-
-    def unit(self, name: str) -> str:
-        return self[name].unit
 
     def names(self, *patterns: str) -> list[str]:
         """Columns whose paths a pattern fits ("contacts/*/fx", or a name); throws ScreeError where none does."""
@@ -113,10 +114,9 @@ class History(Mapping[str, Quantity]):
         attrs["descriptions"] have those of the columns, by name."""
         import pandas
 
-        names = [name for name in (self.names(*patterns) if patterns else self) if name != TIME]
-        self._load([TIME, *names])
-        index = pandas.Index(self._read[TIME], name="time [s]")
-        frame = pandas.DataFrame({name: self._read[name] for name in names}, index=index)
-        frame.attrs["units"] = {name: self._labels[name][0] for name in names}
-        frame.attrs["descriptions"] = {name: self._labels[name][1] for name in names}
+        found = self.read(TIME, *(self.names(*patterns) if patterns else self))
+        index = pandas.Index(found.pop(TIME).values, name="time [s]")
+        frame = pandas.DataFrame({name: column.values for name, column in found.items()}, index=index)
+        frame.attrs["units"] = {name: column.unit for name, column in found.items()}
+        frame.attrs["descriptions"] = {name: column.description for name, column in found.items()}
         return frame
