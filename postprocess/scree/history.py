@@ -44,8 +44,8 @@ class HistoryFile:
 class History(Mapping[str, Quantity]):
     """Columns by their paths ("energy/kinetic"), each a Quantity [rows], read when they are asked for.
 
-    Where a run has gone on from a checkpoint into another folder, the rows of both follow each other, and the columns are
-    those that both have.
+    Where a run has gone on from a checkpoint into another folder, the rows of both follow each other, and the columns
+    are those that both have.
     """
 
     def __init__(self, parts: Sequence[tuple[HistoryFile, int]]) -> None:
@@ -84,7 +84,7 @@ class History(Mapping[str, Quantity]):
         return {name: Quantity(self._read[name], *self._labels[name]) for name in names or self._labels}
 
     def _load(self, names: Iterable[str]) -> None:
-        wanted = [name for name in names if name not in self._read]
+        wanted = [name for name in dict.fromkeys(names) if name not in self._read]
         if not wanted:
             return
         values: dict[str, list[np.ndarray]] = {name: [] for name in wanted}

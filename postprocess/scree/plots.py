@@ -73,7 +73,8 @@ class Panel:
         styles = itertools.cycle(itertools.product(["-", "--", ":", "-."], COLORS))
         for line, (dash, color) in zip(shown, styles):
             label = textwrap.fill(line.label, LEGEND)
-            axes.plot(time, line.values, "-" if line.color else dash, color=line.color or color, linewidth=1.6, label=label)
+            dash, color = ("-", line.color) if line.color else (dash, color)
+            axes.plot(time, line.values, dash, color=color, linewidth=1.6, label=label)
         if len(shown) > 1:
             axes.legend(fontsize=11, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
         axes.set_ylabel(self.axis, fontsize=12)

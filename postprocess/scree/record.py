@@ -50,7 +50,8 @@ def read_deck(folder: pathlib.Path, record: dict[str, Any] | None) -> dict[str, 
 
 def came_from(folder: pathlib.Path, record: dict[str, Any] | None) -> pathlib.Path | None:
     """The folder of the checkpoint that the run went on from, where that is another one. The record has the path as the
-    run was given it: it is looked for from this folder and those above it, too. Throws ScreeError where it is nowhere."""
+    run was given it: it is looked for from this folder and those above it, too. Throws ScreeError where it is
+    nowhere."""
     said = record["run"]["restarted_from"] if record else ""
     if not said:
         return None

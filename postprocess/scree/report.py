@@ -19,7 +19,8 @@ STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #202020; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
 h1 { margin-bottom: 0 } h2 { margin-top: 2.5rem; border-bottom: 1px solid #dddddd }
 table { border-collapse: collapse } td, th { padding: 0.15rem 1.5rem 0.15rem 0; text-align: left; vertical-align: top }
-th { font-weight: normal; color: #606060 } img { max-width: 100% } pre { background: #f6f6f6; padding: 1rem; overflow: auto }
+th { font-weight: normal; color: #606060 } img { max-width: 100% }
+pre { background: #f6f6f6; padding: 1rem; overflow: auto }
 .status { color: #606060 } .warning { background: #fff3d6; padding: 0.3rem 1rem; margin: 0.4rem 0 }
 .bar { background: #0072b2; height: 0.8rem; min-width: 1px }
 """
@@ -39,7 +40,8 @@ def image(figure: Figure, text: str) -> str:
 
 
 def table(rows: list[tuple[str, str]]) -> str:
-    return "<table>" + "".join(f"<tr><th>{escaped(name)}</th><td>{value}</td></tr>" for name, value in rows) + "</table>"
+    """Values are HTML."""
+    return "<table>" + "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows) + "</table>"
 
 
 def duration(seconds: float) -> str:
@@ -80,9 +82,9 @@ def stages(record: dict[str, Any]) -> str:
     for stage in sorted(record["stages"], key=lambda stage: -float(stage["seconds"])):
         share = float(stage["seconds"]) / total
         if share >= FEWEST_STAGES:
-            name = stage["stage"].replace("_", " ")
-            rows += f'<tr><th>{escaped(name)}</th><td>{duration(float(stage["seconds"]))}</td><td>{100 * share:.1f} %</td>' \
-                    f'<td style="width: 20rem"><div class="bar" style="width: {100 * share:.1f}%"></div></td></tr>'
+            name, seconds = escaped(stage["stage"].replace("_", " ")), duration(float(stage["seconds"]))
+            rows += f"<tr><th>{name}</th><td>{seconds}</td><td>{100 * share:.1f} %</td><td style=\"width: 20rem\">" \
+                    f'<div class="bar" style="width: {100 * share:.1f}%"></div></td></tr>'
     return f"<h2>Where the time went</h2><table>{rows}</table>"
 
 

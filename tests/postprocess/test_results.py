@@ -4,8 +4,10 @@
 
 takes the folder of that run's results. Needs postprocess/requirements.txt."""
 
+import csv
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -64,6 +66,14 @@ class ReadingTest(FolderTest):
             found.history["energy/kinetik"]
         with self.assertRaisesRegex(scree.ScreeError, r"no column energy/x\*"):
             found.history.names("energy/x*")
+
+    def test_the_csv_has_the_same_numbers(self):
+        run(self.folder / "out", "output.history_csv=true")
+        names, *rows = csv.reader((self.folder / "out/history.csv").read_text().splitlines())
+        history = scree.open(self.folder / "out").history
+        self.assertEqual(sorted(names), sorted(f"{name} [{column.unit}]" for name, column in history.items()))
+        for name, values in zip(names, zip(*rows)):
+            np.testing.assert_array_equal(history[name.split(" [")[0]], [float(value) for value in values])
 
     def test_a_quantity_is_an_array(self):
         energy = scree.open(self.results).history["energy/kinetic"]
@@ -248,6 +258,47 @@ class GoingOnTest(FolderTest):
                                       (here, 2**22 + 1, "done")):
             (self.folder / "out/scree.lock").write_text(f"host {host}\nprocess {process}\n")
             self.assertEqual(scree.open(self.folder / "out").status, status)
+
+
+# Decks, each with a setting: together they have every kind of column.
+RECORDED = (
+    ("paper/net_9", ("output.history_bodies=['net.0']", "output.history_contacts=['net']")), ("examples/engine_mount", ()), ("examples/governor", ("output.history_coordinates=9",)),
+    ("examples/slider_crank_3d", ("output.history_coordinates=9",)), ("examples/boom", ()), ("examples/press", ()),
+    ("examples/grains_that_roll", ("output.history_particles=[0]",)),
+    ("examples/box_of_spheres", ("integrator.particles=velocity-verlet", "contact.pairs.0.attraction=0.01")),
+)
+
+
+class PageTest(FolderTest):
+    """postprocess/README.md has every column that a history may have, with its unit, and no others."""
+
+    def patterns(self):
+        """Of the page's table: (pattern of a path, units of its row)."""
+        text = (ROOT / "postprocess/README.md").read_text().split("## What the history holds")[1]
+        found = {}
+        for row in re.findall(r"^\| (`\w+/.*)\|$", text, re.M):
+            names, units, *_ = row.split(" | ")
+            for name in re.findall(r"`(\w+/[^`]+)`", names):
+                parts = [".+" if part.isupper() and len(part) > 1 else part for part in name.split("/")]
+                parts[-1] = re.sub(r"C$", "[xyz]", parts[-1]) + ("(_rate)?" if "`_rate`" in names else "")
+                found["/".join(parts)] = units
+        return found
+
+    def test_the_page_is_that_of_the_program(self):
+        patterns, met = self.patterns(), set()
+        for deck, settings in RECORDED:
+            output = self.folder / deck.replace("/", "_")
+            words = [word for setting in ("time.end=2e-3", *settings) for word in ("--set", setting)]
+            subprocess.run([PROGRAM, "run", ROOT / f"input/{deck}.toml", "--output", output, *words], check=True,
+                           timeout=LIMIT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            for name, column in scree.open(output).history.read().items():
+                fitting = [pattern for pattern in patterns if re.fullmatch(pattern, name)]
+                self.assertTrue(fitting, name)
+                for units in (patterns[pattern] for pattern in fitting):
+                    unit = "per s" if name.endswith("rate") and "per s" in units else column.unit
+                    self.assertIn(unit, re.split(r", | or ", units), name)
+                met.update(fitting)
+        self.assertEqual(set(patterns) - met, set())
 
 
 class WordsTest(unittest.TestCase):

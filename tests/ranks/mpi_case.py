@@ -128,7 +128,7 @@ class RanksTest(unittest.TestCase):
         return {name: [float(row[k]) for row in rows] for k, name in enumerate(names)}
 
     def datasets(self, output, name):
-        """Contents and layout of an HDF5 file, without the times of day that are in it; None without libraries or file."""
+        """Contents and layout of an HDF5 file, without the times of day in it; None without libraries or file."""
         path = self.folder / output / name
         if results is None or not path.exists():
             return None

@@ -1,5 +1,5 @@
-"""What tests want of a run's results, read by the package of postprocess. Of the folder alone: not of one that the run went
-on from."""
+"""What tests want of a run's results, read by the package of postprocess: of the folder alone, not of one that the run
+went on from."""
 
 import pathlib
 import sys

@@ -11,8 +11,8 @@ from scree.run import Run, open_run
 
 def add_columns(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--columns", nargs="+", default=[], metavar="GROUP/NAME",
-                        help="columns of the history to plot below the energies, a panel per group and unit; * stands for "
-                             "any text, as in 'reactions/*/fx'")
+                        help="columns of the history to plot below the energies, a panel per group and unit; * stands "
+                             "for any text, as in 'reactions/*/fx'")
     parser.add_argument("--list", action="store_true",
                         help="print the history's columns with unit and description, draw nothing")
 
