@@ -40,8 +40,9 @@ class InstallTest(unittest.TestCase):
                               "--disable-pip-version-check", SOURCE], environment)
             where = self.run_program([python, "-c", "import scree; print(scree.__file__)"], environment)
             self.assertTrue(where.startswith(str(site)), where)
-            said = self.run_program([folder / "venv/bin/scree-post", "draw", NET, "--only", "history"], environment)
-            self.assertEqual(said.strip(), str(NET / "history.png"))
+            picture = folder / "history.png"
+            said = self.run_program([folder / "venv/bin/scree-post", "plot", NET, "-o", picture], environment)
+            self.assertEqual(said.strip(), str(picture))
             self.assertTrue((site / "scree/py.typed").exists())
             packed = {path.relative_to(site) for path in (site / "scree").rglob("*.py")}
             self.assertEqual(packed, {path.relative_to(SOURCE) for path in (SOURCE / "scree").rglob("*.py")})
