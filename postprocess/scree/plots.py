@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import EngFormatter
 
 from scree.columns import panels
@@ -146,8 +147,7 @@ def history_figure(history: History, title: str, columns: Sequence[str] = (), en
         raise ScreeError("the history has no energies; name other columns")
     heights = [panel.height for panel in shown]
     figure, rows = plt.subplots(len(shown), 1, figsize=(WIDTH, sum(heights) + 0.9), height_ratios=heights, sharex=True,
-                                squeeze=False, layout="constrained", dpi=120)
-    figure.get_layout_engine().set(hspace=0.04)
+                                squeeze=False, layout=ConstrainedLayoutEngine(hspace=0.04), dpi=120)
     if title:
         figure.suptitle(title, fontsize=15, x=0.01, ha="left")
     for panel, axes in zip(shown, rows[:, 0]):

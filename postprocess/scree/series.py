@@ -65,7 +65,7 @@ class SeriesFile:
         else:
             first, count = self.first[snapshot], self.points[snapshot]
             where = "Points" if name == POSITION else f"PointData/{name}"
-        found = files.read(self.path, lambda file: file["VTKHDF"][where][first : first + count])
+        found: np.ndarray = files.read(self.path, lambda file: file["VTKHDF"][where][first : first + count])
         if len(found) < count:
             raise ScreeError(f"{self.path}: has fewer snapshots than when it was opened; refresh() the run")
         return found

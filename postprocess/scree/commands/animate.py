@@ -4,7 +4,7 @@ import argparse
 import pathlib
 
 from scree.cli import add_folder
-from scree.commands.look import add_frames, add_look, chosen_look, positive
+from scree.commands.look import add_frames, add_look, chosen_look, count
 from scree.errors import ScreeError
 from scree.run import open_run
 
@@ -16,7 +16,7 @@ def describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--from", type=float, dest="begin", default=-float("inf"), metavar="TIME",
                         help="first snapshot [s]")
     parser.add_argument("--to", type=float, dest="end", default=float("inf"), metavar="TIME", help="last snapshot [s]")
-    parser.add_argument("--rate", type=positive, default=25, metavar="FRAMES", help="frames per second (default 25)")
+    parser.add_argument("--rate", type=count, default=25, metavar="FRAMES", help="frames per second (default 25)")
     add_frames(parser)
     add_look(parser)
 
