@@ -8,6 +8,7 @@
     run.snapshots.at(0.5).to_pyvista()       # all of an instant, for pyvista
 """
 
+from scree import sweep
 from scree.errors import ScreeError
 from scree.history import History
 from scree.quantity import Quantity
@@ -15,4 +16,4 @@ from scree.run import Run
 from scree.run import open_run as open
 from scree.snapshots import Points, Snapshot, Snapshots
 
-__all__ = ["History", "Points", "Quantity", "Run", "ScreeError", "Snapshot", "Snapshots", "open"]
+__all__ = ["History", "Points", "Quantity", "Run", "ScreeError", "Snapshot", "Snapshots", "open", "sweep"]

@@ -76,6 +76,8 @@ class Panel:
             label = textwrap.fill(line.label, LEGEND)
             dash, color = ("-", line.color) if line.color else (dash, color)
             axes.plot(time, line.values, dash, color=color, linewidth=1.6, label=label)
+        if not shown:
+            axes.set_yticks([])
         if len(shown) > 1:
             axes.legend(fontsize=11, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
         axes.set_ylabel(self.axis, fontsize=12)
@@ -114,7 +116,7 @@ def balance_panel(history: History) -> Panel:
         return Panel(title, "energy missing", [Line(error, "balance error")], 2.2, unit="J")
     share = 100 * largest / exchanged
     title += f", {share:.2g} % of the {EngFormatter('J', places=1)(exchanged)} exchanged"
-    return Panel(title, "share of the\nenergy exchanged [%]", [Line(100 * error / exchanged, "balance error")], 2.2)
+    return Panel(title, "share [%]", [Line(100 * error / exchanged, "balance error")], 2.2)
 
 
 def energy_panels(history: History) -> list[Panel]:

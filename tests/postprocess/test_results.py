@@ -302,6 +302,33 @@ class PageTest(FolderTest):
         self.assertEqual(set(patterns) - met, set())
 
 
+class SweepTest(FolderTest):
+    def test_a_list_of_runs_and_their_table(self):
+        path, study = self.folder / "list", self.folder / "study"
+        deck = DECK.with_name("net_9.toml")
+        count = scree.sweep.write_list(path, deck, {"time.step": [1e-3, np.float64(5e-4)],
+                                                    "space.leaving": ["drift", "remove"]})
+        lines = path.read_text().splitlines()
+        self.assertEqual((count, len(lines)), (4, 4))
+        self.assertEqual(lines[1], f"{deck} --set time.step=0.001 --set space.leaving=remove")
+        path.write_text("# first\n" + path.read_text())  # as jobs/array.sbatch takes it
+        for element in (2, 4):
+            subprocess.run([PROGRAM, "run", *lines[element - 2].split(), "--set", "time.end=0.01", "--output",
+                            study / str(element)], check=True, timeout=LIMIT, stdout=subprocess.DEVNULL)
+        table = scree.sweep.table(path, study, {"steps": lambda run: run.history["step/steps"][-1]})
+        self.assertEqual(list(table.index), [2, 3, 4, 5])
+        self.assertEqual(list(table["status"]), ["done", "not begun", "done", "not begun"])
+        self.assertEqual((table["steps"][2], table["steps"][4], table["time.step"][4]), (10, 20, 5e-4))
+        self.assertTrue(np.isnan(table["steps"][5]))
+
+    def test_words_of_a_list_have_no_blanks(self):
+        self.assertEqual([scree.sweep.word(value) for value in (True, 2, [0.5, 0], "hht")],
+                         ["true", "2", "[0.5,0]", "hht"])
+        for value in ("two words", ""):
+            with self.assertRaisesRegex(scree.ScreeError, "without blanks"):
+                scree.sweep.word(value)
+
+
 class WordsTest(unittest.TestCase):
     def test_columns_have_words(self):
         for name, unit, description, legend in (
