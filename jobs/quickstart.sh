@@ -32,7 +32,7 @@ fi
 animation() { find "$results" -maxdepth 1 -name 'animation.*' | head -n 1; }
 
 # The animation is what is drawn last.
-if ! is_fresh "$(animation)" "$results/run_record.json" postprocess/*.py; then
+if ! is_fresh "$(animation)" "$results/run_record.json" postprocess/scree/*.py postprocess/scree/*/*.py; then
   echo "drawing the energies, the final state and an animation"
   postprocess/draw "$results"
 fi

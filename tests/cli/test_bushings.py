@@ -1,11 +1,14 @@
 """Bushings and dry friction of joints, as the command line shows them. Usage: as test_cli.py"""
 
-import csv
 import json
 import pathlib
+import sys
 import unittest
 
 from test_cli import BAD_INPUT, DONE, CommandLineTest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import results  # noqa: E402
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "input/examples"
 BELT, ENGINE = EXAMPLES / "stick_slip.toml", EXAMPLES / "engine_mount.toml"
@@ -28,9 +31,7 @@ class BushingsTest(CommandLineTest):
         return json.loads((self.folder / output / "run_record.json").read_text())["run"]
 
     def rows(self, output):
-        with open(self.folder / output / "history.csv", newline="") as lines:
-            return [{name.split(" [")[0]: float(value) for name, value in row.items() if value}
-                    for row in csv.DictReader(lines)]
+        return results.rows(self.folder / output)
 
     def test_what_a_deck_must_not_say(self):
         for deck, overrides, text in REFUSED:
@@ -41,7 +42,7 @@ class BushingsTest(CommandLineTest):
 
     def test_a_restart_in_the_middle_of_sticking_goes_on_bit_for_bit(self):
         whole = self.run_deck(BELT, "whole", "--set", "time.end=1.5")
-        self.run_deck(BELT, "part", "--set", "time.end=0.8", "--set", "output.history_csv=true")
+        self.run_deck(BELT, "part", "--set", "time.end=0.8")
         last = self.rows("part")[-1]
         self.assertLess(abs(last["efforts/friction/rate"]), 1e-3)
         self.assertGreater(last["efforts/friction/effort"], 3)
@@ -60,7 +61,7 @@ class BushingsTest(CommandLineTest):
         self.assertIn("joint_frictions", message)
 
     def test_the_block_sticks_and_slips(self):
-        self.run_deck(BELT, "out", "--set", "output.history_csv=true")
+        self.run_deck(BELT, "out")
         rows = self.rows("out")
         efforts = [row["efforts/friction/effort"] for row in rows]
         slips = [row["efforts/friction/effort"] for row in rows if abs(row["efforts/friction/rate"]) > 0.1]
@@ -72,7 +73,7 @@ class BushingsTest(CommandLineTest):
 
     def test_bushings_are_recorded_and_restarted(self):
         """Their forces and the unbalance make the engine's accelerations; the mean of them carries the weight."""
-        self.run_deck(ENGINE, "whole", "--set", "output.history_csv=true")
+        self.run_deck(ENGINE, "whole")
         rows = self.rows("whole")
         self.assertEqual(rows[0]["bushings/rear/fz"], 600)
         self.assertEqual(rows[0]["bushings/left/fz"], 300)
@@ -83,11 +84,10 @@ class BushingsTest(CommandLineTest):
         self.assertAlmostEqual(sum(up) / len(up), 120 * 9.81, delta=25)
         self.assertLess(max(abs(row["bushings/rear/turn_x"]) for row in rows), 0.02)
         self.run_deck(ENGINE, "part", "--set", "time.end=0.9")
-        part = self.run_deck(ENGINE, "part", "--restart", self.folder / "part/checkpoint_end.h5",
-                             "--set", "output.history_csv=true")
+        part = self.run_deck(ENGINE, "part", "--restart", self.folder / "part/checkpoint_end.h5")
         whole = json.loads((self.folder / "whole/run_record.json").read_text())["run"]
         self.assertEqual(part["state_hash"], whole["state_hash"])
-        self.run_deck(ENGINE, "few", "--set", "output.history_csv=true", "--set", "output.history_bushings=1")
+        self.run_deck(ENGINE, "few", "--set", "output.history_bushings=1")
         self.assertNotIn("bushings/right/fz", self.rows("few")[0])
 
 

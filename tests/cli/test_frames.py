@@ -1,12 +1,15 @@
 """Frames, solids and markers as the command line shows them. Usage: as test_cli.py"""
 
-import csv
 import json
 import math
 import pathlib
+import sys
 import unittest
 
 from test_cli import BAD_INPUT, DONE, CommandLineTest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import results  # noqa: E402
 
 BOOM = pathlib.Path(__file__).resolve().parents[2] / "input/examples/boom.toml"
 REFUSED = (
@@ -28,10 +31,8 @@ REFUSED = (
 class FramesTest(CommandLineTest):
     def run_boom(self, output, *words):
         settings = [word for setting in ("time.end=1.0", *words) for word in ("--set", setting)]
-        self.expect(DONE, "run", BOOM, "--output", self.folder / output, *settings, "--set",
-                    "output.history_csv=true")
-        with open(self.folder / output / "history.csv", newline="") as lines:
-            return [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
+        self.expect(DONE, "run", BOOM, "--output", self.folder / output, *settings)
+        return results.rows(self.folder / output)
 
     def test_what_a_deck_must_not_say(self):
         for setting, text in REFUSED:
@@ -72,8 +73,8 @@ class FramesTest(CommandLineTest):
 
         self.run_boom("whole")
         self.run_boom("part", "time.end=0.5")
-        self.expect(DONE, "run", BOOM, "--output", self.folder / "part", "--set", "time.end=1.0", "--set",
-                    "output.history_csv=true", "--restart", self.folder / "part/checkpoint_end.h5")
+        self.expect(DONE, "run", BOOM, "--output", self.folder / "part", "--set", "time.end=1.0",
+                    "--restart", self.folder / "part/checkpoint_end.h5")
         self.assertEqual(state("part"), state("whole"))
 
 

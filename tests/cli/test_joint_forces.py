@@ -1,11 +1,14 @@
 """Motors, springs and limits on joints, and couplers, as the command line shows them. Usage: as test_cli.py"""
 
-import csv
 import json
 import pathlib
+import sys
 import unittest
 
 from test_cli import BAD_INPUT, DONE, CommandLineTest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import results  # noqa: E402
 
 PRESS = pathlib.Path(__file__).resolve().parents[2] / "input/examples/press.toml"
 REFUSED = (
@@ -49,20 +52,15 @@ class JointForcesTest(CommandLineTest):
         self.assertIn("12 coordinates, 11 constraints: 1 degree of freedom", text)
 
     def test_the_press_keeps_its_speed_and_its_books(self):
-        self.press(DONE, "out", "--set", "output.history_csv=true")
-        with open(self.folder / "out/history.csv", newline="") as lines:
-            rows = [{name: float(value) for name, value in row.items() if value} for row in csv.DictReader(lines)]
-        column = next(name for name in rows[0] if name.startswith("efforts/motor/effort"))
-        rate = next(name for name in rows[0] if name.startswith("efforts/motor/rate"))
-        self.assertLessEqual(max(abs(row[column]) for row in rows), 1)
-        late = [row[rate] for row in rows[len(rows) // 2:]]
+        self.press(DONE, "out")
+        rows = results.rows(self.folder / "out")
+        self.assertLessEqual(max(abs(row["efforts/motor/effort"]) for row in rows), 1)
+        late = [row["efforts/motor/rate"] for row in rows[len(rows) // 2:]]
         self.assertAlmostEqual(sum(late) / len(late), -30, delta=2)
-        buffer = next(name for name in rows[0] if name.startswith("efforts/buffer/effort"))
-        self.assertLess(min(row[buffer] for row in rows), -10)
-        self.assertLessEqual(max(row[buffer] for row in rows), 0)
-        work = next(name for name in rows[0] if name.startswith("energy/driver_work"))
-        error = next(name for name in rows[0] if name.startswith("energy/balance_error"))
-        self.assertLess(max(abs(row[error]) for row in rows), 2e-3 * rows[-1][work])
+        buffer = [row["efforts/buffer/effort"] for row in rows]
+        self.assertLess(min(buffer), -10)
+        self.assertLessEqual(max(buffer), 0)
+        self.assertLess(max(abs(row["energy/balance_error"]) for row in rows), 2e-3 * rows[-1]["energy/driver_work"])
 
     def test_a_restart_goes_on_bit_for_bit(self):
         self.press(DONE, "whole", "--set", "time.end=1.2")

@@ -1,12 +1,15 @@
 """Coordinates of joints in space as the command line shows them. Usage: as test_cli.py"""
 
-import csv
 import json
 import math
 import pathlib
+import sys
 import unittest
 
 from test_cli import BAD_INPUT, DONE, CommandLineTest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import results  # noqa: E402
 
 ARM = pathlib.Path(__file__).resolve().parents[2] / "input/examples/swing_arm.toml"
 REFUSED = (
@@ -32,9 +35,7 @@ class SpatialJointsTest(CommandLineTest):
         return json.loads((self.folder / output / "run_record.json").read_text())["run"]
 
     def rows(self, output):
-        with open(self.folder / output / "history.csv", newline="") as lines:
-            return [{name.split(" [")[0]: float(value) for name, value in row.items() if value}
-                    for row in csv.DictReader(lines)]
+        return results.rows(self.folder / output)
 
     def test_what_a_deck_must_not_say(self):
         for overrides, text in REFUSED:
@@ -43,7 +44,7 @@ class SpatialJointsTest(CommandLineTest):
                 self.assertIn(text, self.expect(BAD_INPUT, "check", ARM, *words).stderr)
 
     def test_the_arm_turns_its_wheel_and_keeps_its_books(self):
-        self.arm(DONE, "out", "--set", "output.history_csv=true")
+        self.arm(DONE, "out")
         rows = self.rows("out")
         last = rows[-1]
         shaft, pivot, hub = (last[f"coordinates/{name}/angle"] for name in ("shaft", "pivot", "hub"))
@@ -58,10 +59,9 @@ class SpatialJointsTest(CommandLineTest):
         self.assertLess(max(abs(row["energy/balance_error"]) for row in rows), 1e-3 * last["energy/driver_work"])
 
     def test_a_restart_counts_on(self):
-        words = ("--set", "output.history_csv=true")
-        self.arm(DONE, "whole", *words, "--set", "time.end=1.5")
-        self.arm(DONE, "part", *words, "--set", "time.end=1.0")
-        self.arm(DONE, "part", *words, "--set", "time.end=1.5", "--restart", self.folder / "part/checkpoint_end.h5")
+        self.arm(DONE, "whole", "--set", "time.end=1.5")
+        self.arm(DONE, "part", "--set", "time.end=1.0")
+        self.arm(DONE, "part", "--set", "time.end=1.5", "--restart", self.folder / "part/checkpoint_end.h5")
         self.assertEqual(self.record("part")["state_hash"], self.record("whole")["state_hash"])
         self.assertEqual(self.rows("part")[-1], self.rows("whole")[-1])
 

@@ -6,14 +6,16 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 try:
-    import h5py
-except ImportError:  # snapshots are then not compared
-    h5py = None
+    import results
+except ImportError:  # without the libraries of postprocess/requirements.txt snapshots are not compared
+    results = None
 
 SCREE = os.environ["SCREE"]
 MPIEXEC = os.environ.get("MPIEXEC", "mpirun")
@@ -126,17 +128,14 @@ class RanksTest(unittest.TestCase):
         return {name: [float(row[k]) for row in rows] for k, name in enumerate(names)}
 
     def datasets(self, output, name):
-        """Contents and layout of an HDF5 file, without the times of day that are in it; None without h5py or file."""
+        """Contents and layout of an HDF5 file, without the times of day in it; None without libraries or file."""
         path = self.folder / output / name
-        if h5py is None or not path.exists():
+        if results is None or not path.exists():
             return None
-        contents = {}
 
-        def add(at, item):
-            if isinstance(item, h5py.Dataset):
-                value = item[()] if item.shape is not None else b""
-                contents[at] = (item.dtype, item.shape, item.chunks, item.compression, item.compression_opts,
-                                dict(item.attrs), value if isinstance(value, bytes) else value.tobytes())
-        with h5py.File(path) as file:
-            file.visititems(add)
-        return contents
+        def contents(item):
+            value = item[()] if item.shape is not None else b""
+            return (item.dtype, item.shape, item.chunks, item.compression, item.compression_opts, dict(item.attrs),
+                    value if isinstance(value, bytes) else value.tobytes())
+        return results.files.read(path, lambda file: {at: contents(item)
+                                                      for at, item in results.files.datasets(file).items()})

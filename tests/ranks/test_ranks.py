@@ -4,7 +4,7 @@ Usage: SCREE=path/to/scree MPIEXEC=path/to/mpirun [SCREE_TEST_BACKEND=cuda] pyth
 import math
 import unittest
 
-from mpi_case import DAM, DONE, EXPLICIT, FAILED, HERE, IMPLICIT, INPUT, RanksTest, h5py
+from mpi_case import DAM, DONE, EXPLICIT, FAILED, HERE, IMPLICIT, INPUT, RanksTest, results
 
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
 NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
@@ -146,14 +146,14 @@ class SameBitsTest(RanksTest):
                 self.assertEqual(self.bytes_of(parts, "history.csv"), self.bytes_of(whole, "history.csv"))
                 surfaces = self.datasets(parts, "surfaces.vtkhdf")
                 self.assertEqual(surfaces, self.datasets(whole, "surfaces.vtkhdf"))
-                self.assertEqual(surfaces is not None, h5py is not None and name.startswith("meshes"))
+                self.assertEqual(surfaces is not None, results is not None and name.startswith("meshes"))
                 if surfaces is not None and "works" in name:
                     self.assertIn("VTKHDF/CellData/wear_depth", surfaces)
                 counts = self.record(parts)["counts"]
                 self.assertGreaterEqual(counts["steps"], 1000)
                 self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])
 
-    @unittest.skipIf(h5py is None, "needs h5py")
+    @unittest.skipIf(results is None, "needs postprocess/requirements.txt")
     def test_every_number_of_ranks_writes_the_same_files(self):
         for compression in (0, 3):
             settings = [*EXPLICIT, "integrator.substeps=3", "time.end=0.02", "output.snapshot_interval=0.01",
@@ -188,7 +188,7 @@ class SameBitsTest(RanksTest):
             self.assertGreater(builds[0], 0.4, deck)
             self.assertLess(builds[2], 0.1, deck)
 
-    @unittest.skipIf(h5py is None, "needs h5py")
+    @unittest.skipIf(results is None, "needs postprocess/requirements.txt")
     def test_every_number_of_ranks_writes_the_same_spins(self):
         deck, *settings = [*RUBBING, "time.end=0.04", "output.snapshot_interval=0.01",
                            f"output.fields={RUBBING_FIELDS}"]

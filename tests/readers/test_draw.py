@@ -19,14 +19,14 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "postprocess"))
 
-from mechanism import SHORT, Mechanism, barrels, shortest_tree, zigzags
-from model import GROUND, Model
-from plot_history import history_figure
-from render import Look, Run, make_picture, save_picture, vtk_renders
-from results import read_history
-from scenes import BODY_COLOR, WALL_OPACITY, DiscScene, SphereScene, picture_axes
-from surfaces import sharp_edges
-from walls import cut, rectangle, section, solids
+import scree
+from scree.errors import ScreeError
+from scree.pictures.mechanism import SHORT, Mechanism, barrels, shortest_tree, zigzags
+from scree.pictures.model import GROUND, Model
+from scree.pictures.render import DrawnRun, Look, make_picture, save_picture, vtk_renders
+from scree.pictures.scenes import BODY_COLOR, WALL_OPACITY, DiscScene, SphereScene, picture_axes
+from scree.pictures.surfaces import sharp_edges
+from scree.pictures.walls import cut, rectangle, section, solids
 
 NET, BOX, CRANK, DRUM, EXCAVATOR, SCREW, WHEEL = (pathlib.Path(path).resolve() for path in sys.argv[1:8])
 ORANGE = matplotlib.colors.to_rgb(BODY_COLOR)
@@ -36,6 +36,17 @@ def draw(*words, folder="/", root=ROOT):
     """The program, started in that folder."""
     program = os.path.relpath(root / "postprocess" / "draw", folder)
     return subprocess.run([program, *map(str, words)], cwd=folder, capture_output=True, text=True)
+
+
+def drawn(folder):
+    return DrawnRun(scree.open(folder))
+
+
+def look(run, **chosen):
+    """Fitted to all of the run's snapshots."""
+    found = Look(**chosen)
+    found.fit(run, range(len(run.particles)))
+    return found
 
 
 def pixels(path):
@@ -97,7 +108,7 @@ class ProgramTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as empty:
             for folder in (empty, f"{empty}/missing"):
                 run = draw(folder)
-                self.assertEqual(run.returncode, 1)
+                self.assertEqual(run.returncode, 2)
                 self.assertTrue(run.stderr.startswith("error: "), run.stderr)
                 self.assertNotIn("Traceback", run.stderr)
 
@@ -120,8 +131,8 @@ class ProgramTest(unittest.TestCase):
 class PictureTest(unittest.TestCase):
     def test_the_colour_bar_is_that_of_particles(self):
         for results, particles in ((NET, True), (BOX, True), (CRANK, False)):
-            run = Run(results)
-            picture = make_picture(run, [len(run.particles) - 1])
+            run = drawn(results)
+            picture = make_picture(run, [len(run.particles) - 1], look(run))
             self.assertEqual(picture.bar is not None, particles)
             self.assertEqual(len(picture.figure.axes), 1 + particles)
             self.assertEqual("particle" in picture.caption(0), particles)
@@ -140,16 +151,16 @@ class PictureTest(unittest.TestCase):
         np.testing.assert_array_equal(Model(deck(gravity=[0, 0, 0], space=space)).up, [0, 0, 1])
 
     def test_the_box_is_the_space(self):
-        run = Run(BOX)
+        run = drawn(BOX)
         scene = SphereScene(run, [len(run.particles) - 1], use_vtk=False)
-        self.assertLess(run.particles.rows(len(run.particles) - 1, "Points")[:, 2].min(), 0.1)
+        self.assertLess(run.particles.rows(len(run.particles) - 1, "position")[:, 2].min(), 0.1)
         np.testing.assert_array_equal(scene.box, [[0, 0, 0], [0.2, 0.2, 0.4]])
         self.assertEqual(len(scene.faces()), 3)  # six sides are walls; those in front would hide the particles
         width = np.ptp(scene.project(np.array([[0, 0.2, 0.2], [0.2, 0, 0.2]]))[:, 0])
         self.assertLess(width, 2 * scene.half[0])
 
     def test_all_of_a_swing_is_in_view(self):
-        run = Run(CRANK)
+        run = drawn(CRANK)
         x_min, x_max, y_min, y_max = DiscScene(run, [len(run.particles) - 1], None).view
         self.assertLess(x_min, -0.2)
         self.assertGreater(x_max, 0.86)
@@ -159,38 +170,38 @@ class PictureTest(unittest.TestCase):
 class SurfaceTest(unittest.TestCase):
     def test_a_drum_shows_what_it_holds(self):
         """Against the same picture without the drum, and without the grains."""
-        run = Run(DRUM)
+        run = drawn(DRUM)
         run.surfaces = None
         bare = self.image(run)
-        run = Run(DRUM)
-        drawn = self.image(run)
+        run = drawn(DRUM)
+        full = self.image(run)
         self.shrink_grains(run)
         empty = self.image(run)
 
         def differ(one, other):
             return np.abs(one - other).max(axis=2) > 0.1
-        self.assertGreater(differ(drawn, bare).mean(), 0.1)  # the drum is there
-        self.assertGreater(differ(drawn, empty).mean(), 0.02)  # and what is in it
+        self.assertGreater(differ(full, bare).mean(), 0.1)  # the drum is there
+        self.assertGreater(differ(full, empty).mean(), 0.02)  # and what is in it
 
     def test_a_field_colours_the_triangles_that_have_some(self):
-        plain, run = self.image(Run(DRUM)), Run(DRUM)
+        plain, run = self.image(drawn(DRUM)), drawn(DRUM)
         snapshots = range(len(run.particles))
         run.surfaces.color_by("wear_depth", snapshots)
-        self.assertEqual(run.surfaces.label(), "wear_depth [m]")
+        self.assertEqual(run.surfaces.label(), "wear depth [m]")
         values = [run.surfaces.values(snapshot)["bodies"] for snapshot in snapshots]
         self.assertEqual(values[0].max(), 0)
         self.assertTrue((values[-1] >= values[1]).all())  # it only grows
         self.assertTrue(0 < run.surfaces.limit <= values[-1].max())
         if vtk_renders():
             self.assertGreater((np.abs(self.image(run) - plain).max(axis=2) > 0.1).mean(), 0.1)
-        with self.assertRaises(SystemExit):
+        with self.assertRaises(ScreeError):
             run.surfaces.color_by("speed", snapshots)
 
     def test_an_opaque_drum_hides_what_it_holds(self):
-        run = Run(DRUM)
-        drawn = self.image(run, 1.0)
+        run = drawn(DRUM)
+        full = self.image(run, 1.0)
         self.shrink_grains(run)
-        shown = (np.abs(drawn - self.image(run, 1.0)).max(axis=2) > 0.1).mean()
+        shown = (np.abs(full - self.image(run, 1.0)).max(axis=2) > 0.1).mean()
         self.assertEqual(shown < 1e-3, vtk_renders())  # without VTK there are edges alone
 
     def test_an_opacity_is_a_share_and_a_speed_above_zero(self):
@@ -201,14 +212,14 @@ class SurfaceTest(unittest.TestCase):
                 self.assertIn(option, run.stderr)
 
     def test_the_colour_scale_ends_where_it_is_told_to(self):
-        run = Run(DRUM)
-        self.assertEqual(make_picture(run, [0], look=Look(fastest=0.3)).scene.colors.norm.vmax, 0.3)
+        run = drawn(DRUM)
+        self.assertEqual(make_picture(run, [0], look(run, fastest=0.3)).scene.colors.norm.vmax, 0.3)
 
     @staticmethod
     def image(run, opacity=WALL_OPACITY):
         with tempfile.TemporaryDirectory() as folder:
             path, last = pathlib.Path(folder) / "picture.png", len(run.particles) - 1
-            save_picture(make_picture(run, [last], vtk_renders(), Look(opacity=opacity)), last, path)
+            save_picture(make_picture(run, [last], look(run, opacity=opacity, with_vtk=vtk_renders())), last, path)
             return pixels(path)
 
     @staticmethod
@@ -226,7 +237,7 @@ class SurfaceTest(unittest.TestCase):
 
 class MechanismTest(unittest.TestCase):
     def test_joints_meet_in_every_snapshot(self):
-        run = Run(CRANK)
+        run = drawn(CRANK)
         self.assertEqual({kind: len(found[0]) for kind, found in run.model.connections.items()},
                          {"revolute": 3, "translational": 1})
         mechanism = Mechanism(run.model, run.motion, 0.01)
@@ -243,7 +254,7 @@ class MechanismTest(unittest.TestCase):
             self.assertEqual(len(points["held"]), 2)
 
     def test_springs_end_on_their_bodies(self):
-        run = Run(NET)
+        run = drawn(NET)
         lines, points = Mechanism(run.model, run.motion, 1e-3).draw(len(run.particles) - 1)
         centers = run.motion(len(run.particles) - 1).origins
         self.assertEqual(len(lines["spring"]), 19)
@@ -264,9 +275,8 @@ class MechanismTest(unittest.TestCase):
         springs = [{"bodies": ["ground", "rod"], "points": [[0.0, y], [2.0, y]], "actuator": actuator}
                    for y, actuator in ((0.0, 0.0), (1.0, step), (2.0, {"kind": "constant", "value": 0.0}))]
         model = Model(deck(bodies=bodies, spring_dampers=springs))
-        columns = {"step/time": [0, 1], "bodies/rod/x": [2, 4], "bodies/rod/y": [0, 0], "bodies/rod/z": [0, 0],
+        history = {"step/time": [0, 1], "bodies/rod/x": [2, 4], "bodies/rod/y": [0, 0], "bodies/rod/z": [0, 0],
                    "bodies/rod/angle": [0, 0]}
-        history = {name: (values,) for name, values in columns.items()}
         lines, _ = Mechanism(model, lambda time: model.motion(time, None, 0, history), 0.01).draw(1.0)
         self.assertEqual(len(lines["spring"]), 2)
         np.testing.assert_allclose(lines["rod"], [[[0, 1, 0], [4, 1, 0]]])
@@ -285,7 +295,7 @@ class MechanismTest(unittest.TestCase):
         self.assertFalse(model.motion(0.5, None, 0, {}).known[0])
         values = {"step/time": [0, 1], "bodies/rod/x": [1, 0], "bodies/rod/y": [0, 1], "bodies/rod/z": [0, 0],
                   "bodies/rod/angle": [0, 1]}
-        motion = model.motion(0.5, None, 0, {name: (column,) for name, column in values.items()})
+        motion = model.motion(0.5, None, 0, values)
         self.assertTrue(motion.known.all())
         np.testing.assert_allclose(motion.origins[[0, GROUND]], [[0.5, 0.5, 0], [0, 0, 0]])
         np.testing.assert_allclose(motion.rotations[0, :, 0], [np.cos(0.5), np.sin(0.5), 0], atol=1e-15)
@@ -302,7 +312,7 @@ class MechanismTest(unittest.TestCase):
             values = {"step/time": [0, 1], "bodies/top/x": [0, 0], "bodies/top/y": [0, 0], "bodies/top/z": [2, 2],
                       "bodies/top/e0": [1, 1], "bodies/top/e1": [0, 0], "bodies/top/e2": [0, 0],
                       "bodies/top/e3": [0, 0]}
-            motion = model.motion(0.5, None, 0, {name: (column,) for name, column in values.items()})
+            motion = model.motion(0.5, None, 0, values)
             np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 1], [0, -1, 2]], atol=1e-15)
 
 
@@ -322,7 +332,7 @@ class MechanismTest(unittest.TestCase):
         np.testing.assert_allclose(model.connections["point-on-line"][1][0], [[0, 0, 2.75], [0.75, 0, 0]], atol=1e-15)
         values = {"x": 0, "y": 0.75, "z": 2, "origin_x": 0, "origin_y": 0, "origin_z": 2, "e0": 1, "e1": 0, "e2": 0,
                   "e3": 0} | {f"e{k}": half for k, half in ((0, np.sqrt(0.5)), (3, np.sqrt(0.5)))}
-        history = {f"bodies/rod/{name}": ([value, value],) for name, value in values.items()} | {"step/time": ([0, 1],)}
+        history = {f"bodies/rod/{name}": [value, value] for name, value in values.items()} | {"step/time": [0, 1]}
         motion = model.motion(0.5, None, 0, history)
         np.testing.assert_allclose(motion.places(pairs, local)[0], [[0, 0, 3], [0, 1, 2]], atol=1e-15)
 
@@ -331,7 +341,7 @@ class ExampleTest(unittest.TestCase):
     """The mechanisms among the examples do what their decks say, also before they touch a grain."""
 
     def test_an_excavator_moves_by_its_cylinders(self):
-        run = Run(EXCAVATOR)
+        run = drawn(EXCAVATOR)
         mechanism, last = Mechanism(run.model, run.motion, 0.01), len(run.particles) - 1
         pairs, local, _ = run.model.connections["revolute"]
         self.assertEqual(len(pairs), 6)
@@ -346,13 +356,13 @@ class ExampleTest(unittest.TestCase):
         np.testing.assert_allclose(lengths(last) - lengths(0), [-0.04, 0.0122, -0.0012], atol=0.004)
 
     def test_a_screw_is_turned_by_its_motor(self):
-        history = read_history(SCREW)
-        self.assertAlmostEqual(history["coordinates/bearing/angle_rate"][0][-1], 25, delta=0.1)
-        self.assertTrue((np.abs(history["efforts/motor/effort"][0]) <= 0.5).all())
+        history = scree.open(SCREW).history
+        self.assertAlmostEqual(history["coordinates/bearing/angle_rate"][-1], 25, delta=0.1)
+        self.assertTrue((np.abs(history["efforts/motor/effort"]) <= 0.5).all())
 
     def test_a_wheel_spins_faster_than_it_rolls(self):
-        history = read_history(WHEEL)
-        way, angle = (history[f"coordinates/{name}"][0] for name in ("rails/displacement", "axle/angle"))
+        history = scree.open(WHEEL).history
+        way, angle = (history[f"coordinates/{name}"].values for name in ("rails/displacement", "axle/angle"))
         self.assertAlmostEqual(way[-1], 0.06, places=9)
         np.testing.assert_allclose(0.08 * angle, way, atol=1e-9)
 
@@ -376,17 +386,6 @@ class WallTest(unittest.TestCase):
         np.testing.assert_array_equal((point[0], normal[0]), (1, -1))
         self.assertAlmostEqual(area(np.pad(slope, ((0, 0), (0, 1)))), 2)  # half of the square below it, in the space
         self.assertEqual(len(cut(rectangle([0, 0], [1, 1]), np.array([2.0, 0]), np.array([1.0, 0]))), 0)
-
-
-class HistoryTest(unittest.TestCase):
-    def test_columns_that_stay_zero_are_no_lines(self):
-        figure = history_figure(read_history(CRANK), ["reactions/bearing/fx"])
-        panel = figure.axes[0]
-        labels = [text.get_text() for text in panel.get_legend().get_texts()]
-        self.assertEqual(len(labels), len(panel.lines))
-        self.assertIn("kinetic", labels)
-        self.assertNotIn("elastic contacts", labels)
-        self.assertIn("elastic contacts", panel.get_title(loc="left"))
 
 
 if __name__ == "__main__":

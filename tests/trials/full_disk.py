@@ -17,8 +17,10 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import results  # noqa: E402
 
 DECK = pathlib.Path(__file__).resolve().parents[1] / "ranks" / "dam_break.toml"
 SETTINGS = ("integrator.particles=velocity-verlet", "integrator.substeps=3", "time.end=0.06",
@@ -57,12 +59,12 @@ def state_hash(folder):
     return json.loads((folder / "run_record.json").read_text())["run"]["state_hash"]
 
 
-def datasets(path):
-    contents = {}
-    with h5py.File(path) as file:
-        file.visititems(
-            lambda name, item: contents.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
-    return contents
+def count_snapshots(file, name):
+    steps, points = file["VTKHDF/Steps"], file["VTKHDF/NumberOfPoints"]
+    last = steps["PointOffsets"][-1] + points[steps["PartOffsets"][-1]]
+    require(last == len(file["VTKHDF/Points"]), name, "has other points than its snapshots")
+    require(steps.attrs["NSteps"] == len(steps["Values"]), name, "has another number of snapshots")
+    return len(steps["Values"])
 
 
 def check_beginning(folder, whole):
@@ -71,7 +73,7 @@ def check_beginning(folder, whole):
     for name in SERIES:
         if not (folder / name).exists():
             continue
-        have, all_of_it = datasets(folder / name), datasets(whole / name)
+        have, all_of_it = results.datasets(folder / name), results.datasets(whole / name)
         require(have.keys() == all_of_it.keys(), name, "lacks datasets")
         for dataset, values in have.items():
             expected = all_of_it[dataset][:len(values)]
@@ -80,12 +82,7 @@ def check_beginning(folder, whole):
         if name == "history.h5":
             require(len({len(values) for values in have.values()}) == 1, name, "has columns of different length")
         else:
-            with h5py.File(folder / name) as file:
-                steps = file["VTKHDF/Steps"]
-                last = steps["PointOffsets"][-1] + file["VTKHDF/NumberOfPoints"][steps["PartOffsets"][-1]]
-                require(last == len(file["VTKHDF/Points"]), name, "has other points than its snapshots")
-                require(steps.attrs["NSteps"] == len(steps["Values"]), name, "has another number of snapshots")
-                snapshots = max(snapshots, len(steps["Values"]))
+            snapshots = max(snapshots, results.files.read(folder / name, lambda file: count_snapshots(file, name)))
     for path in folder.glob("*.xdmf"):
         require(path.read_text().endswith("</Xdmf>\n"), path.name, "is cut off")
     return snapshots

@@ -3,7 +3,7 @@
 
     tests/trials/kills.py build/release/scree --trials 100 --seed 1
 
-Wants h5py and numpy (postprocess/requirements.txt). Ends with 1 where a trial went wrong."""
+Wants postprocess/requirements.txt. Ends with 1 where a trial went wrong."""
 
 import os
 import signal

@@ -6,12 +6,13 @@ import os
 import pathlib
 import random
 import subprocess
+import sys
 import tempfile
 import time
 import xml.etree.ElementTree
 
-import h5py
-import numpy
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import results  # noqa: E402
 
 DONE, STOPPED = 0, 5
 LIMIT = 300  # [s] for any one run: past it, the run hangs
@@ -115,10 +116,7 @@ class Trials:
         return json.loads((self.folder / output / "run_record.json").read_text())["run"]
 
     def end_of(self, output):
-        history = {}
-        with h5py.File(self.folder / output / "history.h5") as file:
-            file.visititems(lambda name, item: history.update({name: item[()].tobytes()})
-                            if isinstance(item, h5py.Dataset) else None)
+        history = {name: values.tobytes() for name, values in results.columns(self.folder / output).items()}
         return self.record(output)["state_hash"], history
 
     def complain(self, trial, words):
@@ -133,13 +131,12 @@ class Trials:
         for path in sorted((self.folder / output).glob("*")):
             try:
                 if path.suffix in (".h5", ".vtkhdf"):
-                    with h5py.File(path) as file:
-                        file.visititems(lambda _, item: numpy.asarray(item) if isinstance(item, h5py.Dataset) else None)
+                    results.datasets(path)
                 if path.suffix == ".xdmf":
                     xml.etree.ElementTree.parse(path)
                 if path.suffix == ".json":
                     json.loads(path.read_text())
-            except (OSError, ValueError, RuntimeError, xml.etree.ElementTree.ParseError) as error:
+            except (OSError, ValueError, results.scree.ScreeError, xml.etree.ElementTree.ParseError) as error:
                 self.complain(trial, f"{path.name} cannot be read: {error}")
 
     def go_on(self, trial, way, output):

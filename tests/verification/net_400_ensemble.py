@@ -27,7 +27,8 @@ import sys
 import tempfile
 import tomllib
 
-import h5py
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import results  # noqa: E402
 
 DECK = pathlib.Path(__file__).resolve().parents[2] / "input/paper/net_400.toml"
 QUANTITIES = ("kinetic", "gravitational", "springs", "dissipated", "total")
@@ -98,9 +99,8 @@ def energies(arguments, seed, wrong=None):
         subprocess.run([arguments.scree, "run", str(deck), "--output", f"{folder}/results", "--set",
                         f"time.step={arguments.step}", "--set", f"time.end={end}"],
                        check=True, stdout=subprocess.DEVNULL)
-        with h5py.File(os.path.join(folder, "results/history.h5")) as history:
-            times = history["step/time"][:]
-            column = {name: values[:] for name, values in history["energy"].items()}
+        history = results.columns(f"{folder}/results")
+    times, column = history["step/time"], {name.removeprefix("energy/"): values for name, values in history.items()}
     out = {}
     for time in (time for time in REFERENCE if time <= end):
         row = abs(times - time).argmin()

@@ -14,8 +14,10 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
 import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import results  # noqa: E402
 
 REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "reference/contact"
 
@@ -108,22 +110,12 @@ def output(name, snapshots, history, fields, /, **keys):
 
 def history(folder, name):
     """Columns of a run's history by their path."""
-    columns = {}
-    with h5py.File(folder / name / "history.h5") as file:
-        file.visititems(lambda path, item: columns.__setitem__(path, item[:])
-                        if isinstance(item, h5py.Dataset) else None)
-    return columns
+    return results.columns(folder / name)
 
 
 def snapshots(folder, name):
-    """For each snapshot its time and fields: position and what the deck names, rows in the order of the file."""
-    with h5py.File(folder / name / "particles.vtkhdf") as file:
-        root = file["VTKHDF"]
-        times, starts = root["Steps/Values"][:], root["Steps/PointOffsets"][:]
-        counts, points = root["NumberOfPoints"][:][root["Steps/PartOffsets"][:]], root["Points"]
-        for step, time in enumerate(times):
-            rows = slice(starts[step], starts[step] + counts[step])
-            yield time, {"position": points[rows], **{key: data[rows] for key, data in root["PointData"].items()}}
+    """For each snapshot its time and fields: position and what the deck names, rows in the order of the ids."""
+    return results.snapshots(folder / name)
 
 
 def finished(folder, name):

@@ -5,8 +5,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection
 
-from mechanism import Mechanism
-from walls import section, solids
+from scree.pictures.mechanism import Mechanism
+from scree.pictures.walls import section, solids
+from scree.series import POSITION
 
 BODY_COLOR = "#e66100"
 EDGE_COLOR = "#303030"
@@ -49,7 +50,7 @@ def bounds(series, snapshots, strays):
     """Box around the points of some snapshots, grown by the radius. strays: percentage left out per side."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for snapshot in snapshots:
-        points = series.rows(snapshot, "Points")
+        points = series.rows(snapshot, POSITION)
         if len(points) == 0:
             continue
         reach = series.rows(snapshot, "radius").max()
@@ -208,10 +209,10 @@ class DiscScene:
 
     def draw(self, snapshot):
         particles, bodies = self.run.particles, self.run.bodies
-        place_discs(self.colors, particles.rows(snapshot, "Points")[:, :2], particles.rows(snapshot, "radius"))
+        place_discs(self.colors, particles.rows(snapshot, POSITION)[:, :2], particles.rows(snapshot, "radius"))
         self.colors.set_array(particles.speed(snapshot))
         if bodies:
-            place_discs(self.shapes, bodies.rows(snapshot, "Points")[:, :2], bodies.rows(snapshot, "radius"))
+            place_discs(self.shapes, bodies.rows(snapshot, POSITION)[:, :2], bodies.rows(snapshot, "radius"))
         self.surfaces.draw(snapshot)
         self.mechanism.draw(snapshot)
 
@@ -289,7 +290,7 @@ class SphereScene:
         self.draw_directions(axes)
         mechanism = Mechanism(self.run.model, self.run.motion, SMALL * self.extent)
         if self.use_vtk:
-            from spheres import SphereRenderer
+            from scree.pictures.spheres import SphereRenderer
 
             self.mechanism = mechanism
             pixels = np.round(np.array(self.size()) * 160).astype(int)
@@ -344,10 +345,10 @@ class SphereScene:
 
     def draw(self, snapshot):
         particles, bodies = self.run.particles, self.run.bodies
-        points, radii = particles.rows(snapshot, "Points"), particles.rows(snapshot, "radius")
+        points, radii = particles.rows(snapshot, POSITION), particles.rows(snapshot, "radius")
         colors = self.colors.to_rgba(particles.speed(snapshot))[:, :3]
         if bodies:
-            shapes = bodies.rows(snapshot, "Points")
+            shapes = bodies.rows(snapshot, POSITION)
             points = np.concatenate([points, shapes])
             radii = np.concatenate([radii, bodies.rows(snapshot, "radius")])
             colors = np.concatenate([colors, np.tile(matplotlib.colors.to_rgb(BODY_COLOR), (len(shapes), 1))])

@@ -1,12 +1,9 @@
 """What a run's resolved deck says of the space, the walls and the bodies, and where those are in a snapshot."""
 
-import json
-import pathlib
-import tomllib
-
 import numpy as np
 
-from results import fail
+from scree.history import TIME
+from scree.series import POSITION
 
 GROUND = -1  # indexes the last row of a motion, which is the ground's
 SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
@@ -229,7 +226,7 @@ class Model:
 
     def motion(self, time, bodies, snapshot, history):
         """Where the bodies are in the snapshot of that time [s]: from their shapes, or where they have none, from
-        the history's columns ({name: (values, ...)}). bodies: the shapes' Series, or None."""
+        the history. bodies: the shapes' Series, or None."""
         motion = Motion(self.start.origins.copy(), self.start.rotations.copy(), np.zeros_like(self.start.known))
         motion.known[GROUND] = True
         if bodies is not None:
@@ -240,12 +237,12 @@ class Model:
                 else about_z(bodies.rows(snapshot, "angle")[first])
             )
             offsets = np.array([self.offsets[body][0] for body in index]).reshape(-1, 3)
-            points = bodies.rows(snapshot, "Points")[first]
+            points = bodies.rows(snapshot, POSITION)[first]
             motion.origins[index] = points - turned(offsets, motion.rotations[index])
             motion.known[index] = True
         for body in np.flatnonzero(~motion.known):
             found = {
-                name: np.interp(time, history["step/time"][0], history[column][0])
+                name: np.interp(time, history[TIME], history[column])
                 for name in (*"xyz", "origin_x", "origin_y", "origin_z", "angle", "e0", "e1", "e2", "e3")
                 if (column := f"bodies/{self.names[body]}/{name}") in history
             }
@@ -260,12 +257,3 @@ class Model:
             )
             motion.known[body] = True
         return motion
-
-
-def read_model(directory):
-    path = pathlib.Path(directory) / "run_record.json"
-    try:
-        deck = json.loads(path.read_text())["run"]["resolved_deck"]
-    except (OSError, ValueError, KeyError) as error:
-        fail(f"{path}: cannot read the run's deck there: {error}")
-    return Model(tomllib.loads(deck))

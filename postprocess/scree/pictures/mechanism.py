@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from model import GROUND, JOINT_KINDS, SLIDES, Motion, turned
+from scree.pictures.model import GROUND, JOINT_KINDS, SLIDES, Motion, turned
 
 COILS = 6  # of a spring
 SHORT = 4  # springs shorter than so many units are straight lines

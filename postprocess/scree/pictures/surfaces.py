@@ -2,6 +2,9 @@
 
 import numpy as np
 
+from scree.errors import ScreeError
+from scree.series import POSITION
+
 SHARP = np.cos(np.radians(30))  # edges at which faces turn by more are drawn
 
 
@@ -26,30 +29,37 @@ class Surfaces:
         self._series = series
         self.field = None  # what colours them: a name, and the upper end of the scale
         self.limit = 0.0
-        triangles, body = series.triangles(), series.numbers("body")
+        triangles, body = series.triangles(0), series.rows(0, "body")
         self.bodies = np.unique(body[body >= 0])  # those that have meshes
         self._rows = {"walls": body < 0, "bodies": body >= 0}
         self.triangles = {whose: triangles[rows] for whose, rows in self._rows.items()}
-        points = series.rows(0, "Points")
+        points = series.rows(0, POSITION)
         self._edges = {whose: sharp_edges(points, found) for whose, found in self.triangles.items()}
 
     def color_by(self, field, snapshots):
         """The scale ends where, in one of these snapshots, all but a percent of what is above zero ends."""
+        if not self._series.is_of_triangles(field):
+            raise ScreeError(f"surfaces have no field {field}; the run's output.surface_fields must name it")
         self.field = field
-        values = [self._series.of_triangles(snapshot, field) for snapshot in snapshots]
+        values = [self._all_values(snapshot) for snapshot in snapshots]
         self.limit = max((np.percentile(some, 99) for some in (all_[all_ > 0] for all_ in values) if len(some)),
                          default=1.0)
 
     def label(self):
-        return f"{self.field} [{self._series.unit(self.field)}]"
+        return f"{self.field.replace('_', ' ')} [{self._series.label(self.field)[0]}]"
+
+    def _all_values(self, snapshot):
+        """Of a vector its length."""
+        values = self._series.rows(snapshot, self.field)
+        return values if values.ndim == 1 else np.linalg.norm(values, axis=1)
 
     def values(self, snapshot):
         """Of the field that colours them, by triangle, of walls and of bodies."""
-        values = self._series.of_triangles(snapshot, self.field)
+        values = self._all_values(snapshot)
         return {whose: values[rows] for whose, rows in self._rows.items()}
 
     def points(self, snapshot):
-        return self._series.rows(snapshot, "Points")
+        return self._series.rows(snapshot, POSITION)
 
     def lines(self, snapshot):
         """Edges [n][2][3] of walls and of bodies."""

@@ -1,0 +1,5 @@
+import sys
+
+from scree.cli import main
+
+sys.exit(main())

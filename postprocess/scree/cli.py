@@ -1,0 +1,34 @@
+"""The commands of scree-post."""
+
+from __future__ import annotations
+
+import argparse
+import pathlib
+import sys
+from collections.abc import Sequence
+
+from scree.errors import ScreeError
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Returns the exit code: 0 done, 1 for `compare` where runs differ, 2 for what cannot be done."""
+    from scree.commands import COMMANDS
+
+    parser = argparse.ArgumentParser(prog="scree-post", description="Looks at what a run of Scree left in its folder.")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    for name, (describe, run) in COMMANDS.items():
+        text = (run.__doc__ or "").strip()
+        described = commands.add_parser(name, help=text.splitlines()[0], description=text)
+        describe(described)
+        described.set_defaults(run=run)
+    chosen = parser.parse_args(words)
+    try:
+        return int(chosen.run(chosen))
+    except ScreeError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+def add_folder(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folder", type=pathlib.Path, metavar="RESULT_DIR",
+                        help="results of a run; those before a restart from another folder are joined to them")

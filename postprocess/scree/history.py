@@ -1,0 +1,122 @@
+"""The history of a run: scalars over time."""
+
+from __future__ import annotations
+
+import fnmatch
+import pathlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import h5py
+import numpy as np
+
+from scree import files
+from scree.errors import ScreeError
+from scree.quantity import Quantity
+
+if TYPE_CHECKING:
+    import pandas
+
+TIME = "step/time"
+
+
+@dataclass(frozen=True)
+class HistoryFile:
+    """A history.h5: the labels (unit, description) of its columns by their paths, and its times [rows] [s]."""
+
+    path: pathlib.Path
+    labels: dict[str, tuple[str, str]]
+    times: np.ndarray
+
+    @staticmethod
+    def open(path: pathlib.Path) -> HistoryFile:
+        def take(file: h5py.File) -> HistoryFile:
+            found = files.datasets(file)
+            if TIME not in found:
+                raise ScreeError(f"{path}: has no column {TIME}")
+            rows = min(len(dataset) for dataset in found.values())
+            return HistoryFile(path, {name: files.label(d) for name, d in found.items()}, found[TIME][:rows])
+
+        return files.read(path, take)
+
+
+class History(Mapping[str, Quantity]):
+    """Columns by their paths ("energy/kinetic"), each a Quantity [rows], read when they are asked for.
+
+    Where a run has gone on from a checkpoint into another folder, the rows of both follow each other, and the columns
+    are those that both have.
+    """
+
+    def __init__(self, parts: Sequence[tuple[HistoryFile, int]]) -> None:
+        """parts: files in the order of time, with the number of rows to take of each."""
+        self._parts = list(parts)
+        self._read: dict[str, np.ndarray] = {}
+        last = self._parts[-1][0].labels if self._parts else {}
+        self._labels = {name: label for name, label in last.items()
+                        if all(name in file.labels for file, _ in self._parts)}
+
+    @property
+    def rows(self) -> int:
+        return sum(rows for _, rows in self._parts)
+
+    @property
+    def time(self) -> Quantity:
+        """Of the rows [s]."""
+        return self[TIME]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._labels)
+
+    def __len__(self) -> int:
+        """Number of columns."""
+        return len(self._labels)
+
+    def __getitem__(self, name: str) -> Quantity:
+        if name not in self._labels:
+            near = [path for path in self if name.split("/")[-1] in path][:5]
+            raise KeyError(f"no column {name}" + (f"; there are {', '.join(near)}" if near else ""))
+        return self.read(name)[name]
+
+    def read(self, *names: str) -> dict[str, Quantity]:
+        """Columns of these names, or all, from one look into the files."""
+        self._load(names or self._labels)
+        return {name: Quantity(self._read[name], *self._labels[name]) for name in names or self._labels}
+
+    def _load(self, names: Iterable[str]) -> None:
+        wanted = [name for name in dict.fromkeys(names) if name not in self._read]
+        if not wanted:
+            return
+        values: dict[str, list[np.ndarray]] = {name: [] for name in wanted}
+        for file, rows in self._parts:
+
+            def take(opened: h5py.File, count: int = rows) -> list[np.ndarray]:
+                return [opened[name][:count] for name in wanted]
+
+            for name, column in zip(wanted, files.read(file.path, take)):
+                if len(column) < rows:
+                    raise ScreeError(f"{file.path}: has fewer rows than when it was opened; refresh() the run")
+                values[name].append(column)
+        self._read.update({name: np.concatenate(columns) for name, columns in values.items()})
+
+    def names(self, *patterns: str) -> list[str]:
+        """Columns whose paths a pattern fits ("contacts/*/fx", or a name); throws ScreeError where none does."""
+        found: list[str] = []
+        for pattern in patterns:
+            fitting = fnmatch.filter(self, pattern)
+            if not fitting:
+                raise ScreeError(f"no column {pattern}; there are: {', '.join(self) or 'none'}")
+            found += [name for name in fitting if name not in found]
+        return found
+
+    def to_dataframe(self, *patterns: str) -> pandas.DataFrame:
+        """A table of the columns that the patterns name (all without one), by time [s]. Its attrs["units"] and
+        attrs["descriptions"] have those of the columns, by name."""
+        import pandas
+
+        found = self.read(TIME, *(self.names(*patterns) if patterns else self))
+        index = pandas.Index(found.pop(TIME).values, name="time [s]")
+        frame = pandas.DataFrame({name: column.values for name, column in found.items()}, index=index)
+        frame.attrs["units"] = {name: column.unit for name, column in found.items()}
+        frame.attrs["descriptions"] = {name: column.description for name, column in found.items()}
+        return frame

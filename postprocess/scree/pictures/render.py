@@ -1,0 +1,182 @@
+"""Pictures of a run at its snapshots, and animations of them, without a display."""
+
+from __future__ import annotations
+
+import pathlib
+import subprocess
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.animation
+import matplotlib.pyplot as plt
+import numpy as np
+
+from scree.errors import ScreeError
+from scree.pictures.model import Model, Motion
+from scree.pictures.scenes import WALL_OPACITY, DiscScene, SphereScene
+from scree.pictures.surfaces import Surfaces
+from scree.quantity import Quantity
+from scree.run import Run
+from scree.series import Series
+
+COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
+FRAMES_PER_SECOND = 25
+
+
+def vtk_renders() -> bool:
+    """Whether VTK can draw here; tried in another process: it crashes where it finds no OpenGL library."""
+    probe = pathlib.Path(__file__).with_name("spheres.py")
+    if subprocess.run([sys.executable, probe], capture_output=True).returncode == 0:
+        return True
+    print("VTK cannot render here (is libegl1 installed?): spheres are drawn as shaded discs", file=sys.stderr)
+    return False
+
+
+def chosen_frames(count: int, limit: int) -> list[int]:
+    """At most `limit` snapshots, evenly spread, the first and the last among them."""
+    return [int(k) for k in np.unique(np.linspace(0, count - 1, min(count, limit)).round())]
+
+
+class DrawnRun:
+    """What pictures show of a run."""
+
+    def __init__(self, run: Run) -> None:
+        self.model = Model(run.deck)
+        particles = run.series("particles")
+        if particles is None:
+            raise ScreeError(f"{run.folder}: holds no snapshots")
+        self.particles = particles
+        self.bodies = run.series("bodies")
+        surfaces = run.series("surfaces")
+        self.surfaces = Surfaces(surfaces) if surfaces else None
+        bare = any(len(offsets) == 0 for offsets in self.model.offsets)
+        self.history: Mapping[str, Quantity] = run.history if bare else {}
+
+    def motion(self, snapshot: int) -> Motion:
+        found: Motion = self.model.motion(self.particles.times[snapshot], self.bodies, snapshot, self.history)
+        return found
+
+    def unseen(self) -> int:
+        """How many bodies no result tells the place of."""
+        seen = self.motion(len(self.particles) - 1).known
+        if self.surfaces:
+            seen[self.surfaces.bodies] = True
+        return int((~seen).sum())
+
+
+def speed_limit(particles: Series, snapshots: Iterable[int]) -> float:
+    """Upper end of the colour scale [m/s]: the fastest particle but for the last percent, rounded up."""
+    speeds = [np.percentile(s, 99) for s in (particles.speed(i) for i in snapshots) if len(s)]
+    largest = max(speeds, default=0.0)
+    if largest <= 0:
+        return 1.0
+    unit = 10.0 ** np.floor(np.log10(largest))
+    return float(
+        next(step * unit for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if step * unit >= largest)
+    )
+
+
+class Picture:
+    """One figure whose scene changes from snapshot to snapshot."""
+
+    def __init__(self, scene: DiscScene | SphereScene, run: DrawnRun, snapshots: Sequence[int], fastest: float) -> None:
+        self.scene, self.run = scene, run
+        width, height = scene.size()
+        self.figure, axes = plt.subplots(figsize=(width + 1.6, height + 1.1), dpi=120, layout="constrained")
+        scene.set_up(axes, COLOR_MAP, fastest)
+        self.bar = None
+        if any(len(run.particles.rows(snapshot, "radius")) for snapshot in snapshots):
+            self.bar = self.figure.colorbar(scene.colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
+            self.bar.set_label("particle speed [m/s]", fontsize=13)
+            self.bar.ax.tick_params(labelsize=11)
+        if isinstance(scene, SphereScene) and run.surfaces and run.surfaces.field:
+            bar = self.figure.colorbar(scene.surface_colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
+            bar.set_label(run.surfaces.label(), fontsize=13)
+            bar.ax.tick_params(labelsize=11)
+        self.title = axes.set_title(" ", fontsize=14, loc="left")
+        axes.tick_params(labelsize=11)
+
+    def caption(self, snapshot: int) -> str:
+        parts = [f"t = {self.run.particles.times[snapshot]:.4g} s"]
+        bodies = len(self.run.model.names)
+        if self.bar:
+            parts.append(counted(len(self.run.particles.rows(snapshot, "radius")), "particle", "particles"))
+        if bodies:
+            parts.append(counted(bodies, "body", "bodies") + " (orange)")
+        return f"{self.run.model.title}\n{', '.join(parts)}"
+
+    def draw(self, snapshot: int) -> None:
+        self.scene.draw(snapshot)
+        self.title.set_text(self.caption(snapshot))
+        if self.figure.get_layout_engine() is not None:
+            self.figure.canvas.draw()
+            self.figure.set_layout_engine("none")  # laid out once, so that frames are quick and nothing jumps
+
+
+def counted(count: int, one: str, many: str) -> str:
+    return f"{count:,} {one if count == 1 else many}"
+
+
+@dataclass
+class Look:
+    """What a user may choose of pictures."""
+
+    view: Sequence[float] | None = None  # part of the plane, of runs in it [m]
+    opacity: float = WALL_OPACITY  # of meshes on bodies
+    fastest: float | None = None  # upper end of the colour scale [m/s]
+    surfaces: str | None = None  # field by which meshes are coloured
+    with_vtk: bool = True  # spheres are drawn by VTK, where it can
+
+    def fit(self, drawn: DrawnRun, snapshots: Iterable[int]) -> None:
+        """Makes ready for pictures of this run at these snapshots. Throws ScreeError where it cannot look like this."""
+        if self.view and not drawn.model.planar:
+            raise ScreeError("a view is for runs in the plane")
+        self.with_vtk = self.with_vtk and not drawn.model.planar and vtk_renders()
+        if self.surfaces:
+            if not self.with_vtk or not drawn.surfaces:
+                raise ScreeError("surfaces are coloured in runs in space with meshes, drawn by VTK")
+            drawn.surfaces.color_by(self.surfaces, snapshots)
+
+
+def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look) -> Picture:
+    """A picture that fits all of these snapshots. look: fitted."""
+    scene = (DiscScene(drawn, snapshots, look.view) if drawn.model.planar else
+             SphereScene(drawn, snapshots, look.with_vtk, look.opacity))
+    return Picture(scene, drawn, snapshots, look.fastest or speed_limit(drawn.particles, snapshots))
+
+
+def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
+    picture.draw(snapshot)
+    picture.figure.savefig(path)
+    plt.close(picture.figure)
+
+
+def animation_writer(format: str, frames_per_second: int) -> matplotlib.animation.AbstractMovieWriter:
+    """format: "mp4" or "gif"."""
+    if format == "gif":
+        return matplotlib.animation.PillowWriter(fps=frames_per_second)
+    if not has_ffmpeg():
+        raise ScreeError("an mp4 needs the program ffmpeg; make a gif instead")
+    # Players want even numbers of pixels and this pixel format.
+    options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "20"]
+    return matplotlib.animation.FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=options)
+
+
+def has_ffmpeg() -> bool:
+    return matplotlib.animation.FFMpegWriter.isAvailable()
+
+
+def save_animation(picture: Picture, snapshots: Sequence[int], path: pathlib.Path,
+                   frames_per_second: int = FRAMES_PER_SECOND) -> None:
+    """The path ends in .mp4 or .gif."""
+    writer = animation_writer(path.suffix[1:], frames_per_second)
+    with writer.saving(picture.figure, path, dpi=picture.figure.dpi):
+        for snapshot in snapshots:
+            picture.draw(snapshot)
+            writer.grab_frame()
+    plt.close(picture.figure)

@@ -1,0 +1,159 @@
+"""A run's energies and their balance over time, and other columns of its history."""
+
+from __future__ import annotations
+
+import itertools
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import EngFormatter
+
+from scree.columns import panels
+from scree.errors import ScreeError
+from scree.history import TIME, History
+
+# Okabe and Ito's palette, told apart by the colour-blind; lines beyond eight repeat it dashed.
+COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"]
+WIDTH = 11  # of a figure [inch]
+LEGEND = 34  # characters of a legend's line
+
+# Columns of the group energy: legend and colour, the same in every plot.
+STORED = {
+    "kinetic": ("kinetic", COLORS[0]),
+    "gravitational": ("gravitational, above its lowest", COLORS[2]),
+    "elastic_force_elements": ("elastic, in springs and other force elements", COLORS[3]),
+    "elastic_contacts": ("elastic, in contacts", COLORS[4]),
+    "total": ("all of these together", COLORS[6]),
+}
+PASSED = {
+    "dissipated_contacts": ("dissipated in contacts", COLORS[4]),
+    "dissipated_force_elements": ("dissipated in dampers and other force elements", COLORS[3]),
+    "dissipated_integrator": ("taken out by the time integration", COLORS[5]),
+    "driver_work": ("put in by drivers, motors and walls", COLORS[1]),
+    "carried_out": ("carried out by particles that left", COLORS[7]),
+}
+
+
+@dataclass
+class Line:
+    values: np.ndarray
+    label: str
+    color: str | None = None  # the next one of the palette
+
+
+@dataclass
+class Panel:
+    """One plot over time: what it says, its axis, its lines, and its height [inch]."""
+
+    title: str
+    axis: str
+    lines: list[Line]
+    height: float = 3.0
+    unit: str = ""  # of ticks with a prefix; none: plain numbers
+    notes: list[str] = field(default_factory=list)
+
+    def draw(self, time: np.ndarray, axes: Axes) -> None:
+        """Lines that are zero throughout become a note."""
+        zero = [line.label for line in self.lines if not np.any(line.values)]
+        shown = [line for line in self.lines if line.label not in zero]
+        notes = self.notes + [f"Zero throughout: {'; '.join(zero)}."] * bool(zero)
+        axes.set_title(self.title, fontsize=13, loc="left", pad=8 + 14 * sum(map(len, self._wrapped(notes))))
+        for row, text in enumerate(reversed(sum(self._wrapped(notes), []))):
+            axes.annotate(text, (0, 1), (0, 5 + 14 * row), xycoords="axes fraction", textcoords="offset points",
+                          fontsize=10, color="#505050")
+        styles = itertools.cycle(itertools.product(["-", "--", ":", "-."], COLORS))
+        for line, (dash, color) in zip(shown, styles):
+            label = textwrap.fill(line.label, LEGEND)
+            dash, color = ("-", line.color) if line.color else (dash, color)
+            axes.plot(time, line.values, dash, color=color, linewidth=1.6, label=label)
+        if not shown:
+            axes.set_yticks([])
+        if len(shown) > 1:
+            axes.legend(fontsize=11, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
+        axes.set_ylabel(self.axis, fontsize=12)
+        if self.unit:
+            axes.yaxis.set_major_formatter(EngFormatter(self.unit))
+        axes.yaxis.get_offset_text().set_horizontalalignment("right")  # beside the notes
+        axes.tick_params(labelsize=11)
+        axes.grid(color="#dddddd", linewidth=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.margins(x=0.01)
+
+    @staticmethod
+    def _wrapped(notes: Sequence[str]) -> list[list[str]]:
+        return [textwrap.wrap(note, 120) for note in notes]
+
+
+def energy_lines(history: History, entries: Mapping[str, tuple[str, str]]) -> list[Line]:
+    """Gravitational energy, whose zero means nothing, is counted from its lowest value, and the total with it."""
+    found = []
+    gravity = history.get("energy/gravitational")
+    lowest = np.nanmin(gravity.values) if gravity is not None and len(gravity) else 0.0
+    for name, (label, color) in entries.items():
+        if f"energy/{name}" in history:
+            values = history[f"energy/{name}"].values
+            found.append(Line(values - lowest if name in ("gravitational", "total") else values, label, color))
+    return found
+
+
+def balance_panel(history: History) -> Panel:
+    """The balance error over the largest energy exchanged: what the ledger misses of what has moved."""
+    error = history["energy/balance_error"].values
+    exchanged = np.nanmax(history["energy/exchanged"].values, initial=0.0)
+    largest = np.nanmax(np.abs(error), initial=0.0)
+    title = f"Energy that is not accounted for: at most {EngFormatter('J', places=2)(largest)}"
+    if exchanged <= 0:
+        return Panel(title, "energy missing", [Line(error, "balance error")], 2.2, unit="J")
+    share = 100 * largest / exchanged
+    title += f", {share:.2g} % of the {EngFormatter('J', places=1)(exchanged)} exchanged"
+    return Panel(title, "share [%]", [Line(100 * error / exchanged, "balance error")], 2.2)
+
+
+def energy_panels(history: History) -> list[Panel]:
+    """None where the history has no energies."""
+    found = []
+    stored, passed = energy_lines(history, STORED), energy_lines(history, PASSED)
+    if stored:
+        found.append(Panel("Energy stored", "energy", stored, 4.0, unit="J"))
+    if passed:
+        found.append(Panel("Energy put in and taken out since the start", "energy", passed, 3.0, unit="J"))
+    if "energy/balance_error" in history and "energy/exchanged" in history:
+        found.append(balance_panel(history))
+    return found
+
+
+def column_panels(history: History, names: Sequence[str]) -> list[Panel]:
+    """A panel for each group and unit."""
+    found = []
+    for title, axis, legends in panels(history, names):
+        found.append(Panel(title, axis, [Line(history[name].values, label) for name, label in legends.items()]))
+    return found
+
+
+def history_figure(history: History, title: str, columns: Sequence[str] = (), energies: bool = True) -> Figure:
+    """columns: patterns of names, beside the energies or in their place. Throws ScreeError where there is nothing to
+    plot."""
+    shown = energy_panels(history) if energies else []
+    shown += column_panels(history, history.names(*columns))
+    if not shown or history.rows == 0:
+        raise ScreeError("the history has no energies; name other columns")
+    heights = [panel.height for panel in shown]
+    figure, rows = plt.subplots(len(shown), 1, figsize=(WIDTH, sum(heights) + 0.9), height_ratios=heights, sharex=True,
+                                squeeze=False, layout=ConstrainedLayoutEngine(hspace=0.04), dpi=120)
+    if title:
+        figure.suptitle(title, fontsize=15, x=0.01, ha="left")
+    for panel, axes in zip(shown, rows[:, 0]):
+        panel.draw(history[TIME].values, axes)
+    rows[-1, 0].set_xlabel("time [s]", fontsize=12)
+    figure.align_ylabels()
+    return figure

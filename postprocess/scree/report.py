@@ -1,0 +1,138 @@
+"""One HTML page of a run, with all that it shows in it."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from typing import Any
+
+import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
+
+from scree.errors import ScreeError
+from scree.pictures.render import DrawnRun, Look, make_picture
+from scree.plots import column_panels, energy_panels, history_figure
+from scree.run import Run
+
+STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; color: #202020; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
+h1 { margin-bottom: 0 } h2 { margin-top: 2.5rem; border-bottom: 1px solid #dddddd }
+table { border-collapse: collapse } td, th { padding: 0.15rem 1.5rem 0.15rem 0; text-align: left; vertical-align: top }
+th { font-weight: normal; color: #606060 } img { max-width: 100% }
+pre { background: #f6f6f6; padding: 1rem; overflow: auto }
+.status { color: #606060 } .warning { background: #fff3d6; padding: 0.3rem 1rem; margin: 0.4rem 0 }
+.bar { background: #0072b2; height: 0.8rem; min-width: 1px }
+"""
+FEWEST_STAGES = 0.005  # share of the time from which on a stage has a row
+STEPS = ("step/contacts", "step/length")  # columns that say how the run went
+
+
+def escaped(value: object) -> str:
+    return html.escape(str(value))
+
+
+def image(figure: Figure, text: str) -> str:
+    data = io.BytesIO()
+    figure.savefig(data, format="png")
+    plt.close(figure)
+    return f'<img alt="{escaped(text)}" src="data:image/png;base64,{base64.b64encode(data.getvalue()).decode()}">'
+
+
+def table(rows: list[tuple[str, str]]) -> str:
+    """Values are HTML."""
+    return "<table>" + "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows) + "</table>"
+
+
+def duration(seconds: float) -> str:
+    if seconds < 120:
+        return f"{seconds:.3g} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
+    run, build, cost, counts = record["run"], record["build"], record["cost"], record["counts"]
+    steps, particles, loop = counts["steps"], counts["particles"], float(cost["loop_seconds"])
+    pace = f", {steps * particles / loop:.3g} particle-steps per second" if loop > 0 and particles and steps else ""
+    rejected = counts["rejected_error"] + counts["rejected_newton"]
+    rows = [
+        ("simulated", f"{record['measures']['simulated_time']:.6g} s in {steps:,} steps, {rejected:,} more rejected"),
+        ("model", f"{particles:,} particles, {counts['bodies']:,} bodies, {counts['left']:,} particles have left"),
+        ("took", f"{duration(cost['wall_seconds'])} on the wall{pace}; {cost['peak_memory_kib'] / 1024:,.0f} MiB"),
+        ("on", f"{run['ranks']} {'rank' if run['ranks'] == 1 else 'ranks'}, {escaped(run['backend'])}, "
+               f"{escaped(record['host']['name'])} ({escaped(record['host']['processor'])})"),
+        ("program", f"Scree {escaped(build['version'])}, commit {escaped(build['commit'])}"),
+        ("started, ended", f"{escaped(run['started'])}, {escaped(run['ended'])}"),
+        ("state hash", f"<code>{escaped(run['state_hash'])}</code>"),
+        ("command", f"<code>{escaped(run['command_line'])}</code>"),
+    ]
+    if run["restarted_from"]:
+        rows.append(("went on from", escaped(run["restarted_from"])))
+    rows += [("with changes", escaped(change)) for change in run["changes"]]
+    return rows
+
+
+def stages(record: dict[str, Any]) -> str:
+    """Bars of where the time went, the longest first."""
+    total = sum(float(stage["seconds"]) for stage in record["stages"])
+    if total <= 0:
+        return ""
+    rows = ""
+    for stage in sorted(record["stages"], key=lambda stage: -float(stage["seconds"])):
+        share = float(stage["seconds"]) / total
+        if share >= FEWEST_STAGES:
+            name, seconds = escaped(stage["stage"].replace("_", " ")), duration(float(stage["seconds"]))
+            rows += f"<tr><th>{name}</th><td>{seconds}</td><td>{100 * share:.1f} %</td><td style=\"width: 20rem\">" \
+                    f'<div class="bar" style="width: {100 * share:.1f}%"></div></td></tr>'
+    return f"<h2>Where the time went</h2><table>{rows}</table>"
+
+
+def pictures(run: Run, look: Look) -> str:
+    if not len(run.snapshots):
+        return "<p>The run has no snapshots.</p>"
+    drawn = DrawnRun(run)
+    numbers = sorted({0, len(run.snapshots) - 1})
+    look.fit(drawn, numbers)
+    picture = make_picture(drawn, numbers, look)
+    picture.draw(numbers[-1])
+    last = image(picture.figure, f"the run at t = {run.snapshots[-1].time:g} s")
+    return f"<h2>The last state</h2>{last}"
+
+
+def plots(run: Run) -> str:
+    found = ""
+    if energy_panels(run.history):
+        found += "<h2>Energy</h2>" + image(history_figure(run.history, ""), "energies over time")
+    steps = [name for name in STEPS if name in run.history]
+    if steps and column_panels(run.history, steps):
+        found += "<h2>Contacts and steps</h2>" + image(history_figure(run.history, "", steps, energies=False),
+                                                       "contacts and length of the steps over time")
+    return found
+
+
+def warnings(run: Run) -> str:
+    if not run.warnings:
+        return "<p>No warnings.</p>" if run.record else ""
+    return "".join(f'<p class="warning">{escaped(warning)}</p>' for warning in run.warnings)
+
+
+def deck(run: Run) -> str:
+    """As the run resolved it, while there is a record."""
+    if run.record is None:
+        return ""
+    return "<h2>Deck</h2><details><summary>with every default</summary>" \
+           f"<pre>{escaped(run.record['run']['resolved_deck'])}</pre></details>"
+
+
+def page(run: Run, look: Look) -> str:
+    """HTML. Throws ScreeError where the run has left neither snapshots nor history."""
+    if not len(run.snapshots) and not run.history.rows:
+        raise ScreeError(f"{run.folder}: has neither history nor snapshots yet")
+    head = f"<h1>{escaped(run.title)}</h1><p class=\"status\">{escaped(run.folder)}: {escaped(run.status)}</p>"
+    summary = table(facts(run.record)) if run.record else ""
+    history = plots(run) if run.history.rows else ""
+    timing = stages(run.record) if run.record else ""
+    body = head + warnings(run) + summary + pictures(run, look) + history + timing + deck(run)
+    return f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escaped(run.title)}</title>' \
+           f"<style>{STYLE}</style></head><body>{body}</body></html>\n"

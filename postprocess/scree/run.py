@@ -1,0 +1,137 @@
+"""A run: what it left, or has written so far, in its folders."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from scree.errors import ScreeError
+from scree.history import History, HistoryFile
+from scree.record import came_from, is_going_on, read_deck, read_record
+from scree.series import Series, SeriesFile
+from scree.snapshots import KINDS, Snapshots
+
+if TYPE_CHECKING:
+    import pandas
+
+Folder = str | os.PathLike[str]
+
+
+class Part:
+    """What one folder holds at this moment."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        history = folder / "history.h5"
+        self.history = HistoryFile.open(history) if history.exists() else None
+        paths = {kind: folder / f"{kind}.vtkhdf" for kind in KINDS}
+        self.series = {kind: SeriesFile.open(path) for kind, path in paths.items() if path.exists()}
+        # The files of one snapshot appear one after the other.
+        self.snapshots = min((len(file.times) for file in self.series.values()), default=0)
+
+    @property
+    def start(self) -> float:
+        """Time of what is first in it [s]; infinite where there is nothing."""
+        times = [self.history.times] if self.history else []
+        times += [file.times for file in self.series.values()]
+        return min((float(found[0]) for found in times if len(found)), default=np.inf)
+
+
+def rows_before(times: np.ndarray, limit: float) -> int:
+    return int(np.searchsorted(times, limit, side="left"))
+
+
+class Run:
+    """Made by scree.open(). History and snapshots are those that there were then, or at the last refresh()."""
+
+    def __init__(self, folders: Sequence[pathlib.Path]) -> None:
+        """folders: in the order of time; the last one is that of the run itself."""
+        self.folders = list(folders)
+        self.refresh()
+
+    @property
+    def folder(self) -> pathlib.Path:
+        return self.folders[-1]
+
+    def refresh(self) -> None:
+        """Takes up what the run has written since."""
+        self.__dict__.pop("deck", None)
+        self.record: dict[str, Any] | None = read_record(self.folder)
+        self.is_going_on = is_going_on(self.folder)
+        parts = [Part(folder) for folder in self.folders]
+        # A later folder's rows take the place of an earlier one's of the same time and after.
+        limits = [min((later.start for later in parts[k + 1 :]), default=np.inf) for k in range(len(parts))]
+        histories = [(part.history, rows_before(part.history.times, limit))
+                     for part, limit in zip(parts, limits) if part.history]
+        self.history = History(histories)
+        with_snapshots = [(part, limit) for part, limit in zip(parts, limits) if part.snapshots]
+        self._series = {
+            kind: Series([(part.series[kind], rows_before(part.series[kind].times[: part.snapshots], limit))
+                          for part, limit in with_snapshots])
+            for kind in KINDS
+            if with_snapshots and all(kind in part.series for part, _ in with_snapshots)
+        }
+        self.snapshots = Snapshots(self._series)
+
+    def series(self, kind: str) -> Series | None:
+        """Snapshots of "particles", "bodies" or "surfaces"; None where the run has none of these."""
+        return self._series.get(kind)
+
+    @cached_property
+    def deck(self) -> dict[str, Any]:
+        """The resolved deck, with every default. Throws ScreeError while a run has written none."""
+        return read_deck(self.folder, self.record)
+
+    @property
+    def title(self) -> str:
+        """The deck's, or the folder's name."""
+        return next((found.title for found in self._series.values() if found.title), "") or self.folder.name
+
+    @property
+    def status(self) -> str:
+        """"done", why it ended, or that it goes on."""
+        if self.is_going_on:
+            return "going on"
+        return str(self.record["run"]["status"]) if self.record else "ended without a record: killed?"
+
+    @property
+    def warnings(self) -> list[str]:
+        """Of the record."""
+        return list(self.record["warnings"]) if self.record else []
+
+    @property
+    def body_names(self) -> list[str]:
+        """In the order in which fields count them."""
+        found = self._series.get("bodies") or self._series.get("surfaces")
+        return found.names if found else []
+
+    def to_dataframe(self, *patterns: str) -> pandas.DataFrame:
+        """The history's."""
+        return self.history.to_dataframe(*patterns)
+
+    def __repr__(self) -> str:
+        return (f"<run {self.folder}, {self.status}: {self.history.rows} rows of {len(self.history)} columns, "
+                f"{len(self.snapshots)} snapshots>")
+
+
+def open_run(folder: Folder, *later: Folder, earlier: bool = True) -> Run:
+    """The run in a folder. Where it went on from a checkpoint in another one, what was written there up to then comes
+    first; earlier=False leaves that out. Several folders, in the order of time, are joined as they are named.
+
+    Throws ScreeError where there is no such folder or nothing of a run in it, or where the earlier one is not found.
+    """
+    folders = [pathlib.Path(path).resolve() for path in (folder, *later)]
+    for path in folders:
+        if not path.is_dir():
+            raise ScreeError(f"{path}: no such folder")
+    if earlier and not later:
+        while (before := came_from(folders[0], read_record(folders[0]))) and before not in folders:
+            folders.insert(0, before)
+    run = Run(folders)
+    if not (run.history or len(run.snapshots) or run.record or run.is_going_on):
+        raise ScreeError(f"{run.folder}: holds no results of a run")
+    return run

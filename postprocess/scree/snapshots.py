@@ -1,0 +1,166 @@
+"""What a run looked like at its snapshots' times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, overload
+
+import numpy as np
+
+from scree.errors import ScreeError
+from scree.quantity import Quantity
+from scree.series import POSITION, Series
+
+if TYPE_CHECKING:
+    import pandas
+    import pyvista
+
+KINDS = ("particles", "bodies", "surfaces")
+COMPONENTS = {3: "xyz", 4: "wxyz", 9: ("xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz")}
+
+
+class Points(Mapping[str, Quantity]):
+    """The particles, the bodies' shapes or the triangles of one snapshot: fields by name, each read when it is asked
+    for, with "position" [points][3] [m] among them. Rows of particles are in the order of global_id."""
+
+    def __init__(self, series: Series, snapshot: int) -> None:
+        self._series, self._snapshot = series, snapshot
+        self._read: dict[str, Quantity] = {}
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._series.fields(self._snapshot))
+
+    def __len__(self) -> int:
+        """Number of fields."""
+        return len(self._series.fields(self._snapshot))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._series.fields(self._snapshot)
+
+    def __getitem__(self, name: str) -> Quantity:
+        if name not in self:
+            raise KeyError(f"no field {name}; there are {', '.join(self)}")
+        if name not in self._read:
+            self._read[name] = self._series.quantity(self._snapshot, name)
+        return self._read[name]
+
+    @property
+    def count(self) -> int:
+        """Of points."""
+        return self._series.count(self._snapshot)
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """Of surfaces: rows of position at the triangles' corners [triangles][3]; of others none."""
+        return self._series.triangles(self._snapshot)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A row per particle or shape, of surfaces per triangle; a column per field, a field of several numbers as
+        "velocity_x", ... Units by column in attrs["units"]."""
+        import pandas
+
+        of_triangles = len(self.triangles) > 0
+        columns, units = {}, {}
+        for name, field in self.items():
+            if self._series.is_of_triangles(name) != of_triangles:
+                continue
+            for column, values in components(name, field.values).items():
+                columns[column], units[column] = values, field.unit
+        frame = pandas.DataFrame(columns)
+        frame.attrs["units"] = units
+        return frame
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Points as vertices or, of surfaces, triangles, with all fields; the snapshot's time as field data "time".
+        Particles become spheres of true size by `.glyph(scale="radius", geom=pyvista.Sphere(radius=1.0))`."""
+        import pyvista
+
+        mesh = pyvista.PolyData(self[POSITION].values)
+        if len(self.triangles):
+            mesh = pyvista.PolyData.from_regular_faces(self[POSITION].values, self.triangles)
+        for name, field in self.items():
+            if name != POSITION:
+                data = mesh.cell_data if self._series.is_of_triangles(name) else mesh.point_data
+                data[name] = field.values
+        mesh.field_data["time"] = self._series.times[self._snapshot : self._snapshot + 1]
+        return mesh
+
+
+def components(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    """A field's columns: of [n] itself, of [n][k] one per component; positions are x, y, z alone."""
+    if values.ndim == 1:
+        return {name: values}
+    prefix = "" if name == POSITION else f"{name}_"
+    return {f"{prefix}{component}": values[:, k] for k, component in enumerate(COMPONENTS[values.shape[1]])}
+
+
+class Snapshot:
+    """One instant of a run."""
+
+    def __init__(self, series: Mapping[str, Series], number: int) -> None:
+        self._series, self.number = series, number
+
+    @property
+    def time(self) -> float:
+        """[s]"""
+        return float(self._series["particles"].times[self.number])
+
+    def _points(self, kind: str) -> Points:
+        if kind not in self._series:
+            raise ScreeError(f"the run has no {kind}.vtkhdf")
+        return Points(self._series[kind], self.number)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Those of "particles", "bodies", "surfaces" that the run has."""
+        return tuple(self._series)
+
+    @property
+    def particles(self) -> Points:
+        return self._points("particles")
+
+    @property
+    def bodies(self) -> Points:
+        """The bodies' discs or spheres. The field "body" counts the run's body_names. Throws ScreeError where no body
+        has one."""
+        return self._points("bodies")
+
+    @property
+    def surfaces(self) -> Points:
+        """The triangles of meshes. Throws ScreeError where there are none."""
+        return self._points("surfaces")
+
+    def to_pyvista(self) -> pyvista.MultiBlock:
+        """A block for each of `kinds`."""
+        import pyvista
+
+        return pyvista.MultiBlock({kind: self._points(kind).to_pyvista() for kind in self._series})
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{self._series[kind].count(self.number)} points of {kind}" for kind in self._series)
+        return f"<snapshot {self.number} at t = {self.time:.9g} s: {counts}>"
+
+
+class Snapshots(Sequence[Snapshot]):
+    """All of a run, in the order of time; negative numbers count from the last one."""
+
+    def __init__(self, series: Mapping[str, Series]) -> None:
+        self._series = series
+        self.times = series["particles"].times if series else np.empty(0)  # [s]
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    @overload
+    def __getitem__(self, number: int) -> Snapshot: ...
+    @overload
+    def __getitem__(self, number: slice) -> list[Snapshot]: ...
+    def __getitem__(self, number: int | slice) -> Snapshot | list[Snapshot]:
+        found = range(len(self))[number]  # with a list's rules
+        return Snapshot(self._series, found) if isinstance(found, int) else [self[k] for k in found]
+
+    def at(self, time: float) -> Snapshot:
+        """The one nearest to a time [s]."""
+        if len(self) == 0:
+            raise ScreeError("the run has no snapshots")
+        return self[int(np.abs(self.times - time).argmin())]
