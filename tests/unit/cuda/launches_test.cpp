@@ -77,8 +77,11 @@ Model grains_over_mesh() {
 [space]
 dimension = 3
 min = [0.0, 0.0, -0.1]
-max = [0.25, 0.25, 1.0]
-leaving = "drift"
+max = [0.231, 0.231, 1.0]
+x_min = "periodic"
+x_max = "periodic"
+y_min = "periodic"
+y_max = "periodic"
 [time]
 end = 1.0
 step = 1e-4
