@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import pathlib
 import sys
 from collections.abc import Sequence
@@ -24,7 +25,10 @@ def main(words: Sequence[str] | None = None) -> int:
     chosen = parser.parse_args(words)
     try:
         return int(chosen.run(chosen))
-    except ScreeError as error:
+    except BrokenPipeError:  # whoever reads the words has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except (ScreeError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
 

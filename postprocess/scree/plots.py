@@ -146,7 +146,8 @@ def history_figure(history: History, title: str, columns: Sequence[str] = (), en
     shown = energy_panels(history) if energies else []
     shown += column_panels(history, history.names(*columns))
     if not shown or history.rows == 0:
-        raise ScreeError("the history has no energies; name other columns")
+        raise ScreeError("the history has no energies; name other columns" if energies else
+                         "nothing to plot: without the energies, name columns")
     heights = [panel.height for panel in shown]
     figure, rows = plt.subplots(len(shown), 1, figsize=(WIDTH, sum(heights) + 0.9), height_ratios=heights, sharex=True,
                                 squeeze=False, layout=ConstrainedLayoutEngine(hspace=0.04), dpi=120)

@@ -52,9 +52,18 @@ def number(text: str) -> float | str:
         return text
 
 
+def measured(measure: Callable[[Run], Any], run: Run) -> Any:
+    """None where the run has not got so far that there is anything to measure."""
+    try:
+        return measure(run)
+    except (ScreeError, KeyError, IndexError):
+        return None
+
+
 def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]]) -> pandas.DataFrame:
     """A row for each line of the list that names a deck, by its number from 1: what it sets, the run's status, and what
-    each measure says of it; a run that has no results yet has the status "not begun" and no measures.
+    each measure says of it; a run that has no results yet has the status "not begun" and no measures, and one that has
+    not got far enough for a measure has none of it.
 
         scree.sweep.table("LIST", "results/study", {"force": lambda run: run.history["contacts/floor/fy"][-1]})
     """
@@ -72,6 +81,6 @@ def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]
             row["status"] = "not begun"
         else:
             row["status"] = run.status
-            row |= {name: measure(run) for name, measure in measures.items()}
+            row |= {name: measured(measure, run) for name, measure in measures.items()}
         rows[element] = row
     return pandas.DataFrame.from_dict(rows, orient="index").rename_axis("element")

@@ -106,8 +106,10 @@ const TableKeys& mesh_keys() {
              .only_for(files)
              .above(0)
              .left_out("triangles as they are")
-             .about("Triangles are joined as long as no vertex of the file is farther than this beside what "
-                    "is left; sharp edges (feature_angle) and free ones stay. Before refine."),
+             .about(
+                 "Triangles are joined as long as no vertex of the file is farther than this beside what "
+                 "is left; sharp edges (feature_angle) and free ones stay, and no edge becomes sharp. Before "
+                 "refine."),
          real("refine", "m")
              .above(0)
              .left_out("triangles as they are")

@@ -77,11 +77,16 @@ std::string too_narrow(const Model& model, const ModelMesh& mesh) {
 
 std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set<int>& materials) {
   const Real sag = mesh.surface->curvature.sag, overlap = largest_overlap(model, materials);
+  if (overlap > 0 && mesh.moved > std::max(sag, kMostSag * overlap))
+    return fmt::format(
+        "mesh \"{}\": coarsen leaves the file's vertices up to {:.3g} m beside it, {:.0f} % of the {:.3g} m "
+        "by "
+        "which impacts overlap it, and forces err by as much: a smaller coarsen",
+        mesh.name, mesh.moved, 100 * mesh.moved / overlap, overlap);
   if (overlap == 0 || !(sag > kMostSag * overlap)) return "";
   return fmt::format(
-      "mesh \"{}\": its facets are up to {:.3g} m beside the smooth surface that they stand for, {:.2g} % of "
-      "the "
-      "{:.3g} m by which impacts overlap it, and forces err by as much: facets of half the length have a "
+      "mesh \"{}\": its facets are up to {:.3g} m beside the smooth surface that they stand for, {:.0f} % of "
+      "the {:.3g} m by which impacts overlap it, and forces err by as much: facets of half the length have a "
       "quarter",
       mesh.name, sag, 100 * sag / overlap, overlap);
 }

@@ -93,6 +93,9 @@ class PlotTest(CommandTest):
         self.assertIn("error: no column nothing; there are: ",
                       self.command(WRONG, "plot", NET, "--columns", "nothing"))
         self.assertIn("contacts/net/fy [N]: contact force", self.command(DONE, "plot", NET, "--list"))
+        self.assertIn("error: nothing to plot", self.command(WRONG, "plot", NET, "--no-energies"))
+        said = self.command(WRONG, "plot", NET, "-o", self.folder / "no" / "plot.png")
+        self.assertRegex(said, r"^error: .*No such file or directory.*\n$")
         self.command(WRONG, "plot")
 
 
