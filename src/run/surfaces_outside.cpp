@@ -13,7 +13,10 @@
 namespace scree {
 namespace {
 
-constexpr int kInstants = 100;     // of walls that move
+constexpr int kInstants = 100;  // of walls that move
+// Where between two of as many equal spans an instant is, by the golden ratio: no motion's period fits to
+// all.
+constexpr Real kGolden = 0.6180339887498949;
 constexpr std::size_t kNamed = 3;  // carriers in one warning
 
 // The sides that are open; the others are at infinity.
@@ -104,7 +107,8 @@ std::vector<std::string> walls_beyond(const Model& model, const Box& open) {
   std::vector<bool> beyond(placed.size());
   std::vector<BodyMotion> motion(placed.size());
   for (int k = 0; k <= kInstants; ++k) {
-    motions.at(model.time.end * k / kInstants, motion);
+    const Real share = k < kInstants ? (k + std::fmod(k * kGolden, 1)) / kInstants : 1;
+    motions.at(share * model.time.end, motion);
     for (std::size_t w = 0; w < placed.size(); ++w)
       if (!beyond[w] && (k == 0 || placed[w]->moves()))
         beyond[w] = reaches_beyond(model, *placed[w], motion[w], open);

@@ -51,6 +51,22 @@ TEST_CASE("shapes beyond open sides are warned of, those in periodic space and i
   CHECK(at_start({"bodies.disc.position=[0.65,0]"}, "space.leaving=error").empty());
 }
 
+TEST_CASE(
+    "walls of triangles that reach beyond an open side on their way are warned of, however often they turn") {
+  const std::string line = "meshes=[{name='line',kind='line',points=[[-0.1,0.0],[0.1,0.0]]}]";
+  for (const char* frequency : {"0.75", "3", "50", "100", "400"}) {
+    CAPTURE(frequency);
+    const auto with = [&](const std::string& amplitude) {
+      return at_start({line,
+                       "walls=[{name='lid',mesh='line',motions=[{type='translation',direction=[0,1],"
+                       "displacement={kind='sine',amplitude=" +
+                           amplitude + ",frequency=" + frequency + "}}]}]"});
+    };
+    CHECK(contains(with("1.3"), "wall \"lid\""));
+    CHECK(with("0.9").empty());
+  }
+}
+
 TEST_CASE("a particle leaves at surfaces where it is in their box or beside it, in any image") {
   const std::vector<std::string> right = {"bodies.disc.position=[0.65,0]"};
   CHECK(contains(leaving_at({1.02, 0, 0}, right),
