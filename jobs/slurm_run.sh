@@ -13,7 +13,7 @@
 # On SIGUSR1, which the sbatch files ask SLURM for before the time limit, the run writes RESULTS/checkpoint.h5 and ends
 # with exit code 5; the job then goes back into the queue, at most SCREE_REQUEUES times. On SIGTERM (scancel, preemption)
 # the run does the same, but the job stays out of the queue unless SLURM puts it back.
-# Otherwise the job ends with the exit code of the run, which README.md lists.
+# Otherwise the job ends with the exit code of the run, which jobs/using.md lists.
 #
 # From the environment of sbatch:
 #     SCREE            the program; default: build/release/scree

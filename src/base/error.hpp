@@ -8,7 +8,7 @@
 
 namespace scree {
 
-// Exit codes of the program; listed in --help and in the README.
+// Exit codes of the program; listed in --help and in jobs/using.md.
 enum class ExitCode : int {
   done = 0,
   bad_input = 2,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kWidth = 110;
 
-// README.md says the same; tests/cli/test_words.py compares them.
+// input/limits.md says the same; tests/cli/test_words.py compares them.
 constexpr const char* kLeftOut =
     "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies; "
     "rolling and twisting are resisted in explicit steps (velocity-verlet) only. "

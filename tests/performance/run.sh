@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what the README's performance table says, on one core; prints CPU seconds.
+# Measures what the first table of README.md beside this file says, on one core; prints CPU seconds.
 #   tests/performance/run.sh [BUILD_DIR]      (default build/release; takes about two minutes)
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -49,7 +49,7 @@ TrialResult verlet(const Case& one, Real share) {
 
 }  // namespace
 
-TEST_CASE("trial impacts err as whole runs do: README's table of impacts at any step") {
+TEST_CASE("trial impacts err as whole runs do: the table of impacts at any step") {
   constexpr Real kDigits = 0.05;  // of two digits, and of another number of phases
   struct Claim {
     Case impact;

@@ -125,7 +125,7 @@ TEST_CASE("steps that adapt are tried at the length that they come to") {
   for (const StepTrial& trial : trials_of({"time.control=adaptive", "time.step=1e-6"})) {
     CHECK(trial.is_adaptive);
     CHECK(trial.step < trial.limit.contact_time / 30);
-    CHECK(trial.result.error() < 2e-4);  // README: within 0.02 %
+    CHECK(trial.result.error() < 2e-4);  // input/choosing.md: within 0.02 %
     CHECK(contains(trial_lines(trial), "in steps that adapt, to about "));
   }
 }
@@ -236,7 +236,7 @@ TEST_CASE("trials of many pairs take no time to speak of") {
   const auto start = std::chrono::steady_clock::now();
   for (int k = 0; k < 5; ++k) trials_of({"time.step=1e-3", "contact.pairs.1.damping=60.0"});
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  CHECK(taken.count() < 1.0);  // 20 pairs and five decks; measured: see README
+  CHECK(taken.count() < 1.0);  // 20 pairs, five decks
 }
 
 }  // namespace scree

@@ -1,5 +1,5 @@
 // Newton iterations of implicit steps in a pack that rubs, against those of one that does not.
-// With -s the test says how many: the numbers in src/README.md.
+// With -s the test says how many: the numbers in src/dem/README.md.
 #include <fmt/format.h>
 
 #include <cmath>

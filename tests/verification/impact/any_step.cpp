@@ -125,7 +125,7 @@ TEST_CASE("a head-on impact with n = 1, no damping and alpha = 0 keeps its energ
 }
 
 TEST_CASE("steps of a tenth and a twentieth of the contact time keep any impact to the order of the method") {
-  constexpr Real kTenth = 0.018, kTwentieth = 0.006;  // README, "Impacts at any step"
+  constexpr Real kTenth = 0.018, kTwentieth = 0.006;  // input/choosing.md, "Impacts at any step"
   for (const Real alpha : kAlphas) {
     for (const Impact& impact : impacts(alpha)) {
       const Real touch = contact_time(impact);
@@ -137,7 +137,7 @@ TEST_CASE("steps of a tenth and a twentieth of the contact time keep any impact 
 }
 
 TEST_CASE("explicit steps of a tenth and a twentieth of the contact time keep any impact to first order") {
-  constexpr Real kTenth = 0.06, kTwentieth = 0.035;  // README, "Impacts at any step"
+  constexpr Real kTenth = 0.06, kTwentieth = 0.035;  // input/choosing.md, "Impacts at any step"
   for (const Impact& impact : impacts(0, ParticleIntegrator::velocity_verlet)) {
     const Real touch = contact_time(impact);
     CAPTURE(name(impact));
@@ -147,7 +147,7 @@ TEST_CASE("explicit steps of a tenth and a twentieth of the contact time keep an
 }
 
 TEST_CASE("adaptive steps keep any impact") {
-  constexpr Real kPhysical = 2e-4;  // README, "Impacts at any step"
+  constexpr Real kPhysical = 2e-4;  // input/choosing.md, "Impacts at any step"
   for (const Real alpha : kAlphas) {
     for (const Impact& impact : impacts(alpha)) {
       CAPTURE(name(impact));
@@ -156,8 +156,8 @@ TEST_CASE("adaptive steps keep any impact") {
   }
 }
 
-// What README says of coarse steps is what they do: neither more nor less.
-TEST_CASE("steps of about a contact time err as README says") {
+// What input/choosing.md says of coarse steps is what they do: neither more nor less.
+TEST_CASE("steps of about a contact time err as input/choosing.md says") {
   constexpr Real kDigits = 0.05;  // of two digits, and of another number of phases
   struct Claim {
     Impact impact;
@@ -181,7 +181,7 @@ TEST_CASE("steps of about a contact time err as README says") {
   }
 }
 
-// README's table: test_verification_impact "[table]".
+// Its table: test_verification_impact "[table]".
 TEST_CASE("the table of impacts at any step", "[.][table]") {
   constexpr int kPhases = 100;
   std::vector<Impact> all;
