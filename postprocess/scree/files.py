@@ -1,9 +1,9 @@
 """Reading files that a run may be writing.
 
 While it goes on, each of its HDF5 files exists twice and the two copies take turns under the file's name
-(jobs/using.md, "What a run writes"): what is opened is complete, but may be changed once the other copy has the name. So
-a reader takes all it wants at once, closes the file, and takes it again where the name has passed on in between. It
-takes no lock: the run would find it on its other copy.
+(jobs/using.md, "What a run writes"): what is opened is complete, but may be changed once the other copy has the name.
+So a reader takes all it wants at once, closes the file, and takes it again where the name has passed on in between.
+It takes no lock: the run would find it on its other copy.
 """
 
 from __future__ import annotations
