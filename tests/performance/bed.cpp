@@ -9,7 +9,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <numeric>
 
@@ -20,16 +19,10 @@
 #include "dem/device.hpp"
 #include "mbs/petsc_session.hpp"
 #include "partition/shared_model.hpp"
+#include "support/measured.hpp"
 
 namespace scree {
 namespace {
-
-std::string processor_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown processor";
-}
 
 // Bodies and particles exchange in batches of this many steps: as long as those between two outputs of a run.
 constexpr Index kCoupledBatch = 1000;
@@ -101,7 +94,10 @@ void measure_implicit(Model bed, const Options& options, BedReport& report) {
       static_cast<double>(run.step.counts().linear_iterations - counts.linear_iterations) / steps,
       options.repeats, samples.steps, builds, run.listed());
   print_stages(timers, run.timers, steps);
-  report.add(measured(samples, run.model, builds), timers, run.timers, *run.backend);
+  Measured result = measured(samples, run.model, builds);
+  result.newton = static_cast<double>(run.step.counts().newton_iterations - counts.newton_iterations) / steps;
+  result.linear = static_cast<double>(run.step.counts().linear_iterations - counts.linear_iterations) / steps;
+  report.add(result, timers, run.timers, *run.backend);
 }
 
 struct CoupledSamples {
@@ -117,8 +113,14 @@ struct CoupledSamples {
   }
 };
 
+// What of a bed is taken: as it is, or with a hole or bodies in a part of it.
+struct BedPart {
+  std::string name;
+  std::int64_t whole;  // particles of the plain bed
+};
+
 // The coupled explicit step, with bodies solved every step where the bed has some.
-CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& report) {
+CoupledSamples sample_coupled(Model bed, const BedPart& part, const Options& options, BedReport& report) {
   bed.integrator.particles = ParticleIntegrator::velocity_verlet;
   Run run(std::move(bed), options);
   run.step.start(run.bodies);
@@ -147,7 +149,7 @@ CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& repo
   });
   builds = run.backend->list().builds() - builds;
   Measured result = measured(out.samples, run.model, builds);
-  result.contacts = out.mean_contacts();
+  result.contacts = out.mean_contacts(), result.bed = part.name, result.size = part.whole;
   report.add(result, timers, run.timers, *run.backend);
   const StepCounts& counts = run.step.counts();
   out.iterations = static_cast<double>(counts.newton_iterations) / static_cast<double>(counts.steps);
@@ -158,15 +160,16 @@ CoupledSamples sample_coupled(Model bed, const Options& options, BedReport& repo
 // The bed as it is, without the particles in the bodies' way, and with the bodies there: the same steps.
 void measure_bodies(Model bed, const Options& options, BedReport& report) {
   const std::int64_t whole = bed.particles.totals.count;
-  const Samples plain = sample_coupled(bed, options, report).samples;
+  const Samples plain = sample_coupled(bed, {"plain", whole}, options, report).samples;
   options.net ? add_net(bed) : add_plough(bed);
   const std::int64_t particles = bed.particles.totals.count;
   const std::size_t bodies = bed.bodies.size();
   Model bare = bed;
   bare.bodies.clear(), bare.joints.clear(), bare.drivers.clear(), bare.spring_dampers.clear();
   bare.applied_forces.clear();
-  const Samples without = sample_coupled(std::move(bare), options, report).samples;
-  const CoupledSamples with = sample_coupled(std::move(bed), options, report);
+  const Samples without = sample_coupled(std::move(bare), {"with a hole", whole}, options, report).samples;
+  const std::string row = options.net ? "with a net" : "with a row drawn through it";
+  const CoupledSamples with = sample_coupled(std::move(bed), {row, whole}, options, report);
   fmt::print("{:10d} the plain bed: {}\n", whole, speed_text(plain, whole));
   fmt::print("{:10d} without bodies, in their place a hole: {}\n", particles, speed_text(without, particles));
   fmt::print(
@@ -178,6 +181,20 @@ void measure_bodies(Model bed, const Options& options, BedReport& report) {
     fmt::print("{:10} {:.4g} times as long as {}, {:.4g} us more per step\n", "",
                with.samples.median() / other.median(), name, 1e6 * (with.samples.median() - other.median()));
   print_stages({}, with.timers, with.steps);
+}
+
+// "cuda, spheres, explicit, double, list every 25 steps, friction 0.5, 2 ranks"
+std::string title_of(const Options& options) {
+  const bool implicit = options.integrator == "hht";
+  std::string title =
+      fmt::format("{}, {}, {}, {}", options.backend, options.dimension == 3 ? "spheres" : "discs",
+                  implicit ? "implicit" : "explicit", options.precision);
+  if (!implicit && !options.with_bodies())
+    title +=
+        options.rebuild > 0 ? fmt::format(", list every {} steps", options.rebuild) : ", list where needed";
+  if (options.friction > 0) title += fmt::format(", friction {}", options.friction);
+  if (!options.ranks.alone()) title += fmt::format(", {} ranks", options.ranks.size());
+  return title + (options.wall && options.ranks.alone() && !options.on_gpu() ? ", wall" : "");
 }
 
 void measure_all(const Options& options) {
@@ -199,6 +216,7 @@ void measure_all(const Options& options) {
              options.integrator == "hht" || options.with_bodies() ? ""
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
                                    : ", list rebuilds where needed");
+  if (options.on_gpu()) measured_on_gpu(device_name());
   const std::string rebuild = options.with_bodies()         ? "coupled"
                               : options.integrator == "hht" ? "0"
                                                             : fmt::format("{}", options.rebuild);
@@ -207,7 +225,7 @@ void measure_all(const Options& options) {
       fmt::format("{},\"{}\",{},{},{},{},{},{}", commit(),
                   options.on_gpu() ? device_name() : processor_name(), options.backend, options.precision,
                   options.dimension, options.integrator, rebuild, options.friction),
-      options.ranks);
+      title_of(options), options.ranks);
   // Bodies find their place on all of the bed.
   const RanksShare share(options.with_bodies() ? Ranks() : options.ranks);
   std::vector<Vec3> discs;

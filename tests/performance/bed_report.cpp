@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
 #include "base/error.hpp"
 #include "dem/device.hpp"
+#include "support/measured.hpp"
 
 namespace scree {
 namespace {
@@ -20,6 +22,26 @@ struct OfRank {
   std::array<double, static_cast<int>(Stage::count)> stage_seconds{};  // per step
 };
 
+struct Halo {
+  double bytes = 0, seconds = 0, exposed = 0;  // of the rank that waits longest
+};
+
+// The numbers of documents. memory: of all ranks, over the particles [B].
+void note_numbers(const std::string& title, const Measured& m, double memory, const Halo& halo) {
+  const std::string row = title + (m.bed.empty() ? "" : ", " + m.bed),
+                    key = row + fmt::format("/{} ", m.size > 0 ? m.size : m.particles);
+  const auto rate = [&](double seconds) { return static_cast<double>(m.particles) / seconds; };
+  note_samples("bed/" + key + "rate", "particle-steps/s", rate(m.seconds), rate(m.slowest), rate(m.fastest));
+  note_samples("bed/" + key + "step", "us", 1e6 * m.seconds, 1e6 * m.fastest, 1e6 * m.slowest);
+  note("bed/" + key + "memory", "B", memory);
+  if (m.newton > 0) note("bed/" + key + "Newton", "", m.newton), note("bed/" + key + "linear", "", m.linear);
+  if (m.bodies > 0) note("bed/" + key + "contacts", "", m.contacts);
+  if (halo.seconds <= 0) return;
+  note("bed/" + key + "halo", "MB", 1e-6 * halo.bytes);
+  note("bed/" + key + "halo update", "us", 1e6 * halo.seconds);
+  note("bed/" + key + "hidden", "%", 100 * (1 - halo.exposed / halo.seconds));
+}
+
 // Largest memory that the process had so far [B].
 double peak_memory() {
   rusage usage{};
@@ -29,8 +51,9 @@ double peak_memory() {
 
 }  // namespace
 
-BedReport::BedReport(const std::string& path, const std::string& kind, const Ranks& ranks)
-    : path_(path), kind_(kind), ranks_(ranks) {
+BedReport::BedReport(const std::string& path, const std::string& kind, const std::string& title,
+                     const Ranks& ranks)
+    : path_(path), kind_(kind), title_(title), ranks_(ranks) {
   if (path_.empty()) return;
   ranks_.on_root([&] {
     const bool is_new = !std::filesystem::exists(path_);
@@ -49,7 +72,6 @@ BedReport::BedReport(const std::string& path, const std::string& kind, const Ran
 
 void BedReport::add(const Measured& measured, const StageTimers& before, const StageTimers& after,
                     Backend& backend) {
-  if (path_.empty()) return;
   OfRank own;
   own.halo = backend.list().balance().halo, own.imbalance = backend.list().balance().imbalance;
   own.host_bytes = peak_memory();
@@ -59,6 +81,16 @@ void BedReport::add(const Measured& measured, const StageTimers& before, const S
         (after[static_cast<Stage>(s)].seconds - before[static_cast<Stage>(s)].seconds) / measured.steps;
   const std::vector<OfRank> all = ranks_.gather(std::vector<OfRank>{own});
   ranks_.on_root([&] {
+    double memory = 0;
+    Halo halo;
+    for (const OfRank& r : all) {
+      memory += r.device_bytes > 0 ? r.device_bytes : r.host_bytes;
+      halo.bytes = std::max(halo.bytes, static_cast<double>(r.halo.bytes));
+      if (r.halo.exposed_seconds >= halo.exposed)
+        halo.seconds = r.halo.seconds, halo.exposed = r.halo.exposed_seconds;
+    }
+    note_numbers(title_, measured, memory / static_cast<double>(measured.particles), halo);
+    if (path_.empty()) return;
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
       const OfRank& r = all[rank];
       file_ << fmt::format(

@@ -1,4 +1,5 @@
-// The measurements of bed.cpp as rows of a CSV file, one per rank, for rank_tables.py and scaling_model.py.
+// The measurements of bed.cpp as rows of a CSV file, one per rank, for rank_tables.py and scaling_model.py,
+// and as numbers for the tables of documents (support/measured.hpp).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,10 @@ namespace scree {
 struct Measured {
   std::int64_t particles = 0;  // of all ranks
   std::size_t bodies = 0;
-  double contacts = 0;  // of the bodies, mean of looks now and then
+  double contacts = 0;            // of the bodies, mean of looks now and then
+  std::string bed;                // where there are several: "plain", "with a hole", "with bodies"
+  std::int64_t size = 0;          // particles of the plain one
+  double newton = 0, linear = 0;  // iterations per step, of implicit ones
   // Per step: median, extremes and mean of the samples. The stages' times are means.
   double seconds = 0, fastest = 0, slowest = 0, mean = 0;
   double steps = 0;              // of all samples
@@ -25,8 +29,9 @@ struct Measured {
 class BedReport {
  public:
   // path: the file that rows are added to, with a heading if it is new; empty: none are written. kind: what
-  // all rows of this program have in common, as in kKindColumns. Collective. Throws IoError.
-  BedReport(const std::string& path, const std::string& kind, const Ranks& ranks);
+  // all rows of this program have in common, as in kKindColumns. title: the same in words. Collective. Throws
+  // IoError.
+  BedReport(const std::string& path, const std::string& kind, const std::string& title, const Ranks& ranks);
   // before, after: this rank's stage times around the samples. Collective.
   void add(const Measured& measured, const StageTimers& before, const StageTimers& after, Backend& backend);
 
@@ -35,7 +40,7 @@ class BedReport {
       "commit,device,backend,precision,dimension,integrator,rebuild,friction";
 
  private:
-  std::string path_, kind_;
+  std::string path_, kind_, title_;
   Ranks ranks_;
   std::ofstream file_;  // of rank 0
 };

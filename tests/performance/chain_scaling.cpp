@@ -15,6 +15,7 @@
 
 #include "base/version.hpp"
 #include "mbs/multibody.hpp"
+#include "support/measured.hpp"
 #include "support/multibody_run.hpp"
 #include "support/spatial_run.hpp"
 
@@ -62,7 +63,8 @@ Model spatial_chain(int bodies) {
   return model;
 }
 
-void measure(const Model& model, std::ofstream& csv) {
+// chains: "planar" or "space".
+void measure(const std::string& chains, const Model& model, std::ofstream& csv) {
   constexpr int kRepetitions = 3;
   const int bodies = static_cast<int>(model.bodies.size());
   const std::clock_t built = std::clock();
@@ -70,12 +72,13 @@ void measure(const Model& model, std::ofstream& csv) {
   const double construction = seconds_since(built);
   const int steps = std::max(10, 70000 / bodies);
   run.steps(5, 1e-3);
-  double per_step = 1e300, iterations = 0;
+  double per_step = 1e300, slowest = 0, iterations = 0;
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
     run.iterations = 0;
     const std::clock_t started = std::clock();
     run.steps(steps, 1e-3);
     const double seconds = seconds_since(started) / steps;
+    slowest = std::max(slowest, seconds);
     if (seconds >= per_step) continue;
     per_step = seconds;
     iterations = static_cast<double>(run.iterations) / steps;
@@ -84,6 +87,9 @@ void measure(const Model& model, std::ofstream& csv) {
              run.multibody.coordinates() + run.multibody.constraints(), 1e3 * construction, 1e3 * per_step,
              1e6 * per_step / bodies, iterations, 1e3 * per_step / iterations);
   std::fflush(stdout);
+  const std::string key = chains + fmt::format("/{} ", bodies);
+  note_samples("chain/" + key + "step", "ms", 1e3 * per_step, 1e3 * per_step, 1e3 * slowest);
+  note("chain/" + key + "Newton", "", iterations);
   if (csv.is_open())
     csv << fmt::format("{},{},{:.6g},{:.4g},{:.6g}\n", commit(), bodies, per_step, iterations,
                        per_step / iterations)
@@ -132,11 +138,11 @@ int main(int count, char** values) {
   if (planar) {
     if (csv.is_open()) csv << "commit,bodies,seconds_per_step,iterations,seconds_per_iteration\n";
     print_head("of planar bodies on revolute joints");
-    for (const int bodies : lengths) measure(hanging_chain(bodies), csv);
+    for (const int bodies : lengths) measure("planar", hanging_chain(bodies), csv);
   }
   if (space) {
     csv.close();
     print_head("of bodies in space on hinges");
-    for (const int bodies : lengths) measure(spatial_chain(bodies), csv);
+    for (const int bodies : lengths) measure("space", spatial_chain(bodies), csv);
   }
 }

@@ -76,6 +76,15 @@ report() { # RANKS WHAT
   awk -v ranks="$1" -v what="$2" -v seconds="$seconds" -v kb="$memory" -v base="$base" -v n="$particles" 'BEGIN {
     printf "%3d rank(s), %-7s %4d s, %7.1f MB on the largest rank, %4.0f B per particle of its share\n",
       ranks, what, seconds, kb / 1e3, (kb - base) * 1e3 / (n / ranks) }'
+  note "$1 ranks $2, memory" "$(awk -v kb="$memory" 'BEGIN { printf "%.0f", kb / 1e3 }')" MB
+  note "$1 ranks $2, seconds" "$seconds" s
+  note "$1 ranks $2, per particle" "$(awk -v ranks="$1" -v kb="$memory" -v base="$base" -v n="$particles" \
+    'BEGIN { printf "%.0f", (kb - base) * 1e3 / (n / ranks) }')" B
+}
+
+note() { # COLUMN VALUE UNIT
+  python3 tests/support/measured.py "large/$backend, $particles particles/$1" "$2" "$3" \
+    --record "$folder/out/run_record.json" --command "large.sh $particles ${counts[*]}"
 }
 
 hash_of() { # FOLDER

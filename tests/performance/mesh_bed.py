@@ -8,7 +8,11 @@ import argparse
 import json
 import pathlib
 import subprocess
+import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
 
 SPACING, LAYER = 0.021, 0.01995  # of the lattice [m]
 DECK = """gravity = [0.0, 0.0, -9.81]
@@ -70,6 +74,14 @@ def run(scree, backend, text):
         return json.loads((pathlib.Path(folder) / "run_record.json").read_text())
 
 
+def note(arguments, layers, name, record):
+    seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"]}
+    size = f"{arguments.backend}, {arguments.side} x {arguments.side} x {layers}, edge {arguments.edge}"
+    measured.note(f"mesh_bed/{size}/{name} step", 1e3 * seconds["contact_force"] / arguments.steps, "ms", record=record)
+    measured.note(f"mesh_bed/{size}/{name} list", 1e3 * seconds["neighbors"] / max(record["counts"]["list_builds"], 1),
+                  "ms", record=record)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scree")
@@ -84,6 +96,7 @@ def main():
     hashes = set()
     for name, wall in ("plane", PLANE), ("mesh", MESH.format(size=width + 0.3, middle=width / 2, edge=arguments.edge)):
         record = run(arguments.scree, arguments.backend, bed + wall)
+        note(arguments, layers, name, record)
         seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"]}
         hashes.add(record["run"]["state_hash"])
         print(f"{name:6} {1e3 * seconds['contact_force'] / arguments.steps:8.4f} ms a step, lists "

@@ -5,6 +5,7 @@ Usage: mesh_plough.py SCREE [--backend cuda] [--side 200] [--steps 400] [--edge 
 import argparse
 
 import mesh_bed
+from mesh_bed import measured
 
 COLUMNS, ROWS = 5, 4
 SIZE = (0.4, 0.02, 0.4)  # of a blade [m]
@@ -38,7 +39,11 @@ def main():
     width, top = mesh_bed.SPACING * arguments.side, mesh_bed.LAYER * (arguments.side - 1) + 0.02
     for name, extra in ("bed", ""), ("blades", blades(width, top, arguments.edge)):
         record = mesh_bed.run(arguments.scree, arguments.backend, deck + extra)
-        print(f"{name:6} {mesh_bed.milliseconds(record, arguments.steps)} ms a step in all but output, "
+        size = f"{arguments.backend}, side {arguments.side}, edge {arguments.edge}"
+        milliseconds = mesh_bed.milliseconds(record, arguments.steps)
+        measured.note(f"mesh_plough/{size}/{name} step", float(milliseconds), "ms", record=record)
+        measured.note(f"mesh_plough/{size}/{name} lists", record["counts"]["list_builds"], "lists", record=record)
+        print(f"{name:6} {milliseconds} ms a step in all but output, "
               f"{record['counts']['list_builds']} lists")
 
 

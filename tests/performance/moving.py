@@ -12,6 +12,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
+
 DIAMETER, SPACING = 0.01, 0.0102  # [m]
 STEP = 1e-5  # [s]
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
@@ -92,6 +95,10 @@ def main():
             record = run(arguments.scree, folder / "moving.toml", folder / str(ranks), arguments.backend, ranks,
                          arguments.mpirun)
             counts, measures = record["counts"], record["measures"]
+            key = f"moving/{arguments.backend}, {arguments.particles:g} particles/{ranks} ranks"
+            for name, value, unit in (("step", 1e3 * step_seconds(record), "ms"), ("lists", counts["list_builds"], ""),
+                                      ("steps", counts["steps"], ""), ("moved", counts["migrated"], "")):
+                measured.note(f"{key} {name}", value, unit, record=record)
             print(f"| {ranks} | {counts['particles']:,} | {counts['steps']:,} | "
                   f"{1e3 * step_seconds(record):.4g} | {counts['list_builds']:,} | "
                   f"{counts['migrated']:,} | {counts['rebalances']:,} | {100 * measures['largest_imbalance']:.0f} % | "

@@ -19,6 +19,9 @@ import tempfile
 import threading
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
+
 DECK = pathlib.Path(__file__).resolve().parents[2] / "input" / "paper" / "net_400.toml"
 STEP = 1e-4  # [s]
 FEW = 20     # snapshots of the run that is taken off
@@ -92,7 +95,7 @@ def main():
     arguments = parser.parse_args()
     if shutil.which("strace") is None:
         sys.exit("output_calls.py: needs strace")
-    n = arguments.snapshots
+    n, commit = arguments.snapshots, measured.commit_of(arguments.scree)
     with tempfile.TemporaryDirectory(prefix="scree_calls_") as name:
         folder = pathlib.Path(name)
         few = run(arguments.scree, FEW, arguments.particles, folder, True)
@@ -106,6 +109,10 @@ def main():
                   for kinds in (("write", "copy"), ("read",))]
         print(f"| {title} | " + " | ".join(cells) + " |")
 
+    for call in SHOWN:
+        measured.note(f"output_calls/{arguments.particles} particles/{call}",
+                      float(f"{sum(v for k, v in calls.items() if k[0] == call):.4g}"), commit=commit)
+    measured.note(f"output_calls/{arguments.particles} particles/disk space", space, commit=commit)
     print(f"per snapshot, of {n} of 20 bodies and {arguments.particles} particles:\n")
     print("| | " + " | ".join(SHOWN) + " | kB written | kB read |\n|" + "---|" * (len(SHOWN) + 3))
     row("all files", lambda name: True)

@@ -13,16 +13,17 @@ import sys
 import tempfile
 
 import moving
+from moving import measured
 
 
 def measure(arguments, settings, file):
-    """Loop seconds, the run's counts, and bytes of the file of results, 0 without one."""
+    """Loop seconds, the run record, and bytes of the file of results, 0 without one."""
     with tempfile.TemporaryDirectory(prefix="scree_output_") as name:
         folder = pathlib.Path(name)
         moving.write_deck(folder / "moving.toml", arguments.particles, arguments.steps * moving.STEP)
         record = moving.run(arguments.scree, folder / "moving.toml", folder / "out", arguments.backend,
                             settings=settings)
-        return record["cost"]["loop_seconds"], record["counts"], (folder / "out" / file).stat().st_size if file else 0
+        return record["cost"]["loop_seconds"], record, (folder / "out" / file).stat().st_size if file else 0
 
 
 def main():
@@ -41,21 +42,30 @@ def main():
     checkpoint = arguments.steps // 2 + 1
     print("| | particles | steps | us per step | written on the way | MB each | s more for each |\n|" + "---|" * 7)
 
-    def row(name, seconds, counts, *written):
+    def note(name, value, unit, record):
+        size = f"{arguments.backend}, {arguments.particles:g} particles"
+        measured.note(f"output_cost/{size}/{name}", value, unit, record=record)
+
+    def row(name, seconds, record, *written):
+        counts = record["counts"]
         per_step = 1e6 * seconds / counts["steps"]
         cells = [name, f"{counts['particles']:,}", f"{counts['steps']:,}", f"{per_step:.1f}", *written]
         print("| " + " | ".join(cells) + " |", flush=True)
 
-    bare, counts, _ = measure(arguments, [], None)
-    row("no output", bare, counts, "", "", "")
-    ends = counts["snapshots"]  # the first and the last state, outside the loop
-    seconds, counts, size = measure(arguments, [f"output.snapshot_interval={every * moving.STEP}"], "particles.vtkhdf")
-    added = counts["snapshots"] - ends
-    row(f"snapshot every {every:,} steps", seconds, counts, f"{added} snapshots",
-        f"{1e-6 * size / counts['snapshots']:.0f}", f"{(seconds - bare) / added:.3f}")
+    bare, record, _ = measure(arguments, [], None)
+    row("no output", bare, record, "", "", "")
+    note("step", 1e6 * bare / record["counts"]["steps"], "us", record)
+    ends = record["counts"]["snapshots"]  # the first and the last state, outside the loop
+    seconds, record, size = measure(arguments, [f"output.snapshot_interval={every * moving.STEP}"], "particles.vtkhdf")
+    added = record["counts"]["snapshots"] - ends
+    each = 1e-6 * size / record["counts"]["snapshots"]
+    row(f"snapshot every {every:,} steps", seconds, record, f"{added} snapshots", f"{each:.0f}",
+        f"{(seconds - bare) / added:.3f}")
+    note("snapshot", (seconds - bare) / added, "s", record), note("snapshot size", each, "MB", record)
     interval = f"output.checkpoint_interval={checkpoint * moving.STEP}"
-    seconds, counts, size = measure(arguments, [interval], "checkpoint.h5")
-    row("a checkpoint", seconds, counts, "1 checkpoint", f"{1e-6 * size:.0f}", f"{seconds - bare:.3f}")
+    seconds, record, size = measure(arguments, [interval], "checkpoint.h5")
+    note("checkpoint", seconds - bare, "s", record), note("checkpoint size", 1e-6 * size, "MB", record)
+    row("a checkpoint", seconds, record, "1 checkpoint", f"{1e-6 * size:.0f}", f"{seconds - bare:.3f}")
 
 
 if __name__ == "__main__":

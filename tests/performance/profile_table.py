@@ -15,6 +15,9 @@ import pathlib
 import re
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
+
 TIME, READ, WRITE = "gpu__time_duration.sum", "dram__bytes_read.sum", "dram__bytes_write.sum"
 MEANS = {
     "registers": "launch__registers_per_thread",
@@ -107,6 +110,14 @@ def stalls(group):
     return ", ".join(f"{reason} {share:.0f}" for reason, share in largest) or "-"
 
 
+def note(case, kernel, cells):
+    """cells: (name, value, unit)."""
+    for name, value, unit in cells:
+        if not math.isnan(value):
+            measured.note(f"profile/{case}, {short_name(kernel)}/{name}", float(value), unit, machine=measured.gpu(),
+                          backend="cuda")
+
+
 def table(path, copy_bandwidth):
     kernels = {}
     for launch in read_launches(path):
@@ -124,6 +135,11 @@ def table(path, copy_bandwidth):
                  f"{1e-7 * moved / time / copy_bandwidth:.0f}",
                  *(whole(mean(group, name)) for name in MEANS.values()), stalls(group)]
         lines.append("| " + " | ".join(cells) + " |")
+        note(path.stem, kernel, [("time", 1e6 * time / len(group), "us"), ("bytes", 1e-6 * moved / len(group), "MB"),
+                                 ("of copy", 1e-7 * moved / time / copy_bandwidth, "%"),
+                                 *((name.removesuffix(" [%]"), mean(group, metric), "%" if "[%]" in name else "")
+                                   for name, metric in MEANS.items()),
+                                 ("waits", 100 * mean(group, STALLS["long scoreboard"]) / mean(group, LATENCY), "%")])
     return "\n".join(lines)
 
 

@@ -36,6 +36,20 @@ class Run:
         return tuple(self.kind[name] for name in KIND if name != "commit")
 
 
+def read_chain(path):
+    """[(bodies, seconds per iteration)] of chain_scaling, bodies increasing."""
+    try:
+        with open(path, newline="") as file:
+            out = sorted((int(row["bodies"]), float(row["seconds_per_iteration"])) for row in csv.DictReader(file))
+    except OSError as error:
+        raise SystemExit(f"error: {path}: {error.strerror}")
+    except (KeyError, ValueError) as error:
+        raise SystemExit(f"error: {path}: {error}; must be written by chain_scaling")
+    if len(out) < 2:
+        raise SystemExit(f"error: {path}: {len(out)} rows; must be two or more")
+    return out
+
+
 def read_runs(paths):
     """The runs of all files, in their order; of the same run measured twice the last. Ends the program, with a message,
     on a file that is not of bed."""

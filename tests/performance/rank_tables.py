@@ -12,9 +12,23 @@ import sys
 
 import rank_runs
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
 
 # The bed with bodies lacks the few particles that are in their way: apart in size from the plain bed by less than this.
 HOLE = 1e-2
+
+
+def title(run):
+    """Of a run in words, without its size and ranks."""
+    return ", ".join([run.backend, "spheres" if run.dimension == "3" else "discs",
+                      "implicit" if run.integrator == "hht" else "explicit", run.precision])
+
+
+def note(run, key, value, unit):
+    """Of all that is in a report the numbers that others than bed's are."""
+    measured.note(f"ranks/{title(run)}, {run.ranks} ranks/{run.particles} {key}", value, unit, commit=run.commit,
+                  machine=run.device, backend=run.backend)
 
 
 def table(columns, rows):
@@ -74,6 +88,8 @@ def stages(run):
     rows = []
     for rank in run.of_rank:
         times = [rank[name] for name in names]
+        for name in names:
+            note(run, f"{run.bodies} bodies, rank {rank['rank']}, {name}", 1e6 * rank[name], "us")
         rows.append([str(rank["rank"]), f"{rank['owned']:,}", f"{rank['ghosts']:,}", *(f"{1e6 * t:.4g}" for t in times),
                      f"{1e6 * (run.mean - sum(times)):.4g}"])
     return table(columns, rows)
@@ -94,7 +110,9 @@ def bodies(runs):
             continue
         row = [str(run.ranks), f"{run.particles:,}", str(run.bodies), f"{run.contacts:.1f}",
                f"{1e3 * run.seconds_per_step:.4g}", steps_per_list(run), f"{1e6 * run.of_rank[0]['mbs_correct']:.4g}"]
-        for other in (hole[0], plain[0]):
+        for what, other in (("hole", hole[0]), ("plain bed", plain[0])):
+            note(run, f"{run.bodies} bodies, longer than the {what}",
+                 100 * (run.seconds_per_step / other.seconds_per_step - 1), "%")
             row += [f"{1e3 * other.seconds_per_step:.4g}", steps_per_list(other),
                     f"{100 * (run.seconds_per_step / other.seconds_per_step - 1):.1f} %"]
         rows.append(row)
@@ -113,6 +131,8 @@ def report(runs):
                 per_rank = " per rank" if kind == "Weak" else ""
                 out.append(f"{kind} scaling, {size:,} particles{per_rank}, {count} bodies:\n")
                 out.append(table(COLUMNS, [row(*entry) for entry in group]))
+                for run, efficiency in group:
+                    note(run, f"{kind.lower()} efficiency, {count} bodies", 100 * efficiency, "%")
         if rows := bodies(alike):
             out.append("What bodies cost:\n")
             out.append(table(["ranks", "particles", "bodies", "their contacts", "ms per step", "steps per list",

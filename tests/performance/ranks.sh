@@ -12,6 +12,10 @@ cmake --build "$build" --target bed >/dev/null
 echo "machine: $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2-), $(nproc) cores, load $(cut -d' ' -f1 /proc/loadavg), \
 commit $(git rev-parse --short HEAD 2>/dev/null || echo unknown)"
 
+note() { # COLUMN VALUE UNIT
+  python3 tests/support/measured.py "cpu_ranks/$particles discs/$1" "$2" "$3" --command "ranks.sh $particles ${counts[*]:1}"
+}
+
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 for _ in 1 2 3; do
@@ -23,7 +27,10 @@ for _ in 1 2 3; do
   done
 done
 for n in "${counts[@]}"; do
-  awk -v n="$n" -v one="$(sort -g "$results/1" | sed -n 2p)" -v samples="$(tr '\n' ' ' <"$results/$n")" \
-    -v median="$(sort -g "$results/$n" | sed -n 2p)" \
+  median=$(sort -g "$results/$n" | sed -n 2p) one=$(sort -g "$results/1" | sed -n 2p)
+  note "$n ranks step" "$(awk -v us="$median" 'BEGIN { printf "%.4g", us / 1e3 }')" ms
+  note "$n ranks speed-up" "$(awk -v us="$median" -v one="$one" 'BEGIN { printf "%.3g", one / us }')" ""
+  awk -v n="$n" -v one="$one" -v samples="$(tr '\n' ' ' <"$results/$n")" \
+    -v median="$median" \
     'BEGIN { printf "%3d rank(s): %.4g ms per step (samples [us]: %s), %.2f times as fast, efficiency %.0f %%\n", n, median / 1e3, samples, one / median, 100 * one / median / n }'
 done

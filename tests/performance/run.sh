@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Measures what the first table of README.md beside this file says, on one core; prints CPU seconds.
 #   tests/performance/run.sh [BUILD_DIR]      (default build/release; takes about two minutes)
+# This script and those beside it leave their numbers in the folder SCREE_MEASURED, where the environment names one, for
+# tests/performance/tables.py.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=${1:-build/release}
@@ -21,6 +23,9 @@ net_900() {
   done
   printf '  %-62s %s s CPU (%s)\n' "$name" "$(printf '%s\n' "${cpu[@]}" | sort -n | sed -n 2p)" "${cpu[*]}"
   sed -n 's/^t = .* after/    /p' "$results/log"
+  python3 tests/support/measured.py "table4_900/$name" "$(printf '%s\n' "${cpu[@]}" | sort -n | sed -n 2p)" s \
+    --least "$(printf '%s\n' "${cpu[@]}" | sort -n | head -1)" --most "$(printf '%s\n' "${cpu[@]}" | sort -n | tail -1)" \
+    --record "$results/run/run_record.json" --command run.sh
 }
 net_900 "implicit HHT, h = 1e-3" --set time.step=1e-3
 explicit=(--set integrator.particles=velocity-verlet)

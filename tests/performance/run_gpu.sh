@@ -25,7 +25,13 @@ heading() {
   echo
 }
 
-copy() { "$build/tests/performance/copy_bandwidth"; }
+copy() {
+  local text
+  text=$("$build/tests/performance/copy_bandwidth") || return 1
+  echo "$text"
+  python3 "$here/../support/measured.py" "copy/bandwidth" "$(sed -n 's/.*written: \([0-9.]*\) GB\/s.*/\1/p' <<<"$text")" GB/s \
+    --machine "${text%%:*}" --backend cuda --command copy_bandwidth
+}
 
 explicit() {
   local sizes=(10000 100000 1000000 4000000 16000000) precision rebuild status=0

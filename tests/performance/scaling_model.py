@@ -35,6 +35,9 @@ import numpy
 
 import rank_runs
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
+
 RANKS = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000]
 BODIES = [0, 20, 1000, 10000]
 # What crosses per body and step: its motion twice, and twice the sums of one shape's contacts, as partition sends them
@@ -291,11 +294,20 @@ def limits(model, weak, totals):
                          ("the limit nowhere" if at is None else f"the limit from {at:,} rank(s) on"))
         for total in totals:
             at, best = model.limit(bodies, lambda p: total / p), model.fastest(bodies, total)
+            note(f"{total:.0f} particles, {bodies} bodies", at, best, 1 / model.step(total / best, best, bodies))
             where = "nowhere" if at is None else f"from {at:,} rank(s) on ({count(total / at)} particles per rank)"
             lines.append(f"- {bodies:,} bodies, {count(total)} particles in all: the limit {where}; most steps per "
                          f"second, {1 / model.step(total / best, best, bodies):,.4g}, on {best:,} rank(s) "
                          f"({count(total / best)} particles per rank)")
     return lines
+
+
+def note(case, limit, fastest, rate):
+    """limit: GPUs from where on rank 0 is it, None where nowhere; fastest: those with the most steps per second."""
+    if limit is not None:
+        measured.note(f"scaling_model/{case}/limit", limit, "GPUs")
+    measured.note(f"scaling_model/{case}/fastest", fastest, "GPUs")
+    measured.note(f"scaling_model/{case}/rate", float(rate), "steps/s")
 
 
 def plot(path, model, rows, runs, weak, totals):
@@ -316,10 +328,10 @@ def plot(path, model, rows, runs, weak, totals):
             if kind == "strong":
                 best = model.fastest(bodies, size)
                 axis.plot([best], [1 / model.step(size / best, best, bodies)], "*", color=line.get_color())
-        measured = [run for run in runs if run.bodies == 0 and
-                    abs(run.particles / (run.ranks if kind == "weak" else 1) / size - 1) < 1e-2]
-        if measured:
-            axis.plot([run.ranks for run in measured], [1 / run.seconds_per_step for run in measured], "ko",
+        points = [run for run in runs if run.bodies == 0 and
+                  abs(run.particles / (run.ranks if kind == "weak" else 1) / size - 1) < 1e-2]
+        if points:
+            axis.plot([run.ranks for run in points], [1 / run.seconds_per_step for run in points], "ko",
                       markersize=4, label="measured")
         axis.set(xscale="log", yscale="log", xlabel="ranks", ylabel="steps per second",
                  title=f"{size:,.0f} particles {'per rank' if kind == 'weak' else 'in all'}")
@@ -327,20 +339,6 @@ def plot(path, model, rows, runs, weak, totals):
     axes[0][0].legend(fontsize=8, title="triangle: rank 0 is the limit; star: most steps/s", title_fontsize=7)
     figure.tight_layout()
     figure.savefig(path, dpi=150)
-
-
-def read_chain(path):
-    """[(bodies, seconds per iteration)], bodies increasing."""
-    try:
-        with open(path, newline="") as file:
-            out = sorted((int(row["bodies"]), float(row["seconds_per_iteration"])) for row in csv.DictReader(file))
-    except OSError as error:
-        raise SystemExit(f"error: {path}: {error.strerror}")
-    except (KeyError, ValueError) as error:
-        raise SystemExit(f"error: {path}: {error}; must be written by chain_scaling")
-    if len(out) < 2:
-        raise SystemExit(f"error: {path}: {len(out)} rows; must be two or more")
-    return out
 
 
 def choose(runs, name):
@@ -378,7 +376,7 @@ def main():
     parser.add_argument("--network-bandwidth", type=positive, default=40e9, metavar="B/S",
                         help="per rank, assumed (default: 40e9)")
     arguments = parser.parse_args()
-    runs, chain = choose(rank_runs.read_runs(arguments.files), arguments.backend), read_chain(arguments.chain)
+    runs, chain = choose(rank_runs.read_runs(arguments.files), arguments.backend), rank_runs.read_chain(arguments.chain)
     network = Network(int(arguments.per_host), arguments.network_latency, arguments.network_bandwidth)
     model = fit(runs, chain, arguments.iterations, network)
     rows = predictions(model, arguments.weak, arguments.strong)

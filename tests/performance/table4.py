@@ -29,6 +29,9 @@ import sys
 import time
 import tomllib
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
+
 DECK = pathlib.Path(__file__).resolve().parents[2] / "input/paper/table4.toml"
 PAPER_SIZES = list(range(100, 901, 50))
 SCALED_SIZES = [10_000, 100_000, 1_000_000]
@@ -199,9 +202,18 @@ def measure(arguments):
                 window = min((row["simulated"] for row in rows), default=1.0)
                 row = run_case(arguments, method, particles, backend, window)
                 append_row(arguments.out, row)
+                note(row)
                 done = "seconds_per_second" in row
                 result = f"{row['seconds_per_second']:.4g} s per second" if done else row["status"]
                 print(f"{method:8} N = {particles:7} {backend:4}: {result}", flush=True)
+
+
+def note(row):
+    if row["status"] != "done":
+        return
+    gpu = row["description"].removeprefix("cuda (").split(",")[0] if row["backend"] == "cuda" else None
+    measured.note(f"table4/{row['method']}, {row['backend']}/{row['particles']}", row["seconds_per_second"], "s",
+                  commit=row["commit"], machine=gpu or row["processor"], backend=row["backend"])
 
 
 def finished(rows):

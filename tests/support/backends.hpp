@@ -7,6 +7,7 @@
 #include <string>
 
 #include "dem/device.hpp"
+#include "support/measured.hpp"
 
 namespace scree {
 
@@ -16,7 +17,9 @@ inline bool tests_on_gpu() {
 }
 
 inline std::unique_ptr<Backend> make_test_backend(const Model& model, const Ranks& ranks = {}) {
-  return tests_on_gpu() ? make_cuda_backend(model, ranks) : make_cpu_backend(model, ranks);
+  if (!tests_on_gpu()) return make_cpu_backend(model, ranks);
+  measured_on_gpu(device_name());
+  return make_cuda_backend(model, ranks);
 }
 
 }  // namespace scree

@@ -12,6 +12,7 @@ import time
 import xml.etree.ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import measured  # noqa: E402
 import results  # noqa: E402
 
 DONE, STOPPED = 0, 5
@@ -156,6 +157,9 @@ class Trials:
         print(f"{self.words.trials} trials, seed {self.words.seed}: "
               + ", ".join(f"{number} {what}" for what, number in sorted(self.counts.items()))
               + f"; {len(self.complaints)} complaints")
+        name, commit = pathlib.Path(sys.argv[0]).stem, measured.commit_of(self.words.program)
+        measured.note(f"trials/{name}, complaints", len(self.complaints), "complaints", at_most=0, commit=commit)
+        measured.note(f"trials/{name}, trials", self.words.trials, "trials", commit=commit)
         return 1 if self.complaints else 0
 
 

@@ -7,6 +7,7 @@
 
 #include "support/bars.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/models.hpp"
 #include "support/reference.hpp"
 #include "support/simulation_run.hpp"
@@ -24,7 +25,8 @@ void check_balance(const std::string& what, const Model& model, Real least_excha
                            run.exchanged());
   CAPTURE(what);
   CHECK(run.exchanged() > least_exchanged);
-  CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = kTruncation, .measured = 5.1e-9}));
+  CHECK(measured("ledger/smooth", "",
+                 keeps(run.balance_error() / run.exchanged(), {.promise = kTruncation, .measured = 5.1e-9})));
 }
 
 // A disc of 1 kg that the floor y = 0 already bears at half of its weight: it swings without leaving the

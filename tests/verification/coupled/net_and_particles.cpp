@@ -6,6 +6,7 @@
 
 #include "support/bars.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/reference.hpp"
 #include "support/simulation_run.hpp"
 
@@ -52,7 +53,7 @@ TEST_CASE("5.3 with 9 particles at h = 1e-5 follows the truth to 0.45 s") {
   std::cout << fmt::format(
       "5.3, N = 9, h = 1e-5: off by {:.2e} m; balance error {:.1e} J of {:.4g} J exchanged\n", largest,
       run.balance_error(), run.exchanged());
-  CHECK(keeps(largest, {.promise = kPhysical, .measured = 1.6e-6}));
+  CHECK(measured("net_9/position", "m", keeps(largest, {.promise = kPhysical, .measured = 1.6e-6})));
   CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = kBalance, .measured = 4e-7}));
 }
 
@@ -69,6 +70,7 @@ TEST_CASE("5.3 with 9 particles converges with second order through the first im
   std::cout << fmt::format("5.3, N = 9 at 0.43 s: off by {:.2e} m at h = 4e-5, order {:.3f}\n", coarse,
                            order);
   CAPTURE(coarse, fine);
+  CHECK(measured("net_9/order", "", in_range(order, 2 - kTruncationOrder, 2 + kTruncationOrder)));
   CHECK(keeps(order - 2, {.promise = kTruncationOrder, .measured = 0.009}));
 }
 

@@ -8,6 +8,7 @@
 
 #include "support/bars.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/reference.hpp"
 #include "support/simulation_run.hpp"
 
@@ -69,11 +70,12 @@ TEST_CASE("5.2 at h = 1e-5 follows the truth, and its energy does not rise") {
       "lowest; "
       "balance error {:.1e} J of {:.4g} J exchanged\n",
       error[0], error[1], error[2], rise.largest(), run.balance_error(), run.exchanged());
-  CHECK(error[0] < kPhysical070);
-  CHECK(keeps(error[1], {.promise = kPhysical080, .measured = 5e-5}));
-  CHECK(keeps(error[2], {.promise = kPhysical100, .measured = 3e-4}));
-  CHECK(rise.largest() < kIteration);
-  CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = kBalance, .measured = 1e-15}));
+  CHECK(measured("valley/0.7 s", "m", at_most(error[0], kPhysical070)));
+  CHECK(measured("valley/0.8 s", "m", keeps(error[1], {.promise = kPhysical080, .measured = 5e-5})));
+  CHECK(measured("valley/1.0 s", "m", keeps(error[2], {.promise = kPhysical100, .measured = 3e-4})));
+  CHECK(measured("valley/rise", "J", at_most(rise.largest(), kIteration)));
+  CHECK(measured("valley/balance", "",
+                 keeps(run.balance_error() / run.exchanged(), {.promise = kBalance, .measured = 1e-15})));
   const std::vector<Real>& end = energies.back();
   CHECK(keeps(run.ledger().dissipated_contacts / end[5] - 1, {.promise = 1e-3, .measured = 1.2e-4}));
 }
@@ -87,7 +89,7 @@ TEST_CASE("in 5.2 what the iteration leaves over is what the energy rises by") {
   run.run(std::ref(rise));
   std::cout << fmt::format(
       "5.2, h = 1e-5, residual tolerance 1e-10: energy rises by {:.1e} J above its lowest\n", rise.largest());
-  CHECK(rise.largest() < kIteration);
+  CHECK(measured("valley/tight rise", "J", at_most(rise.largest(), kIteration)));
 }
 
 TEST_CASE("5.2 with adaptive steps at the default tolerance") {
@@ -99,6 +101,7 @@ TEST_CASE("5.2 with adaptive steps at the default tolerance") {
   const Real error = distance(run, reference_rows("coll52_tensile.csv"));
   std::cout << fmt::format("5.2, adaptive: off by {:.2e} m at 1 s after {} steps\n", error,
                            run.counts().steps);
-  CHECK(keeps(error, {.promise = kPhysical, .measured = 1.3e-4}));
-  CHECK(run.counts().steps <= kMostSteps);
+  CHECK(measured("valley/adaptive", "m", keeps(error, {.promise = kPhysical, .measured = 1.3e-4})));
+  CHECK(measured("valley/adaptive steps", "",
+                 at_most(static_cast<Real>(run.counts().steps), static_cast<Real>(kMostSteps))));
 }

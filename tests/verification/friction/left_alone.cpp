@@ -4,6 +4,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
+#include "support/measured.hpp"
 #include "support/models.hpp"
 #include "support/particle_bits.hpp"
 #include "support/simulation_run.hpp"
@@ -85,7 +86,9 @@ TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1
   run.run();
   const ParticleLedger now = run.particle_ledger();
   CHECK(now.contacts == settled.contacts);
-  CHECK(keeps(largest_move(run.particles(), before) / (2 * kRadius), {.promise = 1e-9, .measured = 5e-12}));
+  CHECK(measured(
+      "left_alone/move", "diameters",
+      keeps(largest_move(run.particles(), before) / (2 * kRadius), {.promise = 1e-9, .measured = 5e-12})));
   CHECK(keeps(now.kinetic, {.promise = 1e-16, .measured = stirred}));  // a weight times its radius is 1e-2 J
   CHECK(now.contact_loss - settled.contact_loss < 1e-15);
 }

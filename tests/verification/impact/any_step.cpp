@@ -12,6 +12,7 @@
 
 #include "support/catch.hpp"
 #include "support/impacts.hpp"
+#include "support/measured.hpp"
 #include "support/reference.hpp"
 #include "support/simulation_run.hpp"
 
@@ -130,8 +131,8 @@ TEST_CASE("steps of a tenth and a twentieth of the contact time keep any impact 
     for (const Impact& impact : impacts(alpha)) {
       const Real touch = contact_time(impact);
       CAPTURE(name(impact));
-      CHECK(std::abs(measure(impact, touch / 10, 20).error) < kTenth);
-      CHECK(std::abs(measure(impact, touch / 20, 20).error) < kTwentieth);
+      CHECK(measured("any_step/tenth", "", at_most(measure(impact, touch / 10, 20).error, kTenth)));
+      CHECK(measured("any_step/twentieth", "", at_most(measure(impact, touch / 20, 20).error, kTwentieth)));
     }
   }
 }
@@ -141,8 +142,9 @@ TEST_CASE("explicit steps of a tenth and a twentieth of the contact time keep an
   for (const Impact& impact : impacts(0, ParticleIntegrator::velocity_verlet)) {
     const Real touch = contact_time(impact);
     CAPTURE(name(impact));
-    CHECK(std::abs(measure(impact, touch / 10, 100).error) < kTenth);
-    CHECK(std::abs(measure(impact, touch / 20, 100).error) < kTwentieth);
+    CHECK(measured("any_step/explicit tenth", "", at_most(measure(impact, touch / 10, 100).error, kTenth)));
+    CHECK(measured("any_step/explicit twentieth", "",
+                   at_most(measure(impact, touch / 20, 100).error, kTwentieth)));
   }
 }
 
@@ -151,7 +153,7 @@ TEST_CASE("adaptive steps keep any impact") {
   for (const Real alpha : kAlphas) {
     for (const Impact& impact : impacts(alpha)) {
       CAPTURE(name(impact));
-      CHECK(std::abs(measure(impact, {}, 8).error) < kPhysical);
+      CHECK(measured("any_step/adaptive", "", at_most(measure(impact, {}, 8).error, kPhysical)));
     }
   }
 }
@@ -181,7 +183,7 @@ TEST_CASE("steps of about a contact time err as input/choosing.md says") {
   }
 }
 
-// Its table: test_verification_impact "[table]".
+// The table of input/choosing.md: test_verification_impact "[table]", with SCREE_MEASURED.
 TEST_CASE("the table of impacts at any step", "[.][table]") {
   constexpr int kPhases = 100;
   std::vector<Impact> all;
@@ -196,6 +198,7 @@ TEST_CASE("the table of impacts at any step", "[.][table]") {
       const bool stable = implicit || share < 0.5;
       if (stable) {
         const Outcome found = measure(impact, share * contact_time(impact), kPhases);
+        note("impact_table/" + name(impact) + fmt::format("/{} T", share), "", std::abs(found.error));
         std::cout << fmt::format(" {:.2g} % |", 100 * found.error);
       } else {
         std::cout << " |";
@@ -203,6 +206,8 @@ TEST_CASE("the table of impacts at any step", "[.][table]") {
     }
     if (implicit) {
       const Outcome adaptive = measure(impact, {}, kPhases);
+      note("impact_table/" + name(impact) + "/adaptive", "", std::abs(adaptive.error));
+      note("impact_table/" + name(impact) + "/steps", "", std::round(adaptive.steps));
       std::cout << fmt::format(" {:.2g} % ({:.0f}) |", 100 * adaptive.error, adaptive.steps);
     }
     std::cout << std::endl;
@@ -222,8 +227,10 @@ TEST_CASE("what an undamped gas gains in 1,000 steps of a third of the contact t
       SimulationRun run(model);
       const Real start = run.ledger().mechanical();
       run.run();
+      const Real gain = run.ledger().mechanical() / start - 1;
+      note("impact_table/" + fmt::format("gas, n = {}, alpha = {}", exponent, alpha), "", gain);
       std::cout << fmt::format("gas, n = {}, alpha = {}: {:+.2g} % of its energy\n", exponent, alpha,
-                               100 * (run.ledger().mechanical() / start - 1));
+                               100 * gain);
     }
   }
 }

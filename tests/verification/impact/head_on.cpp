@@ -9,6 +9,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/impacts.hpp"
+#include "support/measured.hpp"
 #include "support/near.hpp"
 #include "support/simulation_run.hpp"
 
@@ -95,7 +96,7 @@ TEST_CASE("a resolved fixed step keeps the rebound") {
   for (const Obstacle obstacle : {Obstacle::wall, Obstacle::pinned_disc}) {
     const ReboundError error = rebound_error(obstacle, 1e-5, 50, [](Model&) {});
     report(obstacle == Obstacle::wall ? "wall, h = 1e-5" : "pinned disc, h = 1e-5", error);
-    CHECK(keeps(error.largest, {.promise = kPhysical, .measured = 8.4e-6}));
+    CHECK(measured("head_on/fixed", "", keeps(error.largest, {.promise = kPhysical, .measured = 8.4e-6})));
   }
 }
 
@@ -107,7 +108,7 @@ TEST_CASE("the adaptive step at its default tolerance keeps the rebound") {
       model.time.max_step = 1e-2;
     });
     report(obstacle == Obstacle::wall ? "wall, adaptive" : "pinned disc, adaptive", error);
-    CHECK(keeps(error.largest, {.promise = kPhysical, .measured = 2.5e-6}));
+    CHECK(measured("head_on/adaptive", "", keeps(error.largest, {.promise = kPhysical, .measured = 2.5e-6})));
   }
 }
 

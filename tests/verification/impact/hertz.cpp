@@ -10,6 +10,7 @@
 #include "physics/restitution.hpp"
 #include "support/bars.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
 #include "support/simulation_run.hpp"
@@ -148,9 +149,9 @@ TEST_CASE("Hertz impacts follow the closed forms") {
         const Real errors[] = {found.rebound / (known.restitution * known.speed) - 1,
                                found.duration / known.duration - 1,
                                found.largest_overlap / known.largest_overlap - 1};
-        CHECK(keeps(errors[0], {.promise = kTruncation, .measured = 1.3e-5}));
-        CHECK(keeps(errors[1], {.promise = kTruncation, .measured = 2.9e-6}));
-        CHECK(keeps(errors[2], {.promise = kTruncation, .measured = 1.2e-5}));
+        CHECK(measured("hertz/rebound", "", keeps(errors[0], {.promise = kTruncation, .measured = 1.3e-5})));
+        CHECK(measured("hertz/duration", "", keeps(errors[1], {.promise = kTruncation, .measured = 2.9e-6})));
+        CHECK(measured("hertz/overlap", "", keeps(errors[2], {.promise = kTruncation, .measured = 1.2e-5})));
         rebound = std::max(rebound, std::abs(errors[0])), duration = std::max(duration, std::abs(errors[1]));
         overlap = std::max(overlap, std::abs(errors[2]));
       }
@@ -184,7 +185,7 @@ TEST_CASE("adaptive steps keep the restitution of Hertz impacts, at any speed") 
         SimulationRun run(model);
         run.run();
         const Real error = -approach_of(run.particles()).rate / (restitution * speed) - 1;
-        CHECK(keeps(error, {.promise = kPhysical, .measured = 7.5e-4}));
+        CHECK(measured("hertz/adaptive", "", keeps(error, {.promise = kPhysical, .measured = 7.5e-4})));
         largest = std::max(largest, std::abs(error));
       }
   std::cout << fmt::format("Hertz, adaptive: rebound {:.1e}\n", largest);

@@ -8,6 +8,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/impacts.hpp"
+#include "support/measured.hpp"
 #include "support/simulation_run.hpp"
 
 using namespace scree;
@@ -72,13 +73,14 @@ Conserved changes(const std::vector<std::string>& overrides) {
 TEST_CASE("an oblique impact keeps momentum and, in velocity-verlet, angular momentum to round-off") {
   constexpr Real kRoundOff = 1e-13;
   const Conserved verlet = changes({"integrator.particles=velocity-verlet"});
-  CHECK(keeps(verlet.momentum, {.promise = kRoundOff, .measured = 2e-15}));
-  CHECK(keeps(verlet.angular_momentum, {.promise = kRoundOff, .measured = 2e-14}));
+  CHECK(measured("oblique/momentum", "", keeps(verlet.momentum, {.promise = kRoundOff, .measured = 2e-15})));
+  CHECK(measured("oblique/angular_momentum", "",
+                 keeps(verlet.angular_momentum, {.promise = kRoundOff, .measured = 2e-14})));
   for (const std::string hht_alpha : {"0.0", "-0.3"}) {
     const Conserved hht =
         changes({"integrator.hht_alpha=" + hht_alpha, "integrator.residual_tolerance=1e-13"});
     CAPTURE(hht_alpha, hht.momentum);
-    CHECK(keeps(hht.momentum, {.promise = kRoundOff, .measured = 3e-15}));
+    CHECK(measured("oblique/momentum", "", keeps(hht.momentum, {.promise = kRoundOff, .measured = 3e-15})));
   }
 }
 
@@ -97,7 +99,7 @@ TEST_CASE("an oblique impact keeps angular momentum to second order in hht") {
         "oblique impact, alpha = {}: angular momentum errs by {:.2e} at h = 8e-6, order {:.3f}\n", hht_alpha,
         coarse, order);
     CAPTURE(hht_alpha, coarse, fine);
-    CHECK(keeps(coarse, {.promise = kTruncation, .measured = 9.2e-7}));
-    CHECK(std::abs(order - 2) < kTruncationOrder);
+    CHECK(measured("oblique/hht", "", keeps(coarse, {.promise = kTruncation, .measured = 9.2e-7})));
+    CHECK(measured("oblique/order", "", in_range(order, 2 - kTruncationOrder, 2 + kTruncationOrder)));
   }
 }

@@ -7,6 +7,7 @@
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/impacts.hpp"
+#include "support/measured.hpp"
 #include "support/simulation_run.hpp"
 
 using namespace scree;
@@ -110,9 +111,12 @@ TEST_CASE("restitution and contact time follow the closed forms") {
         const Impact impact =
             floor_impact(impact_model(damping, tension, 1, integrator), exact.duration(), kSteps);
         CAPTURE(ratio, tension, integrator);
-        CHECK(keeps(impact.rebound / (exact.restitution() * kSpeed) - 1,
-                    {.promise = kTruncation, .measured = 2.5e-5}));
-        CHECK(keeps(impact.duration / exact.duration() - 1, {.promise = kTruncation, .measured = 8.3e-9}));
+        CHECK(measured("restitution/rebound", "",
+                       keeps(impact.rebound / (exact.restitution() * kSpeed) - 1,
+                             {.promise = kTruncation, .measured = 2.5e-5})));
+        CHECK(measured(
+            "restitution/duration", "",
+            keeps(impact.duration / exact.duration() - 1, {.promise = kTruncation, .measured = 8.3e-9})));
       }
     }
   }
@@ -131,10 +135,13 @@ TEST_CASE("an undamped impact with n = 1.5 follows the energy integral") {
   for (const std::string& integrator : integrators()) {
     const Impact impact = floor_impact(impact_model(0, true, 1.5, integrator), exact.duration, 5000);
     CAPTURE(integrator);
-    CHECK(keeps(impact.duration / exact.duration - 1, {.promise = kTruncation, .measured = 4.6e-8}));
+    CHECK(
+        measured("exponent/duration", "",
+                 keeps(impact.duration / exact.duration - 1, {.promise = kTruncation, .measured = 4.6e-8})));
     CHECK(keeps(impact.rebound / kSpeed - 1, {.promise = kTruncation, .measured = 3.7e-9}));
-    CHECK(keeps(impact.largest_overlap / exact.largest_overlap - 1,
-                {.promise = kTruncation, .measured = 5.9e-8}));
+    CHECK(measured("exponent/overlap", "",
+                   keeps(impact.largest_overlap / exact.largest_overlap - 1,
+                         {.promise = kTruncation, .measured = 5.9e-8})));
   }
 }
 

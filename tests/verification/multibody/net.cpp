@@ -6,6 +6,7 @@
 
 #include "support/bars.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/multibody_run.hpp"
 #include "support/near.hpp"
 #include "support/reference.hpp"
@@ -35,10 +36,12 @@ Real largest_error(Real hht_alpha, int steps_per_sample, const std::vector<std::
 }  // namespace
 
 TEST_CASE("the net follows the discrete HHT solution") {
-  CHECK(keeps(largest_error(0, 1, reference_rows("hht51_h1e-3_alpha_0.csv")),
-              {.promise = 1e-10, .measured = 3e-14}));
-  CHECK(keeps(largest_error(-0.3, 1, reference_rows("hht51_h1e-3_alpha_m030.csv")),
-              {.promise = 1e-10, .measured = 5e-14}));
+  CHECK(measured("net/discrete", "m",
+                 keeps(largest_error(0, 1, reference_rows("hht51_h1e-3_alpha_0.csv")),
+                       {.promise = 1e-10, .measured = 3e-14})));
+  CHECK(measured("net/discrete", "m",
+                 keeps(largest_error(-0.3, 1, reference_rows("hht51_h1e-3_alpha_m030.csv")),
+                       {.promise = 1e-10, .measured = 5e-14})));
 }
 
 TEST_CASE("the net's error against the truth is the method's, and of second order") {
@@ -55,9 +58,8 @@ TEST_CASE("the net's error against the truth is the method's, and of second orde
     const Real coarse = largest_error(hht_alpha, 1, truth), fine = largest_error(hht_alpha, 2, truth);
     const Real order = std::log2(coarse / fine);
     CAPTURE(hht_alpha, coarse, fine, order);
-    CHECK(near(coarse, error, {.absolute = kDigits}));
-    CHECK(order > 1.98);
-    CHECK(order < 2.02);
+    CHECK(measured("net/error", "m", near(coarse, error, {.absolute = kDigits})));
+    CHECK(measured("net/order", "", in_range(order, 1.98, 2.02)));
   }
 }
 
@@ -80,16 +82,19 @@ TEST_CASE("the net comes to rest in the static shape") {
   for (const std::vector<Real>& row : reference_rows("chain_static.csv")) {
     const int body = static_cast<int>(row[0]);
     CAPTURE(body);
-    CHECK(keeps(run.x(body) - row[1], {.promise = 1e-8, .measured = 1e-15}));
-    CHECK(keeps(run.y(body) - row[2], {.promise = 1e-8, .measured = 1e-15}));
+    CHECK(measured("net/rest", "m", keeps(run.x(body) - row[1], {.promise = 1e-8, .measured = 1e-15})));
+    CHECK(measured("net/rest", "m", keeps(run.y(body) - row[2], {.promise = 1e-8, .measured = 1e-15})));
   }
-  CHECK(keeps(-0.6 - run.y(9) - 0.1830828390810137, {.promise = 1e-8, .measured = 1e-15}));
+  CHECK(measured("net/rest", "m",
+                 keeps(-0.6 - run.y(9) - 0.1830828390810137, {.promise = 1e-8, .measured = 1e-15})));
   const auto reactions = run.multibody.reactions(run.state, run.time);
   REQUIRE(reactions.size() == 2);
   constexpr Real kPull = 238.226060665;  // [N]
   CHECK(reactions[0].joint == "pin.0");
-  CHECK(keeps(reactions[0].force.x / kPull + 1, {.promise = 1e-8, .measured = 2e-14}));
-  CHECK(keeps(reactions[1].force.x / kPull - 1, {.promise = 1e-8, .measured = 4e-15}));
+  CHECK(measured("net/pull", "",
+                 keeps(reactions[0].force.x / kPull + 1, {.promise = 1e-8, .measured = 2e-14})));
+  CHECK(measured("net/pull", "",
+                 keeps(reactions[1].force.x / kPull - 1, {.promise = 1e-8, .measured = 4e-15})));
   // Each pin carries half of the weight.
   CHECK(keeps((reactions[0].force.y - 10 * kGravity) / kPull, {.promise = 1e-8, .measured = 1e-15}));
 }

@@ -4,6 +4,7 @@
 
 #include "output/checkpoint.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/simulation_run.hpp"
 #include "support/state_bits.hpp"
 #include "unit/output/scratch.hpp"
@@ -63,11 +64,12 @@ Result interrupted_run(const Model& model, Real share) {
 }
 
 void check_same(const Result& a, const Result& b) {
-  CHECK(differing_arrays(a.state, b.state) == "");
+  CHECK(measured("restart/state", "bits", BitForBit{differing_arrays(a.state, b.state)}));
   REQUIRE(a.rows.size() == b.rows.size());
-  std::size_t same = 0;
-  while (same < a.rows.size() && same_bits(a.rows[same], b.rows[same])) ++same;
-  CHECK(same == a.rows.size());
+  std::string differing;
+  for (std::size_t row = 0; row < a.rows.size(); ++row)
+    if (!same_bits(a.rows[row], b.rows[row])) differing += fmt::format("row {} ", row);
+  CHECK(measured("restart/history", "bits", BitForBit{differing}));
 }
 
 }  // namespace

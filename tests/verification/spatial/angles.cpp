@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/near.hpp"
 #include "support/spatial_run.hpp"
 
@@ -71,8 +72,8 @@ TEST_CASE("an angle counts fifty turns and back, and goes on where it was left")
     if (i == 699) left = run.state;
     const std::vector<JointReading> c = readings(run);
     const Real angle = amplitude * std::sin(M_PI / 2 * run.time);
-    REQUIRE(near(c.at(0).value, angle, {.absolute = 1e-9}));
-    REQUIRE(near(c.at(1).value, 3 * angle, {.absolute = 3e-9}));
+    REQUIRE(measured("angles/turns", "rad", near(c.at(0).value, angle, {.absolute = 1e-9})));
+    REQUIRE(measured("angles/geared turns", "rad", near(c.at(1).value, 3 * angle, {.absolute = 3e-9})));
     REQUIRE(near(c.at(1).rate, 3 * c.at(0).rate, {.absolute = 1e-3}));
   }
   MultibodyRun again(model, 1e-11);
@@ -115,7 +116,7 @@ TEST_CASE("a double Hooke shaft turns as its closed form says") {
     REQUIRE(c.size() == 7);
     REQUIRE(near(c[0].value, a, {.absolute = 1e-10}));
     REQUIRE(c[5].coordinate == JointCoordinate::angle);
-    REQUIRE(near(c[5].value, a, {.absolute = 1e-9}));
+    REQUIRE(measured("angles/shaft", "rad", near(c[5].value, a, {.absolute = 1e-9})));
     REQUIRE(near(c[6].value, 0, {.absolute = 1e-10}));
     const Vec3 arm = rotation_matrix(run.multibody.motion(run.state)[1].orientation) * across;
     const Real b = std::atan2(dot(arm, up), dot(arm, across));

@@ -7,6 +7,7 @@
 
 #include "physics/spatial_rotation.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
 #include "support/simulation_run.hpp"
@@ -65,10 +66,11 @@ Outcome outcome(const std::string& particles, const Quaternion* frame) {
 }
 
 void check_same(const Outcome& one, const Outcome& other, Real bound) {
-  CHECK(near(one.spin, other.spin, {.relative = bound}));
-  CHECK(near(one.velocity, other.velocity, {.relative = bound}));
-  CHECK(near(one.grain_spin, other.grain_spin, {.relative = bound}));
-  CHECK(near(one.dissipated, other.dissipated, {.relative = bound}));
+  const Within allowed{.relative = bound};
+  CHECK(measured("plate/motion", "", near(one.spin, other.spin, allowed)));
+  CHECK(measured("plate/motion", "", near(one.velocity, other.velocity, allowed)));
+  CHECK(measured("plate/motion", "", near(one.grain_spin, other.grain_spin, allowed)));
+  CHECK(measured("plate/motion", "", near(one.dissipated, other.dissipated, allowed)));
 }
 
 }  // namespace

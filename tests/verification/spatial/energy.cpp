@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/near.hpp"
 #include "support/spatial_run.hpp"
 
@@ -112,11 +113,10 @@ void check_order(const Model& model, Real dissipated, Real driven, Real stored) 
   const Real first = before.gap;
   for (const Real h : {1e-3, 5e-4, 2.5e-4}) {
     const Books books = books_of(model, h);
-    CHECK(before.gap / books.gap > 3.6);
-    CHECK(before.gap / books.gap < 4.4);
+    CHECK(measured("crane/halved", "", in_range(before.gap / books.gap, 3.6, 4.4)));
     before = books;
   }
-  CHECK(std::log2(first / before.gap) / 3 > 1.95);
+  CHECK(measured("crane/order", "", at_least(std::log2(first / before.gap) / 3, 1.95)));
   CHECK(before.gap < 1e-5);
   CHECK(before.dissipated >= dissipated);
   CHECK(before.driven >= driven);

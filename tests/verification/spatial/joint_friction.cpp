@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/near.hpp"
 #include "support/spatial_run.hpp"
 
@@ -111,10 +112,8 @@ TEST_CASE("a hinge that rubs brakes its wheel evenly through fourteen turns to i
       effort = std::max(effort, std::abs(now.effort + kTorque));
       loss = std::max(loss, std::abs(run.state.dissipated - kTorque * now.coordinate));
     }
-    CHECK(angle < 1e-9);
-    CHECK(rate < 1e-9);
-    CHECK(effort < 1e-9);
-    CHECK(loss < 1e-9);
+    for (const Real error : {angle, rate, effort, loss})
+      CHECK(measured("hinge_friction/braked", "", at_most(error, 1e-9)));
     // The last rate before the stop and the first one after it, when the spring lets go.
     CHECK(near(run.time - h * now.rate / (now.rate - before.rate), kStop, {.absolute = 1e-2 * h}));
     // It comes to rest where the spring is empty.
@@ -145,8 +144,8 @@ TEST_CASE("from an empty spring on a wheel stops when and where it must, to seco
     const Errors coarse = worst(1e-2), fine = worst(1e-2 / 16);
     CHECK(fine.time < 3e-6);
     CHECK(fine.angle < 6e-5);
-    CHECK(std::log2(coarse.time / fine.time) / 4 > 1.7);
-    CHECK(std::log2(coarse.angle / fine.angle) / 4 > 1.7);
+    for (const Real ratio : {coarse.time / fine.time, coarse.angle / fine.angle})
+      CHECK(measured("hinge_friction/stop order", "", at_least(std::log2(ratio) / 4, 1.7)));
   }
 }
 
@@ -188,10 +187,8 @@ TEST_CASE("an unbalanced wheel is braked by the force that it needs to go round,
   const Errors coarse = errors_at(1e-2), fine = errors_at(5e-3);
   CHECK(fine.rate < 5e-3);
   CHECK(fine.angle < 4e-2);
-  for (const Real ratio : {coarse.rate / fine.rate, coarse.angle / fine.angle, coarse.effort / fine.effort}) {
-    CHECK(ratio > 3.8);
-    CHECK(ratio < 4.2);
-  }
+  for (const Real ratio : {coarse.rate / fine.rate, coarse.angle / fine.angle, coarse.effort / fine.effort})
+    CHECK(measured("hinge_friction/halved", "", in_range(ratio, 3.8, 4.2)));
 }
 
 // J c'' = T - (lever + p) F with p the lead per radian and F = m (g + p c'') on the thread: what friction

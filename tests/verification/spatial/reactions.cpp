@@ -12,6 +12,7 @@
 #include "deck/choices.hpp"
 #include "model/joint_coordinates.hpp"
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/near.hpp"
 #include "support/spatial_run.hpp"
 
@@ -260,16 +261,14 @@ Gaps gaps_of(const Model& model, Real h) {
 void check_gaps(const Model& model) {
   const Gaps coarse = gaps_of(model, 2e-3), fine = gaps_of(model, 1e-3);
   CHECK(fine.most > 0.8);
-  CHECK(fine.force < 1e-12 * std::max(Real(1), fine.most));
-  CHECK(fine.torque < 1e-12 * std::max(Real(1), fine.most));
+  for (const Real gap : {fine.force, fine.torque})
+    CHECK(measured("reactions/balance", "", at_most(gap / std::max(Real(1), fine.most), 1e-12)));
   CHECK(fine.carried < 1e-12);
   // The velocities that the positions' constraints leave err with second order.
   CHECK(fine.power < 4e-4 * fine.most);
   CHECK((coarse.power / fine.power > 3.8 || coarse.power < 1e-10));
-  for (const Real ratio : {coarse.impulse / fine.impulse, coarse.swing / fine.swing}) {
-    CHECK(ratio > 3.9);
-    CHECK(ratio < 4.1);
-  }
+  for (const Real ratio : {coarse.impulse / fine.impulse, coarse.swing / fine.swing})
+    CHECK(measured("reactions/halved", "", in_range(ratio, 3.9, 4.1)));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/measured.hpp"
 #include "support/near.hpp"
 #include "support/spatial_run.hpp"
 
@@ -62,8 +63,7 @@ TEST_CASE("spatial mechanisms converge to their references with second order") {
         CAPTURE(c.name, alpha, what, coarse.*error, fine.*error);
         if (alpha == Real(-0.1)) CHECK(coarse.*error < bound);
         const Real order = std::log2(coarse.*error / fine.*error);
-        CHECK(order > 1.95);
-        CHECK(order < 2.05);
+        CHECK(measured("spatial/order", "", in_range(order, 1.95, 2.05)));
       };
       if (c.position > 0) {
         check("position", &SpatialErrors::position, c.position);
@@ -87,10 +87,8 @@ TEST_CASE("discrete solutions of the method are met") {
     CAPTURE(table);
     model.integrator.corrected_start = false;
     const SpatialErrors errors = spatial_errors(model, table, 1e-3);
-    CHECK(errors.position < kRoundOff);
-    CHECK(errors.rotation < kRoundOff);
-    CHECK(errors.velocity < kRoundOff);
-    CHECK(errors.spin < kRoundOff);
+    for (const Real error : {errors.position, errors.rotation, errors.velocity, errors.spin})
+      CHECK(measured("spatial/discrete", "", at_most(error, kRoundOff)));
   };
   check(heavy_top(-0.1), "hht_heavy_top.csv");
   check(double_spherical(-0.3), "hht_double_spherical.csv");

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Makes the tables of what the tests measured, from tests/verification/measured.csv after tests/verification/tables.toml.
+
+    SCREE_MEASURED=FOLDER build/release/tests/test_verification_impact      # leaves what it measured in FOLDER
+    python3 tests/support/measured.py --merge tests/verification/measured.csv FOLDER
+    tests/verification/table.py [--check]
+    tests/verification/table.py --demands FOLDER
+
+--check writes nothing, and fails where a page is not what the data give, a row of the data is in no table, or no test
+writes it. --demands fails where tests, whose rows are in FOLDER, demand something else than the data say, or write other
+keys."""
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/support"))
+import measured  # noqa: E402
+import tables  # noqa: E402
+
+DATA, LAYOUT = "tests/verification/measured.csv", "tests/verification/tables.toml"
+SOURCES = ["tests/verification", "tests/unit", "tests/trials"]
+SKIPPED = 4
+
+
+def other_demands(rows, folder):
+    """What the files of a folder demand and write otherwise than the rows of the data, a line each."""
+    known = {measured.identity(row): row for row in rows}
+    problems = []
+    for path in sorted(folder.glob("*.csv")):
+        found = measured.read(path)
+        for row in found:
+            kept = known.get(measured.identity(row), known.get((row["key"], "cpu")))
+            if kept is None:
+                problems.append(f"{row['key']}: {row['command']} writes it, and {DATA} has no such row")
+                continue
+            for name in ("unit", "at_least", "at_most"):
+                if row[name] != kept[name]:
+                    problems.append(f"{row['key']}: {name} is {row[name] or 'not there'} in {row['command']}, "
+                                    f"{kept[name] or 'not there'} in {DATA}")
+        # Tests that are run by name alone, as [table], are no part of a program's own run.
+        here = {row["key"] for row in found}
+        problems += [f"{row['key']}: {row['command']} no longer writes it" for row in rows
+                     if (row["command"], row["backend"]) == (found[0]["command"], found[0]["backend"])
+                     and row["key"] not in here]
+    return problems
+
+
+def main():
+    if sys.argv[1:2] != ["--demands"]:
+        return tables.run(__doc__, ROOT, LAYOUT, DATA, SOURCES, digits=2)
+    folder = pathlib.Path(sys.argv[2])
+    if not any(folder.glob("*.csv")):
+        print(f"skipped: no test has left rows in {folder}")
+        return SKIPPED
+    problems = other_demands(measured.read(ROOT / DATA), folder)
+    print("\n".join(problems))
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
