@@ -194,7 +194,8 @@ std::string title_of(const Options& options) {
         options.rebuild > 0 ? fmt::format(", list every {} steps", options.rebuild) : ", list where needed";
   if (options.friction > 0) title += fmt::format(", friction {}", options.friction);
   if (!options.ranks.alone()) title += fmt::format(", {} ranks", options.ranks.size());
-  return title + (options.wall && options.ranks.alone() && !options.on_gpu() ? ", wall" : "");
+  if (options.wall && options.ranks.alone() && !options.on_gpu()) title += ", wall";
+  return title + (options.per_rank ? ", per rank" : "");
 }
 
 void measure_all(const Options& options) {

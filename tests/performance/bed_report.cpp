@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <vector>
 
 #include "base/error.hpp"
@@ -26,13 +27,20 @@ struct Halo {
   double bytes = 0, seconds = 0, exposed = 0;  // of the rank that waits longest
 };
 
+// A step's time, in the unit in which it has few digits.
+void note_step(const std::string& key, const Measured& m) {
+  const double unit = m.seconds < 1e-3 ? 1e6 : 1e3;
+  note_samples("bed/" + key + "step", m.seconds < 1e-3 ? "us" : "ms", unit * m.seconds, unit * m.fastest,
+               unit * m.slowest);
+}
+
 // The numbers of documents. memory: of all ranks, over the particles [B].
 void note_numbers(const std::string& title, const Measured& m, double memory, const Halo& halo) {
   const std::string row = title + (m.bed.empty() ? "" : ", " + m.bed),
                     key = row + fmt::format("/{} ", m.size > 0 ? m.size : m.particles);
   const auto rate = [&](double seconds) { return static_cast<double>(m.particles) / seconds; };
   note_samples("bed/" + key + "rate", "particle-steps/s", rate(m.seconds), rate(m.slowest), rate(m.fastest));
-  note_samples("bed/" + key + "step", "us", 1e6 * m.seconds, 1e6 * m.fastest, 1e6 * m.slowest);
+  note_step(key, m);
   note("bed/" + key + "memory", "B", memory);
   if (m.newton > 0) note("bed/" + key + "Newton", "", m.newton), note("bed/" + key + "linear", "", m.linear);
   if (m.bodies > 0) note("bed/" + key + "contacts", "", m.contacts);
@@ -40,6 +48,15 @@ void note_numbers(const std::string& title, const Measured& m, double memory, co
   note("bed/" + key + "halo", "MB", 1e-6 * halo.bytes);
   note("bed/" + key + "halo update", "us", 1e6 * halo.seconds);
   note("bed/" + key + "hidden", "%", 100 * (1 - halo.exposed / halo.seconds));
+}
+
+// Of one rank, without bodies: each stage's share of what all took.
+void note_stages(const std::string& title, const Measured& m,
+                 const std::array<double, static_cast<int>(Stage::count)>& seconds) {
+  const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  for (std::size_t s = 0; s < seconds.size() && m.bed.empty(); ++s)
+    if (seconds[s] > 0.01 * all)
+      note("bed/" + title + fmt::format("/{} {}", m.particles, kStageNames[s]), "%", 100 * seconds[s] / all);
 }
 
 // Largest memory that the process had so far [B].
@@ -90,6 +107,7 @@ void BedReport::add(const Measured& measured, const StageTimers& before, const S
         halo.seconds = r.halo.seconds, halo.exposed = r.halo.exposed_seconds;
     }
     note_numbers(title_, measured, memory / static_cast<double>(measured.particles), halo);
+    note_stages(title_, measured, all.front().stage_seconds);
     if (path_.empty()) return;
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
       const OfRank& r = all[rank];

@@ -95,10 +95,10 @@ def main():
             record = run(arguments.scree, folder / "moving.toml", folder / str(ranks), arguments.backend, ranks,
                          arguments.mpirun)
             counts, measures = record["counts"], record["measures"]
-            key = f"moving/{arguments.backend}, {arguments.particles:g} particles/{ranks} ranks"
+            size = f"{arguments.backend}, {arguments.particles:g} particles"
             for name, value, unit in (("step", 1e3 * step_seconds(record), "ms"), ("lists", counts["list_builds"], ""),
                                       ("steps", counts["steps"], ""), ("moved", counts["migrated"], "")):
-                measured.note(f"{key} {name}", value, unit, record=record)
+                measured.note(f"moving/{size}/{ranks} ranks {name}", value, unit, record=record)
             print(f"| {ranks} | {counts['particles']:,} | {counts['steps']:,} | "
                   f"{1e3 * step_seconds(record):.4g} | {counts['list_builds']:,} | "
                   f"{counts['migrated']:,} | {counts['rebalances']:,} | {100 * measures['largest_imbalance']:.0f} % | "

@@ -19,15 +19,15 @@ import measured  # noqa: E402
 HOLE = 1e-2
 
 
-def title(run):
-    """Of a run in words, without its size and ranks."""
-    return ", ".join([run.backend, "spheres" if run.dimension == "3" else "discs",
-                      "implicit" if run.integrator == "hht" else "explicit", run.precision])
-
-
-def note(run, key, value, unit):
-    """Of all that is in a report the numbers that others than bed's are."""
-    measured.note(f"ranks/{title(run)}, {run.ranks} ranks/{run.particles} {key}", value, unit, commit=run.commit,
+def note(run, runs, key, value, unit):
+    """What bed does not note itself. runs: those of the same kind, of which some may be with bodies."""
+    words = [run.backend, "spheres" if run.dimension == "3" else "discs",
+             "implicit" if run.integrator == "hht" else "explicit", run.precision, f"{run.ranks} ranks"]
+    if run.bodies:
+        words.append(f"{run.bodies} bodies")
+    elif any(other.bodies and other.particles == run.particles for other in runs):
+        words.append("a hole")
+    measured.note(f"ranks/{', '.join(words)}/{run.particles:.3g} {key}", value, unit, commit=run.commit,
                   machine=run.device, backend=run.backend)
 
 
@@ -82,14 +82,14 @@ def scalings(runs):
     return out
 
 
-def stages(run):
+def stages(run, alike):
     names = [stage for stage in rank_runs.STAGES if run.largest(stage) > 1e-3 * run.mean]
     columns = ["rank", "particles", "ghosts", *(f"{name} [us]" for name in names), "other [us]"]
     rows = []
     for rank in run.of_rank:
         times = [rank[name] for name in names]
         for name in names:
-            note(run, f"{run.bodies} bodies, rank {rank['rank']}, {name}", 1e6 * rank[name], "us")
+            note(run, alike, f"{name}, rank {rank['rank']}", 1e6 * rank[name], "us")
         rows.append([str(rank["rank"]), f"{rank['owned']:,}", f"{rank['ghosts']:,}", *(f"{1e6 * t:.4g}" for t in times),
                      f"{1e6 * (run.mean - sum(times)):.4g}"])
     return table(columns, rows)
@@ -111,7 +111,7 @@ def bodies(runs):
         row = [str(run.ranks), f"{run.particles:,}", str(run.bodies), f"{run.contacts:.1f}",
                f"{1e3 * run.seconds_per_step:.4g}", steps_per_list(run), f"{1e6 * run.of_rank[0]['mbs_correct']:.4g}"]
         for what, other in (("hole", hole[0]), ("plain bed", plain[0])):
-            note(run, f"{run.bodies} bodies, longer than the {what}",
+            note(run, runs, f"longer than the {what}",
                  100 * (run.seconds_per_step / other.seconds_per_step - 1), "%")
             row += [f"{1e3 * other.seconds_per_step:.4g}", steps_per_list(other),
                     f"{100 * (run.seconds_per_step / other.seconds_per_step - 1):.1f} %"]
@@ -132,7 +132,7 @@ def report(runs):
                 out.append(f"{kind} scaling, {size:,} particles{per_rank}, {count} bodies:\n")
                 out.append(table(COLUMNS, [row(*entry) for entry in group]))
                 for run, efficiency in group:
-                    note(run, f"{kind.lower()} efficiency, {count} bodies", 100 * efficiency, "%")
+                    note(run, alike, f"{kind.lower()} efficiency", 100 * efficiency, "%")
         if rows := bodies(alike):
             out.append("What bodies cost:\n")
             out.append(table(["ranks", "particles", "bodies", "their contacts", "ms per step", "steps per list",
@@ -142,7 +142,7 @@ def report(runs):
         for run in alike:
             out.append(f"Stages per step, {run.ranks} rank(s), {run.particles:,} particles, {run.bodies} bodies, "
                        f"{run.mean * 1e6:.4g} us per step (mean):\n")
-            out.append(stages(run))
+            out.append(stages(run, alike))
     return "\n".join(out)
 
 

@@ -26,6 +26,13 @@ net_900() {
   python3 tests/support/measured.py "table4_900/$name" "$(printf '%s\n' "${cpu[@]}" | sort -n | sed -n 2p)" s \
     --least "$(printf '%s\n' "${cpu[@]}" | sort -n | head -1)" --most "$(printf '%s\n' "${cpu[@]}" | sort -n | tail -1)" \
     --record "$results/run/run_record.json" --command run.sh
+  local kind
+  for kind in newton linear; do
+    python3 tests/support/measured.py "table4_900/$name, $kind" "$(python3 -c 'import json, sys
+counts = json.load(open(sys.argv[1]))["counts"]
+print("%.3g" % (counts[sys.argv[2] + "_iterations"] / counts["steps"]))' "$results/run/run_record.json" "$kind")" "" \
+      --record "$results/run/run_record.json" --command run.sh
+  done
 }
 net_900 "implicit HHT, h = 1e-3" --set time.step=1e-3
 explicit=(--set integrator.particles=velocity-verlet)

@@ -294,20 +294,15 @@ def limits(model, weak, totals):
                          ("the limit nowhere" if at is None else f"the limit from {at:,} rank(s) on"))
         for total in totals:
             at, best = model.limit(bodies, lambda p: total / p), model.fastest(bodies, total)
-            note(f"{total:.0f} particles, {bodies} bodies", at, best, 1 / model.step(total / best, best, bodies))
+            measured.note(f"scaling_model/{total:.2g} particles, {bodies} bodies/limit", at or "", "GPUs")
+            measured.note(f"scaling_model/{total:.2g} particles, {bodies} bodies/fastest", best, "GPUs")
+            measured.note(f"scaling_model/{total:.2g} particles, {bodies} bodies/rate",
+                          float(1 / model.step(total / best, best, bodies)), "steps/s")
             where = "nowhere" if at is None else f"from {at:,} rank(s) on ({count(total / at)} particles per rank)"
             lines.append(f"- {bodies:,} bodies, {count(total)} particles in all: the limit {where}; most steps per "
                          f"second, {1 / model.step(total / best, best, bodies):,.4g}, on {best:,} rank(s) "
                          f"({count(total / best)} particles per rank)")
     return lines
-
-
-def note(case, limit, fastest, rate):
-    """limit: GPUs from where on rank 0 is it, None where nowhere; fastest: those with the most steps per second."""
-    if limit is not None:
-        measured.note(f"scaling_model/{case}/limit", limit, "GPUs")
-    measured.note(f"scaling_model/{case}/fastest", fastest, "GPUs")
-    measured.note(f"scaling_model/{case}/rate", float(rate), "steps/s")
 
 
 def plot(path, model, rows, runs, weak, totals):
@@ -380,6 +375,10 @@ def main():
     network = Network(int(arguments.per_host), arguments.network_latency, arguments.network_bandwidth)
     model = fit(runs, chain, arguments.iterations, network)
     rows = predictions(model, arguments.weak, arguments.strong)
+    measured.note("scaling_model/a message", 1e6 * model.terms["per_message"], "us")
+    measured.note("scaling_model/exchange with a rank", 1e6 * model.coupling_per_rank, "us")
+    measured.note(f"scaling_model/{arguments.weak:.2g} particles each, 2 ranks",
+                  100 * model.step(arguments.weak, 1, 0) / model.step(arguments.weak, 2, 0), "%")
     text = markdown(model, rows, runs, arguments.weak, arguments.strong)
     arguments.out.mkdir(parents=True, exist_ok=True)
     (arguments.out / "scaling_model.md").write_text(text)

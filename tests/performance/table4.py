@@ -259,6 +259,7 @@ def write_markdown(folder, rows):
     for method in METHODS:
         n = crossover(series.get((method, "cpu"), []), series.get((method, "cuda"), []))
         if n:
+            measured.note(f"table4/{method}/crossover", float(n), "particles", machine=measured.gpu(), backend="cuda")
             lines.append(f"The GPU is the faster from about N = {n:,.0f} on, {method}.")
     lines.append(f"The paper at N = 900: {PAPER_TIMES['cpu']} s on its CPU, {PAPER_TIMES['cuda']} s on its GPU.")
     failed = [row for row in rows if row["status"] != "done"]

@@ -25,7 +25,7 @@ import sys
 # median of times), empty where both ends do. least, most: of all that was found. at_least, at_most: what was demanded.
 COLUMNS = ["key", "value", "unit", "least", "most", "at_least", "at_most", "commit", "machine", "backend", "date",
            "command"]
-MUST = ("key", "commit", "machine", "backend", "date", "command")
+MUST = ("key", "commit", "machine", "backend", "command")
 NUMBERS = ("value", "least", "most", "at_least", "at_most")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -126,7 +126,7 @@ def command_line():
 
 
 def note(key, value, unit="", *, record=None, **others):
-    """Adds a row to the folder SCREE_MEASURED. record: of the run, as a dictionary; others: of COLUMNS, numbers or text."""
+    """Adds a row to the folder SCREE_MEASURED. record: of the run, as a dictionary; others: of COLUMNS."""
     folder = os.environ.get("SCREE_MEASURED")
     if not folder:
         return

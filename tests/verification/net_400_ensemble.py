@@ -160,7 +160,8 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for wrong in WRONG if arguments.wrong else (None,):
             seeds = range(arguments.seed, arguments.seed + arguments.runs)
-            lines, failures, apart, spread = judge(list(pool.map(lambda seed, wrong=wrong: energies(arguments, seed, wrong), seeds)))
+            runs = list(pool.map(lambda seed, wrong=wrong: energies(arguments, seed, wrong), seeds))
+            lines, failures, apart, spread = judge(runs)
             passed = passed and (failures > 0) == (wrong is not None)
             if wrong:
                 lines = [f"{wrong} larger by a tenth: {failures} of {len(lines) - 1} quantities differ"]

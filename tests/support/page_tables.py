@@ -1,8 +1,9 @@
 """Tables of documents, made of the rows that measured.py keeps. A layout (TOML) says per table:
 
-    unshown = ["more/"]       # first of all, if at all: rows whose keys begin so may be in no table
+    unshown = ["more/"]       # first of all, if at all: rows whose keys begin so may be in no table,
+    kept = ["earlier/"]       # or be written by nothing any longer
     [NAME]
-    page = "tests/verification/README.md"    # has <!-- table NAME --> and <!-- end of table NAME -->, what is between is made
+    page = "input/choosing.md"      # has <!-- table NAME --> and <!-- end of table NAME -->; what is between is made
     columns = ["case", "what is compared", "demanded", "measured"]       # one more is added: commit and machine
     cells = ["{$/T} ({$/T steps})"]          # of all rows, the columns behind the title's; "$": each of the row's parts
     [[NAME.rows]]
@@ -11,8 +12,9 @@
     cells = ["{net/error}, order {net/order|3}"]     # in place of the table's
     shows = "{net/error}"                    # makes two cells of it: what was demanded, and what was measured
 
-{KEY} is the number of the row with this key and its unit; {KEY|FORMAT} in another form: % (percent of one), a number of
-digits, "number" (without its unit), or, behind @, a backend other than the first that there is ({KEY|@cuda}).
+{KEY} is the number of the row with this key and its unit; {KEY|FORMAT} in another form: % (percent of one), a number
+of digits, "number" (without its unit), "over OTHER" (how many times the number of the row with the key OTHER) or "above
+OTHER" (by how many percent more).
 """
 import argparse
 import re
@@ -20,6 +22,7 @@ import tomllib
 
 import measured
 
+SCALES = {"us": 1e-6, "ms": 1e-3}  # other units are those of both numbers
 PLACE = re.compile(r"\{([^{}|]+)(?:\|([^{}]*))?\}")
 # What writes rows: the key, or what is written out of it in front of what is put in.
 WRITER = re.compile(r"\b(?:measured(?:\.py\"?)?|note|note_samples)[\s(]+f?\"([^\"{$]+)(.)")
@@ -45,18 +48,16 @@ class Format:
     """Of {KEY|FORMAT}; digits: where it names none, None for those that were given."""
 
     def __init__(self, text, digits):
-        self.backend, self.percent, self.unit, self.digits = None, False, True, digits
+        self.percent, self.unit, self.digits = False, True, digits
         for word in (text or "").split():
-            if word.startswith("@"):
-                self.backend = word[1:]
-            elif word == "%":
+            if word == "%":
                 self.percent = True
             elif word == "number":
                 self.unit = False
             elif word.isdigit():
                 self.digits = int(word)
             else:
-                raise SystemExit(f"error: the form {text}; allowed: %, number, digits, @BACKEND")
+                raise SystemExit(f"error: the form {text}; allowed: %, number, digits, over KEY, above KEY")
 
     def number(self, value, least_digits=0):
         if self.percent:
@@ -89,31 +90,37 @@ class Tables:
     """layout: as above; rows: of measured.read(); digits: of measured numbers."""
 
     def __init__(self, layout, rows, digits=None):
-        self.unshown = tuple(layout.pop("unshown", ()))
+        self.unshown, self.kept = tuple(layout.pop("unshown", ())), tuple(layout.pop("kept", ()))
         self.layout, self.digits = layout, digits
         self.rows, self.used = {}, set()
         for row in rows:
             self.rows.setdefault(row["key"], {})[row["backend"]] = row
         self.problems = []
 
-    def find(self, key, form):
-        of_backend = self.rows.get(key)
-        if of_backend is None or form.backend not in (None, *of_backend):
-            self.problems.append(f"{key}: no such row" + (f" of {form.backend}" if of_backend else ""))
-            return None
-        row = of_backend[form.backend] if form.backend else next(iter(of_backend.values()))
+    def find(self, key):
+        """Its row, of the first backend that there is."""
         self.used.add(key)
-        return row
+        if key not in self.rows:
+            self.problems.append(f"{key}: no such row")
+            return None
+        return next(iter(self.rows[key].values()))
+
+    def compared(self, how, row, other):
+        """Of two rows in the same or in related units."""
+        ratio = float(row["value"]) * SCALES.get(row["unit"], 1) / float(other["value"]) / SCALES.get(other["unit"], 1)
+        return f"{round_to(ratio, 2 if ratio < 10 else 3)}" if how == "over" else f"{100 * (ratio - 1):+.2g} %"
 
     def fill(self, template, found, what="measured"):
         """The text, with its places filled; the rows go into `found`."""
         def put(match):
-            form = Format(match[2], self.digits)
-            row = self.find(match[1], form)
-            if row is None:
+            comparison = re.fullmatch(r"(over|above) (.*)", match[2] or "")
+            rows = [self.find(key) for key in (match[1], *(comparison.groups()[1:] if comparison else ()))]
+            if None in rows:
                 return "?"
-            found.append(row)
-            return getattr(form, what)(row)
+            found.extend(rows)
+            if comparison:
+                return self.compared(comparison[1], *rows)
+            return getattr(Format(match[2], self.digits), what)(*rows)
         return PLACE.sub(put, template)
 
     def cells(self, table, row):
@@ -125,8 +132,10 @@ class Tables:
             texts = ["; ".join(dict.fromkeys(self.fill(cell.replace("$", part), found) for part in parts))
                      for cell in row.get("cells", table.get("cells", []))]
         titles = [self.fill(title, found) for title in titles]
-        places = dict.fromkeys(f"{short(one['commit'])}, {one['machine']}" for one in found)
-        return [*titles, *texts, "; ".join(places)]
+        machines = {}
+        for one in found:
+            machines.setdefault(short(one["commit"]), {})[one["machine"]] = True
+        return [*titles, *texts, "; ".join(f"{commit}, {' and '.join(of)}" for commit, of in machines.items())]
 
     def markdown(self, name):
         table = self.layout[name]
@@ -168,7 +177,7 @@ def written(root, folders):
     keys, families = set(), set()
     for folder in folders:
         for path in sorted((root / folder).rglob("*")):
-            if path.suffix not in (".cpp", ".hpp", ".py", ".sh") or path.name in ("tables.py", "test_tables.py"):
+            if path.suffix not in (".cpp", ".hpp", ".py", ".sh"):
                 continue
             for key, end in WRITER.findall(path.read_text()):
                 if "/" in key and (end != '"' or key.endswith("/")):
@@ -184,14 +193,14 @@ def without_writer(rows, keys, families):
     problems = [f"{key}: nothing in the sources writes it" for key in sorted(have)
                 if key not in keys and not key.startswith(tuple(families))]
     problems += [f"{key}: the sources write it, and the data have no row" for key in sorted(keys - have)]
-    return problems + [f"{family}: the sources write such keys, and the data have no row" for family in sorted(families)
-                       if not any(key.startswith(family) for key in have)]
+    return problems + [f"{family}: the sources write such keys, and the data have no row"
+                       for family in sorted(families) if not any(key.startswith(family) for key in have)]
 
 
 def run(description, root, layout, data, folders, digits=None):
     """Of a script: makes the pages of a layout, or with --check says what is wrong with them. Returns the exit code."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true", help="writes nothing; 1 where a page or the data are not current")
+    parser.add_argument("--check", action="store_true", help="writes nothing; 1 where a page is not current")
     checking = parser.parse_args().check
     rows = measured.read(root / data)
     tables = Tables(tomllib.loads((root / layout).read_text()), rows, digits)
@@ -202,6 +211,7 @@ def run(description, root, layout, data, folders, digits=None):
             tables.problems.append(f"{path}: a table is not what {data} gives")
         if made != text and not checking and not tables.problems:
             (root / path).write_text(made)
-    problems = tables.problems + tables.unused() + without_writer(rows, *written(root, folders))
+    new = [row for row in rows if not row["key"].startswith(tables.kept)]
+    problems = tables.problems + tables.unused() + without_writer(new, *written(root, folders))
     print("\n".join(dict.fromkeys(problems)), end="\n" if problems else "")
     return 1 if problems else 0
