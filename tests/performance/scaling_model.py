@@ -375,6 +375,7 @@ def main():
     network = Network(int(arguments.per_host), arguments.network_latency, arguments.network_bandwidth)
     model = fit(runs, chain, arguments.iterations, network)
     rows = predictions(model, arguments.weak, arguments.strong)
+    measured.always(commit=runs[0].commit, machine=f"model, fitted to {runs[0].device}", backend=arguments.backend)
     measured.note("scaling_model/a message", 1e6 * model.terms["per_message"], "us")
     measured.note("scaling_model/exchange with a rank", 1e6 * model.coupling_per_rank, "us")
     measured.note(f"scaling_model/{arguments.weak:.2g} particles each, 2 ranks",

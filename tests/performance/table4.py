@@ -202,18 +202,15 @@ def measure(arguments):
                 window = min((row["simulated"] for row in rows), default=1.0)
                 row = run_case(arguments, method, particles, backend, window)
                 append_row(arguments.out, row)
-                note(row)
                 done = "seconds_per_second" in row
                 result = f"{row['seconds_per_second']:.4g} s per second" if done else row["status"]
                 print(f"{method:8} N = {particles:7} {backend:4}: {result}", flush=True)
 
 
-def note(row):
-    if row["status"] != "done":
-        return
-    gpu = row["description"].removeprefix("cuda (").split(",")[0] if row["backend"] == "cuda" else None
-    measured.note(f"table4/{row['method']}, {row['backend']}/{row['particles']}", row["seconds_per_second"], "s",
-                  commit=row["commit"], machine=gpu or row["processor"], backend=row["backend"])
+def note(row, key, value, unit):
+    gpu = row["description"].removeprefix("cuda (").split(",")[0]
+    measured.note(f"table4/{key}", value, unit, commit=row["commit"], backend=row["backend"],
+                  machine=gpu if row["backend"] == "cuda" else row["processor"])
 
 
 def finished(rows):
@@ -248,6 +245,7 @@ def write_markdown(folder, rows):
     for (method, backend), group in series.items():
         cpu = {row["particles"]: row for row in series.get((method, "cpu"), [])}
         for row in group:
+            note(row, f"{method}, {backend}/{row['particles']}", row["seconds_per_second"], "s")
             base = cpu.get(row["particles"]) if backend != "cpu" else None
             gain = f"{base['seconds_per_second'] / row['seconds_per_second']:.3g}" if base else ""
             lines.append(f"| {method} | {row['particles']:,} | {row['nets']} | {row['start']} | {backend} "
@@ -259,7 +257,7 @@ def write_markdown(folder, rows):
     for method in METHODS:
         n = crossover(series.get((method, "cpu"), []), series.get((method, "cuda"), []))
         if n:
-            measured.note(f"table4/{method}/crossover", float(n), "particles", machine=measured.gpu(), backend="cuda")
+            note(series[method, "cuda"][-1], f"{method}/crossover", float(n), "particles")
             lines.append(f"The GPU is the faster from about N = {n:,.0f} on, {method}.")
     lines.append(f"The paper at N = 900: {PAPER_TIMES['cpu']} s on its CPU, {PAPER_TIMES['cuda']} s on its GPU.")
     failed = [row for row in rows if row["status"] != "done"]

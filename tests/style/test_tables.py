@@ -1,4 +1,4 @@
-"""The tables of documents are what the data give and the sources write; and that what makes them finds what is wrong."""
+"""The tables of documents are what the data give and the sources write; what makes them finds what is wrong."""
 
 import contextlib
 import io
@@ -141,12 +141,15 @@ class Rows(Folder):
         new.mkdir()
         measured.write(data, [row("a", "1"), row("a", "2", backend="cuda")])
         measured.write(new / "x.csv", [row("b", "3"), row("a", "4", commit="new")])
-        self.assertEqual(measured.merge(data, new), (1, 1))
-        self.assertEqual([(one["key"], one["backend"], one["value"], one["commit"]) for one in measured.read(data)], [
-            ("a", "cpu", "4", "new"), ("a", "cuda", "2", "0123456789ab"), ("b", "cpu", "3", "0123456789ab")])
-        measured.write(new / "x.csv", [row("b", "3", at_most="2")])
-        with self.assertRaisesRegex(SystemExit, "b is not what was demanded"):
-            measured.merge(data, new)
+        for also_new, counts, more in ((False, (1, 1), []), (True, (2, 0), [("b", "cpu", "3", "0123456789ab")])):
+            self.assertEqual(measured.merge(data, new, also_new), counts)
+            self.assertEqual([(one["key"], one["backend"], one["value"], one["commit"]) for one in measured.read(data)],
+                             [("a", "cpu", "4", "new"), ("a", "cuda", "2", "0123456789ab"), *more])
+        for bad, message in (({"at_most": "2"}, "b is not what was demanded"),
+                             ({"commit": "ab-modified"}, "b is of commit ab-modified")):
+            measured.write(new / "x.csv", [row("b", "3", **bad)])
+            with self.assertRaisesRegex(SystemExit, message):
+                measured.merge(data, new, True)
 
     def test_scripts_leave_rows_where_they_are_asked_to(self):
         words = [sys.executable, ROOT / "tests/support/measured.py", "a/b", "3.5", "s", "--least", "3", "--command",

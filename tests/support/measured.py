@@ -6,9 +6,10 @@
 Adds a row to the folder that the environment variable SCREE_MEASURED names, for scripts in other languages; without the
 variable it goes nowhere.
 
-    measured.py --merge DATA.csv FOLDER
+    measured.py --merge DATA.csv FOLDER [--also-new]
 
-Takes the rows of all files in FOLDER over into DATA.csv: each in place of the one with its key and backend.
+Takes the rows of all files in FOLDER over into DATA.csv: each in place of the one with its key and backend, and with
+--also-new those that DATA.csv does not have, too.
 """
 import argparse
 import csv
@@ -28,6 +29,7 @@ COLUMNS = ["key", "value", "unit", "least", "most", "at_least", "at_most", "comm
 MUST = ("key", "commit", "machine", "backend", "command")
 NUMBERS = ("value", "least", "most", "at_least", "at_most")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+ALWAYS = {}
 
 
 def read(path):
@@ -69,18 +71,24 @@ def keeps(row):
             and (not row["at_least"] or float(row["least"]) >= float(row["at_least"])))
 
 
-def merge(path, folder):
-    """How many rows were new, and how many in place of others. Rows that break what was demanded are refused."""
+def merge(path, folder, also_new):
+    """Rows of the folder's files in place of those with their key and backend, and others, too, if also_new. How many
+    were taken, and how many left. Rows that break what was demanded, or of sources that no commit has, are refused."""
     kept = {identity(row): row for row in read(path)} if path.exists() else {}
-    before, taken = len(kept), 0
+    taken = left = 0
     for file in sorted(folder.glob("*.csv")):
         for row in read(file):
             if not keeps(row):
                 raise SystemExit(f"error: {file}: {row['key']} is not what was demanded")
-            kept[identity(row)] = row
-            taken += 1
+            if row["commit"].endswith("-modified"):
+                raise SystemExit(f"error: {file}: {row['key']} is of commit {row['commit']}; must be one as it is")
+            if also_new or identity(row) in kept:
+                kept[identity(row)] = row
+                taken += 1
+            else:
+                left += 1
     write(path, [kept[key] for key in sorted(kept)])
-    return len(kept) - before, taken - (len(kept) - before)
+    return taken, left
 
 
 def processor():
@@ -125,6 +133,11 @@ def command_line():
     return " ".join(pathlib.PurePath(word).name if "/" in word else word for word in sys.argv)
 
 
+def always(**others):
+    """Values of COLUMNS for all rows from here on."""
+    ALWAYS.update(others)
+
+
 def note(key, value, unit="", *, record=None, **others):
     """Adds a row to the folder SCREE_MEASURED. record: of the run, as a dictionary; others: of COLUMNS."""
     folder = os.environ.get("SCREE_MEASURED")
@@ -133,7 +146,7 @@ def note(key, value, unit="", *, record=None, **others):
     row = dict.fromkeys(COLUMNS, "") | (
         of_record(record) if record else {"commit": commit(), "machine": processor(), "backend": "cpu"})
     row |= {"key": key, "value": value, "unit": unit, "least": value, "most": value, "command": command_line(),
-            "date": datetime.datetime.now(datetime.timezone.utc).date().isoformat()} | others
+            "date": datetime.datetime.now(datetime.timezone.utc).date().isoformat()} | ALWAYS | others
     for name in NUMBERS:
         if isinstance(row[name], float):
             row[name] = f"{row[name]:.4g}"
@@ -154,10 +167,11 @@ def main():
     parser.add_argument("--record", type=pathlib.Path, metavar="RUN_RECORD", help="commit, machine and backend are its")
     parser.add_argument("--command", help="that measured it")
     parser.add_argument("--merge", nargs=2, type=pathlib.Path, metavar=("DATA.csv", "FOLDER"))
+    parser.add_argument("--also-new", action="store_true")
     others = vars(parser.parse_args())
-    words, merging, record = others.pop("words"), others.pop("merge"), others.pop("record")
+    words, merging, record, also_new = (others.pop(name) for name in ("words", "merge", "record", "also_new"))
     if merging:
-        print("{1} rows in place of others, {0} new".format(*merge(*merging)))
+        print("{} rows taken over, {} left that are new".format(*merge(*merging, also_new)))
         return
     if len(words) != 3 or not others["command"]:
         parser.error("KEY VALUE UNIT and --command are needed, or --merge")
