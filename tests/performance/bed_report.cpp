@@ -23,7 +23,7 @@ struct OfRank {
   std::array<double, static_cast<int>(Stage::count)> stage_seconds{};  // per step
 };
 
-struct Halo {
+struct HaloTimes {
   double bytes = 0, seconds = 0, exposed = 0;  // of the rank that waits longest
 };
 
@@ -35,7 +35,7 @@ void note_step(const std::string& key, const Measured& m) {
 }
 
 // The numbers of documents. memory: of all ranks, over the particles [B].
-void note_numbers(const std::string& title, const Measured& m, double memory, const Halo& halo) {
+void note_numbers(const std::string& title, const Measured& m, double memory, const HaloTimes& halo) {
   const std::string row = title + (m.bed.empty() ? "" : ", " + m.bed),
                     key = row + fmt::format("/{} ", m.size > 0 ? m.size : m.particles);
   const auto rate = [&](double seconds) { return static_cast<double>(m.particles) / seconds; };
@@ -99,7 +99,7 @@ void BedReport::add(const Measured& measured, const StageTimers& before, const S
   const std::vector<OfRank> all = ranks_.gather(std::vector<OfRank>{own});
   ranks_.on_root([&] {
     double memory = 0;
-    Halo halo;
+    HaloTimes halo;
     for (const OfRank& r : all) {
       memory += r.device_bytes > 0 ? r.device_bytes : r.host_bytes;
       halo.bytes = std::max(halo.bytes, static_cast<double>(r.halo.bytes));

@@ -1,4 +1,6 @@
 // A run continued from a checkpoint, and one with another neighbour list, have the uninterrupted run's bits.
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
