@@ -218,6 +218,7 @@ void measure_all(const Options& options) {
              : options.rebuild > 0 ? fmt::format(", list rebuild every {} steps included", options.rebuild)
                                    : ", list rebuilds where needed");
   if (options.on_gpu()) measured_on_gpu(device_name());
+  if (!options.ranks.alone()) measured_on_ranks(options.ranks.size());
   const std::string rebuild = options.with_bodies()         ? "coupled"
                               : options.integrator == "hht" ? "0"
                                                             : fmt::format("{}", options.rebuild);

@@ -34,14 +34,14 @@ void note_step(const std::string& key, const Measured& m) {
                unit * m.slowest);
 }
 
-// The numbers of documents. memory: of all ranks, over the particles [B].
+// The numbers of documents. memory: of all devices, over the particles [B].
 void note_numbers(const std::string& title, const Measured& m, double memory, const HaloTimes& halo) {
   const std::string row = title + (m.bed.empty() ? "" : ", " + m.bed),
                     key = row + fmt::format("/{} ", m.size > 0 ? m.size : m.particles);
   const auto rate = [&](double seconds) { return static_cast<double>(m.particles) / seconds; };
   note_samples("bed/" + key + "rate", "particle-steps/s", rate(m.seconds), rate(m.slowest), rate(m.fastest));
   note_step(key, m);
-  note("bed/" + key + "memory", "B", memory);
+  if (memory > 0) note("bed/" + key + "memory", "B", memory);
   if (m.newton > 0) note("bed/" + key + "Newton", "", m.newton), note("bed/" + key + "linear", "", m.linear);
   if (m.bodies > 0) note("bed/" + key + "contacts", "", m.contacts);
   if (halo.seconds <= 0) return;
@@ -101,7 +101,7 @@ void BedReport::add(const Measured& measured, const StageTimers& before, const S
     double memory = 0;
     HaloTimes halo;
     for (const OfRank& r : all) {
-      memory += r.device_bytes > 0 ? r.device_bytes : r.host_bytes;
+      memory += r.device_bytes;
       halo.bytes = std::max(halo.bytes, static_cast<double>(r.halo.bytes));
       if (r.halo.exposed_seconds >= halo.exposed)
         halo.seconds = r.halo.seconds, halo.exposed = r.halo.exposed_seconds;

@@ -59,9 +59,6 @@ class Record {
     std::string word;
     std::getline(words, word, '\0');
     while (std::getline(words, word, '\0')) command_ += " " + word.substr(word.rfind('/') + 1);
-    file_ = command_ + (backend_ == "cpu" ? "" : "-" + backend_);
-    for (char& letter : file_)
-      if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-') letter = '_';
   }
   Record(const Record&) = delete;
   Record& operator=(const Record&) = delete;
@@ -90,13 +87,17 @@ class Record {
     Row& kept = rows_.insert_or_assign(key, row).first->second;
     kept.machine = machine_, kept.backend = backend_;
   }
+  void measured_on_ranks(int ranks) { command_ = "mpirun -n " + std::to_string(ranks) + " " + command_; }
   void measured_on_gpu(const std::string& name) { machine_ = name, backend_ = "cuda"; }
 
  private:
   // Under another name first, so that the file is complete whenever it is there.
   void write() const {
     std::filesystem::create_directories(folder_);
-    const std::filesystem::path path = folder_ / (file_ + ".csv");
+    std::string name = command_ + (backend_ == "cpu" ? "" : "-" + backend_);
+    for (char& letter : name)
+      if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-') letter = '_';
+    const std::filesystem::path path = folder_ / (name + ".csv");
     std::filesystem::path part = path;
     part += ".part";
     std::ofstream file(part);
@@ -115,7 +116,7 @@ class Record {
   }
 
   std::filesystem::path folder_;
-  std::string command_, file_, backend_ = "cpu", machine_ = processor_name();
+  std::string command_, backend_ = "cpu", machine_ = processor_name();
   std::map<std::string, Row> rows_;
 };
 
@@ -135,6 +136,8 @@ void note_samples(const std::string& key, const std::string& unit, Real median, 
 }
 
 void measured_on_gpu(const std::string& name) { record().measured_on_gpu(name); }
+
+void measured_on_ranks(int ranks) { record().measured_on_ranks(ranks); }
 
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");

@@ -63,6 +63,8 @@ void note_samples(const std::string& key, const std::string& unit, Real median, 
 
 // The numbers from here on are a GPU's of this name, no longer those of the processor.
 void measured_on_gpu(const std::string& name);
+// The command line begins with mpirun.
+void measured_on_ranks(int ranks);
 std::string processor_name();  // of /proc/cpuinfo
 
 // Notes what a check demands and finds, and returns it for CHECK().
