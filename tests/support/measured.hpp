@@ -51,7 +51,7 @@ Bounded bounded(const Nearness<Value>& near) {
 inline Bounded bounded(const BitForBit& bits) { return at_most(bits ? 0 : 1, 0); }
 
 // Keeps a number under a key, e.g. "valley/rise", with its unit; of all that a key is given, the least and
-// the most. Keys of which only a part is written out in the source have that part before their last slash.
+// the most. Of a key that is put together the source writes out the beginning, up to the slash at least.
 void note(const std::string& key, const std::string& unit, const Bounded& number);
 // The same of a value of which nothing is demanded.
 inline void note(const std::string& key, const std::string& unit, Real value) {

@@ -25,7 +25,7 @@ import measured
 SCALES = {"us": 1e-6, "ms": 1e-3}  # other units are those of both numbers
 PLACE = re.compile(r"\{([^{}|]+)(?:\|([^{}]*))?\}")
 # What writes rows: the key, or what is written out of it in front of what is put in.
-WRITER = re.compile(r"\b(?:measured(?:\.py\"?)?|note|note_samples)[\s(]+f?\"([^\"{$]+)(.)")
+WRITER = re.compile(r"\b(?:measured(?:\.py\"?)?|note|note_samples)[\s(]+f?\"([^\"{$]+)(\"\s*\+|.)")
 
 
 def round_to(value, digits):
@@ -180,10 +180,8 @@ def written(root, folders):
             if path.suffix not in (".cpp", ".hpp", ".py", ".sh"):
                 continue
             for key, end in WRITER.findall(path.read_text()):
-                if "/" in key and (end != '"' or key.endswith("/")):
-                    families.add(key[:key.rindex("/") + 1])
-                elif "/" in key:
-                    keys.add(key)
+                if "/" in key:
+                    (keys if end == '"' else families).add(key)
     return keys, families
 
 
