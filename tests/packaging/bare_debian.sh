@@ -9,6 +9,7 @@
 #
 # FOLDER must not exist, and is left for a look: several GB. DEBOOTSTRAP in the environment may hold the program with further
 # options; with CCACHE_DIR there, that cache is used.
+# shellcheck disable=SC2016 # what is quoted expands inside
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
