@@ -3,7 +3,8 @@
 #
 #     jobs/build.sh [PRESET] [TARGET ...]      default: release, all
 #
-# PRESET: release; debug (sanitizers); cuda (for the GPU of this machine); cuda-portable (for GPUs of other machines).
+# PRESET: release; debug (sanitizers); cuda (for the GPU of this machine); cuda-portable (for GPUs of other machines);
+# package (for other machines, without GPUs; its target package makes packages: jobs/packaging/README.md).
 # The program is then build/PRESET/scree. nvcc is the one that the environment variable CUDACXX names, or the one on
 # the PATH, or the one that jobs/setup.sh --cuda has installed into .venv.
 set -euo pipefail
@@ -12,8 +13,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${1:-release}
 targets=("${@:2}")
 ((${#targets[@]} > 0)) || targets=(all)
+setup=()
 case "$preset" in
   release | debug) ;;
+  package) setup=(--package) ;;
   cuda | cuda-portable)
     installed=(.venv/lib/python3*/site-packages/nvidia/cu*/bin/nvcc) # a pattern that fits nothing stays as it is
     if [[ -z "${CUDACXX:-}" && -x "${installed[-1]}" ]] && ! command -v nvcc >/dev/null; then
@@ -21,10 +24,10 @@ case "$preset" in
     fi
     ;;
   *)
-    echo "jobs/build.sh: unknown preset $preset; allowed: release, debug, cuda, cuda-portable" >&2
+    echo "jobs/build.sh: unknown preset $preset; allowed: release, debug, cuda, cuda-portable, package" >&2
     exit 2
     ;;
 esac
-jobs/setup.sh
+jobs/setup.sh "${setup[@]}"
 cmake --preset "$preset" >/dev/null
 cmake --build "build/$preset" --target "${targets[@]}"

@@ -2,9 +2,10 @@
 # Installs what Scree needs and this machine does not have: Debian packages, and Python packages into .venv.
 #
 #     jobs/setup.sh [--paraview] [--slurm] [--cuda] [--ccache]
-#     jobs/setup.sh --pictures
+#     jobs/setup.sh --pictures | --package
 #
-# --pictures installs what postprocess/draw needs and no more.
+# --pictures installs what postprocess/draw needs and no more. --package installs what the program and packages of it need
+# (jobs/packaging/README.md) and no more: nothing for tests or pictures, and no .venv.
 # --paraview adds Debian's ParaView, for the reader test that opens the .xdmf files in it.
 # --slurm adds SLURM, for the test that starts one on this machine and submits the sbatch files to it. Its services are
 # not configured and do not run by themselves.
@@ -14,11 +15,18 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-packages=(
+program_packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
   libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libpetsc-real-dev libeigen3-dev
-  libtomlplusplus-dev libcli11-dev libfmt-dev catch2
+  libtomlplusplus-dev libcli11-dev libfmt-dev
+)
+test_packages=(
+  catch2
   clang-format                    # of the test of style: version 14, as Debian 12 has it
+)
+package_packages=(
+  dpkg-dev file                   # of cpack: which packages hold the libraries
+  python3                         # makes the manual page
 )
 picture_packages=( # animations and reader tests, too
   python3 python3-venv ffmpeg
@@ -70,8 +78,8 @@ install_nvcc() {
   echo "${cuda_packages[*]}" >.venv/installed_cuda.txt
 }
 
-packages+=("${picture_packages[@]}")
-with_cuda=false
+packages=("${program_packages[@]}" "${test_packages[@]}" "${picture_packages[@]}")
+with_cuda=false with_python=true
 for argument in "$@"; do
   case "$argument" in
     --paraview) packages+=("${paraview_packages[@]}") ;;
@@ -79,7 +87,8 @@ for argument in "$@"; do
     --cuda) with_cuda=true ;;
     --ccache) packages+=(ccache) ;;
     --pictures) packages=("${picture_packages[@]}") ;;
-    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda, --ccache, --pictures" ;;
+    --package) packages=("${program_packages[@]}" "${package_packages[@]}") with_python=false ;;
+    *) fail "unknown argument: $argument; allowed: --paraview, --slurm, --cuda, --ccache, --pictures, --package" ;;
   esac
 done
 if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
@@ -87,5 +96,5 @@ if command -v dpkg-query >/dev/null && command -v apt-get >/dev/null; then
 else
   echo "set-up: this is not Debian; Scree needs what these Debian packages hold: ${packages[*]}"
 fi
-install_python_packages
+if "$with_python"; then install_python_packages; fi
 if "$with_cuda"; then install_nvcc; fi

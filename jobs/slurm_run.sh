@@ -16,7 +16,7 @@
 # Otherwise the job ends with the exit code of the run, which jobs/using.md lists.
 #
 # From the environment of sbatch:
-#     SCREE            the program; default: build/release/scree
+#     SCREE            the program; default: build/release/scree of this source tree, or the one installed with this file
 #     SCREE_LAUNCHER   what starts the ranks; default: srun --mpi=pmix --wait=60. With mpirun: SCREE_LAUNCHER=mpirun
 #     SCREE_REQUEUES   how often a job that met its time limit may have been started again; default: 0
 set -euo pipefail
@@ -33,7 +33,9 @@ refuse() {
 (($# >= 2)) || refuse "usage: jobs/slurm_run.sh DECK RESULTS [SCREE OPTIONS]"
 deck=$1 results=$2
 options=("${@:3}")
-scree=${SCREE:-build/release/scree}
+tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+if [[ -e "$tree/CMakeLists.txt" ]]; then scree=$tree/build/release/scree; else scree=${tree%/*/*}/bin/scree; fi
+scree=${SCREE:-$scree}
 requeues=${SCREE_REQUEUES:-0}
 restarts=${SLURM_RESTART_COUNT:-0}
 # --wait: ranks that outlive another one by so many seconds are ended, where the MPI library has not ended them.
@@ -49,7 +51,7 @@ for option in "${options[@]}"; do
       ;;
   esac
 done
-[[ -x "$scree" ]] || refuse "no program $scree in $PWD; submit from the root of the built repository, or set SCREE"
+[[ -x "$scree" ]] || refuse "no program $scree, seen from $PWD; jobs/build.sh release builds it, or SCREE names another"
 [[ -e "$deck" ]] || refuse "no deck $deck in $PWD"
 [[ "$requeues" =~ ^[0-9]+$ ]] || refuse "SCREE_REQUEUES = \"$requeues\"; allowed: whole numbers from 0"
 command -v "${launcher[0]}" >/dev/null || refuse "SCREE_LAUNCHER: no program ${launcher[0]} on this node"

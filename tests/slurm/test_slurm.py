@@ -53,8 +53,8 @@ class SlurmTest(unittest.TestCase):
         log = "%A_%a" if file == "array" else "%j"
         words = [str(DECK), str(results or self.results), *settings] if not words else [str(word) for word in words]
         submitted = cluster.run("sbatch", "--parsable", f"--output={cluster.folder}/{log}.log", "--time=10",
-                                "--signal=B:USR1@60", *options, f"jobs/{file}.sbatch", *words, cwd=ROOT,
-                                environment={"SCREE": SCREE, **(environment or {})})
+                                "--signal=B:USR1@60", *options, f"{ROOT}/jobs/{file}.sbatch", *words,
+                                cwd=cluster.folder, environment={"SCREE": SCREE, **(environment or {})})
         self.assertEqual(submitted.returncode, 0, submitted.stderr)
         return submitted.stdout.strip()
 
