@@ -110,12 +110,30 @@ def stalls(group):
     return ", ".join(f"{reason} {share:.0f}" for reason, share in largest) or "-"
 
 
-def note(case, kernel, cells):
-    """cells: (name, value, unit)."""
-    for name, value, unit in cells:
-        if not math.isnan(value):
-            measured.note(f"profile/{case}, {short_name(kernel)}/{name}", float(value), unit, machine=measured.gpu(),
-                          backend="cuda")
+def plain_name(kernel):
+    """Of the work of items their name, of other kernels theirs, without template arguments."""
+    name = short_name(kernel)
+    item = re.search(r"\w+Item\b", name)
+    return item[0] if item else name.split("<")[0]
+
+
+def note(case, kernels, copy_bandwidth):
+    """kernels: {name: launches}, those of a plain name that take longest first."""
+    first = {}
+    for kernel, group in kernels:
+        first.setdefault(plain_name(kernel), group)
+    for name, group in first.items():
+        time = sum(launch[TIME] for launch in group)
+        moved = sum(launch[READ] + launch[WRITE] for launch in group)
+        cells = [("time", 1e6 * time / len(group), "us"), ("bytes", 1e-6 * moved / len(group), "MB"),
+                 ("of copy", 1e-7 * moved / time / copy_bandwidth, "%"),
+                 *((column.removesuffix(" [%]"), mean(group, metric), "%" if "[%]" in column else "")
+                   for column, metric in MEANS.items()),
+                 ("waits", 100 * mean(group, STALLS["long scoreboard"]) / mean(group, LATENCY), "%")]
+        for column, value, unit in cells:
+            if not math.isnan(value):
+                measured.note(f"profile/{case}, {name}/{column}", float(value), unit, machine=measured.gpu(),
+                              backend="cuda")
 
 
 def table(path, copy_bandwidth):
@@ -126,7 +144,9 @@ def table(path, copy_bandwidth):
     columns = ["kernel", "calls", "time [us]", "of all time [%]", "MB per call", "GB/s", "of copy [%]", *MEANS,
                "stalls [%]"]
     lines = [f"### {path.stem}", "", "| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
-    for kernel, group in sorted(kernels.items(), key=lambda item: -sum(launch[TIME] for launch in item[1])):
+    longest_first = sorted(kernels.items(), key=lambda item: -sum(launch[TIME] for launch in item[1]))
+    note(path.stem, longest_first, copy_bandwidth)
+    for kernel, group in longest_first:
         time = sum(launch[TIME] for launch in group)
         moved = sum(launch[READ] + launch[WRITE] for launch in group)
         cells = [f"`{short_name(kernel)}`", str(len(group)), f"{1e6 * time / len(group):.1f}",
@@ -135,11 +155,6 @@ def table(path, copy_bandwidth):
                  f"{1e-7 * moved / time / copy_bandwidth:.0f}",
                  *(whole(mean(group, name)) for name in MEANS.values()), stalls(group)]
         lines.append("| " + " | ".join(cells) + " |")
-        note(path.stem, kernel, [("time", 1e6 * time / len(group), "us"), ("bytes", 1e-6 * moved / len(group), "MB"),
-                                 ("of copy", 1e-7 * moved / time / copy_bandwidth, "%"),
-                                 *((name.removesuffix(" [%]"), mean(group, metric), "%" if "[%]" in name else "")
-                                   for name, metric in MEANS.items()),
-                                 ("waits", 100 * mean(group, STALLS["long scoreboard"]) / mean(group, LATENCY), "%")])
     return "\n".join(lines)
 
 

@@ -17,4 +17,4 @@ import page_tables  # noqa: E402
 
 if __name__ == "__main__":
     sys.exit(page_tables.run(__doc__, ROOT, "tests/performance/tables.toml", "tests/performance/measured.csv",
-                        ["tests/performance"]))
+                             ["tests/performance"]))

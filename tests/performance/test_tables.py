@@ -47,7 +47,8 @@ class Tables(unittest.TestCase):
     def rows(self, path):
         """{kernel: {column: cell}}"""
         done = subprocess.run([sys.executable, HERE / "profile_table.py", "--copy-bandwidth", "4000", path], text=True,
-                              capture_output=True, timeout=LIMIT)
+                              capture_output=True, timeout=LIMIT,
+                              env=os.environ | {"SCREE_MEASURED": str(self.folder / "measured")})
         self.assertEqual(done.returncode, 0, done.stderr)
         cells = [line.strip("| ").split(" | ") for line in done.stdout.splitlines() if line.startswith("| ")]
         return {row[0]: dict(zip(cells[0], row, strict=True)) for row in cells[1:]}
@@ -67,6 +68,10 @@ class Tables(unittest.TestCase):
         self.assertEqual(step["occupancy [%]"], "55")
         self.assertEqual(step["stalls [%]"], "long scoreboard 45, lg throttle 25")
         self.assertEqual((sort["of copy [%]"], sort["stalls [%]"]), ("100", "-"))
+        (file,) = (self.folder / "measured").iterdir()
+        noted = {row["key"]: row["value"] + row["unit"] for row in profile_table.measured.read(file)}
+        self.assertEqual([noted[f"profile/case, step_kernel/{name}"] for name in ("time", "of copy", "waits")],
+                         ["200us", "50%", "45%"])
 
     def test_metrics_that_are_not_there(self):
         path = self.folder / "case.csv"
