@@ -8,17 +8,12 @@ import scree
 run = scree.open(sys.argv[1])
 time, history = run.history.time, run.history
 
-
-def largest(force):
-    """Mean of the 0.1 s in which it is largest; grains push by jerks."""
-    window = int(round(0.1 / (time[1] - time[0])))
-    return np.max(np.convolve(force, np.ones(window) / window, mode="valid"))
-
+digs = (time > 0.9) & (time < 1.4)
 
 for cylinder in ("stick", "bucket"):
     force = np.hypot(history[f"reactions/{cylinder}_stroke/fx"], history[f"reactions/{cylinder}_stroke/fy"])
-    print(f"{cylinder} cylinder: {force[0]:.0f} N at the start, up to {largest(force[time > 0.8]):.0f} N in the bed")
-print(f"resistance of the bed: up to {largest(history['contacts/bucket/fx']):.0f} N")
+    print(f"{cylinder} cylinder: {force[0]:.0f} N at the start, {np.mean(force[digs]):.0f} N while it digs")
+print(f"resistance of the bed: {np.mean(history['contacts/bucket/fx'][digs]):.0f} N")
 
 rest = time > time[-1] - 0.2
 linkage = 9.81 * sum(body["mass"] for body in run.deck["bodies"])
