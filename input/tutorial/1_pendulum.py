@@ -22,7 +22,7 @@ rows = np.flatnonzero(below[:-1] * below[1:] < 0)
 passes = time[rows] - below[rows] * (time[rows + 1] - time[rows]) / (below[rows + 1] - below[rows])
 period = 2 * (passes[-1] - passes[0]) / (len(passes) - 1)
 
-a, b = 1.0, math.cos(start / 2)                                 # the arithmetic-geometric mean, for the elliptic integral
+a, b = 1.0, math.cos(start / 2)                                 # arithmetic-geometric mean, for the elliptic integral
 while abs(a - b) > 1e-15:
     a, b = (a + b) / 2, math.sqrt(a * b)
 small = 2 * math.pi * math.sqrt(inertia / (bob["mass"] * gravity * arm))

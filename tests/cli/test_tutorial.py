@@ -1,5 +1,6 @@
-"""The tutorial as its page tells it: every command is run, in order, and answers with the words and about the numbers that
-stand below it. Usage: SCREE=path/to/scree MPIEXEC=mpirun python3 test_tutorial.py, with postprocess/requirements.txt"""
+"""The tutorial as its page tells it: every command is run, in order, and answers with the words and about the numbers
+that stand below it. Usage: SCREE=path/to/scree MPIEXEC=mpirun python3 test_tutorial.py; needs
+postprocess/requirements.txt."""
 
 import os
 import pathlib
@@ -79,11 +80,14 @@ class TutorialTest(unittest.TestCase):
 
     def follow(self, title, tolerance, answers):
         """answers: how many commands there have one, so that none is passed over."""
-        (setting, _), = sessions(PAGE[:PAGE.index("## 1.")])
+        settings = [command for command, _ in sessions(PAGE[:PAGE.index("## 1.")])]
         found = sessions(section(title))
         self.assertEqual(sum(1 for _, shown in found if shown), answers)
         for command, shown in found:
-            said = self.answer(f"{setting}\n{command}")
+            if command.startswith("export "):
+                settings.append(command)
+                continue
+            said = self.answer("\n".join([*settings, command]))
             self.assertNotIn("warning", said)
             self.assert_answers(command, said, shown, tolerance)
 
