@@ -60,10 +60,13 @@ Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const
 
 }  // namespace
 
-Real farthest(const ModelMesh& mesh, Vec3 offset) {
+Real farthest(const ModelMesh& mesh, Vec3 offset, int dimension) {
   Real squared = 0;
-  for (const Vec3 vertex : mesh.surface->vertices)
-    squared = std::max(squared, dot(offset + vertex, offset + vertex));
+  for (const Vec3 vertex : mesh.surface->vertices) {
+    Vec3 arm = offset + vertex;
+    if (dimension == 2) arm.z = 0;
+    squared = std::max(squared, dot(arm, arm));
+  }
   return std::sqrt(squared);
 }
 
@@ -90,7 +93,8 @@ std::vector<MaterialUse> material_uses(const Model& model) {
   for (const Body& body : model.bodies)
     for (const MeshShape& shape : body.meshes) {
       MaterialUse& use = uses[static_cast<std::size_t>(shape.material)];
-      const Real reach = farthest(model.meshes[static_cast<std::size_t>(shape.mesh)], shape.offset);
+      const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
+      const Real reach = farthest(mesh, shape.offset, model.space.dimension);
       ++use.meshes;
       for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
         take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));

@@ -8,8 +8,9 @@
 
 namespace scree {
 
-// How far a mesh reaches from the point that its frame is `offset` from [m].
-Real farthest(const ModelMesh& mesh, Vec3 offset);
+// How far a mesh reaches from the point that its frame is `offset` from [m]; in 2D without z, along
+// which lines are deeper than the space.
+Real farthest(const ModelMesh& mesh, Vec3 offset, int dimension);
 
 // Extremes of what one material is used for; radius and mass are 0 where it is not used.
 struct MaterialUse {

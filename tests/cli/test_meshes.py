@@ -241,6 +241,15 @@ class ReportTest(MeshTest):
             with self.subTest(settings=settings):
                 self.assertIn(text, self.report(*settings)[1])
 
+    def test_a_line_of_a_planar_body_reaches_no_farther_than_its_ends(self):
+        # Pushed there, 0.1 m from its centre, the body is as heavy as 1 / (1/1 + 0.1^2/0.01) = 0.5 kg.
+        settings = ("space={dimension=2,min=[-1,-1],max=[1,1]}", "gravity=[0,-10]", "walls=[]",
+                    'meshes=[{name="rock",kind="line",points=[[-0.1,0],[0.1,0]]}]',
+                    'bodies=[{name="b",mass=1.0,inertia=0.01,position=[0,0],meshes=[{mesh="rock"}]}]',
+                    "particles.0.positions=[[0,0.5]]", "time.step=9e-4")
+        warnings = self.report(*settings)[1]
+        self.assertIn(f"a body on a contact oscillates with {math.sqrt(1e5 / 0.5):.4g} rad/s", warnings)
+
     def test_works_count_from_the_start_and_keep_their_file(self):
         def setting(*fields):
             return "--set", f"output.surface_fields={list(fields)}".replace("'", '"')
