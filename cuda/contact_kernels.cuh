@@ -251,6 +251,11 @@ class DeviceContactKernels {
   virtual void energies(Device device, const DeviceViews& in, Index n, const EnergyOutputs& out) const = 0;
   // An output field that reads contacts.
   virtual void output(Device device, const DeviceViews& in, const OutputRequest& request) const = 0;
+  // See ContactKernels; of the particles [first, end).
+  virtual void shown_surfaces(Device device, const SurfaceViews& in, Index n, const SurfaceLoad* loads,
+                              ShownContact* shown) const = 0;
+  virtual void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
+                             const LineRequest& request) const = 0;
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(Device device, const DeviceViews& in, Index n, const StepStart& start,
                      Real* contact_loss, Real* integrator_loss) const = 0;

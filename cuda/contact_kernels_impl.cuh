@@ -127,6 +127,14 @@ struct LoadInRunItem {
   }
 };
 
+// From the particle `first` on.
+template <class Item>
+struct FromItem {
+  Item item;
+  Index first;
+  SCREE_HD void operator()(Index i) const { item(first + i); }
+};
+
 template <class Laws>
 class ContactKernelsOf : public DeviceContactKernels {
  public:
@@ -180,6 +188,15 @@ class ContactKernelsOf : public DeviceContactKernels {
   void output(Device device, const DeviceViews& in, const OutputRequest& request) const override {
     with_contact_output(request, ContactWalk<Laws, SlicedRows>{in, laws_},
                         [&](const auto& item) { for_each(device, request.n, item); });
+  }
+  void shown_surfaces(Device device, const SurfaceViews& in, Index n, const SurfaceLoad* loads,
+                      ShownContact* shown) const override {
+    for_each(device, n, ShownSurfaceItem<Laws>{in, laws_, loads, shown});
+  }
+  void contact_lines(Device device, const DeviceViews& in, Index first, Index end,
+                     const LineRequest& request) const override {
+    using Item = ContactLineItem<Laws, SlicedRows>;
+    for_each(device, end - first, FromItem<Item>{{{in, laws_}, request}, first});
   }
   void books(Device device, const DeviceViews& in, Index n, const StepStart& start, Real* contact_loss,
              Real* integrator_loss) const override {

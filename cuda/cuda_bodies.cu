@@ -21,6 +21,12 @@ void CudaBodies::find_loads() {
   side_.take_loads(items_.surfaces.load_sums());
 }
 
+const ShownContact* CudaBodies::find_shown() {
+  return items_.surfaces.find_shown(items_.device(), *items_.kernels,
+                                    {items_.now.position.data(), items_.now.velocity.data(),
+                                     items_.now.angular_velocity.data(), items_.history.views().only_read()});
+}
+
 void CudaBodies::find_steps(const StepStart& start) {
   if (!have_surfaces()) return;
   items_.surfaces.find_steps(items_.device(), *items_.kernels, items_.now.position.data(),

@@ -25,6 +25,8 @@ class CudaBodies {
 
   // Contacts with the state now: what forces and reports read, and the side's sums. Waits.
   void find_loads();
+  // Queued, of these: what is shown of them, per entry.
+  const ShownContact* find_shown();
   // Over an implicit step: queued, what the particles' system reads; then the side's sums; waits.
   void find_steps(const StepStart& start);
   void find_rubs(const RubbingStart& start);  // where contacts rub

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
 
 #include "cuda_reports.cuh"
 
@@ -137,6 +138,54 @@ ParticleOutput CudaReports::output() {
 ShapePack CudaReports::pack_shapes() {
   need_loads();
   return bodies_.side().pack();
+}
+
+// Queued, with where the lines of each particle begin. contacts_: their numbers, of which the one past the
+// end is read, though no sum depends on it.
+LineRequest CudaReports::count_lines() {
+  const auto n = static_cast<std::size_t>(items_.owned);
+  contacts_.resize(n + 1), line_offsets_.resize(n + 1);
+  require_cuda(cudaMemsetAsync(contacts_.data() + n, 0, sizeof(Index), items_.stream), "cudaMemsetAsync");
+  LineRequest request{items_.now.row_key.data(), bodies_.find_shown(), items_.model.space.min,
+                      items_.subdomain.period()};
+  request.counts = contacts_.data();
+  items_.kernels->contact_lines(items_.device(), items_.views(), 0, items_.owned, request);
+  with_space(items_.space, [&](void* at, std::size_t& bytes) {
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, contacts_.data(), line_offsets_.data(),
+                                               items_.owned + 1, items_.stream),
+                 "scan");
+  });
+  request.offsets = line_offsets_.data();
+  return request;
+}
+
+// Some particles after the other, so that few lines are on the device at a time.
+ContactLines CudaReports::contact_lines() {
+  need_loads();
+  LineRequest request = count_lines();
+  const std::vector<Index> offsets = line_offsets_.download(items_.stream);
+  const Index n = items_.owned;
+  std::vector<std::int64_t> row_key(static_cast<std::size_t>(n));
+  copy_async(row_key.data(), items_.now.row_key.data(), row_key.size(), items_.stream);
+  ContactLines out;
+  out.lines.resize(static_cast<std::size_t>(offsets.back()));
+  for (Index first = 0; first < n;) {
+    const auto past = std::upper_bound(offsets.begin() + first + 1, offsets.end(),
+                                       offsets[first] + static_cast<Index>(kLinesAtOnce));
+    const Index end = std::max(first + 1, static_cast<Index>(past - offsets.begin()) - 1);
+    const auto count = static_cast<std::size_t>(offsets[end] - offsets[first]);
+    lines_.resize_with_spare(count);
+    request.lines = lines_.data(), request.first_line = offsets[first];
+    if (count > 0) items_.kernels->contact_lines(items_.device(), items_.views(), first, end, request);
+    copy_async(out.lines.data() + offsets[first], lines_.data(), count, items_.stream);
+    first = end;
+  }
+  wait_for(items_.stream);
+  for (Index i = 0; i < n; ++i) {
+    out.global_id.push_back(id_of(row_key[i]));
+    out.counts.push_back(offsets[i + 1] - offsets[i]);
+  }
+  return out;
 }
 
 std::vector<TracedParticle> CudaReports::traced(std::span<const GlobalId> wanted) {

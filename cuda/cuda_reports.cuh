@@ -18,6 +18,7 @@ class CudaReports : public Reports {
   void start_output() override;
   ParticleOutput output() override;
   ShapePack pack_shapes() override;
+  ContactLines contact_lines() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
   std::vector<ContactSum> carrier_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
@@ -44,6 +45,7 @@ class CudaReports : public Reports {
   void queue_energies();
   void queue_order();
   void queue_values();
+  LineRequest count_lines();
 
   CudaItems& items_;
   CudaBodies& bodies_;
@@ -53,6 +55,9 @@ class CudaReports : public Reports {
   DeviceArray<Real> elastic_, pairs_, cohesion_;
   DeviceArray<Index> contacts_;
   DeviceArray<SpringEnergies> springs_;
+  // Empty unless contacts are shown: where the lines of each particle begin, and some of the lines.
+  DeviceArray<Index> line_offsets_;
+  DeviceArray<ContactLine> lines_;
   DeviceArray<GlobalId> traced_ids_;
   DeviceArray<TracedParticle> traced_;
 };

@@ -330,6 +330,15 @@ void DeviceSurfaces::find_rubs(Device device, const DeviceContactKernels& kernel
                        h_step_sums_.data());
 }
 
+const ShownContact* DeviceSurfaces::find_shown(Device device, const DeviceContactKernels& kernels,
+                                               const SurfaceLook& look) {
+  if (!any_placed()) return nullptr;
+  shown_.resize(static_cast<std::size_t>(entries_));
+  kernels.shown_surfaces(device, entry_views(kernels, look), placed_entries_, loads_[0].data(),
+                         shown_.data());
+  return shown_.data();
+}
+
 void DeviceSurfaces::book_loads(Device device, const DeviceContactKernels& kernels, Real h) {
   works_.make_room(device, placed_entries_);
   works_.book(device, entry_views(kernels, {}), meshes_.groups(), ExplicitWorks{loads_[0].data(), h, moves_});

@@ -72,6 +72,9 @@ class DeviceSurfaces {
   // The same where contacts rub; `look`: at the end of the step.
   void find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
                  const SurfaceLook& look);
+  // Queues what is shown of the contacts, per entry, of the loads of the step, which were found at an instant
+  // with the particles as `look` has them.
+  const ShownContact* find_shown(Device device, const DeviceContactKernels& kernels, const SurfaceLook& look);
   // Queues the books at the triangles of a step that is closed, of the contacts found last: of the loads of
   // the explicit step of length h, or over the implicit one.
   void book_loads(Device device, const DeviceContactKernels& kernels, Real h);
@@ -124,7 +127,8 @@ class DeviceSurfaces {
   DeviceArray<SurfaceFrame> frames_;
   DeviceArray<SurfaceLoad> loads_[2];
   DeviceArray<SurfaceStep> steps_;
-  DeviceArray<SurfaceRub> rubs_;  // empty unless contacts rub in implicit steps
+  DeviceArray<ShownContact> shown_;  // empty unless it was asked for
+  DeviceArray<SurfaceRub> rubs_;     // empty unless contacts rub in implicit steps
   // Written by the device, of chunks with contacts but for their number.
   PinnedArray<InstantSums> h_load_sums_;
   PinnedArray<StepSums> h_step_sums_;

@@ -78,7 +78,7 @@ class Run:
         self.snapshots = Snapshots(self._series)
 
     def series(self, kind: str) -> Series | None:
-        """Snapshots of "particles", "bodies" or "surfaces"; None where the run has none of these."""
+        """Snapshots of "particles", "bodies", "surfaces", "contacts" or "links"; None where the run has none of these."""
         return self._series.get(kind)
 
     @cached_property
@@ -107,6 +107,12 @@ class Run:
     def body_names(self) -> list[str]:
         """In the order in which fields count them."""
         found = self._series.get("bodies") or self._series.get("surfaces")
+        return found.names if found else []
+
+    @property
+    def link_names(self) -> list[str]:
+        """Of joints and force elements, in the order in which the field "link" counts them."""
+        found = self._series.get("links")
         return found.names if found else []
 
     def to_dataframe(self, *patterns: str) -> pandas.DataFrame:

@@ -1,4 +1,5 @@
-"""The snapshots of one kind: what particles.vtkhdf, bodies.vtkhdf and surfaces.vtkhdf hold."""
+"""The snapshots of one kind: what particles.vtkhdf, bodies.vtkhdf, surfaces.vtkhdf, contacts.vtkhdf or links.vtkhdf
+holds."""
 
 from __future__ import annotations
 
@@ -22,12 +23,13 @@ class SeriesFile:
 
     path: pathlib.Path
     title: str
-    names: list[str]  # of the run's bodies
+    names: list[str]  # of the run's bodies, or of the links
     times: np.ndarray  # [snapshots] [s]
     first: np.ndarray  # row in Points at which each snapshot begins
     points: np.ndarray  # their numbers of points
     triangles: np.ndarray  # [triangles][3], of surfaces: points at the corners, counted from the snapshot's first
-    cell_first: dict[str, np.ndarray]  # per field of triangles: row at which each snapshot begins
+    lines: bool  # whether each two points are the ends of one
+    cell_first: dict[str, np.ndarray]  # per field of triangles or lines: row at which each snapshot begins
     labels: dict[str, tuple[str, str]]  # unit and description of position and of every field
 
     @staticmethod
@@ -48,6 +50,7 @@ class SeriesFile:
                 steps["PointOffsets"][:],
                 root["NumberOfPoints"][:][steps["PartOffsets"][:]],
                 triangles,
+                "LineOffsets" in steps,
                 {name: cells[name][:] if name in cells else np.zeros(len(steps["Values"]), int)
                  for name in root.get("CellData", {})},
                 labels,
@@ -59,9 +62,11 @@ class SeriesFile:
         """One snapshot's rows of position or of a field."""
         if name not in self.labels:
             setting = "surface_fields" if self.cell_first else "fields"
-            raise ScreeError(f"{self.path}: holds no field {name}; the run's output.{setting} must name it")
+            hint = "" if self.lines else f"; the run's output.{setting} must name it"
+            raise ScreeError(f"{self.path}: holds no field {name}{hint}")
         if name in self.cell_first:
-            first, count, where = self.cell_first[name][snapshot], len(self.triangles), f"CellData/{name}"
+            first, where = self.cell_first[name][snapshot], f"CellData/{name}"
+            count = self.points[snapshot] // 2 if self.lines else len(self.triangles)
         else:
             first, count = self.first[snapshot], self.points[snapshot]
             where = "Points" if name == POSITION else f"PointData/{name}"
@@ -89,7 +94,7 @@ class Series:
 
     @property
     def names(self) -> list[str]:
-        """Of the run's bodies, in the order in which fields count them."""
+        """Of the run's bodies, or of the links, in the order in which fields count them."""
         return self._last.names
 
     def fields(self, snapshot: int) -> list[str]:
@@ -111,7 +116,7 @@ class Series:
         return int(file.points[place])
 
     def rows(self, snapshot: int, name: str) -> np.ndarray:
-        """[points] or [points][k], of a field of triangles [triangles] or [triangles][k]."""
+        """[points] or [points][k], of a field of triangles or lines one row for each of these."""
         file, place = self._places[snapshot]
         return file.rows(place, name)
 
@@ -126,5 +131,15 @@ class Series:
         """[triangles][3], of surfaces: rows of position at their corners."""
         return self._places[snapshot][0].triangles
 
-    def is_of_triangles(self, name: str) -> bool:
+    def lines(self, snapshot: int) -> np.ndarray:
+        """[lines][2], of contacts and links: rows of position at their ends."""
+        file, place = self._places[snapshot]
+        return np.arange(file.points[place] if file.lines else 0).reshape(-1, 2)
+
+    @property
+    def has_lines(self) -> bool:
+        return self._last.lines
+
+    def is_of_cells(self, name: str) -> bool:
+        """Of triangles or lines, not of points."""
         return name in self._last.cell_first

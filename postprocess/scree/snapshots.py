@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     import pandas
     import pyvista
 
-KINDS = ("particles", "bodies", "surfaces")
+KINDS = ("particles", "bodies", "surfaces", "contacts", "links")
 COMPONENTS = {3: "xyz", 4: "wxyz", 9: ("xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz")}
 
 
 class Points(Mapping[str, Quantity]):
-    """The particles, the bodies' shapes or the triangles of one snapshot: fields by name, each read when it is asked
-    for, with "position" [points][3] [m] among them. Rows of particles are in the order of global_id."""
+    """The particles, the bodies' shapes, the triangles or the lines of one snapshot: fields by name, each read when it
+    is asked for, with "position" [points][3] [m] among them. Rows of particles are in the order of global_id."""
 
     def __init__(self, series: Series, snapshot: int) -> None:
         self._series, self._snapshot = series, snapshot
@@ -54,16 +54,25 @@ class Points(Mapping[str, Quantity]):
         """Of surfaces: rows of position at the triangles' corners [triangles][3]; of others none."""
         return self._series.triangles(self._snapshot)
 
+    @property
+    def lines(self) -> np.ndarray:
+        """Of contacts and links: rows of position at the lines' ends [lines][2]; of others none."""
+        return self._series.lines(self._snapshot)
+
     def to_dataframe(self) -> pandas.DataFrame:
-        """A row per particle or shape, of surfaces per triangle; a column per field, a field of several numbers as
-        "velocity_x", ... Units by column in attrs["units"]."""
+        """A row per particle or shape, of surfaces per triangle, of contacts and links per line, with its ends as
+        "start_x", ..., "end_x", ...; a column per field, a field of several numbers as "velocity_x", ... Units by
+        column in attrs["units"]."""
         import pandas
 
-        of_triangles = len(self.triangles) > 0
+        of_cells = any(map(self._series.is_of_cells, self))
         columns, units = {}, {}
-        for name, field in self.items():
-            if self._series.is_of_triangles(name) != of_triangles:
-                continue
+        fields = {name: field for name, field in self.items() if self._series.is_of_cells(name) == of_cells}
+        if self._series.has_lines:
+            ends = self[POSITION]
+            fields = {name: Quantity(ends.values[k::2], ends.unit, ends.description)
+                      for k, name in enumerate(("start", "end"))} | fields
+        for name, field in fields.items():
             for column, values in components(name, field.values).items():
                 columns[column], units[column] = values, field.unit
         frame = pandas.DataFrame(columns)
@@ -71,16 +80,19 @@ class Points(Mapping[str, Quantity]):
         return frame
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """Points as vertices or, of surfaces, triangles, with all fields; the snapshot's time as field data "time".
-        Particles become spheres of true size by `.glyph(scale="radius", geom=pyvista.Sphere(radius=1.0))`."""
+        """Points as vertices or, of surfaces, triangles, of contacts and links lines, with all fields; the snapshot's
+        time as field data "time". Particles become spheres of true size by
+        `.glyph(scale="radius", geom=pyvista.Sphere(radius=1.0))`."""
         import pyvista
 
         mesh = pyvista.PolyData(self[POSITION].values)
         if len(self.triangles):
             mesh = pyvista.PolyData.from_regular_faces(self[POSITION].values, self.triangles)
+        elif len(self.lines):
+            mesh = pyvista.PolyData(self[POSITION].values, lines=np.insert(self.lines, 0, 2, axis=1).ravel())
         for name, field in self.items():
-            if name != POSITION:
-                data = mesh.cell_data if self._series.is_of_triangles(name) else mesh.point_data
+            if name != POSITION and len(field):  # pyvista takes no empty ones
+                data = mesh.cell_data if self._series.is_of_cells(name) else mesh.point_data
                 data[name] = field.values
         mesh.field_data["time"] = self._series.times[self._snapshot : self._snapshot + 1]
         return mesh
@@ -112,7 +124,7 @@ class Snapshot:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """Those of "particles", "bodies", "surfaces" that the run has."""
+        """Those of "particles", "bodies", "surfaces", "contacts", "links" that the run has."""
         return tuple(self._series)
 
     @property
@@ -129,6 +141,18 @@ class Snapshot:
     def surfaces(self) -> Points:
         """The triangles of meshes. Throws ScreeError where there are none."""
         return self._points("surfaces")
+
+    @property
+    def contacts(self) -> Points:
+        """The contacts of particles as lines, those that the deck's output.contacts asked for. Throws ScreeError where
+        it did not."""
+        return self._points("contacts")
+
+    @property
+    def links(self) -> Points:
+        """Joints and force elements as lines. The field "link" counts the run's link_names. Throws ScreeError where
+        there are none, or where output.links is false."""
+        return self._points("links")
 
     def to_pyvista(self) -> pyvista.MultiBlock:
         """A block for each of `kinds`."""

@@ -26,6 +26,14 @@ const TableKeys& output_keys() {
                "added up in each step: impact_work [J], what the damping of normal forces, with the making "
                "of necks, has taken there; sliding_work [J], what friction has; wear_depth [m], the volume "
                "that Archard's law wears off (wear_coefficient of the pairs) over the area."),
+       boolean("contacts")
+           .otherwise("false")
+           .about("Whether snapshots hold the contacts of particles, a line for each (contacts.vtkhdf), with "
+                  "its "
+                  "forces, overlap and partners."),
+       boolean("links").otherwise("true").about(
+           "Whether snapshots hold the joints, spring-dampers and bushings, a line for each "
+           "(links.vtkhdf), with its force and torque."),
        real("history_interval", "s")
            .at_least(0)
            .otherwise("0.0")

@@ -6,6 +6,7 @@
 
 #include "dem/body_items.hpp"
 #include "dem/contact_items.hpp"
+#include "dem/contact_line_items.hpp"
 #include "dem/leaver_items.hpp"
 #include "dem/output_fields.hpp"
 #include "dem/pair_list.hpp"
@@ -62,6 +63,12 @@ class ContactKernels {
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
   // An output field that reads contacts.
   virtual void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const = 0;
+  // Of n entries of particles with placed surfaces what is shown of the contacts, which are in `loads`; and
+  // the first n items of ContactLineItem.
+  virtual void shown_surfaces(const SurfaceViews& in, Index n, const SurfaceLoad* loads,
+                              ShownContact* shown) const = 0;
+  virtual void contact_lines(const ContactViews<PackedRows>& in, Index n,
+                             const LineRequest& request) const = 0;
   // What the contacts of the particles add to the ledger over an accepted implicit step.
   virtual void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
                      Real* integrator_loss) const = 0;

@@ -77,6 +77,13 @@ class CpuContactKernels : public ContactKernels {
     with_contact_output(request, ContactWalk<Laws, PackedRows>{in, laws_},
                         [&](const auto& item) { for_each(Serial{}, request.n, item); });
   }
+  void shown_surfaces(const SurfaceViews& in, Index n, const SurfaceLoad* loads,
+                      ShownContact* shown) const override {
+    for_each(Serial{}, n, ShownSurfaceItem<Laws>{in, laws_, loads, shown});
+  }
+  void contact_lines(const ContactViews<PackedRows>& in, Index n, const LineRequest& request) const override {
+    for_each(Serial{}, n, ContactLineItem<Laws, PackedRows>{{in, laws_}, request});
+  }
   void books(const ContactViews<PackedRows>& in, Index n, const StepStart& start, Real* contact_loss,
              Real* integrator_loss) const override {
     for_each(Serial{}, n,

@@ -1,6 +1,7 @@
 #include "dem/cpu_reports.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/for_each.hpp"
 #include "base/reproducible_sum.hpp"
@@ -64,6 +65,27 @@ void CpuReports::start_output() {
 ShapePack CpuReports::pack_shapes() {
   need_loads();
   return items_.side.pack();
+}
+
+ContactLines CpuReports::contact_lines() {
+  const ParticleStore& store = items_.store;
+  const Index n = store.owned;
+  need_loads();
+  const std::vector<ShownContact> of_surfaces =
+      items_.surfaces.shown(store, items_.list.surfaces, items_.history.views());
+  std::vector<Index> counts(static_cast<std::size_t>(n)), offsets(counts.size() + 1);
+  LineRequest request{store.row_key.data(), of_surfaces.data(), items_.model.space.min,
+                      items_.subdomain.period()};
+  request.counts = counts.data();
+  items_.kernels->contact_lines(items_.views(), n, request);
+  std::inclusive_scan(counts.begin(), counts.end(), offsets.begin() + 1);
+  ContactLines out;
+  for (Index i = 0; i < n; ++i) out.global_id.push_back(id_of(store.row_key[i]));
+  out.counts.assign(counts.begin(), counts.end());
+  out.lines.resize(static_cast<std::size_t>(offsets.back()));
+  request.lines = out.lines.data(), request.offsets = offsets.data();
+  items_.kernels->contact_lines(items_.views(), n, request);
+  return out;
 }
 
 std::vector<TracedParticle> CpuReports::traced(std::span<const GlobalId> wanted) {

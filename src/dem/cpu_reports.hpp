@@ -17,6 +17,7 @@ class CpuReports : public Reports {
   void start_output() override;
   ParticleOutput output() override { return std::move(output_); }
   ShapePack pack_shapes() override;
+  ContactLines contact_lines() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
   std::vector<ContactSum> carrier_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;

@@ -130,6 +130,15 @@ void CpuSurfaces::find_rubs(const ParticleStore& store, const SurfaceRows& rows,
   side_.take_steps(sums_of<StepSums>(rubs_, rows, numbers()), start.step.h);
 }
 
+std::vector<ShownContact> CpuSurfaces::shown(const ParticleStore& store, const SurfaceRows& rows,
+                                             const HistoryViews& history) const {
+  std::vector<ShownContact> shown(rows.surfaces.size());
+  const SurfaceViews views = entry_views(
+      store, rows, {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
+  kernels_.shown_surfaces(views, static_cast<Index>(rows.by_surface.size()), loads_.data(), shown.data());
+  return shown;
+}
+
 std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) const {
   return scree::triangle_sums({rows.groups, rows.surfaces, touches_, loads_}, numbers());
 }

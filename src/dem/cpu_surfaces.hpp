@@ -25,6 +25,9 @@ class CpuSurfaces {
   // And where contacts rub; history: with what they will remember if the step is accepted.
   void find_rubs(const ParticleStore& store, const SurfaceRows& rows, const RubbingStart& start,
                  const HistoryViews& history);
+  // Of the last find_loads(), which looked at the store's particles at an instant; per entry.
+  std::vector<ShownContact> shown(const ParticleStore& store, const SurfaceRows& rows,
+                                  const HistoryViews& history) const;
   // Of the last find_loads().
   std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
   // Books at the triangles what the contacts found last have lost over a step that is closed: the explicit

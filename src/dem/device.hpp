@@ -43,6 +43,8 @@ inline constexpr double kListSlack = 1.15;
 // Particles whose records leave the device at a time. Room for them is there all the time: a run that finds
 // no more memory writes its last good state through it.
 inline constexpr std::size_t kRecordsAtOnce = std::size_t{1} << 16;
+// Lines of a snapshot's contacts likewise.
+inline constexpr std::size_t kLinesAtOnce = std::size_t{1} << 18;
 
 // Device memory that the backend takes for this rank's part of the model [B]: what `scree check` prints. An
 // estimate from the model alone, the same on machines without a GPU.

@@ -6,6 +6,7 @@
 
 #include "dem/backend.hpp"
 #include "dem/choose_law.hpp"
+#include "dem/contact_line_items.hpp"
 #include "dem/device.hpp"
 #include "dem/kept_contacts.hpp"
 #include "dem/mixed_items.hpp"
@@ -139,6 +140,8 @@ std::size_t device_memory(const Model& model) {
   bytes += static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
            static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
+  if (model.output.contacts)
+    bytes += n.particles * sizeof(Index) + static_cast<double>(kLinesAtOnce) * sizeof(ContactLine);
   return static_cast<std::size_t>(bytes);
 }
 

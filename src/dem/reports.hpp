@@ -7,6 +7,7 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "dem/contact_line_items.hpp"
 #include "dem/output_fields.hpp"
 #include "dem/surface_side.hpp"
 
@@ -46,6 +47,13 @@ struct ParticleOutput {
   std::vector<OutputValues> fields;  // of wanted_fields()
 };
 
+// The contacts of this rank's particles, those with other particles on the rank of the first one alone.
+struct ContactLines {
+  std::vector<GlobalId> global_id;   // of the particles, any order
+  std::vector<std::int64_t> counts;  // lines of each
+  std::vector<ContactLine> lines;    // in that order; those of a particle in the order of its row
+};
+
 // A particle whose motion is recorded.
 struct TracedParticle {
   GlobalId global_id;
@@ -80,7 +88,8 @@ class Reports {
   // Begins to copy out what output() returns: the particles as they are now, whatever steps follow.
   virtual void start_output() = 0;
   virtual ParticleOutput output() = 0;
-  virtual ShapePack pack_shapes() = 0;  // complete on rank 0
+  virtual ShapePack pack_shapes() = 0;       // complete on rank 0
+  virtual ContactLines contact_lines() = 0;  // where all are now
   // Those of these particles that this rank owns, where they are now, in any order.
   virtual std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) = 0;
   // What touches each carrier (bodies, then placed walls), and each of these planes at rest (indices into

@@ -83,6 +83,7 @@ class SpringDamperElement final : public ForceElement {
     powers.applied -= actuator_(t).value * line.rate;
   }
 
+  Real effort(const BodyPoses& poses, Real t) const override { return line_at(poses, t).tension; }
   Real elastic_energy(const BodyPoses& poses) const override {
     const Real stretch = norm(pair_geometry(pair_, poses).gap) - free_length_;
     return stiffness_ / 2 * stretch * stretch;
@@ -130,9 +131,9 @@ class TorsionalElement final : public ForceElement {
   }
 
   Real add_force(const BodyPoses& poses, Real, Real, std::vector<Real>& force) override {
-    const Real torque = element_.stiffness * twist(poses) + element_.damping * rate(poses);
-    add_at(force, index_[0], torque);
-    add_at(force, index_[1], -torque);
+    const Real torque = effort(poses, 0);
+    add_at(force, index_[0], -torque);
+    add_at(force, index_[1], torque);
     return std::abs(torque);
   }
   void add_derivatives(const BodyPoses&, Real, SparseTerm& stiffness, SparseTerm& damping) const override {
@@ -146,6 +147,9 @@ class TorsionalElement final : public ForceElement {
   }
   void add_powers(const BodyPoses& poses, Real, Powers& powers) const override {
     powers.dissipated += element_.damping * rate(poses) * rate(poses);
+  }
+  Real effort(const BodyPoses& poses, Real) const override {
+    return -(element_.stiffness * twist(poses) + element_.damping * rate(poses));
   }
   Real elastic_energy(const BodyPoses& poses) const override {
     return element_.stiffness / 2 * twist(poses) * twist(poses);

@@ -28,6 +28,8 @@ class ForceElement {
                                SparseTerm& damping) const = 0;
   virtual void add_powers(const BodyPoses& poses, Real t, Powers& powers) const = 0;
   virtual Real elastic_energy(const BodyPoses&) const { return 0; }  // [J]
+  // Of an element between two bodies: tension [N], or torque on the second one [N m].
+  virtual Real effort(const BodyPoses&, Real) const { return 0; }
   // Elastic energy of a displacement by `length`, or by 1 rad, times two [J].
   virtual Real elastic_scale(Real) const { return 0; }
 };

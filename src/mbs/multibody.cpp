@@ -331,6 +331,10 @@ std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& st
   return out;
 }
 
+std::vector<Real> Multibody::spring_efforts(const MultibodyState& state, Real t) const {
+  return impl_->system.spring_efforts({t, state.position, state.velocity});
+}
+
 std::vector<BushingSample> Multibody::bushings(const MultibodyState& state, Real t) const {
   if (impl_->system.bushings().empty()) return {};
   const BodyPoses poses = impl_->system.poses_at({t, state.position, state.velocity});

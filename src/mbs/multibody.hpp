@@ -122,6 +122,8 @@ class Multibody {
   // Of motors, springs, limits and friction on joints, in this order.
   std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
 
+  // Tension of the spring-dampers [N], then the torque of the torsional ones on their second bodies [N m].
+  std::vector<Real> spring_efforts(const MultibodyState& state, Real t) const;
   std::vector<BushingSample> bushings(const MultibodyState& state, Real t) const;
 
   // Where the model asks for consistent velocities: the largest change of one at t = 0, e.g. "angular

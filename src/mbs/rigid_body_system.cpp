@@ -91,6 +91,7 @@ void RigidBodySystem::add_elements(const Model& model, const BodyPoses& start) {
                                                                     : make_force_element(e, layout_, end));
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers)
     elements_.push_back(make_force_element(e, layout_));
+  springs_ = elements_.size();
   for (const Bushing& e : model.bushings) {
     auto element = std::make_unique<BushingElement>(e, layout_);
     bushings_.push_back(element.get());
@@ -295,6 +296,13 @@ std::vector<RigidBodySystem::GroupReaction> RigidBodySystem::reactions(
       reactions[k].frame = quaternion_of(poses.spatial[groups_[k].body].rotation) * groups_[k].marker;
   }
   return reactions;
+}
+
+std::vector<Real> RigidBodySystem::spring_efforts(const SystemInstant& at) const {
+  const BodyPoses poses = poses_at(at);
+  std::vector<Real> efforts;
+  for (std::size_t k = 0; k < springs_; ++k) efforts.push_back(elements_[k]->effort(poses, at.time));
+  return efforts;
 }
 
 }  // namespace scree

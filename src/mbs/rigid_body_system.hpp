@@ -101,6 +101,8 @@ class RigidBodySystem final : public MechanicalSystem {
     Quaternion frame;
   };
   std::vector<GroupReaction> reactions(const SystemInstant& at, const std::vector<Real>& multipliers) const;
+  // Of the spring-dampers, then of the torsional ones: ForceElement::effort.
+  std::vector<Real> spring_efforts(const SystemInstant& at) const;
 
  private:
   struct CountedAngle {
@@ -137,6 +139,7 @@ class RigidBodySystem final : public MechanicalSystem {
   std::vector<int> group_;      // of every row
   std::vector<ConstraintGroup> groups_;
   std::vector<std::unique_ptr<ForceElement>> elements_;
+  std::size_t springs_ = 0;                      // of these the first so many
   std::vector<const BushingElement*> bushings_;  // of these
   JointForces joint_forces_;
   std::vector<Real> coordinate_scale_, constraint_scale_;

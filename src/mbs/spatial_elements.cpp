@@ -71,6 +71,7 @@ class MeasureSpring final : public ForceElement {
     powers.dissipated += law_.damping * rate * rate;
     powers.applied -= law_.actuator(t).value * rate;
   }
+  Real effort(const BodyPoses& poses, Real t) const override { return tension_at(poses, t); }
   Real elastic_energy(const BodyPoses& poses) const override {
     const Real stretch = c_->value(poses.spatial) - law_.free_value;
     return law_.stiffness / 2 * stretch * stretch;

@@ -198,6 +198,7 @@ void build_output(const DeckTable& deck, const ModelNames& names, Model& model) 
   output.checkpoint_interval = table.real("checkpoint_interval");
   output.checkpoint_wall_interval = table.real("checkpoint_wall_interval");
   output.history_csv = table.boolean("history_csv");
+  output.contacts = table.boolean("contacts"), output.links = table.boolean("links");
   output.compression = static_cast<int>(table.integer("compression"));
   output.history_reactions = table.integer("history_reactions");
   output.history_efforts = table.integer("history_efforts");

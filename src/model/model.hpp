@@ -131,6 +131,7 @@ struct Output {
   Real checkpoint_interval = 0;       // [s] of simulated time; 0: none of these
   Real checkpoint_wall_interval = 0;  // [s] of the run's own time without a checkpoint; 0: none of these
   bool history_csv = false;
+  bool contacts = false, links = true;   // whether snapshots show them as lines
   int compression = 0;                   // of particles in snapshots and checkpoints: 0, or deflate's level
   std::int64_t history_reactions = 100;  // joints and drivers, the first so many
   std::int64_t history_efforts = 100;    // motors and all else on joints, the first so many

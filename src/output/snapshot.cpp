@@ -81,6 +81,11 @@ PointSnapshot surface_points(Real time, const SurfaceSnapshot& surfaces) {
   return snapshot;
 }
 
+PointSnapshot line_points(Real time, const LineSnapshot& lines, const Ranks& ranks) {
+  const std::int64_t own = std::ssize(lines.ends);
+  return {time, ranks.sum(own), {ranks.sum_below(own), own}, components(lines.ends), lines.fields};
+}
+
 SeriesOptions with_global_id(SeriesOptions options) {
   if (options.fields) options.fields->emplace_back(kGlobalId);
   options.names.clear();  // of the bodies
@@ -88,11 +93,27 @@ SeriesOptions with_global_id(SeriesOptions options) {
   return options;
 }
 
+SeriesOptions of_contacts(SeriesOptions options, const WantedLines& lines) {
+  options.fields.reset(), options.triangles.reset();
+  if (lines.contacts) options.fields = lines.contact_fields;
+  options.lines = true, options.likely_points = 2 * lines.likely_contacts;
+  return options;
+}
+
+SeriesOptions of_links(SeriesOptions options, const WantedLines& lines) {
+  options.names = lines.links, options.lines = true;
+  return options;
+}
+
 }  // namespace
 
-SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions& options)
+SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions& options,
+                               const WantedLines& lines)
     : ranks_(options.ranks),
       particles_(directory, "particles", with_global_id(options)),
+      contacts_(directory, "contacts", of_contacts(options, lines)),
+      shows_contacts_(lines.contacts),
+      shows_links_(!lines.links.empty()),
       snapshots_(options.keep) {
   ranks_.on_root([&] {
     SeriesOptions alone = options;
@@ -101,19 +122,42 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
     surfaces_.emplace(directory, "surfaces", alone);
     alone.triangles.reset();
     bodies_.emplace(directory, "bodies", alone);
+    links_.emplace(directory, "links", of_links(alone, lines));
   });
+  require_snapshots();
+}
+
+// Of files that are continued; those of bodies and meshes follow with their first snapshot.
+void SnapshotWriter::require_snapshots() const {
   if (particles_.snapshots() != snapshots_)
     throw IoError(particles_.path() + ": missing, the restarted run needs it");
+  const auto require = [&](const VtkHdfSeries& series, bool wanted, const char* key) {
+    if (series.snapshots() == (wanted ? snapshots_ : 0)) return;
+    throw IoError(fmt::format("{}: {}; set output.{} = {}, or choose another folder", series.path(),
+                              wanted ? "missing, the restarted run is to write it"
+                                     : "is there, but the restarted run is not to write it",
+                              key, !wanted));
+  };
+  require(contacts_, shows_contacts_, "contacts");
+  ranks_.on_root([&] { require(*links_, shows_links_, "links"); });
 }
 
 void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,
-                            const SurfaceSnapshot& surfaces) {
+                            const SurfaceSnapshot& surfaces, const LineSnapshot& contacts,
+                            const LineSnapshot& links) {
   const PointSnapshot points = particle_points(time, particles, ranks_), shapes = body_points(time, bodies),
-                      corners = surface_points(time, surfaces);
+                      corners = surface_points(time, surfaces), touches = line_points(time, contacts, ranks_),
+                      connections = line_points(time, links, {});
+  // Of all ranks, then of rank 0.
+  const auto with_shared = [&](const auto& action) {
+    action(particles_, points);
+    if (shows_contacts_) action(contacts_, touches);
+  };
   const auto with_others = [&](const auto& action) {
     ranks_.on_root([&] {
       if (shapes.points > 0) action(*bodies_, shapes);
       if (corners.points > 0) action(*surfaces_, corners);
+      if (shows_links_) action(*links_, connections);
     });
   };
   with_others([&](const VtkHdfSeries& series, const PointSnapshot&) {
@@ -121,19 +165,17 @@ void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const 
     throw IoError(fmt::format("{}: holds {} snapshots where {} were written", series.path(),
                               series.snapshots(), snapshots_));
   });
-  particles_.prepare(points);
-  with_others([](VtkHdfSeries& series, const PointSnapshot& of) { series.prepare(of); });
-  particles_.show();
-  with_others([](VtkHdfSeries& series, const PointSnapshot&) { series.show(); });
+  const auto with_all = [&](const auto& action) { with_shared(action), with_others(action); };
+  with_all([](VtkHdfSeries& series, const PointSnapshot& of) { series.prepare(of); });
+  with_all([](VtkHdfSeries& series, const PointSnapshot&) { series.show(); });
   ranks_.on_root([&] { sync_folder_of(particles_.path()); });
-  particles_.follow(points);
-  with_others([](VtkHdfSeries& series, const PointSnapshot& of) { series.follow(of); });
+  with_all([](VtkHdfSeries& series, const PointSnapshot& of) { series.follow(of); });
   ++snapshots_;
 }
 
 void SnapshotWriter::finish() {
-  particles_.finish();
-  ranks_.on_root([&] { bodies_->finish(), surfaces_->finish(); });
+  particles_.finish(), contacts_.finish();
+  ranks_.on_root([&] { bodies_->finish(), surfaces_->finish(), links_->finish(); });
 }
 
 }  // namespace scree

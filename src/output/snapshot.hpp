@@ -1,4 +1,5 @@
-// Snapshots: one VTKHDF time series per kind (particles, bodies) and an .xdmf that refers to the same data.
+// Snapshots: one VTKHDF time series per kind (particles, bodies, surfaces, contacts, links) and an .xdmf that
+// refers to the same data.
 #pragma once
 
 #include <optional>
@@ -46,28 +47,48 @@ struct SurfaceSnapshot {
   std::span<const Real> wear_depth{};                   // [m]
 };
 
+// Lines: of this rank those of contacts, all of links on rank 0.
+struct LineSnapshot {
+  std::span<const Vec3> ends;      // two of each [m]
+  std::vector<PointField> fields;  // of the lines: those that the series was opened with
+};
+
+// Which lines are written beside the points.
+struct WantedLines {
+  bool contacts = false;
+  std::vector<std::string> contact_fields = {};
+  std::int64_t likely_contacts = 0;  // how many there may be
+  std::string links = {};            // names of the links, one per line; on rank 0, where there are some
+};
+
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
-// bodies.xdmf, and surfaces.vtkhdf + surfaces.xdmf where there are meshes. The files are complete, closed and
-// on disk after every append, and readable at every instant, a kill in the middle of an append included; the
-// .xdmf may lack the last sixth of the snapshots until finish(). All ranks write the particles, rank 0 the
-// others; all functions are collective.
+// bodies.xdmf, surfaces.vtkhdf + surfaces.xdmf where there are meshes, and contacts and links likewise where
+// they are wanted. The files are complete, closed and on disk after every append, and readable at every
+// instant, a kill in the middle of an append included; the .xdmf may lack the last sixth of the snapshots
+// until finish(). All ranks write the particles and the contacts, rank 0 the others; all functions are
+// collective.
 class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
   // cut off); 0 starts new files and removes old ones. options.fields: those of the particles beside
   // the global id. options.names: of the bodies. options.triangles: of the meshes, on rank 0, where there are
-  // some. Throws IoError where the files hold fewer snapshots, other fields or other triangles.
-  SnapshotWriter(const std::string& directory, const SeriesOptions& options);
+  // some. Throws IoError where the files hold fewer snapshots, other fields or other triangles, or where
+  // there are lines that are not wanted, or none that are.
+  SnapshotWriter(const std::string& directory, const SeriesOptions& options, const WantedLines& lines = {});
   // Both throw IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,
-              const SurfaceSnapshot& surfaces = {});
+              const SurfaceSnapshot& surfaces = {}, const LineSnapshot& contacts = {},
+              const LineSnapshot& links = {});
   void finish();
   int snapshots() const { return snapshots_; }
 
  private:
+  void require_snapshots() const;
+
   Ranks ranks_;
-  VtkHdfSeries particles_;
-  std::optional<VtkHdfSeries> bodies_, surfaces_;  // on rank 0
+  VtkHdfSeries particles_, contacts_;
+  std::optional<VtkHdfSeries> bodies_, surfaces_, links_;  // on rank 0
+  bool shows_contacts_, shows_links_;
   int snapshots_ = 0;
 };
 

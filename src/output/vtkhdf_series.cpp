@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
@@ -48,52 +47,25 @@ void add_rows(Hdf5File& file, const std::string& name, std::int64_t rows) {
   file.resize_rows(name, file.rows(name) + rows);
 }
 
-void create_steps(Hdf5File& file) {
+// The connectivity ids of cells of one point have the cells' numbers; of triangles both are 0.
+void create_steps(Hdf5File& file, bool shared_ids) {
   const auto create = [&]<class T>(T, const std::string& name, int width, const std::string& unit,
                                    const std::string& description) {
     file.create_rows<T>(kSteps + name, {width, kStepsPerChunk}, {unit, description});
   };
   create(Real{}, "Values", 1, "s", "time of each snapshot");
-  create(std::int64_t{}, "PartOffsets", 1, "1", "part that holds the vertices of each snapshot");
+  create(std::int64_t{}, "PartOffsets", 1, "1", "part that holds the cells of each snapshot");
   create(std::int64_t{}, "NumberOfParts", 1, "1", "parts of each snapshot");
-  create(std::int64_t{}, "PointOffsets", 1, "1", "first row of each snapshot in Points and in every field");
+  create(std::int64_t{}, "PointOffsets", 1, "1",
+         "first row of each snapshot in Points and in fields of points");
   create(std::int64_t{}, "CellOffsets", 4, "1",
          "first cell of each snapshot: vertices, lines, polygons, strips");
-  // A vertex has one connectivity id, so these are the same numbers; of triangles both are 0.
-  file.link(kSteps + "CellOffsets", kSteps + "ConnectivityIdOffsets");
+  if (shared_ids)
+    file.link(kSteps + "CellOffsets", kSteps + "ConnectivityIdOffsets");
+  else
+    create(std::int64_t{}, "ConnectivityIdOffsets", 4, "1",
+           "first connectivity id of each snapshot, likewise");
   file.write_integer_attribute(kSteps, "NSteps", {0});
-}
-
-void create_vertices(Hdf5File& file, const RowStorage& of_points) {
-  const auto create = [&](const std::string& name, const RowStorage& storage,
-                          const std::string& description) {
-    file.create_rows<std::int64_t>(kRoot + name, storage, {"1", description});
-  };
-  const RowStorage of_parts{1, kStepsPerChunk};
-  create("Vertices/Connectivity", of_points, "point of each vertex, counted from the part's first");
-  create("Vertices/Offsets", of_points,
-         "first connectivity id of each vertex, and their number: one more row per part");
-  file.link(kRoot + "NumberOfPoints", kRoot + "Vertices/NumberOfCells");
-  file.link(kRoot + "NumberOfPoints", kRoot + "Vertices/NumberOfConnectivityIds");
-  create("Lines/NumberOfCells", of_parts, "cells of each part: none");
-  create("Lines/Offsets", of_parts, "one 0 per part");
-  create("Lines/Connectivity", of_parts, "empty");
-  file.link(kRoot + "Lines/NumberOfCells", kRoot + "Lines/NumberOfConnectivityIds");
-  file.link(kRoot + "Lines", kRoot + "Polygons");
-  file.link(kRoot + "Lines", kRoot + "Strips");
-}
-
-// All behind a snapshot: vertices, and the fields of points.
-void cut_points(Hdf5File& file, const SnapshotPlace& last) {
-  const std::int64_t parts = last.part + 1, cells = last.first_cell + last.points;
-  for (const char* name : {"NumberOfPoints", "Lines/NumberOfCells", "Lines/Offsets"}) {
-    file.resize_rows(kRoot + name, parts);
-  }
-  file.resize_rows(kRoot + "Vertices/Connectivity", cells);
-  file.resize_rows(kRoot + "Vertices/Offsets", cells + parts);
-  for (const std::string& name : file.dataset_names(kPointData)) {
-    file.resize_rows(kPointData + name, last.first_point + last.points);
-  }
 }
 
 // All behind so many snapshots: the fields of triangles.
@@ -101,18 +73,6 @@ void cut_triangles(Hdf5File& file, const SeriesTriangles& triangles, std::int64_
   for (const std::string& name : file.dataset_names(kCellData)) {
     if (!triangles.has(name)) file.resize_rows(kCellData + name, snapshots * triangles.count());
   }
-  file.resize_rows(kSteps + "TriangleOffsets", snapshots);
-}
-
-// Row k of a part holds k.
-void write_numbers(SharedRows& file, const std::string& name, std::int64_t first_row, RowPart numbers) {
-  std::vector<std::int64_t> piece;
-  file.write_pieces<std::int64_t>(name, 1, {first_row + numbers.first, numbers.count},
-                                  [&](std::int64_t first, std::int64_t count) {
-                                    piece.resize(static_cast<std::size_t>(count));
-                                    std::iota(piece.begin(), piece.end(), numbers.first + first);
-                                    return piece.data();
-                                  });
 }
 
 }  // namespace
@@ -158,21 +118,24 @@ void VtkHdfSeries::read_places() {
       throw IoError(
           fmt::format("{}: snapshot {} refers to part {} of {}", path(), s, part[s], points.size()));
     }
-    places_[s] = {time[s],           points[static_cast<std::size_t>(part[s])],
-                  first_point[s],    part[s],
-                  first_cell[4 * s], static_cast<std::int64_t>(s)};
+    places_[s] = {time[s],
+                  points[static_cast<std::size_t>(part[s])],
+                  first_point[s],
+                  part[s],
+                  first_cell[4 * s + static_cast<std::size_t>(cells().column)],
+                  static_cast<std::int64_t>(s)};
   }
 }
 
 void VtkHdfSeries::require_fields() const {
-  std::vector<std::string> held = Hdf5File(path(), Hdf5Access::read).dataset_names(kPointData),
+  std::vector<std::string> held = Hdf5File(path(), Hdf5Access::read).dataset_names(field_group()),
                            wanted = *options_.fields;
   std::ranges::sort(held), std::ranges::sort(wanted);
   if (held == wanted) return;
   throw IoError(
-      fmt::format("{}: holds the fields {}, but the restarted run is to write {}; keep "
-                  "output.fields as it was, or choose another folder",
-                  path(), fmt::join(held, ", "), fmt::join(wanted, ", ")));
+      fmt::format("{}: holds the fields {}, but the restarted run is to write {}; {}choose another folder",
+                  path(), fmt::join(held, ", "), fmt::join(wanted, ", "),
+                  options_.lines ? "" : "keep output.fields as it was, or "));
 }
 
 void VtkHdfSeries::cut(std::size_t keep) {
@@ -185,26 +148,39 @@ void VtkHdfSeries::cut(std::size_t keep) {
     for (const char* name : {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets"}) {
       file.resize_rows(kSteps + name, steps);
     }
+    if (has_cell_fields()) file.resize_rows(field_offsets(), steps);
     file.resize_rows(kRoot + "Points", last.first_point + last.points);
     if (options_.triangles)
       cut_triangles(file, *options_.triangles, steps);
     else
-      cut_points(file, last);
+      cut_points(file);
   };
   file_.update({shorten, {}});
 }
 
+// All behind the last place: cells, and their fields or those of points.
+void VtkHdfSeries::cut_points(Hdf5File& file) const {
+  const SnapshotPlace& last = places_.back();
+  file.resize_rows(kRoot + "NumberOfPoints", last.part + 1);
+  cut_cells(file, cells(), {last.part, last.first_cell}, last.points);
+  if (options_.lines) file.resize_rows(kSteps + "ConnectivityIdOffsets", last.number + 1);
+  const RowPart rows = field_rows(last, {0, last.points});
+  for (const std::string& name : file.dataset_names(field_group()))
+    file.resize_rows(field_group() + name, rows.first + rows.count);
+}
+
 void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
-  const RowStorage storage{1, points_per_chunk(first.points), true, options_.compression};
+  const RowStorage storage{1, points_per_chunk(std::max(first.points, options_.likely_points)), true,
+                           options_.compression};
   file.create_group(kSteps);
   file.write_integer_attribute("/VTKHDF", "Version", {2, 0});
   file.write_text_attribute("/VTKHDF", "Type", "PolyData");
-  create_steps(file);
+  create_steps(file, !options_.lines);
   file.create_rows<std::int64_t>(kRoot + "NumberOfPoints", {1, kStepsPerChunk}, {"1", "points of each part"});
   if (options_.triangles)
     create_triangles(file, *options_.triangles);
   else
-    create_vertices(file, storage);
+    create_cells(file, cells(), storage);
   RowStorage vectors = storage;
   vectors.width = 3;
   file.create_rows<Real>(kRoot + "Points", vectors, {"m", "position"});
@@ -216,18 +192,14 @@ void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
   if (!options_.names.empty()) file.write_text("/Scree/names", options_.names);
 }
 
-// The fields of points have as many rows as Points, so they begin where these begin.
 void VtkHdfSeries::lay_out_fields(Hdf5File& file, const PointSnapshot& first, RowStorage storage) const {
-  std::string offsets = kSteps + "PointOffsets";
-  if (options_.triangles) {
-    storage.chunk_rows = points_per_chunk(options_.triangles->count());
-    offsets = kSteps + "TriangleOffsets";
-    file.create_rows<std::int64_t>(offsets, {1, kStepsPerChunk},
-                                   {"1", "first row of each snapshot in the fields of the triangles"});
-  }
+  if (options_.triangles) storage.chunk_rows = points_per_chunk(options_.triangles->count());
+  if (has_cell_fields())
+    file.create_rows<std::int64_t>(field_offsets(), {1, kStepsPerChunk},
+                                   {"1", "first row of each snapshot in the fields of its cells"});
   for (const PointField& field : first.fields) {
     create_field(file, field_group() + field.name, field, storage);
-    file.link(offsets, (options_.triangles ? kCellDataOffsets : kPointDataOffsets) + field.name);
+    file.link(field_offsets(), (has_cell_fields() ? kCellDataOffsets : kPointDataOffsets) + field.name);
   }
 }
 
@@ -238,7 +210,7 @@ SnapshotPlace VtkHdfSeries::next_place(const PointSnapshot& snapshot) const {
   place.first_point = last.first_point + last.points;
   const bool same_part = last.points == snapshot.points;
   place.part = same_part ? last.part : last.part + 1;
-  place.first_cell = same_part ? last.first_cell : last.first_cell + last.points;
+  place.first_cell = same_part ? last.first_cell : last.first_cell + last.points / cells().points;
   return place;
 }
 
@@ -246,26 +218,33 @@ bool VtkHdfSeries::starts_part(const SnapshotPlace& place) const {
   return places_.empty() || place.part != places_.back().part;
 }
 
-void VtkHdfSeries::start_part(Hdf5File& file, const PointSnapshot& snapshot) const {
-  append_one(file, kRoot + "NumberOfPoints", snapshot.points);
-  if (options_.triangles) return;
-  add_rows(file, kRoot + "Vertices/Connectivity", snapshot.points);
-  add_rows(file, kRoot + "Vertices/Offsets", snapshot.points + 1);
-  append_one(file, kRoot + "Lines/NumberOfCells", std::int64_t{0});
-  append_one(file, kRoot + "Lines/Offsets", std::int64_t{0});
+const std::string& VtkHdfSeries::field_group() const { return has_cell_fields() ? kCellData : kPointData; }
+
+// The fields of points have as many rows as Points, so they begin where these begin.
+std::string VtkHdfSeries::field_offsets() const {
+  return kSteps + (options_.triangles ? "TriangleOffsets" : options_.lines ? "LineOffsets" : "PointOffsets");
 }
 
-const std::string& VtkHdfSeries::field_group() const { return options_.triangles ? kCellData : kPointData; }
-
 RowPart VtkHdfSeries::field_rows(const SnapshotPlace& place, RowPart own) const {
-  if (!options_.triangles) return {place.first_point + own.first, own.count};
-  return {place.number * options_.triangles->count(), options_.triangles->count()};
+  if (options_.triangles) return {place.number * options_.triangles->count(), options_.triangles->count()};
+  return {(place.first_point + own.first) / cells().points, own.count / cells().points};
+}
+
+void VtkHdfSeries::append_cell_offsets(Hdf5File& file, std::int64_t first_cell) const {
+  std::int64_t first[4] = {};
+  first[cells().column] = first_cell;
+  file.append_rows(kSteps + "CellOffsets", first, 1);
+  first[cells().column] *= cells().points;
+  if (options_.lines) file.append_rows(kSteps + "ConnectivityIdOffsets", first, 1);
 }
 
 void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
                              const SnapshotPlace& place) const {
   if (places_.empty()) lay_out(file, snapshot);
-  if (starts_part(place)) start_part(file, snapshot);
+  if (starts_part(place)) {
+    append_one(file, kRoot + "NumberOfPoints", snapshot.points);
+    if (!options_.triangles) add_cells(file, cells(), snapshot.points);
+  }
   add_rows(file, kRoot + "Points", snapshot.points);
   const RowPart rows = field_rows(place, {0, snapshot.points});
   for (const PointField& field : snapshot.fields) add_rows(file, field_group() + field.name, rows.count);
@@ -273,22 +252,17 @@ void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
   append_one(file, kSteps + "PartOffsets", place.part);
   append_one(file, kSteps + "NumberOfParts", std::int64_t{1});
   append_one(file, kSteps + "PointOffsets", place.first_point);
-  if (options_.triangles) append_one(file, kSteps + "TriangleOffsets", rows.first);
-  const std::int64_t first_cell[4] = {place.first_cell, 0, 0, 0};
-  file.append_rows(kSteps + "CellOffsets", first_cell, 1);
+  if (has_cell_fields()) append_one(file, field_offsets(), rows.first);
+  append_cell_offsets(file, place.first_cell);
   file.write_integer_attribute(kSteps, "NSteps", {static_cast<std::int64_t>(places_.size()) + 1});
 }
 
 void VtkHdfSeries::write_rows(SharedRows& file, const PointSnapshot& snapshot,
                               const SnapshotPlace& place) const {
   const RowPart own = snapshot.own;
-  if (starts_part(place) && !options_.triangles) {
-    write_numbers(file, kRoot + "Vertices/Connectivity", place.first_cell, own);
-    // One more than there are vertices: the last rank's.
-    const bool last = options_.ranks.rank() == options_.ranks.size() - 1;
-    write_numbers(file, kRoot + "Vertices/Offsets", place.first_cell + place.part,
-                  {own.first, own.count + (last ? 1 : 0)});
-  }
+  if (starts_part(place) && !options_.triangles)
+    write_cells(file, cells(), {place.part, place.first_cell}, own,
+                options_.ranks.rank() == options_.ranks.size() - 1);
   file.write(kRoot + "Points", 3, {place.first_point + own.first, own.count}, snapshot.position);
   for (const PointField& field : snapshot.fields)
     write_field(file, field_group() + field.name, field, field_rows(place, own));
@@ -318,7 +292,7 @@ void VtkHdfSeries::remove_xdmf() const {
 
 void VtkHdfSeries::add_xdmf(const PointSnapshot& snapshot) {
   const XdmfSeries series{name_, name_ + ".vtkhdf", &snapshot.fields,
-                          options_.triangles ? &*options_.triangles : nullptr};
+                          options_.triangles ? &*options_.triangles : nullptr, options_.lines};
   for (; xdmf_snapshots_ < places_.size(); ++xdmf_snapshots_) {
     xdmf_grids_ += xdmf_grid(series, places_[xdmf_snapshots_]);
   }

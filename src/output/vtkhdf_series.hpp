@@ -1,9 +1,10 @@
-// A time series of point sets or of triangles in one VTKHDF file, and an .xdmf that refers to the same data.
+// A time series of point sets, lines or triangles in one VTKHDF file, and an .xdmf that refers to the same
+// data.
 //
-// VTKHDF 2.0, type PolyData with one vertex cell per point: docs.vtk.org, "VTKHDF format specification". All
-// snapshots' rows follow each other in each dataset; the group Steps says where those of one snapshot begin.
-// The vertices of a snapshot are one part; it is shared by the snapshots that follow with the same number of
-// points. Triangles between points that move are one part for all snapshots.
+// VTKHDF 2.0, type PolyData: docs.vtk.org, "VTKHDF format specification". All snapshots' rows follow each
+// other in each dataset; the group Steps says where those of one snapshot begin. Vertices, one cell per
+// point, or lines, one per two points, of a snapshot are one part; it is shared by the snapshots that follow
+// with the same number of points. Triangles between points that move are one part for all snapshots.
 //
 // The .xdmf names every snapshot in one text, which ends in closing tags: it is complete only as a whole. It
 // is written beside and renamed, not at each snapshot, but when there are a fifth more than it knows (and at
@@ -17,13 +18,14 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "output/series_cells.hpp"
 #include "output/series_triangles.hpp"
 #include "output/twin_file.hpp"
 
 namespace scree {
 
-// One field of this rank's points, or of the triangles, of one snapshot: values[point][width], width 1, 3, or
-// 9 for a tensor, row by row.
+// One field of this rank's points or lines, or of the triangles, of one snapshot: values[point][width], width
+// 1, 3, or 9 for a tensor, row by row.
 struct PointField {
   std::string name;
   DatasetLabel label;
@@ -36,8 +38,8 @@ struct PointSnapshot {
   std::int64_t points = 0;         // of all ranks; may differ from snapshot to snapshot, and be 0
   RowPart own;                     // of these, this rank's
   const Real* position = nullptr;  // [own.count][3] [m]
-  // The same names and widths in every snapshot: of the points or, where the series shows triangles, of
-  // these.
+  // The same names and widths in every snapshot: of the points or, where the series shows lines or triangles,
+  // of these.
   std::vector<PointField> fields;
 };
 
@@ -45,7 +47,7 @@ struct PointSnapshot {
 struct SnapshotPlace {
   Real time = 0;                             // [s]
   std::int64_t points = 0, first_point = 0;  // in Points and in every field
-  std::int64_t part = 0, first_cell = 0;     // in NumberOfPoints; in Vertices/Connectivity
+  std::int64_t part = 0, first_cell = 0;     // in NumberOfPoints; of the vertices or lines
   std::int64_t number = 0;                   // of the snapshot, from 0
 };
 
@@ -58,6 +60,8 @@ struct SeriesOptions {
   std::optional<std::vector<std::string>> fields = {};
   std::string names = {};  // a text for the dataset /Scree/names, where it is not empty
   std::optional<SeriesTriangles> triangles = {};  // of a series of triangles, which one rank writes
+  bool lines = false;                             // between each two points; every rank has whole ones
+  std::int64_t likely_points = 0;                 // of a snapshot, where the first one may have few
 };
 
 class VtkHdfSeries {
@@ -80,14 +84,18 @@ class VtkHdfSeries {
  private:
   void read_places();
   void require_fields() const;
+  bool has_cell_fields() const { return options_.triangles || options_.lines; }
+  const SeriesCells& cells() const { return options_.lines ? kLines : kVertices; }  // without triangles
   const std::string& field_group() const;
+  std::string field_offsets() const;
   RowPart field_rows(const SnapshotPlace& place, RowPart own) const;  // own: points
   void cut(std::size_t keep);
   void lay_out(Hdf5File& file, const PointSnapshot& first) const;
   void lay_out_fields(Hdf5File& file, const PointSnapshot& first, RowStorage storage) const;
   SnapshotPlace next_place(const PointSnapshot& snapshot) const;
   bool starts_part(const SnapshotPlace& place) const;
-  void start_part(Hdf5File& file, const PointSnapshot& snapshot) const;
+  void cut_points(Hdf5File& file) const;
+  void append_cell_offsets(Hdf5File& file, std::int64_t first_cell) const;
   void make_room(Hdf5File& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
   void write_rows(SharedRows& file, const PointSnapshot& snapshot, const SnapshotPlace& place) const;
   TwinFile::Change change(const PointSnapshot& snapshot) const;

@@ -72,17 +72,27 @@ std::string vertices(const XdmfSeries& series, const SnapshotPlace& place) {
       place.points, slab(series, {"Vertices/Connectivity", 1, "Int", 8}, place.first_cell, place.points));
 }
 
+std::string lines(const XdmfSeries& series, const SnapshotPlace& place) {
+  return fmt::format(
+      "<Topology TopologyType=\"Polyline\" NumberOfElements=\"{}\" NodesPerElement=\"2\">{}</Topology>\n",
+      place.points / 2,
+      slab(series, {"Lines/Connectivity", 1, "Int", 8}, 2 * place.first_cell, place.points));
+}
+
 std::string triangles(const XdmfSeries& series) {
   const std::int64_t count = series.triangles->count();
   return fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>\n", count,
                      slab(series, {"Polygons/Connectivity", 1, "Int", 8}, 0, 3 * count));
 }
 
+// Whether the fields are those of cells.
+bool of_cells(const XdmfSeries& series) { return series.triangles != nullptr || series.lines; }
+
 // With `count` values from `first` on.
 std::string attribute(const XdmfSeries& series, const std::string& name, const XdmfArray& array,
                       std::int64_t first, std::int64_t count) {
   return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
-                     escaped(name), attribute_type(array.width), series.triangles ? "Cell" : "Node",
+                     escaped(name), attribute_type(array.width), of_cells(series) ? "Cell" : "Node",
                      slab(series, array, first, count));
 }
 
@@ -91,13 +101,16 @@ std::string attribute(const XdmfSeries& series, const std::string& name, const X
 std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
   if (place.points == 0) return {};
   std::string text = fmt::format("<Grid Name=\"{}\"><Time Value=\"{}\"/>\n", series.name, place.time);
-  text += series.triangles ? triangles(series) : vertices(series, place);
+  text += series.triangles ? triangles(series)
+          : series.lines   ? lines(series, place)
+                           : vertices(series, place);
   text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
                       slab(series, {"Points", 3, "Float", 8}, place.first_point, place.points));
-  const std::int64_t count = series.triangles ? series.triangles->count() : place.points;
-  const std::int64_t first = series.triangles ? place.number * count : place.first_point;
+  const std::int64_t points = series.lines ? 2 : 1;  // of a field's row
+  const std::int64_t count = series.triangles ? series.triangles->count() : place.points / points;
+  const std::int64_t first = series.triangles ? place.number * count : place.first_point / points;
   for (const PointField& field : *series.fields)
-    text += attribute(series, field.name, field_array(series.triangles ? "CellData/" : "PointData/", field),
+    text += attribute(series, field.name, field_array(of_cells(series) ? "CellData/" : "PointData/", field),
                       first, count);
   if (series.triangles)
     for (const TriangleNumbers& numbers : series.triangles->numbers)

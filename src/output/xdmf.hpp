@@ -14,6 +14,7 @@ struct XdmfSeries {
   std::string data_file;  // the .vtkhdf's name, in the same directory
   const std::vector<PointField>* fields = nullptr;
   const SeriesTriangles* triangles = nullptr;  // of a series of triangles: the fields are theirs
+  bool lines = false;                          // of a series of lines, likewise
 };
 
 // One snapshot's <Grid>; empty for a snapshot without points, which these readers cannot open.

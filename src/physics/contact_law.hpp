@@ -173,6 +173,14 @@ struct ContactLaw {
   SCREE_HD SpringEnergies springs_of(const PairState& pair, const ContactHistory& history) const {
     return springs_at(pair.geometry.overlap, pair.geometry.normal(), pair.size, history);
   }
+  // How far the spring of friction is stretched [m].
+  SCREE_HD Real slip_of(const PairState& pair, const ContactHistory& history) const {
+    static_assert(TangentialLaw::acts);
+    const Real d = pair.geometry.overlap,
+               stiffness = tangential.stiffness_at(
+                   normal_contact(normal.of_pair(pair.size), pair.size, 0, d, d).radius);
+    return stiffness > 0 ? norm(history.spring) / stiffness : 0;
+  }
   SCREE_HD SpringEnergies springs_at(Real d, Vec3 normal_to_i, const PairSize& size,
                                      const ContactHistory& history) const {
     const NormalContact contact = normal_contact(normal.of_pair(size), size, 0, d, d);

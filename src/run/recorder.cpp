@@ -10,6 +10,7 @@
 #include "partition/id_order.hpp"
 #include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
+#include "run/contact_network.hpp"
 #include "run/target_contacts.hpp"
 
 namespace scree {
@@ -103,6 +104,8 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
     for (const RecordedColumn& column : columns_) heads.push_back(column.head);
     history_.emplace(directory, heads, model.output.history_csv, state.history_rows);
     if (!model.meshes.empty()) surfaces_.emplace(model);
+    if (model.output.links && link.multibody() != nullptr) links_.emplace(model);
+    if (links_ && links_->empty()) links_.reset();
   });
   SeriesOptions options{model.title,
                         static_cast<int>(state.snapshots),
@@ -111,8 +114,15 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
                         model.output.fields,
                         body_names(model)};
   if (surfaces_) options.triangles = surfaces_->triangles();
-  snapshots_.emplace(directory, options);
+  snapshots_.emplace(directory, options, wanted_lines());
   if (writes_late()) backend.set_idle_work([this] { write_pending(); });
+}
+
+WantedLines Recorder::wanted_lines() const {
+  WantedLines lines{model_.output.contacts, ContactNetwork::field_names(model_),
+                    model_.particles.totals.count};
+  if (links_) lines.links = links_->names();
+  return lines;
 }
 
 // Several ranks write together, and they do not wait for their devices at the same time.
@@ -175,7 +185,7 @@ void Recorder::balance(State& state, HistorySample& sample) const {
 void Recorder::snapshot(State& state) {
   write_pending();
   backend_.reports().start_output();
-  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}, {}, {}};
+  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}, {}, {}, {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
   if (!model_.meshes.empty()) {
     const Output& output = model_.output;
@@ -185,6 +195,16 @@ void Recorder::snapshot(State& state) {
     const std::vector<std::int64_t> works = all_works(backend_.particles().works(), link_.ranks());
     if (surfaces_) next.surfaces = surfaces_->look(motion, loads, works);
   }
+  take_shapes(next, motion);
+  if (model_.output.contacts) next.contacts = backend_.reports().contact_lines();
+  if (links_) next.links = links_->look(*link_.multibody(), state.bodies, state.clock.time, motion);
+  pending_ = std::move(next);
+  ++state.snapshots;
+  if (!writes_late()) write_pending();
+}
+
+// Of the bodies what stands beside each of their shapes.
+void Recorder::take_shapes(PendingSnapshot& next, const std::vector<BodyMotion>& motion) const {
   for (const int body : next.shapes.body) {
     next.angle.push_back(motion[body].angle);
     next.angular_velocity.push_back(motion[body].angular_velocity);
@@ -195,23 +215,23 @@ void Recorder::snapshot(State& state) {
     next.origin.push_back(
         point_motion(motion[body], -model_.bodies[static_cast<std::size_t>(body)].center_of_mass).position);
   }
-  pending_ = std::move(next);
-  ++state.snapshots;
-  if (!writes_late()) write_pending();
 }
 
 void Recorder::write_pending() {
   if (!pending_) return;
-  const PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
+  PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
   const ParticleOutput p =
       in_id_order(link_.ranks(), model_.particles.totals.count, backend_.reports().output());
+  ContactNetwork contacts;
+  if (model_.output.contacts) contacts = ContactNetwork(model_, link_.ranks(), std::move(snapshot.contacts));
   const ShapePack& s = snapshot.shapes;
   const MeshSurfaces::Look& surfaces = snapshot.surfaces;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
                      {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
                       s.force, s.contacts, snapshot.orientation, snapshot.spin, snapshot.origin},
                      {surfaces.position, surfaces.pressure, surfaces.shear, surfaces.impact_work,
-                      surfaces.sliding_work, surfaces.wear_depth});
+                      surfaces.sliding_work, surfaces.wear_depth},
+                     contacts.snapshot(), snapshot.links.snapshot());
 }
 
 void Recorder::flush_history() {

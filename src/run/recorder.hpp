@@ -11,6 +11,7 @@
 #include "output/history.hpp"
 #include "output/snapshot.hpp"
 #include "run/history_columns.hpp"
+#include "run/link_lines.hpp"
 #include "run/mesh_surfaces.hpp"
 #include "run/records.hpp"
 #include "run/state.hpp"
@@ -50,9 +51,13 @@ class Recorder : public Records {
     std::vector<Real> orientation;              // where bodies are spatial, likewise: quaternions
     std::vector<Vec3> spin, origin;             // angular velocities, global; origins of the frames
     MeshSurfaces::Look surfaces;                // on rank 0, where there are meshes
+    ContactLines contacts;                      // where they are shown
+    LinkLines::Look links;                      // on rank 0, where they are shown
   };
 
+  WantedLines wanted_lines() const;
   bool writes_late() const;
+  void take_shapes(PendingSnapshot& snapshot, const std::vector<BodyMotion>& motion) const;
   HistorySample take_sample(State& state, Real h) const;  // collective; updates the balance in the state
   void balance(State& state, HistorySample& sample) const;
 
@@ -60,6 +65,7 @@ class Recorder : public Records {
   Backend& backend_;
   const BodyLink& link_;
   std::optional<MeshSurfaces> surfaces_;  // on rank 0, where there are meshes
+  std::optional<LinkLines> links_;        // likewise, where they are shown
   std::vector<RecordedColumn> columns_;   // on rank 0
   std::optional<HistoryWriter> history_;  // likewise
   std::optional<SnapshotWriter> snapshots_;

@@ -24,6 +24,8 @@ MESHES = [HERE / "meshes.toml", "parallel.imbalance=0.0"]
 # The same with all that triangles add up.
 WORKS = ['output.surface_fields=["pressure", "shear", "impact_work", "sliding_work", "wear_depth"]',
          "contact.pairs.0.wear_coefficient=1e-12"]
+# Contacts, and joints and force elements, as lines.
+LINES = ["output.contacts=true"]
 # Powder that sticks to walls, meshes and bodies.
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
 # The cases that a restart continues, too.
@@ -33,16 +35,17 @@ MAIN_CASES = {
                            (1, 2, 3, 4)),
     "dam break, implicit": ([*DAM, *IMPLICIT, "time.end=0.24"], (1, 2, 3, 4, 8)),
     "dam break, explicit": ([*DAM, *EXPLICIT, "time.end=0.24", "integrator.substeps=3"], (1, 2, 3, 4, 8)),
-    "periodic gas, implicit": ([*GAS, *IMPLICIT], (1, 2, 3, 4, 8)),
+    "periodic gas, implicit": ([*GAS, *LINES, *IMPLICIT], (1, 2, 3, 4, 8)),
     "periodic gas, explicit": ([*GAS, *EXPLICIT], (1, 2, 3, 4, 8)),
     "rubbing": ([*RUBBING, "time.end=0.08"], (1, 2, 3, 4, 8)),
     "rubbing after Hertz and Mindlin": ([HERE / "rubbing_hertz.toml", "parallel.imbalance=0.0", "time.end=0.08"],
                                         (1, 2, 3, 4)),
     "sticky": ([HERE / "sticky.toml", "parallel.imbalance=0.05", "time.end=2e-3"], (1, 2, 4)),
-    "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, "time.end=2e-3"], (1, 2, 4)),
+    "meshes that stick and their works": ([*STICKY_MESHES, *WORKS, *LINES, "time.end=2e-3"], (1, 2, 4)),
     "rolling": ([HERE / "rolling.toml", "parallel.imbalance=0.05", "time.end=0.08"], (1, 2, 4)),
     # Bodies among them that turn and go through a side, driven, and some that they rub themselves.
-    "rubbing on bodies": ([HERE / "rubbing_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 3, 4)),
+    "rubbing on bodies": ([HERE / "rubbing_bodies.toml", *LINES, "parallel.imbalance=0.0", "time.end=0.08"],
+                          (1, 2, 3, 4)),
     "bodies in space": ([HERE / "spatial_bodies.toml", "parallel.imbalance=0.0", "time.end=0.08"], (1, 2, 4)),
     "elements in space": ([*ELEMENTS, "time.end=0.08"], (1, 2, 4)),
     "meshes and their works": ([*MESHES, *WORKS, "time.end=0.08"], (1, 2, 3, 4)),
@@ -83,8 +86,9 @@ class SameBitsTest(RanksTest):
                     for count in ("steps", "newton_iterations", "linear_iterations", "list_builds", "left"):
                         self.assertEqual(record["counts"][count], self.record(first)["counts"][count], count)
                     self.assertEqual(self.bytes_of(output, "history.csv"), self.bytes_of(first, "history.csv"))
-                    for series in ("particles.vtkhdf", "bodies.vtkhdf", "surfaces.vtkhdf"):
-                        self.assertEqual(self.datasets(output, series), self.datasets(first, series))
+                    for kind in ("particles", "bodies", "surfaces", "contacts", "links"):
+                        series = self.datasets(output, f"{kind}.vtkhdf")
+                        self.assertEqual(series, self.datasets(first, f"{kind}.vtkhdf"), kind)
                     self.assertGreaterEqual(record["counts"]["steps"], 500 if "adaptive" in name else 1000)
                     migrated += record["counts"]["migrated"]
                     rebalances += record["counts"]["rebalances"]
@@ -149,6 +153,12 @@ class SameBitsTest(RanksTest):
                 self.assertEqual(surfaces is not None, results is not None and name.startswith("meshes"))
                 if surfaces is not None and "works" in name:
                     self.assertIn("VTKHDF/CellData/wear_depth", surfaces)
+                for lines in ("contacts.vtkhdf", "links.vtkhdf"):
+                    self.assertEqual(self.datasets(parts, lines), self.datasets(whole, lines), lines)
+                contacts = self.datasets(parts, "contacts.vtkhdf")
+                self.assertEqual(contacts is not None, results is not None and "output.contacts=true" in overrides)
+                if contacts is not None:
+                    self.assertGreater(contacts["VTKHDF/CellData/first"][1][0], 0)
                 counts = self.record(parts)["counts"]
                 self.assertGreaterEqual(counts["steps"], 1000)
                 self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])

@@ -215,6 +215,86 @@ def check_surfaces(path, names, steps):
     print(f"{path}: {len(triangles)} triangles, with their bodies at {steps} steps: right")
 
 
+def check_lines(path, steps):
+    """The lines of every step by VTK's reader against the raw data. Returns for each step {name: values} of the lines,
+    with their "ends" [lines][2][3]."""
+    reader = vtk.vtkHDFReader()
+    errors = ErrorCounter(reader)
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    require(reader.GetNumberOfSteps() == steps, f"{path}: {reader.GetNumberOfSteps()} steps for {steps}")
+    found = []
+    with h5py.File(path, "r") as file:
+        check_attributes(file, path)
+        root, first_line, first_point = file["VTKHDF"], 0, 0
+        require(len(root.get("PointData", {})) == 0, f"{path}: has fields of points")
+        for step, time in enumerate(root["Steps/Values"][:]):
+            where = f"{path}, step {step}"
+            reader.SetStep(step)
+            reader.Update()
+            require(reader.GetTimeValue() == time, f"{where}: time {reader.GetTimeValue()} for {time}")
+            data, points = reader.GetOutput(), root["NumberOfPoints"][root["Steps/PartOffsets"][step]]
+            require(data.GetNumberOfLines() == data.GetNumberOfCells() == points // 2, f"{where}: other lines")
+            raw = {name: field[first_line : first_line + points // 2] for name, field in root["CellData"].items()}
+            raw["ends"] = root["Points"][first_point : first_point + points].reshape(-1, 2, 3)
+            if points:
+                ids = vtk_to_numpy(data.GetLines().GetConnectivityArray())
+                require(np.array_equal(ids, np.arange(points)), f"{where}: lines do not name their points")
+                ends = vtk_to_numpy(data.GetPoints().GetData()).reshape(-1, 2, 3)
+                require(np.array_equal(ends, raw["ends"]), f"{where}: Points differ")
+                for name in root["CellData"]:
+                    values = vtk_to_numpy(data.GetCellData().GetArray(name))
+                    require(np.array_equal(values, raw[name]), f"{where}: {name} differs")
+                    require(np.isfinite(values).all(), f"{where}: {name} is not finite")
+            found.append(raw)
+            first_line, first_point = first_line + points // 2, first_point + points
+        for name, rows in {"Points": first_point, **{f"CellData/{name}": first_line for name in root["CellData"]}}.items():
+            require(len(root[name]) == rows, f"{path}: {len(root[name])} rows of {name} for {rows}")
+    require(errors.count == 0, f"{path}: VTK reported {errors.count} errors")
+    counts = [len(raw["ends"]) for raw in found]
+    print(f"{path}: {steps} steps, {min(counts)} to {max(counts)} lines: right")
+    return found
+
+
+def check_contacts(directory, steps):
+    """That the contacts of each particle are as many as its field says, and their forces add up to its force."""
+    lines = check_lines(directory / "contacts.vtkhdf", steps)
+    with h5py.File(directory / "particles.vtkhdf", "r") as file:
+        root = file["VTKHDF"]
+        for step, contacts in enumerate(lines):
+            where = f"{directory}, step {step}"
+            points = raw_snapshot(root, step, ("global_id", "force", "contacts"))
+            ids = points["global_id"]
+            number, force = np.zeros(len(ids), int), np.zeros((len(ids), 3))
+            first, second = contacts["first"], contacts["second"]
+            between = second >= 0
+            require((np.diff(first) >= 0).all(), f"{where}: contacts not in the order of the ids")
+            require((second[between] > first[between]).all(), f"{where}: a contact's first id is not the lower one")
+            for of, sign, rows in ((first, 1, slice(None)), (second, -1, between)):
+                at = np.searchsorted(ids, of[rows])
+                np.add.at(number, at, 1)
+                np.add.at(force, at, sign * contacts["force"][rows])
+            require(np.array_equal(number, points["contacts"]), f"{where}: other numbers of contacts")
+            apart = np.abs(force - points["force"]).max(initial=0)
+            require(apart <= 1e-10 * np.abs(points["force"]).max(initial=0), f"{where}: forces are {apart} N apart")
+    require(sum(len(contacts["first"]) for contacts in lines) > 0, f"{directory}: nothing touches")
+
+
+def check_links(directory, steps):
+    """That joints have the reactions of the history."""
+    lines, history = check_lines(directory / "links.vtkhdf", steps), history_columns(directory)
+    with h5py.File(directory / "links.vtkhdf", "r") as file:
+        names, times = file["Scree/names"][()].decode().splitlines(), file["VTKHDF/Steps/Values"][:]
+    for time, links in zip(times, lines):
+        row = np.flatnonzero(history["step/time"] == time)[0]
+        require(np.array_equal(links["link"], np.arange(len(names))), f"{directory}: links do not name the names")
+        for k in np.flatnonzero(links["kind"] == 0):
+            columns = [history.get(f"reactions/{names[k]}/f{axis}", np.zeros(row + 1))[row] for axis in "xyz"]
+            require(np.array_equal(links["reaction"][k], columns), f"{directory}: other reaction of {names[k]}")
+            apart = abs(np.linalg.norm(columns) - links["force"][k])
+            require(apart <= 1e-14 * links["force"][k], f"{directory}: {names[k]}: other force")
+
+
 def particle_fields(directory):
     """{name: width} of what the run's deck wants."""
     deck = json.loads((directory / "run_record.json").read_text())["run"]["resolved_deck"]
@@ -237,6 +317,10 @@ def main():
     if surfaces.exists():
         with h5py.File(surfaces, "r") as file:
             check_surfaces(surfaces, file["Scree/names"][()].decode().split(), steps)
+    if (directory / "contacts.vtkhdf").exists():
+        check_contacts(directory, steps)
+    if (directory / "links.vtkhdf").exists():
+        check_links(directory, steps)
     if bodies.exists():
         same = check_file(bodies, BODY_FIELDS) == steps
         require(same, "particles and bodies differ in their number of snapshots")

@@ -23,13 +23,17 @@ def require(condition, message):
 
 
 def raw_snapshots(path):
-    """[(time, {name: values})] of the snapshots that have points: the .xdmf leaves out the others."""
+    """[(time, {name: values})] of the snapshots that have points: the .xdmf leaves out the others. With the fields of
+    points or, of lines, of these."""
     snapshots = []
     with h5py.File(path, "r") as file:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
         for time, part, first in zip(steps["Values"][:], steps["PartOffsets"][:], steps["PointOffsets"][:]):
             rows = slice(first, first + root["NumberOfPoints"][part])
             data = {name: field[rows] for name, field in root.get("PointData", {}).items()}
+            if "LineOffsets" in steps:
+                of_lines = slice(rows.start // 2, rows.stop // 2)
+                data |= {name: field[of_lines] for name, field in root["CellData"].items()}
             data["Points"] = root["Points"][rows]
             if rows.stop > rows.start:
                 snapshots.append((time, data))
@@ -86,6 +90,28 @@ def check_series(directory, name):
         flush=True,
     )
     return simple.OpenDataFile(path), snapshots[-1][0]
+
+
+def check_lines(directory, name):
+    path = os.path.join(os.path.abspath(directory), name + ".xdmf")
+    snapshots = raw_snapshots(os.path.join(directory, name + ".vtkhdf"))
+    for kind, source in readers(path).items():
+        for time, raw in snapshots:
+            source.UpdatePipeline(time)
+            data, where = servermanager.Fetch(source), f"{path}, {kind}, t = {time:g} s"
+            count = data.GetNumberOfCells()
+            require(2 * count == len(raw["Points"]), f"{where}: {count} lines")
+            ends = [data.GetCell(k).GetPointId(end) for k in range(count) for end in range(2)]
+            points = vtk_to_numpy(data.GetPoints().GetData())
+            require(np.array_equal(points[ends], raw["Points"]), f"{where}: other ends")
+            require({data.GetCell(k).GetNumberOfPoints() for k in range(count)} == {2}, f"{where}: no lines")
+            for name, values in raw.items():
+                if name == "Points":
+                    continue
+                array = data.GetCellData().GetArray(name)
+                require(array is not None, f"{where}: no field {name}")
+                require(np.array_equal(vtk_to_numpy(array), values), f"{where}: {name} differs")
+    print(f"{path}: {len(snapshots)} steps: right in three readers", flush=True)
 
 
 def check_surfaces(directory):
@@ -148,6 +174,9 @@ def main():
         show(bodies, view, [0.85, 0.37, 0.01])
     if os.path.exists(os.path.join(directory, "surfaces.xdmf")):
         check_surfaces(directory)
+    for lines in ("contacts", "links"):
+        if os.path.exists(os.path.join(directory, lines + ".xdmf")):
+            check_lines(directory, lines)
     simple.Render(view)
     simple.ResetCamera(view)
     simple.SaveScreenshot(picture, view)

@@ -65,7 +65,7 @@ def run(words: argparse.Namespace) -> int:
     """History and snapshots as CSV, snapshots for VTK, Blender and CAD programs
 
     csv: history.csv and a table per snapshot, with units in the headers. vtp, vtu: a file of VTK per snapshot, and a
-    .pvd with their times. ply, stl: meshes alone, particles as balls of their size. Files are named after kind and
+    .pvd with their times. ply, stl: meshes alone, particles as balls of their size, no lines. Files are named after kind and
     number of the snapshot: particles_0012.csv.
     """
     opened = open_run(words.folder)
@@ -82,7 +82,7 @@ def run(words: argparse.Namespace) -> int:
         for number in snapshots:
             snapshot = opened.snapshots[number]
             points = getattr(snapshot, kind)
-            if points.count == 0:
+            if points.count == 0 or (len(points.lines) and words.format in ("ply", "stl")):
                 continue
             path = folder / f"{kind}_{number:04}.{words.format}"
             save(points, path)

@@ -38,7 +38,7 @@ class Surfaces:
 
     def color_by(self, field, snapshots):
         """The scale ends where, in one of these snapshots, all but a percent of what is above zero ends."""
-        if not self._series.is_of_triangles(field):
+        if not self._series.is_of_cells(field):
             raise ScreeError(f"surfaces have no field {field}; the run's output.surface_fields must name it")
         self.field = field
         values = [self._all_values(snapshot) for snapshot in snapshots]

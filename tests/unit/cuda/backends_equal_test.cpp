@@ -8,6 +8,7 @@
 
 #include "dem/device.hpp"
 #include "support/catch.hpp"
+#include "support/contact_line_bits.hpp"
 #include "support/near.hpp"
 #include "unit/dem/random_box.hpp"
 
@@ -255,6 +256,21 @@ TEST_CASE("many short explicit steps are the same on both backends") {
       CHECK(pair.cuda->list().builds() < 30);
       CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) == 0);
     }
+}
+
+// Of the largest box the lines leave the device in parts.
+TEST_CASE("contacts are shown the same on both backends") {
+  std::vector<std::pair<BoxCase, int>> cases{{kBoxes[1], 200000}};
+  for (const BoxCase& c : kBoxes)
+    if (allowed(c) == 0) cases.emplace_back(c, kParticles);
+  for (const auto& [c, particles] : cases) {
+    CAPTURE(c.name, particles);
+    Pair pair(dense_box(c, ParticleIntegrator::velocity_verlet, particles));
+    const auto lines = [&](Backend& backend) { return ordered_lines(backend.reports(), particles); };
+    const std::vector<ContactLine> cpu = lines(*pair.cpu), cuda = lines(*pair.cuda);
+    CHECK(cpu.size() > (particles > kParticles ? kLinesAtOnce : static_cast<std::size_t>(kParticles) / 4));
+    CHECK(same_bits(cpu, cuda));
+  }
 }
 
 TEST_CASE("the state moves between the backends without a trace") {

@@ -3,6 +3,7 @@
 #include "launches.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
+#include "support/contact_line_bits.hpp"
 #include "support/particle_bits.hpp"
 #include "support/rubbing_box.hpp"
 
@@ -22,6 +23,9 @@ void check_equal(const RubbingKind& kind, const RememberingBox& cpu, const Remem
   CHECK(difference(a.contacts, b.contacts) == "");
   CHECK(!a.contacts.keys.empty());
   CHECK(kind.unmirrored(b.particles, b.contacts) == 0);
+  const std::int64_t particles = cpu.model.particles.totals.count;
+  CHECK(same_bits(ordered_lines(cpu.backend->reports(), particles),
+                  ordered_lines(cuda.backend->reports(), particles)));
 }
 
 // What the ledger says of both.

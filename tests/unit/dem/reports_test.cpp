@@ -20,6 +20,7 @@ class CountedReports : public Reports {
     need_loads();
     return {};
   }
+  ContactLines contact_lines() override { return {}; }
   std::vector<TracedParticle> traced(std::span<const GlobalId>) override { return {}; }
   std::vector<ContactSum> carrier_contacts() override { return {}; }
   std::vector<ContactSum> wall_contacts(std::span<const int>) override { return {}; }

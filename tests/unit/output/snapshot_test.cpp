@@ -49,6 +49,37 @@ void write_surfaces(SnapshotWriter& writer, int end) {
   }
 }
 
+// Contacts and links, with values that say where they belong.
+const WantedLines kLinesWanted{true, {"overlap", "kind"}, 0, "spring\npin\n"};
+
+SnapshotWriter line_writer(const ScratchDirectory& scratch, int keep,
+                           const WantedLines& lines = kLinesWanted) {
+  return {scratch.path(), {.title = "title", .keep = keep, .names = "body\n"}, lines};
+}
+
+// Snapshots with so many contacts from the writer's next one on.
+void write_lines(SnapshotWriter& writer, const std::vector<int>& contacts) {
+  for (const int n : contacts) {
+    const int step = writer.snapshots();
+    const auto ends = [&](int lines) {
+      std::vector<Vec3> at;
+      for (int k = 0; k < 2 * lines; ++k) at.push_back({PredictableSnapshot::value(step, k), 0, 1});
+      return at;
+    };
+    const std::vector<Vec3> of_contacts = ends(n), of_links = ends(2);
+    std::vector<Real> overlap;
+    for (int k = 0; k < n; ++k) overlap.push_back(PredictableSnapshot::value(step, k));
+    const std::vector<int> kind(static_cast<std::size_t>(n), step);
+    const std::vector<Real> force{step + 0.25, step + 0.5};
+    const PredictableSnapshot of(step, 2, 0);
+    writer.append(
+        of.time, of.particles(), of.bodies(), {},
+        {of_contacts,
+         {{"overlap", {"m", "overlap"}, 1, overlap.data()}, {"kind", {"1", "kind"}, 1, kind.data()}}},
+        {of_links, {{"force", {"N", "force"}, 1, force.data()}}});
+  }
+}
+
 }  // namespace
 
 TEST_CASE("snapshots of changing size return as written") {
@@ -135,6 +166,75 @@ TEST_CASE("a restarted run goes on with the triangles that it has written, and w
   std::filesystem::remove(scratch / "surfaces.vtkhdf");
   SnapshotWriter writer = surface_writer(scratch, 5);
   CHECK_THROWS_AS(write_surfaces(writer, 6), IoError);
+}
+
+TEST_CASE("lines of changing number return as written, those of the same number share their cells") {
+  ScratchDirectory scratch;
+  SnapshotWriter writer = line_writer(scratch, 0);
+  write_lines(writer, {0, 2, 2, 3});
+  writer.finish();
+  using Integers = std::vector<std::int64_t>;
+  const Hdf5File file(scratch / "contacts.vtkhdf", Hdf5Access::read);
+  const auto integers = [&](const char* name) { return file.read_array<std::int64_t>(name); };
+  CHECK(integers("/VTKHDF/NumberOfPoints") == Integers{0, 4, 6});
+  CHECK(integers("/VTKHDF/Lines/NumberOfCells") == Integers{0, 2, 3});
+  CHECK(integers("/VTKHDF/Lines/NumberOfConnectivityIds") == Integers{0, 4, 6});
+  CHECK(integers("/VTKHDF/Lines/Offsets") == Integers{0, 0, 2, 4, 0, 2, 4, 6});
+  CHECK(integers("/VTKHDF/Lines/Connectivity") == Integers{0, 1, 2, 3, 0, 1, 2, 3, 4, 5});
+  CHECK(integers("/VTKHDF/Vertices/Offsets") == Integers{0, 0, 0});
+  CHECK(integers("/VTKHDF/Steps/PartOffsets") == Integers{0, 1, 1, 2});
+  CHECK(integers("/VTKHDF/Steps/PointOffsets") == Integers{0, 0, 4, 8});
+  CHECK(integers("/VTKHDF/Steps/CellDataOffsets/kind") == Integers{0, 0, 2, 4});
+  CHECK(integers("/VTKHDF/Steps/CellOffsets") == Integers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0});
+  CHECK(integers("/VTKHDF/Steps/ConnectivityIdOffsets") ==
+        Integers{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0});
+  CHECK(file.read_array<Real>("/VTKHDF/CellData/overlap") ==
+        std::vector<Real>{1000, 1001, 2000, 2001, 3000, 3001, 3002});
+  CHECK(file.read_array<int>("/VTKHDF/CellData/kind") == std::vector{1, 1, 2, 2, 3, 3, 3});
+  CHECK(file.read_text("/Scree/names") == "body\n");
+  const std::string text = file_text(scratch / "contacts.xdmf");
+  CHECK(occurrences(text, "TopologyType=\"Polyline\"") == 3);
+  CHECK(occurrences(text, "Center=\"Cell\"") == 6);
+  const Hdf5File links(scratch / "links.vtkhdf", Hdf5Access::read);
+  CHECK(links.read_text("/Scree/names") == "spring\npin\n");
+  CHECK(links.read_array<Real>("/VTKHDF/CellData/force") ==
+        std::vector<Real>{0.25, 0.5, 1.25, 1.5, 2.25, 2.5, 3.25, 3.5});
+}
+
+TEST_CASE("a restarted run goes on with its lines, and with no others") {
+  ScratchDirectory scratch;
+  const auto contents = [&](const char* name) {
+    const Hdf5File file(scratch / name, Hdf5Access::read);
+    std::vector<std::vector<std::int64_t>> all;
+    for (const std::string& dataset : file.dataset_names("/VTKHDF/"))
+      if (dataset.find("Data/") == std::string::npos && dataset != "Points" && dataset != "Steps/Values")
+        all.push_back(file.read_array<std::int64_t>("/VTKHDF/" + dataset));
+    return std::pair(all, file.read_array<Real>("/VTKHDF/Points"));
+  };
+  {
+    SnapshotWriter writer = line_writer(scratch, 0);
+    write_lines(writer, {1, 2, 2, 0, 3});
+  }
+  const auto contacts = contents("contacts.vtkhdf"), links = contents("links.vtkhdf");
+  {
+    SnapshotWriter writer = line_writer(scratch, 2);
+    CHECK(Hdf5File(scratch / "contacts.vtkhdf", Hdf5Access::read).rows("/VTKHDF/CellData/kind") == 3);
+    write_lines(writer, {2, 0, 3});
+    writer.finish();
+  }
+  CHECK(contents("contacts.vtkhdf") == contacts);
+  CHECK(contents("links.vtkhdf") == links);
+  CHECK(occurrences(file_text(scratch / "links.xdmf"), "<Time") == 5);
+  WantedLines other = kLinesWanted;
+  other.contact_fields.emplace_back("slip");
+  CHECK_THROWS_AS(line_writer(scratch, 5, other), IoError);
+  other = kLinesWanted, other.contacts = false;
+  CHECK_THROWS_AS(line_writer(scratch, 5, other), IoError);
+  other = kLinesWanted, other.links = "";
+  CHECK_THROWS_AS(line_writer(scratch, 5, other), IoError);
+  CHECK_NOTHROW(line_writer(scratch, 5));
+  std::filesystem::remove(scratch / "links.vtkhdf");
+  CHECK_THROWS_AS(line_writer(scratch, 5), IoError);
 }
 
 TEST_CASE("every dataset says its unit and what it is") {

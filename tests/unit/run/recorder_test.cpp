@@ -49,6 +49,7 @@ radius = 0.1
 mass = 1.0
 [output]
 history_particles = [1]
+contacts = true
 )";
 
 // Reports of a backend, until the test says that its device has failed.
@@ -62,6 +63,7 @@ class FailingReports : public Reports {
     return of_.output();
   }
   ShapePack pack_shapes() override { return of_.pack_shapes(); }
+  ContactLines contact_lines() override { return of_.contact_lines(); }
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override { return of_.traced(wanted); }
   std::vector<ContactSum> carrier_contacts() override { return of_.carrier_contacts(); }
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override {
@@ -173,7 +175,8 @@ bool same_text(const Hdf5File& a, const Hdf5File& b, const std::string& name) {
 }
 
 void check_same_files(const std::string& folder, const std::string& other) {
-  for (const char* name : {"particles.vtkhdf", "bodies.vtkhdf", "history.h5"}) {
+  for (const char* name :
+       {"particles.vtkhdf", "bodies.vtkhdf", "contacts.vtkhdf", "links.vtkhdf", "history.h5"}) {
     const Hdf5File a(folder + "/" + name, Hdf5Access::read), b(other + "/" + name, Hdf5Access::read);
     const std::vector<std::string> datasets = a.dataset_names("/");
     CHECK(datasets.size() > 10);

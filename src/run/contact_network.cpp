@@ -1,0 +1,63 @@
+#include "run/contact_network.hpp"
+
+#include <utility>
+
+#include "partition/id_order.hpp"
+
+namespace scree {
+
+ContactNetwork::ContactNetwork(const Model& model, const Ranks& ranks, ContactLines lines)
+    : rubs_(model.rotates()) {
+  const IdOrder order(ranks, model.particles.totals.count, lines.global_id);
+  const SurfaceSet surfaces(model);
+  for (const ContactLine& line : order.apply(std::move(lines.lines), std::move(lines.counts)))
+    add(line, surfaces);
+}
+
+void ContactNetwork::add(const ContactLine& line, const SurfaceSet& surfaces) {
+  const ShownContact& contact = line.contact;
+  ends_.insert(ends_.end(), {line.start, line.start + contact.branch});
+  force_.push_back(contact.force);
+  normal_force_.push_back(contact.normal_force), tangential_force_.push_back(contact.tangential_force);
+  overlap_.push_back(contact.overlap);
+  if (rubs_) slip_.push_back(contact.slip);
+  const bool with_surface = line.second >= kFirstSurfaceId;
+  first_.push_back(line.first), second_.push_back(with_surface ? -1 : line.second);
+  const auto surface = static_cast<Index>(with_surface ? line.second - kFirstSurfaceId : -1);
+  const bool with_body = surface >= surfaces.ground();
+  kind_.push_back(static_cast<int>(with_body      ? ContactKind::body
+                                   : with_surface ? ContactKind::wall
+                                                  : ContactKind::particle));
+  wall_.push_back(with_body ? -1 : surface);
+  body_.push_back(with_body ? surfaces.at(surface - surfaces.ground()).carrier : -1);
+}
+
+LineSnapshot ContactNetwork::snapshot() const {
+  LineSnapshot out{ends_, {}};
+  const auto add = [&](const char* name, const char* unit, const char* description, const auto& values) {
+    out.fields.push_back({name, {unit, description}, 1, values.data()});
+  };
+  add("normal_force", "N", "along the normal; above 0: pushes the two apart", normal_force_);
+  add("tangential_force", "N", "size of the force across the normal", tangential_force_);
+  out.fields.push_back(
+      {"force", {"N", "on the first particle"}, 3, reinterpret_cast<const Real*>(force_.data())});
+  add("overlap", "m", "how far the two overlap; below 0 where they attract each other apart", overlap_);
+  if (rubs_) add("slip", "m", "how far the spring of friction is stretched", slip_);
+  add("first", "1", "global id of the particle at the line's start, the lower one of two", first_);
+  add("second", "1", "global id of the particle at its end; -1: none", second_);
+  add("kind", "1", "what is at its end: 0 a particle, 1 a wall, 2 a body", kind_);
+  add("wall", "1", "which wall, counted from 0 in the deck's order, sides of the space last; -1: none",
+      wall_);
+  add("body", "1", "which body, counted from 0 in the deck's order; -1: none", body_);
+  return out;
+}
+
+std::vector<std::string> ContactNetwork::field_names(const Model& model) {
+  ContactNetwork none;
+  none.rubs_ = model.rotates();
+  std::vector<std::string> names;
+  for (const PointField& field : none.snapshot().fields) names.push_back(field.name);
+  return names;
+}
+
+}  // namespace scree
