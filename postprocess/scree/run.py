@@ -78,7 +78,7 @@ class Run:
         self.snapshots = Snapshots(self._series)
 
     def series(self, kind: str) -> Series | None:
-        """Snapshots of "particles", "bodies", "surfaces", "contacts" or "links"; None where the run has none of these."""
+        """Snapshots of one of the KINDS, "particles" for one; None where the run has none of these."""
         return self._series.get(kind)
 
     @cached_property

@@ -260,6 +260,19 @@ JointGap joint_gap(const Model& model, const Joint& joint) {
   return {{a, b}, joint.kind == JointKind::distance ? std::abs(length - joint.distance) : length, allowed};
 }
 
+bool points_coincide(const Joint& joint) {
+  switch (joint.kind) {
+    case JointKind::revolute:
+    case JointKind::fixed:
+    case JointKind::spherical:
+    case JointKind::universal:
+    case JointKind::constant_velocity:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::vector<bool> driven_joints(const Model& model) {
   std::vector<bool> driven(model.joints.size(), false);
   for (const Driver& driver : model.drivers) driven[static_cast<std::size_t>(driver.joint)] = true;

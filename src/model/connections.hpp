@@ -76,6 +76,8 @@ struct JointGap {
   bool meets() const { return size <= allowed; }
 };
 JointGap joint_gap(const Model& model, const Joint& joint);
+// Whether it keeps its two points together.
+bool points_coincide(const Joint& joint);
 
 // Per joint, whether a driver prescribes it.
 std::vector<bool> driven_joints(const Model& model);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "base/error.hpp"
 #include "output/durable_file.hpp"
 
@@ -105,12 +107,30 @@ SeriesOptions of_links(SeriesOptions options, const WantedLines& lines) {
   return options;
 }
 
+// Files that are continued have the lines that are wanted. To be found out before any of them is cut.
+const SeriesOptions& with_these_lines(const std::string& directory, const SeriesOptions& options,
+                                      const WantedLines& lines) {
+  const auto require = [&](const std::string& name, bool wanted) {
+    const std::string path = fmt::format("{}/{}.vtkhdf", directory, name);
+    if (options.keep == 0 || std::filesystem::exists(path) == wanted) return;
+    throw IoError(fmt::format("{}: {}; set output.{} = {}, or choose another folder", path,
+                              wanted ? "missing, the restarted run is to write it"
+                                     : "is there, but the restarted run is not to write it",
+                              name, !wanted));
+  };
+  options.ranks.on_root([&] {
+    require("contacts", lines.contacts);
+    require("links", !lines.links.empty());
+  });
+  return options;
+}
+
 }  // namespace
 
 SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions& options,
                                const WantedLines& lines)
     : ranks_(options.ranks),
-      particles_(directory, "particles", with_global_id(options)),
+      particles_(directory, "particles", with_global_id(with_these_lines(directory, options, lines))),
       contacts_(directory, "contacts", of_contacts(options, lines)),
       shows_contacts_(lines.contacts),
       shows_links_(!lines.links.empty()),
@@ -124,22 +144,8 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
     bodies_.emplace(directory, "bodies", alone);
     links_.emplace(directory, "links", of_links(alone, lines));
   });
-  require_snapshots();
-}
-
-// Of files that are continued; those of bodies and meshes follow with their first snapshot.
-void SnapshotWriter::require_snapshots() const {
   if (particles_.snapshots() != snapshots_)
     throw IoError(particles_.path() + ": missing, the restarted run needs it");
-  const auto require = [&](const VtkHdfSeries& series, bool wanted, const char* key) {
-    if (series.snapshots() == (wanted ? snapshots_ : 0)) return;
-    throw IoError(fmt::format("{}: {}; set output.{} = {}, or choose another folder", series.path(),
-                              wanted ? "missing, the restarted run is to write it"
-                                     : "is there, but the restarted run is not to write it",
-                              key, !wanted));
-  };
-  require(contacts_, shows_contacts_, "contacts");
-  ranks_.on_root([&] { require(*links_, shows_links_, "links"); });
 }
 
 void SnapshotWriter::append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,

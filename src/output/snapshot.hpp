@@ -83,8 +83,6 @@ class SnapshotWriter {
   int snapshots() const { return snapshots_; }
 
  private:
-  void require_snapshots() const;
-
   Ranks ranks_;
   VtkHdfSeries particles_, contacts_;
   std::optional<VtkHdfSeries> bodies_, surfaces_, links_;  // on rank 0

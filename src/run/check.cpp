@@ -25,12 +25,16 @@ namespace scree {
 
 namespace {
 
-// In files without compression, of a particle (in a snapshot without its fields), of a shape or body [B];
-// tests/performance/bytes_per_item.py.
-constexpr Real kSnapshotPoint = 42, kSnapshotShape = 120, kCheckpointParticle = 186, kCheckpointBody = 170;
+// In files without compression, of a particle (in a snapshot without its fields), of a shape, contact or body
+// [B]; tests/performance/bytes_per_item.py.
+constexpr Real kSnapshotPoint = 42, kSnapshotShape = 120, kSnapshotContact = 164, kCheckpointParticle = 186,
+               kCheckpointBody = 170;
 // Of one that rotates, and more where contacts resist rolling; of a contact that remembers, but for its
 // numbers, and of the row of a particle's.
 constexpr Real kCheckpointRotation = 96, kCheckpointRolling = 16, kCheckpointContact = 16, kCheckpointRow = 8;
+
+// Contacts of a particle in a dense packing, each with another one.
+constexpr Real kTouching = 6;
 
 constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
@@ -193,7 +197,6 @@ Real outputs(Real end, Real interval) {
 
 // With the contacts of a dense packing.
 Real checkpoint_particle(const Model& model) {
-  constexpr Real kTouching = 6;
   const int numbers = history_of(model.contact);
   Real bytes = kCheckpointParticle;
   if (model.rotates()) bytes += kCheckpointRotation;
@@ -207,6 +210,7 @@ std::string output_lines(const Model& model) {
   Real shapes = 0, snapshot_particle = kSnapshotPoint;
   for (const OutputField& field : wanted_fields(model.output))
     snapshot_particle += static_cast<Real>(field.bytes);
+  if (model.output.contacts) snapshot_particle += kTouching / 2 * kSnapshotContact;
   for (const Body& body : model.bodies) shapes += static_cast<Real>(body.shapes.size());
   const Real snapshots = outputs(model.time.end, model.output.snapshot_interval),
              size = snapshot_particle * particles + kSnapshotShape * shapes,

@@ -6,19 +6,7 @@
 namespace scree {
 namespace {
 
-// Of joints whose points do not part.
-bool is_pin(JointKind kind) {
-  switch (kind) {
-    case JointKind::revolute:
-    case JointKind::fixed:
-    case JointKind::spherical:
-    case JointKind::universal:
-    case JointKind::constant_velocity:
-      return true;
-    default:
-      return false;
-  }
-}
+constexpr Real kNoArm = 1e-9;  // from here down a point is its body's centre [m]
 
 bool acts(const TimeFunction& actuator) {
   return actuator.kind != TimeFunctionKind::constant || actuator.value != 0;
@@ -39,8 +27,8 @@ Mat3 axes_of(const Bushing& bushing, std::span<const BodyMotion> motion) {
 
 LinkLines::LinkLines(const Model& model) : model_(model), subdomain_(model.space) {
   for (const Joint& joint : model.joints)
-    is_pin(joint.kind) ? add_pin(joint.name, LinkKind::joint, joint.body, joint.point)
-                       : add(joint.name, LinkKind::joint, joint.body, joint.point);
+    points_coincide(joint) ? add_pin(joint.name, LinkKind::joint, joint.body, joint.point)
+                           : add(joint.name, LinkKind::joint, joint.body, joint.point);
   for (const SpringDamper& e : model.spring_dampers)
     add(e.name, acts(e.actuator) ? LinkKind::actuator : LinkKind::spring_damper, e.body, e.point);
   for (const TorsionalSpringDamper& e : model.torsional_spring_dampers) {
@@ -58,7 +46,7 @@ void LinkLines::add(const std::string& name, LinkKind kind, const int (&body)[2]
 
 void LinkLines::add_pin(const std::string& name, LinkKind kind, const int (&body)[2],
                         const Vec3 (&point)[2]) {
-  const auto has_arm = [&](int k) { return body[k] != kGround && norm(point[k]) > 0; };
+  const auto has_arm = [&](int k) { return body[k] != kGround && norm(point[k]) > kNoArm; };
   const int to = has_arm(1) || !has_arm(0) ? 1 : 0;
   if (body[to] == kGround) return add(name, kind, body, point);
   add(name, kind, {body[to], body[to]}, {point[to], {}});

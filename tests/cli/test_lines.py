@@ -15,8 +15,8 @@ from results import scree  # noqa: E402
 RANKS = pathlib.Path(__file__).resolve().parents[1] / "ranks"
 PENDULUM = RANKS.parents[1] / "input/examples/pendulum.toml"
 CONTACTS = ("--set", "output.contacts=true")
-IMPLICIT = [word for setting in ("integrator.particles=hht", "time.control=fixed", "integrator.substeps=1", "time.end=0.04",
-                                 "output.snapshot_interval=0.02") for word in ("--set", setting)]
+IMPLICIT = [word for setting in ("integrator.particles=hht", "time.control=fixed", "integrator.substeps=1",
+                                 "time.end=0.04", "output.snapshot_interval=0.02") for word in ("--set", setting)]
 
 
 def per_particle(snapshot):
@@ -47,9 +47,10 @@ class LinesTest(CommandLineTest):
                 if f"contacts/{name}/fx" not in run.history:
                     continue
                 rows = lines[kind][:] == number
+                scale = np.abs(lines["force"][:]).max(initial=0)
                 told = [run.history[f"contacts/{name}/f{axis}"][row] for axis in "xyz"]
                 found = -lines["force"][rows].sum(axis=0)
-                np.testing.assert_allclose(found, told, rtol=1e-12, atol=1e-14 * np.abs(lines["force"][:]).max(initial=0))
+                np.testing.assert_allclose(found, told, rtol=1e-12, atol=1e-14 * scale)
                 self.assertEqual(np.count_nonzero(rows), run.history[f"contacts/{name}/contacts"][row])
                 touched += bool(rows.any())
         return touched
@@ -62,7 +63,8 @@ class LinesTest(CommandLineTest):
             number, _ = per_particle(snapshot)
             np.testing.assert_array_equal(number, snapshot.particles["contacts"])
             ends = lines["position"][:].reshape(-1, 2, 3)
-            self.assertLess(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max(initial=0), 2.2e-4)  # none crosses the box
+            # None crosses the box.
+            self.assertLess(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max(initial=0), 2.2e-4)
             self.assertTrue((ends[:, 0, 0] >= 0).all() and (ends[:, 0, 0] < 2e-3).all())
             touched += self.check_targets(run, snapshot)
             kinds |= set(lines["kind"][:])
@@ -105,11 +107,13 @@ class LinesTest(CommandLineTest):
 
     def test_a_restart_with_other_lines_wants_another_folder(self):
         self.run_deck(DONE, "out", "--set", "time.end=0.02", *CONTACTS)
+        before = {path.name: path.read_bytes() for path in (self.folder / "out").glob("*.vtkhdf")}
         restart = ("--restart", self.folder / "out/checkpoint_end.h5", "--set", "time.end=0.04")
         for words, key in (((), "contacts"), ((*CONTACTS, "--set", "output.links=false"), "links")):
             message = self.run_deck(IO_FAILED, "out", *restart, *words).stderr
             for word in (f"{key}.vtkhdf", f"set output.{key} = true", "another folder"):
                 self.assertIn(word, message)
+            self.assertEqual({name: (self.folder / "out" / name).read_bytes() for name in before}, before)
         self.run_deck(DONE, "out", *restart, *CONTACTS)
         snapshots = json.loads((self.folder / "out/run_record.json").read_text())["counts"]["snapshots"]
         self.assertEqual(len(scree.open(self.folder / "out").series("contacts")), snapshots)

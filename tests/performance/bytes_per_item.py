@@ -80,6 +80,10 @@ def main():
             most = run(scree, folder, keys + PARTICLES, "--set", f"integrator.particles={integrator}")
             print(f"{what}: {(most - empty) / 1e6:.0f} B of memory per particle")
             print_files(folder, "particles.vtkhdf", f"particle, {what}", 1e6)
+        run(scree, folder, RUBS + PARTICLES, "--set", "integrator.particles=velocity-verlet", "--set",
+            "output.contacts=true")
+        contacts = (folder / "out/contacts.vtkhdf").stat().st_size / 2 / (3 * 99 * 100 * 100)
+        print(f"contact, rubbing: {contacts:.0f} B in a snapshot")
 
 
 if __name__ == "__main__":

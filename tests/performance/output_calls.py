@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """What a snapshot asks of the file system: system calls and bytes, counted by strace, and the disk space of a run.
 
-    output_calls.py SCREE [--snapshots N] [--particles N] [--spread]
+    output_calls.py SCREE [--snapshots N] [--particles N] [--spread] [--links]
 
 A run of the paper's net (20 bodies) and N particles with few snapshots is taken from one with N more; what is left is
 divided by N. Calls and bytes count where they concern files in the folder of the results. The last line is the largest
-disk space while the run goes on, over that of the files which it leaves; --spread adds a table by file. Prints
-markdown.
+disk space while the run goes on, over that of the files which it leaves; --spread adds a table by file, --links the
+lines of the net's 21 pins and springs. Prints markdown.
 """
 import argparse
 import collections
@@ -47,13 +47,15 @@ def disk_space(folder):
     return sum(found.values())
 
 
-def run(scree, snapshots, particles, folder, traced):
+def run(arguments, snapshots, folder, traced):
     """Counts {(call, file): calls}, bytes {(call, file): bytes}, and the largest disk space on the way and the last."""
     trace, out = folder / "trace", folder / "out"
     strace = ["strace", "-f", "-y", "-s", "0", "-o", str(trace), "-e", "trace=" + ",".join(NAMES)] if traced else []
     end = snapshots * STEP
-    command = [*strace, scree, "run", str(DECK), "--output", str(out), "--backend", "cpu",
-               "--set", "time.control=fixed", "--set", f"time.end={end}", "--set", f"particles.block.count={particles}",
+    command = [*strace, arguments.scree, "run", str(DECK), "--output", str(out), "--backend", "cpu",
+               "--set", "time.control=fixed", "--set", f"time.end={end}",
+               "--set", f"particles.block.count={arguments.particles}",
+               "--set", f"output.links={str(arguments.links).lower()}",
                "--set", f"output.snapshot_interval={STEP}", "--set", f"output.history_interval={STEP}"]
     largest, done = [0], threading.Event()
 
@@ -92,15 +94,16 @@ def main():
     parser.add_argument("--snapshots", type=int, default=400, help="(default 400)")
     parser.add_argument("--particles", type=int, default=400, help="(default 400)")
     parser.add_argument("--spread", action="store_true", help="by file, too")
+    parser.add_argument("--links", action="store_true", help="with these")
     arguments = parser.parse_args()
     if shutil.which("strace") is None:
         sys.exit("output_calls.py: needs strace")
     n, commit = arguments.snapshots, measured.commit_of(arguments.scree)
     with tempfile.TemporaryDirectory(prefix="scree_calls_") as name:
         folder = pathlib.Path(name)
-        few = run(arguments.scree, FEW, arguments.particles, folder, True)
-        many = run(arguments.scree, FEW + n, arguments.particles, folder, True)
-        _, _, space = run(arguments.scree, FEW + n, arguments.particles, folder, False)
+        few = run(arguments, FEW, folder, True)
+        many = run(arguments, FEW + n, folder, True)
+        _, _, space = run(arguments, FEW + n, folder, False)
     calls, sizes = ({key: (many[k][key] - few[k][key]) / n for key in many[k]} for k in (0, 1))
 
     def row(title, chosen):

@@ -92,13 +92,15 @@ class ReadingTest(FolderTest):
     def test_what_a_snapshot_holds(self):
         found = scree.open(self.results)
         snapshot = found.snapshots[-1]
-        self.assertEqual((len(found.snapshots), snapshot.kinds), (4, ("particles", "bodies")))
+        self.assertEqual((len(found.snapshots), snapshot.kinds), (4, ("particles", "bodies", "links")))
         self.assertEqual(snapshot.time, found.snapshots.at(1.0).time)
         self.assertEqual(found.snapshots.at(0.011).number, 1)
         velocity = snapshot.particles["velocity"]
         self.assertEqual((velocity.shape, velocity.unit), ((9, 3), "m/s"))
         self.assertEqual([s.number for s in found.snapshots[1:3]], [1, 2])
         self.assertEqual(found.body_names[snapshot.bodies["body"][-1]], "net.19")
+        self.assertEqual([found.link_names[k] for k in snapshot.links["link"]][:3], ["left_pin", "right_pin", "cord.0"])
+        self.assertEqual((len(snapshot.links["force"]), len(snapshot.links["position"])), (21, 42))
         with self.assertRaisesRegex(scree.ScreeError, "no surfaces.vtkhdf"):
             snapshot.surfaces
         with self.assertRaisesRegex(KeyError, "no field mass; there are position, "):
@@ -111,7 +113,8 @@ class ReadingTest(FolderTest):
     def test_meshes_of_pyvista(self):
         snapshot = scree.open(DRUM).snapshots[-1]
         blocks = snapshot.to_pyvista()
-        self.assertEqual(blocks.keys(), ["particles", "surfaces"])
+        self.assertEqual(blocks.keys(), ["particles", "surfaces", "links"])
+        self.assertEqual((blocks["links"].n_lines, blocks["links"].cell_data["torque"].shape), (1, (1,)))
         drum, grains = blocks["surfaces"], blocks["particles"]
         self.assertEqual((drum.n_cells, grains.n_points), (len(snapshot.surfaces.triangles), snapshot.particles.count))
         np.testing.assert_array_equal(drum.cell_data["pressure"], snapshot.surfaces["pressure"])

@@ -248,8 +248,9 @@ def check_lines(path, steps):
                     require(np.isfinite(values).all(), f"{where}: {name} is not finite")
             found.append(raw)
             first_line, first_point = first_line + points // 2, first_point + points
-        for name, rows in {"Points": first_point, **{f"CellData/{name}": first_line for name in root["CellData"]}}.items():
-            require(len(root[name]) == rows, f"{path}: {len(root[name])} rows of {name} for {rows}")
+        rows = {"Points": first_point} | {f"CellData/{name}": first_line for name in root["CellData"]}
+        for name, count in rows.items():
+            require(len(root[name]) == count, f"{path}: {len(root[name])} rows of {name} for {count}")
     require(errors.count == 0, f"{path}: VTK reported {errors.count} errors")
     counts = [len(raw["ends"]) for raw in found]
     print(f"{path}: {steps} steps, {min(counts)} to {max(counts)} lines: right")

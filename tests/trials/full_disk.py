@@ -25,12 +25,12 @@ import results  # noqa: E402
 DECK = pathlib.Path(__file__).resolve().parents[1] / "ranks" / "dam_break.toml"
 SETTINGS = ("integrator.particles=velocity-verlet", "integrator.substeps=3", "time.end=0.06",
             "output.snapshot_interval=0.003", "output.history_interval=0.0006", "output.checkpoint_interval=0.012",
-            "output.history_csv=true")
+            "output.history_csv=true", "output.contacts=true")
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                    OMPI_MCA_rmaps_base_oversubscribe="1")
 DONE, IO_FAILED = 0, 4
 LIMIT = 300  # [s] for a run: past it, it hangs
-SERIES = ("particles.vtkhdf", "bodies.vtkhdf", "history.h5")
+SERIES = ("particles.vtkhdf", "bodies.vtkhdf", "contacts.vtkhdf", "history.h5")
 
 
 class Failed(Exception):

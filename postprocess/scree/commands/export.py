@@ -65,8 +65,8 @@ def run(words: argparse.Namespace) -> int:
     """History and snapshots as CSV, snapshots for VTK, Blender and CAD programs
 
     csv: history.csv and a table per snapshot, with units in the headers. vtp, vtu: a file of VTK per snapshot, and a
-    .pvd with their times. ply, stl: meshes alone, particles as balls of their size, no lines. Files are named after kind and
-    number of the snapshot: particles_0012.csv.
+    .pvd with their times. ply, stl: meshes alone, particles as balls of their size, no lines. Files are named after
+    kind and number of the snapshot: particles_0012.csv.
     """
     opened = open_run(words.folder)
     folder = words.output or words.folder / "export"
