@@ -27,7 +27,7 @@ namespace {
 
 // In files without compression, of a particle (in a snapshot without its fields), of a shape, contact or body
 // [B]; tests/performance/bytes_per_item.py.
-constexpr Real kSnapshotPoint = 42, kSnapshotShape = 120, kSnapshotContact = 164, kCheckpointParticle = 186,
+constexpr Real kSnapshotPoint = 42, kSnapshotShape = 120, kSnapshotContact = 147, kCheckpointParticle = 186,
                kCheckpointBody = 170;
 // Of one that rotates, and more where contacts resist rolling; of a contact that remembers, but for its
 // numbers, and of the row of a particle's.
