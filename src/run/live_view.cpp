@@ -30,6 +30,7 @@ double LiveView::wall_seconds() const { return seconds_between(start_, Clock::no
 
 void LiveView::begin(const State& state) {
   start_time_ = state.clock.time;
+  last_look_ = Clock::now();
   take(state, 0, -1);
 }
 
