@@ -2,6 +2,10 @@
 # -D INPUT (the folder), OUTPUT
 file(GLOB DECKS RELATIVE ${INPUT} ${INPUT}/*/*.toml)
 list(SORT DECKS)
+set(TUTORIAL ${DECKS})  # first: it is what people begin with
+list(FILTER TUTORIAL INCLUDE REGEX "^tutorial/")
+list(FILTER DECKS EXCLUDE REGEX "^tutorial/")
+list(PREPEND DECKS ${TUTORIAL})
 set(SOURCE "// Made by src/run/examples.cmake.\n#include \"run/examples.hpp\"\n\nnamespace scree {\n\n")
 string(APPEND SOURCE "std::span<const Example> examples() {\n  static constexpr Example kExamples[] = {\n")
 foreach(DECK ${DECKS})

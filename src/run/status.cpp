@@ -105,8 +105,7 @@ std::string told_lines(const Seen& seen) {
   const RunStatus& told = seen.told;
   const Progress& p = told.progress;
   const bool goes_on = seen.word == "running";
-  std::string text = fmt::format("deck           {}, {} on {} {}\n", printable(told.deck), told.backend,
-                                 told.ranks, told.ranks == 1 ? "rank" : "ranks");
+  std::string text = fmt::format("deck           {}, backend {}\n", printable(told.deck), told.backend);
   text += fmt::format("simulated      {:.6g} of {:g} s ({})\n", p.time, p.end, percent_text(p));
   if (goes_on) text += fmt::format("time left      {}\n", duration_text(p.seconds_left));
   text += fmt::format("wall time      {}, since {}\n", duration_text(told.wall_seconds), told.started);
