@@ -170,16 +170,19 @@ ExitCode check(const Arguments& arguments) {
   Model model = build_model(deck, log, RanksShare(ranks));
   warn_of_run(model, log);
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
-  naming_memory(size_of(model), ranks.size(), [&] {
-    naming_deck(arguments.deck, [&] {
+  const ModelSize size = size_of(model);
+  naming_deck(arguments.deck, [&] {
+    naming_memory(size, ranks.size(), [&] {
       if (!model.bodies.empty()) ranks.on_root([&] { petsc.emplace("scree", std::vector<std::string>{}); });
       const std::string bodies = bodies_report(model, ranks);
       log.info(check_report(model, ranks) + bodies);
     });
-    if (arguments.picture.empty()) return;
-    draw_start(std::move(model), deck.resolved_text(), drawer, arguments.picture, ranks);
-    log.info("picture        " + arguments.picture);
   });
+  if (arguments.picture.empty()) return ExitCode::done;
+  naming_memory(size, ranks.size(), [&] {
+    draw_start(std::move(model), deck.resolved_text(), drawer, arguments.picture, ranks);
+  });
+  log.info("picture        " + arguments.picture);
   return ExitCode::done;
 }
 

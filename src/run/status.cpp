@@ -50,29 +50,33 @@ Seen look_into(const std::string& folder) {
   if (!told) throw InputError(fmt::format("{}: no run has left a {} here", folder, kStatusName));
   seen.told = read_status(folder);
   seen.word = word_of(seen.told, seen.owner);
+  if (seen.word != "killed") return seen;
+  seen.owner = FolderLock(folder).owner();  // one may have begun since
+  seen.word = word_of(seen.told, seen.owner);
   return seen;
 }
 
 // Of something that was done at a time of some machine's clock.
 std::string age_text(const std::string& utc) { return duration_text(seconds_since(utc)) + " ago"; }
 
-std::string process_text(const Seen& seen) {
-  if (!seen.owner) return fmt::format("process {} on host {}", seen.told.process, seen.told.host);
-  const bool here = seen.owner->host == LockOwner::this_process().host;
-  return seen.owner->described() +
+std::string owner_text(const LockOwner& owner) {
+  const bool here = owner.host == LockOwner::this_process().host;
+  return owner.described() +
          (here ? ", alive" : ", another host than this one: it counts as alive while it holds the folder");
 }
 
 std::string state_text(const Seen& seen) {
-  const std::string& told = seen.told.state;
+  const RunStatus& told = seen.told;
+  if (seen.word == "starting")
+    return "starting: " + owner_text(*seen.owner) + "; it has not told of itself yet";
+  const std::string age = age_text(told.written);
   if (seen.word == "running")
-    return fmt::format("running: {}; last told of itself {}", process_text(seen),
-                       age_text(seen.told.written));
-  if (seen.word == "starting") return "starting: " + process_text(seen) + "; it has not told of itself yet";
+    return fmt::format("running: {}; last told of itself {}", owner_text(*seen.owner), age);
+  const std::string process = fmt::format("process {} on host {}", told.process, told.host);
   if (seen.word == "killed")
     return fmt::format("killed: {} last told of itself {} that it runs, and holds the folder no longer",
-                       process_text(seen), age_text(seen.told.written));
-  return fmt::format("{}; {}, {}", told, process_text(seen), age_text(seen.told.written));
+                       process, age);
+  return fmt::format("{}; {}, {}", told.state, process, age);
 }
 
 double size_on_disk(const std::string& folder) {
