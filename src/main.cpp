@@ -1,8 +1,9 @@
-// The command line: scree run | check | keys | --version.
+// The command line: scree run | check | new | keys | status | --version.
 #include <fmt/format.h>
 #include <mpi.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -16,6 +17,7 @@
 #include "base/version.hpp"
 #include "deck/choices.hpp"
 #include "deck/deck.hpp"
+#include "deck/suggestion.hpp"
 #include "dem/output_fields.hpp"
 #include "mbs/multibody.hpp"
 #include "mbs/petsc_session.hpp"
@@ -26,8 +28,12 @@
 #include "partition/ranks.hpp"
 #include "partition/shared_model.hpp"
 #include "run/check.hpp"
+#include "run/examples.hpp"
+#include "run/scree_post.hpp"
 #include "run/signals.hpp"
 #include "run/simulation.hpp"
+#include "run/start_picture.hpp"
+#include "run/status.hpp"
 #include "run/step_trials.hpp"
 #include "run/surfaces_outside.hpp"
 
@@ -62,7 +68,7 @@ CommandLine split(int count, char** values) {
 }
 
 struct Arguments {
-  std::string deck, output, backend = word_of(BackendChoice::automatic), restart;
+  std::string deck, output, backend = word_of(BackendChoice::automatic), restart, picture;
   bool overwrite = false;
   bool allow_changes = false;
   std::vector<std::string> overrides;
@@ -139,32 +145,73 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   return code;
 }
 
-// Everything short of running, the constraints' rank included.
+// What the multibody room says of the bodies, the constraints' rank included; on rank 0.
+std::string bodies_report(const Model& model, const Ranks& ranks) {
+  if (model.bodies.empty()) return "solver         none";
+  std::string report;
+  ranks.on_root([&] {
+    const Multibody multibody(model);
+    const std::string& change = multibody.start_change();
+    report = "solver         " + multibody.solver_description();
+    if (!multibody.redundancy().empty())
+      report += "\nredundant      reactions shared: " + multibody.redundancy();
+    if (!change.empty()) report += "\nvelocities     made consistent; largest change: " + change;
+  });
+  return report;
+}
+
+// Everything short of running.
 ExitCode check(const Arguments& arguments) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
-  const Model model = build_model(checked_deck(arguments), log, RanksShare(ranks));
+  std::string drawer;
+  if (!arguments.picture.empty()) ranks.on_root([&] { drawer = find_scree_post(); });
+  const Deck deck = checked_deck(arguments);
+  Model model = build_model(deck, log, RanksShare(ranks));
   warn_of_run(model, log);
-  std::string constraints = "solver         none";
-  if (!model.bodies.empty()) {
-    naming_deck(arguments.deck, [&] {
-      ranks.on_root([&] {
-        naming_memory(size_of(model), ranks.size(), [&] {
-          const PetscSession petsc("scree", {});
-          const Multibody multibody(model);
-          const std::string& change = multibody.start_change();
-          constraints = "solver         " + multibody.solver_description();
-          if (!multibody.redundancy().empty())
-            constraints += "\nredundant      reactions shared: " + multibody.redundancy();
-          if (!change.empty()) constraints += "\nvelocities     made consistent; largest change: " + change;
-        });
-      });
-    });
-  }
+  std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
+  const ModelSize size = size_of(model);
   naming_deck(arguments.deck, [&] {
-    naming_memory(size_of(model), ranks.size(), [&] { log.info(check_report(model, ranks) + constraints); });
+    naming_memory(size, ranks.size(), [&] {
+      if (!model.bodies.empty()) ranks.on_root([&] { petsc.emplace("scree", std::vector<std::string>{}); });
+      const std::string bodies = bodies_report(model, ranks);
+      log.info(check_report(model, ranks) + bodies);
+    });
+  });
+  if (arguments.picture.empty()) return ExitCode::done;
+  naming_memory(size, ranks.size(), [&] {
+    draw_start(std::move(model), deck.resolved_text(), drawer, arguments.picture, ranks);
+  });
+  log.info("picture        " + arguments.picture);
+  return ExitCode::done;
+}
+
+ExitCode new_deck(const std::string& example, const std::string& file) {
+  Ranks::world().on_root([&] {
+    if (example.empty()) {
+      std::cout << examples_text();
+      return;
+    }
+    const std::string path = write_example(example, file);
+    std::cout << fmt::format("{0} is written; scree check {0} checks it, scree run {0} runs it\n", path);
   });
   return ExitCode::done;
+}
+
+ExitCode status(const std::vector<std::string>& folders) {
+  ExitCode code = ExitCode::done;
+  const Ranks ranks = Ranks::world();
+  ranks.on_root([&] {
+    if (folders.size() == 1) {
+      std::cout << status_report(folders.front());
+    } else {
+      const StatusTable table = status_table(folders);
+      std::cout << table.text;
+      code = table.code;
+    }
+  });
+  ranks.broadcast(code);
+  return code;
 }
 
 void declare_deck(CLI::App& command, Arguments& arguments) {
@@ -176,11 +223,16 @@ void declare_deck(CLI::App& command, Arguments& arguments) {
 }
 
 // A deck in the place of a command is what people try first.
-std::string usage_message(const CommandLine& line, const std::string& problem) {
+std::string usage_message(const CLI::App& app, const CommandLine& line, const std::string& problem) {
   const std::string first = line.words.empty() ? "" : line.words.front();
   if (first.ends_with(".toml") || std::filesystem::is_regular_file(first))
     return fmt::format("{0}: not a command; did you mean \"scree run {0}\"?", first);
-  return problem + "; scree --help and scree run --help list commands and options";
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  const bool is_word = !first.empty() && !first.starts_with('-');
+  const bool known = std::ranges::find(commands, first) != commands.end();
+  return (is_word && !known ? first + ": not a command" + suggestion(first, commands) : problem) +
+         "; scree --help and scree run --help list commands and options";
 }
 
 ExitCode dispatch(const CommandLine& line) {
@@ -190,7 +242,8 @@ ExitCode dispatch(const CommandLine& line) {
   app.require_subcommand(1);
   Arguments arguments;
 
-  CLI::App* run_command = app.add_subcommand("run", "run a deck; results go to HDF5 files");
+  CLI::App* run_command = app.add_subcommand(
+      "run", "run a deck; results go to HDF5 files, and `scree status` tells how far it is");
   declare_deck(*run_command, arguments);
   run_command
       ->add_option("--output", arguments.output, "folder for the results (default: results/DECK's name)")
@@ -214,19 +267,44 @@ ExitCode dispatch(const CommandLine& line) {
   run_command->footer(kExitCodes);
   CLI::App* check_command = app.add_subcommand("check", "build and check a deck's model; run nothing");
   declare_deck(*check_command, arguments);
+  check_command
+      ->add_option("--picture", arguments.picture,
+                   "draw the start, too, with scree-post: a .png, .jpg, .pdf or .svg")
+      ->type_name("FILE");
   CLI::App* keys_command = app.add_subcommand("keys", "print every deck key: the manual");
+  bool as_markdown = false, as_schema = false;
+  CLI::Option* markdown =
+      keys_command->add_flag("--markdown", as_markdown, "as a page in Markdown: input/keys.md");
+  keys_command
+      ->add_flag("--schema", as_schema, "as a JSON schema, with which editors complete and check decks")
+      ->excludes(markdown);
+  std::string example, new_file;
+  CLI::App* new_command = app.add_subcommand("new", "write an example deck to begin from, or list them all");
+  new_command->add_option("example", example, "name of an example; none: list them")->type_name("EXAMPLE");
+  new_command->add_option("file", new_file, "where to write it (default: EXAMPLE.toml, here)")
+      ->type_name("FILE");
+  std::vector<std::string> folders;
+  CLI::App* status_command = app.add_subcommand("status", "tell how far runs are, and how they ended");
+  status_command->add_option("folder", folders, "folders of results; several: a line for each")
+      ->type_name("DIR")
+      ->required();
 
   try {
     std::vector<std::string> reversed(line.words.rbegin(), line.words.rend());
     app.parse(reversed);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) throw InputError(usage_message(line, error.what()));
+    if (error.get_exit_code() != 0) throw InputError(usage_message(app, line, error.what()));
     if (mpi_value(MPI_Comm_rank) == 0) app.exit(error);
     return ExitCode::done;
   }
   if (*run_command) return run(arguments, line);
   if (*check_command) return check(arguments);
-  if (*keys_command && mpi_value(MPI_Comm_rank) == 0) std::cout << keys_text() << output_fields_text();
+  if (*new_command) return new_deck(example, new_file);
+  if (*status_command) return status(folders);
+  if (*keys_command && mpi_value(MPI_Comm_rank) == 0)
+    std::cout << (as_markdown ? keys_markdown() + output_fields_markdown()
+                  : as_schema ? keys_schema()
+                              : keys_text() + output_fields_text());
   return ExitCode::done;
 }
 

@@ -155,7 +155,18 @@ const TableKeys& distribution_keys();
 // What values a key takes, for messages and the manual: "a number above 0 [s]". dimension: of the space, or 0
 // where it is not known.
 std::string allowed_values(const Key& key, int dimension);
-// The manual, 110 columns wide.
+// What holds where the key is left out: "required", "default 1e-3", "left out: none".
+std::string default_text(const Key& key);
+// For which values of the table's selector the key exists, or must be given; empty: for all the same.
+std::string kinds_text(const Key& key, const std::string& selector);
+// The three of them as one line.
+std::string key_facts(const Key& key, const std::string& selector);
+
+// The manual: for a terminal, 110 columns wide; as a page in Markdown; as a JSON schema (draft 2020-12) that
+// takes every deck which the reader takes. It refuses what a key alone is refused for, but for 1.0 in the
+// place of an integer and for numbers that are not finite.
 std::string keys_text();
+std::string keys_markdown();
+std::string keys_schema();
 
 }  // namespace scree

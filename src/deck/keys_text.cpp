@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sstream>
-
 #include "deck/keys.hpp"
+#include "deck/wrapped.hpp"
 
 namespace scree {
 
@@ -28,42 +27,15 @@ constexpr const char* kLeftOut =
     "springs, stops and dry friction, but no play. All particles are there at the start: none flow in, "
     "bond or break. There is no fluid and no heat.";
 
-// Appends the words of `text` in lines of kWidth, each line indented.
-void wrap(std::string& out, const std::string& text, std::size_t indent) {
-  std::istringstream words(text);
-  std::string line(indent, ' '), word;
-  while (words >> word) {
-    if (line.size() > indent && line.size() + 1 + word.size() > kWidth) {
-      out += line + "\n";
-      line.assign(indent, ' ');
-    }
-    line += (line.size() > indent ? " " : "") + word;
-  }
-  out += line + "\n";
-}
-
-std::string default_text(const Key& key) {
-  if (key.is_required) return "required";
-  if (key.default_value.empty()) return "left out: " + key.default_note;
-  const std::string text = "default " + key.default_value;
-  if (key.where_key.empty()) return text;
-  return fmt::format("{}, with {} = \"{}\" {}", text, key.where_key, key.where_value, key.default_there);
-}
-
 void describe_key(std::string& out, const Key& key, const std::string& selector) {
   out += "  " + key.name + "\n";
-  std::string facts = allowed_values(key, 0) + "; " + default_text(key);
-  if (!key.kinds.empty())
-    facts += fmt::format("; only with {} = \"{}\"", selector, fmt::join(key.kinds, "\", \""));
-  if (!key.required_kinds.empty())
-    facts += fmt::format("; required with {} = \"{}\"", selector, fmt::join(key.required_kinds, "\", \""));
-  wrap(out, facts, 6);
-  wrap(out, key.sentence, 6);
+  out += wrapped(key_facts(key, selector), kWidth, 6);
+  out += wrapped(key.sentence, kWidth, 6);
 }
 
 void describe_table(std::string& out, const TableKeys& table, const std::string& header) {
   out += header + "\n";
-  if (!table.sentence.empty()) wrap(out, table.sentence, 2);
+  if (!table.sentence.empty()) out += wrapped(table.sentence, kWidth, 2);
   for (const Key& key : table.keys) {
     if (key.type != ValueType::table && key.type != ValueType::tables) describe_key(out, key, table.selector);
   }
@@ -83,15 +55,38 @@ void describe_below(std::string& out, const TableKeys& table, const std::string&
 
 }  // namespace
 
+std::string default_text(const Key& key) {
+  if (key.is_required) return "required";
+  if (key.default_value.empty()) return "left out: " + key.default_note;
+  const std::string text = "default " + key.default_value;
+  if (key.where_key.empty()) return text;
+  return fmt::format("{}, with {} = \"{}\" {}", text, key.where_key, key.where_value, key.default_there);
+}
+
+std::string kinds_text(const Key& key, const std::string& selector) {
+  const auto with = [&](const char* what, const std::vector<std::string>& kinds) {
+    return fmt::format("{} with {} = \"{}\"", what, selector, fmt::join(kinds, "\", \""));
+  };
+  std::string text;
+  if (!key.kinds.empty()) text = with("only", key.kinds);
+  if (!key.required_kinds.empty()) text += (text.empty() ? "" : "; ") + with("required", key.required_kinds);
+  return text;
+}
+
+std::string key_facts(const Key& key, const std::string& selector) {
+  const std::string kinds = kinds_text(key, selector);
+  return allowed_values(key, 0) + "; " + default_text(key) + (kinds.empty() ? "" : "; " + kinds);
+}
+
 std::string keys_text() {
   std::string out;
-  wrap(out,
-       "Keys of a deck, by table. [name] is a table; [[name]] is an element of a list and may stand any "
-       "number of "
-       "times. Each key: what it takes [unit]; default; meaning. SI units; angles in radians.",
-       0);
+  out += wrapped(
+      "Keys of a deck, by table. [name] is a table; [[name]] is an element of a list and may stand any "
+      "number of "
+      "times. Each key: what it takes [unit]; default; meaning. SI units; angles in radians.",
+      kWidth);
   out += "\n";
-  wrap(out, kLeftOut, 0);
+  out += wrapped(kLeftOut, kWidth);
   out += "\n";
   describe_table(out, deck_keys(), "(top of the deck)");
   describe_below(out, deck_keys(), "");

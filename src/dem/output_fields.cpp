@@ -63,4 +63,13 @@ std::string output_fields_text() {
   return text;
 }
 
+std::string output_fields_markdown() {
+  std::string text =
+      "<a id=\"output_fields\"></a>\n\n## Output fields\n\nFor [`output.fields`](#output.fields), beside the "
+      "position and the global id that every snapshot has.\n\n| field | unit | what it is |\n|---|---|---|\n";
+  for (const OutputField& field : output_fields())
+    text += fmt::format("| `{}` | {} | {} |\n", field.head.name, field.head.unit, field.head.description);
+  return text;
+}
+
 }  // namespace scree

@@ -205,7 +205,8 @@ const std::vector<OutputField>& output_fields();
 std::vector<OutputField> wanted_fields(const Output& output);
 // Throws InputError where the deck's output.fields names one that there is not, or one twice.
 void check_output_fields(const Deck& deck);
-// A line per field, as `scree keys` prints them.
+// A line per field, as `scree keys` prints them; the same as a part of its page in Markdown.
 std::string output_fields_text();
+std::string output_fields_markdown();
 
 }  // namespace scree

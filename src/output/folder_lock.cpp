@@ -13,7 +13,6 @@
 #include <iterator>
 
 #include "base/error.hpp"
-#include "output/lock_owner.hpp"
 
 namespace scree {
 
@@ -83,14 +82,18 @@ void FolderLock::fail(const char* action, int error) const {
   throw IoError(fmt::format("{}: cannot {}: {}", path_, action, std::strerror(error)));
 }
 
-void FolderLock::check() const {
+std::optional<LockOwner> FolderLock::owner() const {
   const int file = open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-  if (file < 0) return;
+  if (file < 0) return std::nullopt;
   const LockOwner owner = LockOwner::read(path_);
   // A lock for writing can be asked for, though not taken, by who may only read.
   const bool over = is_over(owner, file, state_of(file, F_OFD_GETLK));
   close(file);
-  if (!over) refuse(owner.described());
+  return over ? std::nullopt : std::optional(owner);
+}
+
+void FolderLock::check() const {
+  if (const std::optional<LockOwner> other = owner()) refuse(other->described());
 }
 
 void FolderLock::take() {

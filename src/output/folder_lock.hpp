@@ -7,7 +7,10 @@
 // host counts as alive, unless it belongs to an earlier start of the same SLURM job.
 #pragma once
 
+#include <optional>
 #include <string>
+
+#include "output/lock_owner.hpp"
 
 namespace scree {
 
@@ -18,6 +21,8 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
+  // The run that has the folder, as far as this process can tell; empty where there is none.
+  std::optional<LockOwner> owner() const;
   // Throws InputError, which names the process, where another run has the folder. check() changes nothing.
   void check() const;
   // The folder exists. Throws IoError, too.

@@ -1,15 +1,15 @@
 #include "output/lock_owner.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+
+#include "base/utc.hpp"
 
 namespace scree {
 
@@ -62,7 +62,7 @@ LockOwner LockOwner::this_process() {
           start_of(id),
           environment("SLURM_JOB_ID"),
           environment("SLURM_RESTART_COUNT"),
-          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))};
+          utc_now()};
 }
 
 LockOwner LockOwner::read(const std::string& path) {

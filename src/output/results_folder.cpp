@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "output/status_file.hpp"
 
 namespace scree {
 
@@ -15,10 +16,10 @@ namespace {
 
 // All that a run may write.
 constexpr const char* kNames[] = {
-    "history.h5",      "history.csv",       "particles.vtkhdf",     "particles.xdmf",
-    "bodies.vtkhdf",   "bodies.xdmf",       "surfaces.vtkhdf",      "surfaces.xdmf",
-    "contacts.vtkhdf", "contacts.xdmf",     "links.vtkhdf",         "links.xdmf",
-    "checkpoint.h5",   "checkpoint_end.h5", "checkpoint_failed.h5", "run_record.json"};
+    "history.h5",      "history.csv",     "particles.vtkhdf", "particles.xdmf",    "bodies.vtkhdf",
+    "bodies.xdmf",     "surfaces.vtkhdf", "surfaces.xdmf",    "contacts.vtkhdf",   "contacts.xdmf",
+    "links.vtkhdf",    "links.xdmf",      "checkpoint.h5",    "checkpoint_end.h5", "checkpoint_failed.h5",
+    "run_record.json", kStatusName};
 constexpr const char* kCheckpoints[] = {"checkpoint.h5", "checkpoint_end.h5", "checkpoint_failed.h5"};
 // Behind these names: what a run that was killed leaves beside them.
 constexpr const char* kBeside[] = {".tmp", ".spare", ".old"};

@@ -132,6 +132,7 @@ Recorder::~Recorder() { backend_.set_idle_work({}); }
 
 void Recorder::history(State& state, Real h) {
   const HistorySample sample = take_sample(state, h);
+  contacts_ = sample.particles.contacts;
   if (history_) {
     std::vector<Real> row;
     for (const RecordedColumn& column : columns_) row.push_back(column.value(sample));

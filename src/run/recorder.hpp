@@ -40,6 +40,8 @@ class Recorder : public Records {
   void flush();
   void flush_history();  // rank 0's part of it alone, at any time
   void finish();         // after the last record: flushes, and brings up to date what is written seldom
+  // Touching, at the last row of the history; below zero before the first.
+  std::int64_t contacts() const { return contacts_; }
   std::int64_t snapshots_written() const { return snapshots_->snapshots(); }
 
  private:
@@ -70,6 +72,7 @@ class Recorder : public Records {
   std::optional<HistoryWriter> history_;  // likewise
   std::optional<SnapshotWriter> snapshots_;
   std::optional<PendingSnapshot> pending_;
+  std::int64_t contacts_ = -1;
 };
 
 }  // namespace scree

@@ -1,14 +1,13 @@
 #include "run/simulation.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <ctime>
 
+#include "base/utc.hpp"
 #include "dem/particle_store.hpp"
 #include "dem/triangle_works.hpp"
 #include "model/memory.hpp"
@@ -18,6 +17,7 @@
 #include "run/balance.hpp"
 #include "run/bodies_outside.hpp"
 #include "run/choose_backend.hpp"
+#include "run/live_view.hpp"
 #include "run/recorder.hpp"
 #include "run/restart.hpp"
 #include "run/step_loop.hpp"
@@ -27,12 +27,6 @@ namespace scree {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr double kProgressSeconds = 0.25;  // between progress lines on a terminal
-constexpr double kLogSeconds = 600;        // between those in a log, besides one per tenth of the run
-constexpr double kFlushSeconds = 5;        // between writes of the history, besides those with checkpoints
-
-std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 double cpu_seconds() {
   rusage usage{};
@@ -56,6 +50,7 @@ class Simulation {
         backend_(choose_backend(model, ranks_, options.backend, log)),
         link_(model, ranks_),
         step_(model, *backend_, link_, timers_),
+        live_(model, options, backend_->description(), log),
         surfaces_outside_(model) {
     ranks_.on_root([&] { folder_.claim(); });
     start_or_resume();
@@ -82,6 +77,7 @@ class Simulation {
   // Takes the state's particles away.
   void checkpoint(State& state, const std::string& name);
   void progress(const State& state, Real h);
+  void show_status(const std::string& status);
   void watch_bodies(const State& state);
   void watch_leavers(const std::vector<Leaver>& leavers);
   ExitCode fail(StepLoop& loop, const SimulationError& error);
@@ -103,13 +99,9 @@ class Simulation {
   BodyLink link_;
   CoupledStep step_;
   std::unique_ptr<Recorder> recorder_;
-  std::string started_ = utc_now();
-  Clock::time_point start_ = Clock::now(), last_progress_ = start_, last_logged_ = start_,
-                    last_flush_ = start_;
+  LiveView live_;
   double start_cpu_ = cpu_seconds();
   double loop_seconds_ = 0;
-  Real start_time_ = 0;
-  int tenths_reported_ = 0;
   bool body_left_ = false, load_lost_ = false;
   const SurfacesOutside surfaces_outside_;
   std::string state_hash_;
@@ -136,7 +128,6 @@ void Simulation::start_or_resume() {
     step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
   }
-  start_time_ = state_.clock.time;
 }
 
 // The checkpoint's particles are complete; another deck's constants hold from now on.
@@ -180,6 +171,7 @@ void Simulation::checkpoint(State& state, const std::string& name) {
   add_restart_texts(out, options_, state_hash_, restart_.changes);
   write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
   state.particles = {}, state.contacts = {}, state.works = {};
+  live_.checkpoint_written(name, state.clock.time);
 }
 
 // Warns once.
@@ -203,21 +195,13 @@ void Simulation::watch_leavers(const std::vector<Leaver>& leavers) {
 }
 
 void Simulation::progress(const State& state, Real h) {
-  const double since = std::chrono::duration<double>(Clock::now() - last_progress_).count();
-  const Real share = (state.clock.time - start_time_) / (model_.time.end - start_time_);
-  const int tenths = static_cast<int>(10 * share);
-  if (since < kProgressSeconds && tenths == tenths_reported_) return;
-  last_progress_ = Clock::now();
-  const bool logged = tenths != tenths_reported_ ||
-                      std::chrono::duration<double>(last_progress_ - last_logged_).count() > kLogSeconds;
-  if (std::chrono::duration<double>(last_progress_ - last_flush_).count() > kFlushSeconds)
-    last_flush_ = last_progress_, ranks_.alone() ? recorder_->flush() : recorder_->flush_history();
-  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  log_.progress(fmt::format("t = {:.6g} of {:g} s, {} steps, h = {:.2e} s, {:.1f} s elapsed, {:.1f} s to go",
-                            state.clock.time, model_.time.end, state.counts.steps, h, elapsed,
-                            elapsed * (1 - share) / std::max(share, 1e-9)),
-                logged);
-  if (logged) tenths_reported_ = tenths, last_logged_ = last_progress_;
+  if (!live_.look(state, h, recorder_->contacts())) return;
+  ranks_.alone() ? recorder_->flush() : recorder_->flush_history();
+  show_status("running");
+}
+
+void Simulation::show_status(const std::string& status) {
+  live_.write(status, recorder_ ? recorder_->snapshots_written() : state_.snapshots, state_.history_rows);
 }
 
 ExitCode Simulation::run() {
@@ -234,6 +218,8 @@ ExitCode Simulation::run() {
 
 ExitCode Simulation::run_to_the_end() {
   ranks_.on_root([&] { write_record("running", ExitCode::done); });
+  live_.begin(state_);
+  show_status("running");
   log_.info(fmt::format("{}, {}, backend {}, multibody solver {}",
                         counted(model_.particles.totals.count, "particle", "particles"),
                         counted(std::ssize(model_.bodies), "body", "bodies"), backend_->description(),
@@ -277,6 +263,7 @@ void Simulation::record_failure(const std::string& why, ExitCode code) {
     write_record("failed: " + why, code);
   } catch (const IoError&) {
   }
+  show_status("failed: " + why);
 }
 
 ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
@@ -312,6 +299,7 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
   summarize();  // what it warns of goes into the record
   ranks_.on_root([&] { write_record(status, code); });
+  show_status(status);
   return code;
 }
 
@@ -320,7 +308,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.deck_path = options_.deck_path, record.resolved_deck = options_.resolved_deck;
   record.command_line = options_.command_line;
   record.status = status, record.exit_code = static_cast<int>(code);
-  record.started = started_, record.ended = utc_now();
+  record.started = live_.started(), record.ended = utc_now();
   record.backend = backend_->description();
   record.solver = link_.multibody() ? link_.multibody()->solver_description() : "none";
   record.start_change = start_change();
@@ -329,7 +317,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.state_hash = state_hash_;
   record.ranks = ranks_.size();
   const LoadBalance balance = backend_->list().balance();
-  record.wall_seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  record.wall_seconds = live_.wall_seconds();
   record.loop_seconds = loop_seconds_;
   record.cpu_seconds = cpu_seconds() - start_cpu_;
   record.timers = timers_;
@@ -362,7 +350,6 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
 void Simulation::summarize() const {
   const StepCounts& n = step_.counts();
   const BalanceState& b = state_.balance;
-  const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
   log_.info(fmt::format(
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
@@ -377,8 +364,8 @@ void Simulation::summarize() const {
                   balance_error(b), b.exchanged, b.last.dissipated_integrator,
                   counted(state_.carried_out.left, "particle", "particles"),
                   outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
-  log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", wall, cpu_seconds() - start_cpu_,
-                        options_.output_directory));
+  log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", live_.wall_seconds(),
+                        cpu_seconds() - start_cpu_, options_.output_directory));
   const Multibody* const bodies = link_.multibody();
   const BodiesBook book =
       bodies == nullptr ? BodiesBook{} : bodies_book(*bodies, state_.bodies, state_.clock.time);

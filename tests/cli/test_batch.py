@@ -6,11 +6,17 @@ import os
 import pty
 import re
 import signal
+import struct
 import subprocess
 import termios
 import unittest
 
 from test_cli import DECK, ENVIRONMENT, LIMIT, SCREE, STOPPED, CommandLineTest
+
+COLUMNS = 60  # of the terminal
+# Time, percent, time left, steps, step, contacts, rate, balance.
+PROGRESS = (r"(?m)^t = (\S+) of 0\.4 s \(\d+ %\), \d+ s left, \d+ steps, h = 1\.00e-04 s, \d+ contacts, "
+            r"\S+ particle-steps/s, balance \S+$")
 
 
 class EarlySignalTest(CommandLineTest):
@@ -36,6 +42,7 @@ class ProgressTest(CommandLineTest):
     def text_on_terminal(self, own):
         """What a run prints on a terminal: its own, or, as under mpirun, one that another process made for it."""
         ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
         run = subprocess.Popen([SCREE, "run", str(self.deck), "--output", str(self.folder / "out"), "--overwrite"],
                                env=ENVIRONMENT, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True,
                                preexec_fn=(lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0)) if own else None)
@@ -55,10 +62,12 @@ class ProgressTest(CommandLineTest):
         in_place = self.text_on_terminal(True)
         self.assertGreaterEqual(in_place.count("\rt = "), 10)
         self.assertNotIn("\nt = 0.2000 of", in_place)
+        shown = re.findall(r"\r(t = .*?)\x1b\[K", in_place)
+        self.assertEqual({len(line) for line in shown}, {COLUMNS - 1})  # one that wraps could not be rewritten
         piped = self.run_deck(0, "out").stdout
         for text in (self.text_on_terminal(False), piped):
             self.assertNotIn("\r", text)
-            times = [float(found) for found in re.findall(r"(?m)^t = (\S+) of 0\.4 s, .* elapsed, ", text)]
+            times = [float(found) for found in re.findall(PROGRESS, text)]
             self.assertEqual([int(time / 0.04 + 1e-6) for time in times], list(range(1, 11)))
 
 

@@ -161,12 +161,14 @@ class CommandLineTest(unittest.TestCase):
 class UsageTest(CommandLineTest):
     def test_help_lists_commands_and_exit_codes(self):
         text = self.expect(DONE, "--help").stdout
-        for word in ("run", "check", "keys", "--version", "Exit codes", "0 done", "2 bad usage", "3 the simulation",
-                     "4 a file", "5 stopped by a signal", "-mbs_ksp_view"):
+        for word in ("run", "check", "new", "keys", "status", "--version", "Exit codes", "0 done", "2 bad usage",
+                     "3 the simulation", "4 a file", "5 stopped by a signal", "-mbs_ksp_view"):
             self.assertIn(word, text)
         text = self.expect(DONE, "run", "--help").stdout
-        for word in ("--set", "--output", "--backend", "--restart", "auto", "cpu", "cuda", "Exit codes"):
+        for word in ("--set", "--output", "--backend", "--restart", "auto", "cpu", "cuda", "Exit codes",
+                     "`scree status`"):
             self.assertIn(word, text)
+        self.assertIn("--picture FILE", self.expect(DONE, "check", "--help").stdout)
 
     def test_version_names_commit_compiler_and_libraries(self):
         text = self.expect(DONE, "--version").stdout

@@ -64,6 +64,11 @@ class UsageTest(CommandLineTest):
             with self.subTest(words=words):
                 self.assertRegex(self.expect(BAD_INPUT, *words).stderr, r"^error: .+ scree --help .+\n$")
 
+    def test_an_unknown_command_is_told_which_there_are(self):
+        self.assertIn('error: statsu: not a command; did you mean "status"?; ', self.expect(BAD_INPUT, "statsu").stderr)
+        self.assertIn("error: walk: not a command; known: run, check, keys, new, status; ",
+                      self.expect(BAD_INPUT, "walk").stderr)
+
     def test_the_manual_and_its_page_say_what_the_model_leaves_out(self):
         def paragraph(text):
             found = re.search(r"What the model leaves out today\..*?\n\n", text, re.DOTALL)

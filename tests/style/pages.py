@@ -35,12 +35,12 @@ def long_first_page(root):
 
 
 def anchors(text):
-    """What a link may name behind the #: the headings as GitHub writes them."""
+    """What a link may name behind the #: the headings as GitHub writes them, and anchors by name."""
     found = []
     for heading in re.findall(r"^#+ +(.+?) *$", without_code(text), re.M):
         anchor = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
         found.append(f"{anchor}-{found.count(anchor)}" if anchor in found else anchor)
-    return found
+    return found + re.findall(r'<a id="([^"]+)"></a>', text)
 
 
 def dead_links(root):

@@ -1,0 +1,97 @@
+"""What can be told of a run from outside: scree status. Usage: as test_cli.py"""
+
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+from test_cli import BAD_INPUT, DONE, ENVIRONMENT, FAILED, IO_FAILED, LIMIT, SCREE, STOPPED, CommandLineTest
+
+
+class StatusTest(CommandLineTest):
+    def status(self, *folders, code=DONE):
+        return self.expect(code, "status", *(self.folder / folder for folder in folders)).stdout
+
+    def start_long_run(self):
+        """Handed back once it has told of itself."""
+        run = subprocess.Popen([SCREE, "run", str(self.deck), "--output", "out", "--set", "time.end=1000"],
+                               cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL)
+        self.addCleanup(run.kill)
+        while run.poll() is None and not (self.folder / "out/status.toml").exists():
+            time.sleep(0.05)
+        return run
+
+    def test_a_run_that_goes_on_and_one_that_was_killed(self):
+        run = self.start_long_run()
+        text = self.status("out")
+        self.assertRegex(text, rf"\Astate          running: process {run.pid} on host \S+, .*, alive; last told of ")
+        self.assertRegex(text, r"simulated      \S+ of 1000 s \(\d+ %\)\n")
+        run.kill()
+        run.wait(LIMIT)
+        text = self.status("out")
+        self.assertRegex(text, rf"\Astate          killed: process {run.pid} on host \S+ last told of itself")
+        self.assertNotIn("time left", text)
+
+    def test_a_run_that_was_stopped(self):
+        run = self.start_long_run()
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual(run.wait(LIMIT), STOPPED)
+        text = self.status("out")
+        self.assertIn(f"state          stopped by signal: {signal.strsignal(signal.SIGTERM)}; process {run.pid}", text)
+        self.assertRegex(text, r"checkpoint     checkpoint\.h5, t = \S+ s, written \d+ s ago\n")
+
+    def test_a_run_that_is_done(self):
+        self.run_deck(DONE, "out")
+        text = self.status("out")
+        for line in ("state          done; process ", "simulated      0.4 of 0.4 s (100 %)\n", "steps          4000, ",
+                     "checkpoint     checkpoint_end.h5, t = 0.4 s, written ", "contacts       ", "particle-steps/s",
+                     "written        2 snapshots, 4001 rows of the history\n", "warnings       0\n"):
+            self.assertIn(line, text)
+        self.assertRegex(text, r"energy         balance error \S+ J of \S+ J exchanged \(\S+\)\n")
+        self.assertRegex(text, r"on disk        \d\S* [kM]B\n")
+
+    def test_a_run_that_failed(self):
+        self.run_deck(FAILED, "out", "--set", "space.leaving=error", "--set", "particles.discs.velocity=[0.0, 50.0]")
+        self.assertRegex(self.status("out"), r"\Astate          failed: .*particle")
+
+    def test_several_folders_are_a_table(self):
+        self.run_deck(DONE, "a")
+        (self.folder / "empty").mkdir()
+        lines = self.status("a", "a").splitlines()
+        self.assertEqual(len(lines), 3)
+        self.assertRegex(lines[1], r"/a +done +0\.4 of 0\.4 s +100 % +4000 +\S+ particle-steps/s +\S+$")
+        text = self.status("a", "empty", "none", code=BAD_INPUT)
+        self.assertIn("no run has left a status.toml here", text)
+        self.assertIn("there is no such folder", text)
+        self.assertIn("done", text)
+
+    def test_what_cannot_be_told_is_one_message(self):
+        def message(code):
+            text = self.expect(code, "status", self.folder / "out").stderr
+            self.assertRegex(text, r"^error: .*\n$")
+            return text
+
+        self.assertIn("there is no such folder", message(BAD_INPUT))
+        self.run_deck(DONE, "out")
+        path = self.folder / "out/status.toml"
+        text = path.read_text()
+        path.write_text(text[:len(text) // 2])
+        self.assertIn("status.toml: is damaged: ", message(IO_FAILED))
+        path.write_text(text.replace("steps = 4000", "steps = 'many'"))
+        self.assertIn("status.toml: is damaged: steps is missing", message(IO_FAILED))
+        path.unlink()
+        self.assertIn("no run has left a status.toml here", message(BAD_INPUT))
+
+    def test_overwriting_removes_it_and_a_restart_begins_anew(self):
+        self.run_deck(DONE, "out", "--set", "time.end=0.2")
+        (self.folder / "other").mkdir()
+        os.rename(self.folder / "out/status.toml", self.folder / "other/status.toml")
+        self.assertIn("status.toml", self.expect(BAD_INPUT, "run", self.deck, "--output", self.folder / "other").stderr)
+        self.expect(DONE, "run", self.deck, "--output", self.folder / "out", "--restart",
+                    self.folder / "out/checkpoint_end.h5")
+        self.assertIn("0.4 of 0.4 s (100 %)", self.status("out"))
+
+
+if __name__ == "__main__":
+    unittest.main()
