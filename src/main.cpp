@@ -29,6 +29,7 @@
 #include "run/signals.hpp"
 #include "run/simulation.hpp"
 #include "run/step_trials.hpp"
+#include "run/still_fields.hpp"
 #include "run/surfaces_outside.hpp"
 
 namespace scree {
@@ -107,7 +108,7 @@ Deck checked_deck(const Arguments& arguments) {
 }
 
 void warn_of_run(const Model& model, Log& log) {
-  for (const std::string& warning : {step_warning(model), outside_at_start(model)})
+  for (const std::string& warning : {step_warning(model), outside_at_start(model), still_fields(model)})
     if (!warning.empty()) log.warning(warning);
 }
 
@@ -193,7 +194,9 @@ ExitCode dispatch(const CommandLine& line) {
   CLI::App* run_command = app.add_subcommand("run", "run a deck; results go to HDF5 files");
   declare_deck(*run_command, arguments);
   run_command
-      ->add_option("--output", arguments.output, "folder for the results (default: results/DECK's name)")
+      ->add_option("--output", arguments.output,
+                   "folder for the results, from the current one (default: the deck's output.directory, or "
+                   "results/DECK's name)")
       ->type_name("DIR");
   run_command
       ->add_option(
@@ -202,7 +205,11 @@ ExitCode dispatch(const CommandLine& line) {
           "(default: auto)")
       ->check(CLI::IsMember(words_of<BackendChoice>()));
   CLI::Option* restart =
-      run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")
+      run_command
+          ->add_option("--restart", arguments.restart,
+                       "continue from this checkpoint. Where it lies in the output folder, the history and "
+                       "snapshots there go on, what was written after it is cut off, and other checkpoints "
+                       "become NAME.earlier; with another folder they begin anew there, at its time")
           ->type_name("FILE");
   run_command
       ->add_flag("--allow-changes", arguments.allow_changes,

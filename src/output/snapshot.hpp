@@ -20,20 +20,26 @@ struct ParticleSnapshot {
   std::vector<PointField> fields;  // those that the series was opened with
 };
 
-// One entry per shape (disc or sphere) of every body; on rank 0.
+// The lists of SeriesOptions::names: bodies are not in particles.vtkhdf, groups in no other.
+inline const std::string kBodyNames = "names", kMaterialNames = "materials", kGroupNames = "groups";
+
+enum BodyPointKind : int { kTouchingShape, kCenterOfMass, kDrawnShape };
+
+// One entry per shape (disc or sphere) and one per centre of mass of every body; on rank 0.
 struct BodySnapshot {
   std::span<const int> body;               // index into the model's bodies
-  std::span<const Real> radius;            // [m]
-  std::span<const Vec3> position;          // of the shape's centre [m]
-  std::span<const Vec3> velocity;          // of the shape's centre [m/s]
+  std::span<const int> kind;               // a BodyPointKind
+  std::span<const Real> radius;            // 0 of centres [m]
+  std::span<const Vec3> position;          // [m]
+  std::span<const Vec3> velocity;          // [m/s]
   std::span<const Real> angle;             // of the body [rad]
   std::span<const Real> angular_velocity;  // of the body [rad/s]
-  std::span<const Vec3> force;             // contact force on the shape [N]
-  std::span<const int> contacts;
-  // Of the bodies, where some are spatial; else empty. orientation: scalar first, 4 numbers a shape.
+  std::span<const Vec3> force;             // contact force on the shape, or the body [N]
+  std::span<const int> contacts;           // likewise
+  std::span<const Vec3> origin;            // of the body's frame [m]
+  // Of the bodies, where some are spatial; else empty. orientation: scalar first, 4 numbers a point.
   std::span<const Real> orientation{};
-  std::span<const Vec3> spin{};    // angular velocity, global [rad/s]
-  std::span<const Vec3> origin{};  // of the body's frame [m]
+  std::span<const Vec3> spin{};  // angular velocity, global [rad/s]
 };
 
 // The meshes of walls and bodies, those that the writer was made with; on rank 0.
@@ -55,8 +61,9 @@ class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
   // cut off); 0 starts new files and removes old ones. options.fields: those of the particles beside
-  // the global id. options.names: of the bodies. options.triangles: of the meshes, on rank 0, where there are
-  // some. Throws IoError where the files hold fewer snapshots, other fields or other triangles.
+  // the global id. options.names: lists of the names above. options.triangles: of the meshes, on rank 0,
+  // where there are some. Throws IoError where the files hold fewer snapshots, other fields or other
+  // triangles.
   SnapshotWriter(const std::string& directory, const SeriesOptions& options);
   // Both throw IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,

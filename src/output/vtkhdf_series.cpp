@@ -175,6 +175,17 @@ void VtkHdfSeries::require_fields() const {
                   path(), fmt::join(held, ", "), fmt::join(wanted, ", ")));
 }
 
+// Of another version's file, or another deck's.
+void VtkHdfSeries::require_fields_of(const Hdf5File& file, const PointSnapshot& snapshot) const {
+  const std::vector<std::string> held = file.dataset_names(field_group());
+  for (const PointField& field : snapshot.fields)
+    if (std::ranges::find(held, field.name) == held.end())
+      throw IoError(
+          fmt::format("{}: holds no field {}, which this version of the program is to write; "
+                      "choose another folder",
+                      path(), field.name));
+}
+
 void VtkHdfSeries::cut(std::size_t keep) {
   remove_xdmf();  // it would refer to rows that are gone; the next append writes it
   places_.resize(keep);
@@ -185,6 +196,7 @@ void VtkHdfSeries::cut(std::size_t keep) {
     for (const char* name : {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets"}) {
       file.resize_rows(kSteps + name, steps);
     }
+    cut_names(file, steps);
     file.resize_rows(kRoot + "Points", last.first_point + last.points);
     if (options_.triangles)
       cut_triangles(file, *options_.triangles, steps);
@@ -213,7 +225,7 @@ void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
   file.write_text_attribute("/Scree", "title", options_.title);
   file.write_text_attribute("/Scree", "version", version());
   file.write_text_attribute("/Scree", "commit", commit());
-  if (!options_.names.empty()) file.write_text("/Scree/names", options_.names);
+  for (const SeriesNames& names : options_.names) create_names(file, names);
 }
 
 // The fields of points have as many rows as Points, so they begin where these begin.
@@ -265,6 +277,8 @@ RowPart VtkHdfSeries::field_rows(const SnapshotPlace& place, RowPart own) const 
 void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
                              const SnapshotPlace& place) const {
   if (places_.empty()) lay_out(file, snapshot);
+  require_fields_of(file, snapshot);
+  append_names(file);
   if (starts_part(place)) start_part(file, snapshot);
   add_rows(file, kRoot + "Points", snapshot.points);
   const RowPart rows = field_rows(place, {0, snapshot.points});

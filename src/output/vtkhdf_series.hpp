@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "output/series_names.hpp"
 #include "output/series_triangles.hpp"
 #include "output/twin_file.hpp"
 
@@ -56,7 +57,7 @@ struct SeriesOptions {
   Ranks ranks = {};     // that have the points; the constructor and append() are collective
   // Those of the snapshots to come, where files that are continued are to be looked at for them.
   std::optional<std::vector<std::string>> fields = {};
-  std::string names = {};  // a text for the dataset /Scree/names, where it is not empty
+  std::vector<SeriesNames> names = {};            // of a new file; those without entries are left out
   std::optional<SeriesTriangles> triangles = {};  // of a series of triangles, which one rank writes
 };
 
@@ -80,6 +81,7 @@ class VtkHdfSeries {
  private:
   void read_places();
   void require_fields() const;
+  void require_fields_of(const Hdf5File& file, const PointSnapshot& snapshot) const;
   const std::string& field_group() const;
   RowPart field_rows(const SnapshotPlace& place, RowPart own) const;  // own: points
   void cut(std::size_t keep);

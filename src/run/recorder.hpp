@@ -10,6 +10,7 @@
 #include "model/model.hpp"
 #include "output/history.hpp"
 #include "output/snapshot.hpp"
+#include "run/body_points.hpp"
 #include "run/history_columns.hpp"
 #include "run/mesh_surfaces.hpp"
 #include "run/records.hpp"
@@ -45,11 +46,8 @@ class Recorder : public Records {
   // Taken; its particles are with the backend until they are written.
   struct PendingSnapshot {
     Real time;
-    ShapePack shapes;
-    std::vector<Real> angle, angular_velocity;  // of the shapes' bodies
-    std::vector<Real> orientation;              // where bodies are spatial, likewise: quaternions
-    std::vector<Vec3> spin, origin;             // angular velocities, global; origins of the frames
-    MeshSurfaces::Look surfaces;                // on rank 0, where there are meshes
+    BodyPoints bodies;            // on rank 0
+    MeshSurfaces::Look surfaces;  // likewise, where there are meshes
   };
 
   bool writes_late() const;

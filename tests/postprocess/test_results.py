@@ -99,6 +99,12 @@ class ReadingTest(FolderTest):
         self.assertEqual((velocity.shape, velocity.unit), ((9, 3), "m/s"))
         self.assertEqual([s.number for s in found.snapshots[1:3]], [1, 2])
         self.assertEqual(found.body_names[snapshot.bodies["body"][-1]], "net.19")
+        self.assertEqual((found.group_names, found.material_names), (["block"], ["default"]))
+        np.testing.assert_array_equal(snapshot.particles["group"], np.zeros(9))
+        # Twenty discs, then twenty centres of mass, where the discs are.
+        kind, place = snapshot.bodies["kind"].values, snapshot.bodies["position"].values
+        np.testing.assert_array_equal(kind, np.repeat([0, 1], 20))
+        np.testing.assert_array_equal(place[kind == 1], place[kind == 0])
         with self.assertRaisesRegex(scree.ScreeError, "no surfaces.vtkhdf"):
             snapshot.surfaces
         with self.assertRaisesRegex(KeyError, "no field mass; there are position, "):
@@ -111,7 +117,7 @@ class ReadingTest(FolderTest):
     def test_meshes_of_pyvista(self):
         snapshot = scree.open(DRUM).snapshots[-1]
         blocks = snapshot.to_pyvista()
-        self.assertEqual(blocks.keys(), ["particles", "surfaces"])
+        self.assertEqual(blocks.keys(), ["particles", "bodies", "surfaces"])
         drum, grains = blocks["surfaces"], blocks["particles"]
         self.assertEqual((drum.n_cells, grains.n_points), (len(snapshot.surfaces.triangles), snapshot.particles.count))
         np.testing.assert_array_equal(drum.cell_data["pressure"], snapshot.surfaces["pressure"])
