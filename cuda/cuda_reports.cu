@@ -29,7 +29,7 @@ struct CountDriftingItem {
 }  // namespace
 
 CudaReports::CudaReports(CudaItems& items, CudaBodies& bodies) : items_(items), bodies_(bodies) {
-  const std::vector<OutputField> wanted = wanted_fields(items.model.output);
+  const std::vector<OutputField> wanted = computed_fields(items.model.output);
   std::vector<FieldColumn> columns(wanted.size());
   for (std::size_t k = 0; k < wanted.size(); ++k) columns[k].field = wanted[k];
   output_.columns.swap(columns);

@@ -35,6 +35,7 @@
 #include "run/start_picture.hpp"
 #include "run/status.hpp"
 #include "run/step_trials.hpp"
+#include "run/still_fields.hpp"
 #include "run/surfaces_outside.hpp"
 
 namespace scree {
@@ -113,7 +114,7 @@ Deck checked_deck(const Arguments& arguments) {
 }
 
 void warn_of_run(const Model& model, Log& log) {
-  for (const std::string& warning : {step_warning(model), outside_at_start(model)})
+  for (const std::string& warning : {step_warning(model), outside_at_start(model), still_fields(model)})
     if (!warning.empty()) log.warning(warning);
 }
 
@@ -246,7 +247,9 @@ ExitCode dispatch(const CommandLine& line) {
       "run", "run a deck; results go to HDF5 files, and `scree status` tells how far it is");
   declare_deck(*run_command, arguments);
   run_command
-      ->add_option("--output", arguments.output, "folder for the results (default: results/DECK's name)")
+      ->add_option("--output", arguments.output,
+                   "folder for the results, from the current one (default: the deck's output.directory, or "
+                   "results/DECK's name)")
       ->type_name("DIR");
   run_command
       ->add_option(
@@ -255,7 +258,11 @@ ExitCode dispatch(const CommandLine& line) {
           "(default: auto)")
       ->check(CLI::IsMember(words_of<BackendChoice>()));
   CLI::Option* restart =
-      run_command->add_option("--restart", arguments.restart, "continue from this checkpoint")
+      run_command
+          ->add_option("--restart", arguments.restart,
+                       "continue from this checkpoint. Where it lies in the output folder, the history and "
+                       "snapshots there go on, what was written after it is cut off, and other checkpoints "
+                       "become NAME.earlier; with another folder they begin anew there, at its time")
           ->type_name("FILE");
   run_command
       ->add_flag("--allow-changes", arguments.allow_changes,

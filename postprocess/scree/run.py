@@ -107,13 +107,23 @@ class Run:
     def body_names(self) -> list[str]:
         """In the order in which fields count them."""
         found = self._series.get("bodies") or self._series.get("surfaces")
-        return found.names if found else []
+        return found.names("names") if found else []
+
+    @property
+    def material_names(self) -> list[str]:
+        """Likewise, as the field "material" of particles and surfaces."""
+        return self._series["particles"].names("materials") if self._series else []
+
+    @property
+    def group_names(self) -> list[str]:
+        """Of [[particles]], likewise, as the field "group"; its number where the deck gives none."""
+        return self._series["particles"].names("groups") if self._series else []
 
     @property
     def link_names(self) -> list[str]:
         """Of joints and force elements, in the order in which the field "link" counts them."""
         found = self._series.get("links")
-        return found.names if found else []
+        return found.names("names") if found else []
 
     def to_dataframe(self, *patterns: str) -> pandas.DataFrame:
         """The history's."""

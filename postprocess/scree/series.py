@@ -23,7 +23,7 @@ class SeriesFile:
 
     path: pathlib.Path
     title: str
-    names: list[str]  # of the run's bodies, or of the links
+    names: dict[str, list[str]]  # what fields count: bodies or links as "names", "materials", "groups"
     times: np.ndarray  # [snapshots] [s]
     first: np.ndarray  # row in Points at which each snapshot begins
     points: np.ndarray  # their numbers of points
@@ -45,7 +45,7 @@ class SeriesFile:
             return SeriesFile(
                 path,
                 files.text(own.attrs["title"]),
-                files.text(own["names"][()]).splitlines() if "names" in own else [],
+                {name: files.text(entries[()]).split("\n")[:-1] for name, entries in own.items()},
                 steps["Values"][:],
                 steps["PointOffsets"][:],
                 root["NumberOfPoints"][:][steps["PartOffsets"][:]],
@@ -92,10 +92,9 @@ class Series:
     def title(self) -> str:
         return self._last.title
 
-    @property
-    def names(self) -> list[str]:
-        """Of the run's bodies, or of the links, in the order in which fields count them."""
-        return self._last.names
+    def names(self, what: str) -> list[str]:
+        """Of bodies or links ("names"), "materials" or "groups", in the order in which fields count them."""
+        return self._last.names.get(what, [])
 
     def fields(self, snapshot: int) -> list[str]:
         """Position first."""

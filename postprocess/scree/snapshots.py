@@ -133,8 +133,8 @@ class Snapshot:
 
     @property
     def bodies(self) -> Points:
-        """The bodies' discs or spheres. The field "body" counts the run's body_names. Throws ScreeError where no body
-        has one."""
+        """The bodies' discs or spheres ("kind" 0; 2 of those that touch nothing), then their centres of mass (1, of
+        radius 0). The field "body" counts the run's body_names. Throws ScreeError where there are no bodies."""
         return self._points("bodies")
 
     @property

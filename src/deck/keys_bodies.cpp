@@ -42,17 +42,48 @@ Key local_points() {
       .about("The two points, each in its body's frame, in place of global ones.");
 }
 
+Key surface_material() {
+  return text("material").left_out("the only material; what does not collide needs none").about("Material.");
+}
+
+Key collides_key() {
+  return boolean("collides")
+      .otherwise("true")
+      .about(
+          "Whether it touches anything. False: it is in pictures and results alone; particles, bodies and "
+          "walls go through it.");
+}
+
 TableKeys make_body_keys() {
   static const TableKeys shapes{
       "Circles (2D) or spheres (3D) fixed to the body, for contact and for pictures.",
       {real("radius", "m").above(0).required().about("Radius."),
-       vector("offset", "m").otherwise("zero").about("Centre in the body's frame."),
-       text("material").left_out("the only material").about("Material.")},
+       vector("offset", "m")
+           .otherwise("zero")
+           .about("Centre in the body's frame; of a row or an array, the first one's."),
+       integer("count")
+           .within(1, 10000000)
+           .left_out("a single shape")
+           .about("Number of equal shapes in a row."),
+       integers("size")
+           .at_least(1)
+           .left_out("no array")
+           .about(
+               "In place of count: an array of equal shapes, so many along each axis of the body's frame."),
+       vector("spacing", "m")
+           .left_out("a single shape")
+           .about("Row: from each shape to the next. Array: distance along each axis."),
+       texts("sides")
+           .left_out("all of the array")
+           .about("The sides of the array that are kept, the rest of it is left out: [\"x_min\", \"x_max\", "
+                  "\"y_min\", \"y_max\"] are the outline of a rectangle, [\"x_min\", \"x_max\", \"y_min\"] a "
+                  "tray."),
+       surface_material(), collides_key()},
       ""};
   static const TableKeys meshes{
       "Meshes fixed to the body, which particles touch. They weigh nothing: see solids.",
       {text("mesh").required().about("Name of one of the meshes; its frame is the body's."),
-       text("material").left_out("the only material").about("Material.")},
+       surface_material(), collides_key()},
       ""};
   static constexpr auto planar = {BodyKind::planar}, spatial = {BodyKind::spatial};
   TableKeys keys{
@@ -100,6 +131,9 @@ TableKeys make_body_keys() {
            .only_for(spatial)
            .left_out("body_angular_velocity is given, or zero")
            .about("The same along the global axes."),
+       boolean("collides")
+           .otherwise("true")
+           .about("False: none of its shapes and meshes collides, whatever they say themselves."),
        tables("shapes", shapes), tables("meshes", meshes), tables("solids", solid_keys())},
       "kind"};
   const auto add = [&](const char* before, std::vector<Key> added) {

@@ -9,15 +9,18 @@ const TableKeys& output_keys() {
       "What is written, and how often.",
       {text("directory")
            .otherwise("\"\"")
-           .about("Folder of the results; empty: results/ and the deck's name. --output goes before it."),
+           .about("Folder of the results, from the folder in which scree is started, not the deck's; empty: "
+                  "results/ and the deck's name. --output goes before it. A run with --restart goes on with "
+                  "history and snapshots in the folder of its checkpoint, and begins new ones in another."),
        real("snapshot_interval", "s")
            .at_least(0)
            .otherwise("0.0")
            .about("Simulated time between snapshots; 0: only the first and the last state."),
        texts("fields")
-           .otherwise("[\"radius\", \"velocity\", \"force\", \"contacts\"]")
+           .otherwise("[\"radius\", \"velocity\", \"force\", \"contacts\", \"material\", \"group\"]")
            .about("What snapshots hold of each particle beside its position and its global id; the fields "
-                  "that there are stand at the end of this manual."),
+                  "that there are stand at the end of this manual. material and group count the names in "
+                  "/Scree/materials and /Scree/groups of particles.vtkhdf."),
        texts("surface_fields")
            .otherwise("[\"pressure\", \"shear\"]")
            .about(

@@ -11,7 +11,7 @@ namespace scree {
 
 class CpuReports : public Reports {
  public:
-  explicit CpuReports(CpuItems& items) : items_(items), fields_(wanted_fields(items.model.output)) {}
+  explicit CpuReports(CpuItems& items) : items_(items), fields_(computed_fields(items.model.output)) {}
 
   ParticleLedger ledger(Real verlet_step) override;
   void start_output() override;

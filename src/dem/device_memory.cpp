@@ -50,7 +50,7 @@ constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 // Of a snapshot.
 double output_bytes(const Output& output) {
   double bytes = sizeof(Vec3);
-  for (const OutputField& field : wanted_fields(output)) bytes += static_cast<double>(field.bytes);
+  for (const OutputField& field : computed_fields(output)) bytes += static_cast<double>(field.bytes);
   return bytes;
 }
 

@@ -24,9 +24,11 @@ const std::vector<OutputField>& output_fields() {
     std::vector<OutputField> all;
     for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
       using Value = typename Of::Value;
-      all.push_back({head, sizeof(Value), kReadsContacts<Of>,
+      all.push_back({head, sizeof(Value), kReadsContacts<Of>, false,
                      [](std::size_t n) -> OutputValues { return std::vector<Value>(n); }});
     });
+    all.push_back({kGroupOutput, sizeof(int), false, true,
+                   [](std::size_t n) -> OutputValues { return std::vector<int>(n); }});
     return all;
   }();
   return fields;
@@ -40,6 +42,12 @@ std::vector<OutputField> wanted_fields(const Output& output) {
     wanted.push_back(*field);
   }
   return wanted;
+}
+
+std::vector<OutputField> computed_fields(const Output& output) {
+  std::vector<OutputField> computed = wanted_fields(output);
+  std::erase_if(computed, [](const OutputField& field) { return field.of_id; });
+  return computed;
 }
 
 void check_output_fields(const Deck& deck) {

@@ -117,6 +117,10 @@ struct StressOutput {
   }
 };
 
+// Follows from the global id and the deck: added where snapshots are written, no backend knows it.
+inline constexpr OutputHead kGroupOutput{
+    "group", "1", "group of particles that it belongs to, counted from 0 in the deck's order"};
+
 using DerivedOutputs = std::tuple<ForceOutput, ContactsOutput, StressOutput>;
 
 // Calls visit(head, of) for each output field.
@@ -197,12 +201,15 @@ struct OutputField {
   OutputHead head;
   std::size_t bytes;  // of a value
   bool reads_contacts;
+  bool of_id;                             // kGroupOutput
   OutputValues (*values)(std::size_t n);  // n zeros
 };
 
 const std::vector<OutputField>& output_fields();
 // Those that the deck wants (Output::fields), in its order. Throws std::logic_error for an unknown name.
 std::vector<OutputField> wanted_fields(const Output& output);
+// Those of them that a backend computes.
+std::vector<OutputField> computed_fields(const Output& output);
 // Throws InputError where the deck's output.fields names one that there is not, or one twice.
 void check_output_fields(const Deck& deck);
 // A line per field, as `scree keys` prints them; the same as a part of its page in Markdown.

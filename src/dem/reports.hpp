@@ -44,7 +44,7 @@ RotationEnergies make_rotation_energies(const Real* sums);
 struct ParticleOutput {
   std::vector<GlobalId> global_id;
   std::vector<Vec3> position;        // inside the periodic box [m]
-  std::vector<OutputValues> fields;  // of wanted_fields()
+  std::vector<OutputValues> fields;  // of computed_fields()
 };
 
 // The contacts of this rank's particles, those with other particles on the rank of the first one alone.

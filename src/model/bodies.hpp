@@ -18,6 +18,8 @@ inline constexpr int kGround = -1;  // body index of the ground; its frame is th
 // Points fixed to bodies are along the axes of the body's frame, from its centre of mass: the deck's are from
 // the frame's origin.
 
+inline constexpr int kNoMaterial = -1;  // of what touches nothing
+
 // Circle (2D) or sphere (3D) fixed to a body.
 struct Shape {
   Vec3 offset;      // of its centre in the body frame [m]
@@ -52,6 +54,9 @@ struct Body {
   // Of mass, from the origin of the body's frame, to which the deck's position and velocity belong [m].
   Vec3 center_of_mass{};
   bool of_solids = false;  // mass and inertia follow from solids
+  // Those that touch nothing: for pictures and results alone.
+  std::vector<Shape> drawn_shapes{};
+  std::vector<MeshShape> drawn_meshes{};
 };
 
 // A point and axes fixed to a body; of the ground, in the global frame.

@@ -17,8 +17,6 @@ namespace {
 // More cannot be meant, and counts of them must stay exact.
 constexpr Real kMostSteps = 1e12, kMostOutputs = 1e9;
 
-constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-
 void build_boundaries(const DeckTable& table, Space& space) {
   for (int side = 0; side < kSides; ++side) space.boundary[side] = table.choice<Boundary>(kSideNames[side]);
   for (int side = kXMin; side < kSides; side += 2) {

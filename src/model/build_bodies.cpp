@@ -15,6 +15,7 @@
 #include "model/build_parts.hpp"
 #include "model/frames.hpp"
 #include "model/plausibility.hpp"
+#include "model/shape_places.hpp"
 #include "physics/solid_body.hpp"
 #include "physics/spatial_rotation.hpp"
 
@@ -165,6 +166,41 @@ void move_to_center(Body& body) {
   body.position = center.position, body.velocity = center.velocity;
 }
 
+// Of a shape or mesh of a body. What touches nothing needs none.
+int surface_material(const ModelNames& names, const DeckTable& surface, bool collides) {
+  const bool needed = collides || surface.has("material") || names.materials.size() == 1;
+  return needed ? find_material(names, surface, "material") : kNoMaterial;
+}
+
+void add_shapes(const DeckTable& table, const ModelNames& names, int dimension, Body& body) {
+  std::set<std::tuple<Real, Real, Real, Real>> circles;
+  for (const DeckTable& shape : table.tables("shapes")) {
+    const Real radius = shape.real("radius");
+    check_normal(shape, "radius", radius);
+    const bool touches = collides(table, shape);
+    const int material = surface_material(names, shape, touches);
+    std::vector<Shape>& shapes = touches ? body.shapes : body.drawn_shapes;
+    ShapePlaces(shape, dimension).for_each([&](Vec3 place) {
+      if (!circles.insert({place.x, place.y, place.z, radius}).second)
+        shape.fail("radius",
+                   "the body has a shape of this offset and radius already; each must be another one");
+      shapes.push_back({place - body.center_of_mass, radius, material});
+    });
+  }
+}
+
+void add_meshes(const DeckTable& table, const ModelNames& names, Body& body) {
+  for (const DeckTable& mesh : table.tables("meshes")) {
+    const int number = find_name(names.meshes, mesh, "mesh", "mesh");
+    for (const std::vector<MeshShape>* known : {&body.meshes, &body.drawn_meshes})
+      if (std::ranges::find(*known, number, &MeshShape::mesh) != known->end())
+        mesh.fail("mesh", "the body has this mesh already; each must be another one");
+    const bool touches = collides(table, mesh);
+    std::vector<MeshShape>& meshes = touches ? body.meshes : body.drawn_meshes;
+    meshes.push_back({-body.center_of_mass, number, surface_material(names, mesh, touches)});
+  }
+}
+
 Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
   Body body;
   body.kind = table.choice<BodyKind>("kind");
@@ -175,22 +211,8 @@ Body body_of(const DeckTable& table, const ModelNames& names, int dimension) {
   read_mass(table, names, body);
   spatial ? read_spatial(table, body) : read_planar(table, body);
   move_to_center(body);
-  std::set<std::tuple<Real, Real, Real, Real>> circles;
-  for (const DeckTable& shape : table.tables("shapes")) {
-    const Vec3 offset = shape.vector("offset");
-    const Real radius = shape.real("radius");
-    check_normal(shape, "radius", radius);
-    if (!circles.insert({offset.x, offset.y, offset.z, radius}).second)
-      shape.fail("radius",
-                 "the body has a shape of this offset and radius already; each must be another one");
-    body.shapes.push_back({offset - body.center_of_mass, radius, find_material(names, shape, "material")});
-  }
-  for (const DeckTable& mesh : table.tables("meshes")) {
-    const int number = find_name(names.meshes, mesh, "mesh", "mesh");
-    if (std::ranges::find(body.meshes, number, &MeshShape::mesh) != body.meshes.end())
-      mesh.fail("mesh", "the body has this mesh already; each must be another one");
-    body.meshes.push_back({-body.center_of_mass, number, find_material(names, mesh, "material")});
-  }
+  add_shapes(table, names, dimension, body);
+  add_meshes(table, names, body);
   return body;
 }
 
@@ -206,6 +228,10 @@ void note_mesh_solids(const DeckTable& body, const ModelNames& names, Model& mod
 }
 
 }  // namespace
+
+bool collides(const DeckTable& body, const DeckTable& surface) {
+  return body.boolean("collides") && surface.boolean("collides");
+}
 
 Vec3 turned_at_start(const DeckTable& body, Vec3 local) {
   if (body.choice<BodyKind>("kind") == BodyKind::planar) return Rotation(body.real("angle")).turn(local);

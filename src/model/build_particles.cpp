@@ -33,6 +33,9 @@ class Group {
         count_(count_of()) {}
 
   std::int64_t count() const { return count_; }
+  std::optional<std::string> name() const {
+    return table_.has("name") ? std::optional(table_.text("name")) : std::nullopt;
+  }
   bool is_random() const { return kind_ == GroupKind::random; }
   void note_thickness(DiscThickness& discs) const;
   void warn_if_empty(Log& log) const;
@@ -351,6 +354,8 @@ void build_particles(const DeckTable& deck, Model& model, const ModelNames& name
         group.is_random() ? placed_items(model, share) : std::vector<StartItem>{};
     share.together(
         [&] { group.append_to(model.particles, part_of_group(own, first, group.count()), placed); });
+    std::vector<ParticleGroup>& named = model.particles.groups;
+    named.push_back({group.name().value_or(std::to_string(named.size())), first});
     first += group.count();
   }
   count_particles(model.particles, model.contact.materials(), share);

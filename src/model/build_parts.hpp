@@ -43,6 +43,8 @@ void build_parallel(const DeckTable& deck, Model& model);
 TimeFunction build_motion(const DeckTable& table);
 TimeFunction build_force(const DeckTable& table);
 
+// Whether this shape or mesh of the body touches anything.
+bool collides(const DeckTable& body, const DeckTable& surface);
 // A vector in the frame of the body of this table, in the global frame at t = 0.
 Vec3 turned_at_start(const DeckTable& body, Vec3 local);
 // Whether the centres of the bodies' shapes lie in the space: an error. From the deck alone, before any body

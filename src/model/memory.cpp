@@ -8,14 +8,15 @@
 
 #include "base/host_memory.hpp"
 #include "model/model.hpp"
+#include "model/shape_places.hpp"
 
 namespace scree {
 
 namespace {
 
 // Measured as the growth of the peak memory of `scree check` from 10^5 to 10^6 of each [B]. Building a body
-// takes so much on every rank, its unknowns and those of a link on rank 0.
-constexpr Real kToBuildBody = 600, kToBuildUnknowns = 1400, kToBuildLink = 1600;
+// and each of its shapes takes so much on every rank, its unknowns and those of a link on rank 0.
+constexpr Real kToBuildBody = 600, kToBuildShape = 300, kToBuildUnknowns = 1400, kToBuildLink = 1600;
 // A particle and its entry in the search for overlaps; a place of a random group, with what it keeps clear
 // of.
 constexpr Real kToBuildParticle = 150, kToPlace = 130;
@@ -52,11 +53,14 @@ std::string counted(std::int64_t count, const std::string& one, const std::strin
 
 ModelSize bodies_and_links(const DeckTable& deck) {
   ModelSize size;
+  const int dimension = static_cast<int>(deck.table("space").integer("dimension"));
   std::map<std::string, std::int64_t> rows;
   for (const DeckTable& table : deck.tables("bodies")) {
     const std::int64_t count = table.has("count") ? table.integer("count") : 1;
     rows[table.text("name")] = count;
     size.bodies += count;
+    for (const DeckTable& shape : table.tables("shapes"))
+      size.shapes += count * ShapePlaces(shape, dimension).count();
   }
   std::map<std::string, std::int64_t> joints;
   for (const char* key : {"joints", "spring_dampers", "torsional_spring_dampers", "bushings"}) {
@@ -76,17 +80,20 @@ ModelSize bodies_and_links(const DeckTable& deck) {
 }
 
 ModelSize size_of(const Model& model) {
+  std::int64_t shapes = 0;
+  for (const Body& body : model.bodies) shapes += std::ssize(body.shapes) + std::ssize(body.drawn_shapes);
   return {model.particles.totals.count, std::ssize(model.bodies),
           std::ssize(model.joints) + std::ssize(model.drivers) + std::ssize(model.spring_dampers) +
               std::ssize(model.torsional_spring_dampers) + std::ssize(model.bushings) +
               std::ssize(model.applied_forces) + std::ssize(model.motors) + std::ssize(model.joint_springs) +
-              std::ssize(model.joint_limits) + std::ssize(model.joint_frictions) +
-              std::ssize(model.couplers)};
+              std::ssize(model.joint_limits) + std::ssize(model.joint_frictions) + std::ssize(model.couplers),
+          shapes};
 }
 
 Real bytes_to_build_bodies(const ModelSize& size, int rank) {
   const auto bodies = static_cast<Real>(size.bodies), links = static_cast<Real>(size.links);
-  return kToBuildBody * bodies + (rank == 0 ? kToBuildUnknowns * bodies + kToBuildLink * links : 0);
+  return kToBuildBody * bodies + kToBuildShape * static_cast<Real>(size.shapes) +
+         (rank == 0 ? kToBuildUnknowns * bodies + kToBuildLink * links : 0);
 }
 
 Real bytes_to_build_particles(std::int64_t own, std::int64_t placed) {
@@ -111,7 +118,8 @@ void check_memory(const ModelSize& size, Real bytes, const std::string& task, co
 std::string memory_trouble(const ModelSize& size, int ranks, const std::string& finding) {
   const Real particles = kBytesPerExplicitParticle * static_cast<Real>(size.particles);
   // A body has three coordinates, a link two constraints at the most but for fixed joints.
-  const Real unknowns = kBytesPerUnknown * static_cast<Real>(3 * size.bodies + 2 * size.links);
+  const Real unknowns = kBytesPerUnknown * static_cast<Real>(3 * size.bodies + 2 * size.links) +
+                        kBytesPerShape * static_cast<Real>(size.shapes);
   std::string of = counted(size.particles, "particle", "particles");
   if (size.bodies > 0) {
     const std::string bodies = counted(size.bodies, "body", "bodies");

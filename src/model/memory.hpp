@@ -22,6 +22,8 @@ Real bytes_per_particle(const Model& model);
 // The same of one coordinate or constraint of the multibody side, on rank 0: a few vectors and the sparse
 // factors [B].
 constexpr Real kBytesPerUnknown = 1000;
+// A shape of a body, on every rank: of a run with 10^6 of them on one body [B].
+constexpr Real kBytesPerShape = 1200;
 
 // A triangle of a mesh while it is prepared, on every rank [B]; measured on spheres and refined drums.
 constexpr Real kBytesPerTriangle = 560;
@@ -32,9 +34,9 @@ Real bytes_per_triangle(const Model& model);
 // Of all meshes, on this rank [B].
 Real bytes_of_meshes(const Model& model);
 
-// What the memory of a model depends on. Links: joints, drivers and force elements.
+// What the memory of a model depends on. Links: joints, drivers and force elements; shapes: of all bodies.
 struct ModelSize {
-  std::int64_t particles = 0, bodies = 0, links = 0;
+  std::int64_t particles = 0, bodies = 0, links = 0, shapes = 0;
 };
 
 // From the deck alone, before anything is built; without the particles, whose files may have to be looked

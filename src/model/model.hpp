@@ -22,6 +22,8 @@
 namespace scree {
 
 enum Side { kXMin, kXMax, kYMin, kYMax, kZMin, kZMax, kSides };
+inline constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min",
+                                                               "y_max", "z_min", "z_max"};
 
 struct Space {
   int dimension = 3;                        // 2: every z stays 0 and the z sides do not exist

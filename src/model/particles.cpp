@@ -20,6 +20,18 @@ Real smallest_of_all(const Share& share, Real value) {
 
 }  // namespace
 
+std::vector<int> groups_of(const std::vector<ParticleGroup>& groups, std::span<const GlobalId> ids) {
+  std::vector<int> numbers;
+  numbers.reserve(ids.size());
+  int group = 0;
+  for (const GlobalId id : ids) {
+    while (group + 1 < std::ssize(groups) && groups[static_cast<std::size_t>(group) + 1].first_id <= id)
+      ++group;
+    numbers.push_back(group);
+  }
+  return numbers;
+}
+
 void count_particles(ParticleSet& particles, int materials, const Share& share) {
   ParticleTotals totals;
   const auto slots = static_cast<std::size_t>(materials);

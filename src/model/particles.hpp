@@ -1,6 +1,8 @@
 // Start state of the particles.
 #pragma once
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -25,6 +27,14 @@ struct ParticleTotals {
   std::vector<OfMaterial> materials;               // as many as Contact::material_names
 };
 
+// One of the deck's; its particles' ids go on to where the next one begins.
+struct ParticleGroup {
+  std::string name;       // its number where the deck gives none
+  GlobalId first_id = 0;  // where it has particles
+};
+// Number of the group of each particle. ids: in ascending order.
+std::vector<int> groups_of(const std::vector<ParticleGroup>& groups, std::span<const GlobalId> ids);
+
 // Structure of arrays, one entry per particle of this rank. The global id is the deck's order, counted from
 // 0; these are the particles from first_id on.
 struct ParticleSet {
@@ -38,6 +48,7 @@ struct ParticleSet {
   int dimension = 3;                   // 2: discs
   GlobalId first_id = 0;
   ParticleTotals totals;
+  std::vector<ParticleGroup> groups;  // of all ranks' particles, in the deck's order
 
   std::size_t size() const { return position.size(); }
   Real inertia_factor_of(std::size_t i) const {

@@ -111,13 +111,16 @@ std::vector<Real> body_extents(const Model& model) {
     Real& extent = extents[static_cast<std::size_t>(body)];
     extent = std::max(extent, norm(point) + radius);
   };
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for (const Shape& shape : model.bodies[b].shapes) reach(static_cast<int>(b), shape.offset, shape.radius);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for (const MeshShape& shape : model.bodies[b].meshes) {
-      const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
-      extents[b] = std::max(extents[b], farthest(mesh, shape.offset, model.space.dimension));
-    }
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    for (const std::vector<Shape>* shapes : {&body.shapes, &body.drawn_shapes})
+      for (const Shape& shape : *shapes) reach(static_cast<int>(b), shape.offset, shape.radius);
+    for (const std::vector<MeshShape>* meshes : {&body.meshes, &body.drawn_meshes})
+      for (const MeshShape& shape : *meshes) {
+        const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
+        extents[b] = std::max(extents[b], farthest(mesh, shape.offset, model.space.dimension));
+      }
+  }
   for (int side = 0; side < 2; ++side) {
     for (const Joint& joint : model.joints) reach(joint.body[side], joint.point[side], 0);
     for (const SpringDamper& spring : model.spring_dampers) reach(spring.body[side], spring.point[side], 0);

@@ -10,6 +10,7 @@
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/point_bins.hpp"
+#include "model/shape_places.hpp"
 #include "model/space_box.hpp"
 #include "model/start_meshes.hpp"
 #include "model/touching.hpp"
@@ -245,15 +246,18 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
   for (const DeckTable& table : deck.tables("bodies")) {
     const bool row = table.has("count");
     const std::int64_t count = row ? table.integer("count") : 1;
+    const Vec3 first = table.vector("position"), spacing = table.vector("spacing");
     for (const DeckTable& shape : table.tables("shapes")) {
-      const Vec3 first = table.vector("position"), spacing = table.vector("spacing"),
-                 offset = turned_at_start(table, shape.vector("offset"));
-      for (std::int64_t i = 0; i < count; ++i) {
-        const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
-        if (allowed.inside(p)) continue;
-        const std::string& name = table.text("name");
-        refuse_outside(deck, space,
-                       row ? fmt::format("body \"{}.{}\"", name, i) : fmt::format("body \"{}\"", name), p);
+      if (!collides(table, shape)) continue;
+      for (const Vec3 corner : ShapePlaces(shape, space.dimension).corners()) {
+        const Vec3 offset = turned_at_start(table, corner);
+        for (std::int64_t i = 0; i < count; ++i) {
+          const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
+          if (allowed.inside(p)) continue;
+          const std::string& name = table.text("name");
+          refuse_outside(deck, space,
+                         row ? fmt::format("body \"{}.{}\"", name, i) : fmt::format("body \"{}\"", name), p);
+        }
       }
     }
   }

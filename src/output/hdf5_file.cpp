@@ -227,9 +227,27 @@ void Hdf5File::write_text(const std::string& name, const std::string& text) {
   if (!written || !dataset.close()) fail("write dataset " + name);
 }
 
+void Hdf5File::write_texts(const std::string& name, const std::vector<std::string>& texts,
+                           const DatasetLabel& label) {
+  std::vector<const char*> values;
+  for (const std::string& text : texts) values.push_back(text.c_str());
+  const hsize_t size = values.size();
+  // VTK's reader takes none that are marked as UTF-8, and passes all bytes on.
+  Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  H5Tset_size(type, H5T_VARIABLE);
+  Hdf5Id dataset(H5Dcreate2(file_, name.c_str(), type, space, making_groups(), H5P_DEFAULT, H5P_DEFAULT),
+                 H5Dclose);
+  if (!dataset.valid()) fail("create dataset " + name);
+  const bool written = H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+  if (!written || !dataset.close()) fail("write dataset " + name);
+  write_text_attribute(name, "unit", label.unit);
+  write_text_attribute(name, "description", label.description);
+}
+
 template <class Read>
 std::string Hdf5File::read_text(hid_t type, hid_t space, const std::string& what, const Read& read) const {
-  if (H5Tget_class(type) != H5T_STRING) throw IoError(fmt::format("{}: {} is not a text", path_, what));
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+    throw IoError(fmt::format("{}: {} is not a text", path_, what));
   if (H5Sget_simple_extent_type(space) == H5S_NULL) return {};
   std::string text(H5Tget_size(type), '\0');
   if (read(text.data()) < 0) fail("read " + what);
@@ -243,6 +261,17 @@ std::string Hdf5File::read_text(const std::string& name) const {
   Hdf5Id space(H5Dget_space(dataset), H5Sclose);
   return read_text(type, space, "dataset " + name,
                    [&](char* to) { return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to); });
+}
+
+std::vector<std::string> Hdf5File::read_texts(const std::string& name) const {
+  std::vector<char*> values(static_cast<std::size_t>(value_count(name)));
+  Hdf5Id dataset(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  Hdf5Id type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
+  if (H5Tis_variable_str(type) <= 0) throw IoError(fmt::format("{}: {} is no list of texts", path_, name));
+  if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) fail("read dataset " + name);
+  std::vector<std::string> texts(values.begin(), values.end());
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, values.data());
+  return texts;
 }
 
 void Hdf5File::write_text_attribute(const std::string& object, const std::string& name,

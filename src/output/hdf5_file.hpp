@@ -81,6 +81,8 @@ class Hdf5File {
     write_array(name, hdf5_type<T>(), values.data(), static_cast<std::int64_t>(values.size()));
   }
   void write_text(const std::string& name, const std::string& text);
+  // [n] texts of any length, without zeros in them.
+  void write_texts(const std::string& name, const std::vector<std::string>& texts, const DatasetLabel& label);
 
   // All values of either kind of dataset, row by row. Throws also where the file holds another type.
   template <class T>
@@ -90,6 +92,7 @@ class Hdf5File {
     return values;
   }
   std::string read_text(const std::string& name) const;
+  std::vector<std::string> read_texts(const std::string& name) const;
 
   // ---- attributes and links ----
   void write_text_attribute(const std::string& object, const std::string& name, const std::string& text);

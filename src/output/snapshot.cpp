@@ -43,16 +43,19 @@ PointSnapshot particle_points(Real time, const ParticleSnapshot& particles, cons
 }
 
 PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
-  const std::int64_t shapes = std::ssize(bodies.position);
-  PointSnapshot snapshot{time, shapes, {0, shapes}, components(bodies.position), {}};
+  const std::int64_t points = std::ssize(bodies.position);
+  PointSnapshot snapshot{time, points, {0, points}, components(bodies.position), {}};
   snapshot.fields = {
-      number("body", "body that the shape belongs to, counted from 0 in the deck's order", bodies.body),
-      scalar("radius", "m", "radius of the shape", bodies.radius),
-      vector("velocity", "m/s", "velocity of the shape's centre", bodies.velocity),
+      number("body", "body that the point belongs to, counted from 0 in the deck's order", bodies.body),
+      number("kind", "0: a shape, 1: a body's centre of mass, 2: a shape that touches nothing", bodies.kind),
+      scalar("radius", "m", "radius of the shape; 0 of a centre of mass", bodies.radius),
+      vector("velocity", "m/s", "velocity of the point", bodies.velocity),
       scalar("angle", "rad", "angle of the body about z", bodies.angle),
       scalar("angular_velocity", "rad/s", "angular velocity of the body about z", bodies.angular_velocity),
-      vector("force", "N", "total contact force on the shape", bodies.force),
-      number("contacts", "touching neighbours and walls", bodies.contacts)};
+      vector("force", "N", "total contact force on the shape; of a centre of mass that on the body",
+             bodies.force),
+      number("contacts", "touching neighbours and walls, likewise", bodies.contacts),
+      vector("origin", "m", "origin of the body's frame", bodies.origin)};
   if (bodies.orientation.empty()) return snapshot;
   snapshot.fields.push_back({"orientation",
                              {"1", "unit quaternion of the body's frame, scalar first, of continuous sign"},
@@ -60,7 +63,6 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
                              bodies.orientation.data()});
   snapshot.fields.push_back(
       vector("spin", "rad/s", "angular velocity of the body, global axes", bodies.spin));
-  snapshot.fields.push_back(vector("origin", "m", "origin of the body's frame", bodies.origin));
   return snapshot;
 }
 
@@ -90,20 +92,21 @@ PointSnapshot line_points(Real time, const LineSnapshot& lines, const Ranks& ran
 
 SeriesOptions with_global_id(SeriesOptions options) {
   if (options.fields) options.fields->emplace_back(kGlobalId);
-  options.names.clear();  // of the bodies
+  std::erase_if(options.names, [](const SeriesNames& of) { return of.name == kBodyNames; });
   options.triangles.reset();
   return options;
 }
 
 SeriesOptions of_contacts(SeriesOptions options, const WantedLines& lines) {
   options.fields.reset(), options.triangles.reset();
+  std::erase_if(options.names, [](const SeriesNames& of) { return of.name != kBodyNames; });
   if (lines.contacts) options.fields = lines.contact_fields;
   options.lines = true, options.likely_points = 2 * lines.likely_contacts;
   return options;
 }
 
 SeriesOptions of_links(SeriesOptions options, const WantedLines& lines) {
-  options.names = lines.links, options.lines = true;
+  options.names = {{kBodyNames, lines.links}}, options.lines = true;
   return options;
 }
 
@@ -138,6 +141,7 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
   ranks_.on_root([&] {
     SeriesOptions alone = options;
     alone.ranks = {}, alone.fields = {};
+    std::erase_if(alone.names, [](const SeriesNames& of) { return of.name == kGroupNames; });
     alone.triangles = options.triangles.value_or(SeriesTriangles{});
     surfaces_.emplace(directory, "surfaces", alone);
     alone.triangles.reset();

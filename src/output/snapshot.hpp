@@ -21,20 +21,27 @@ struct ParticleSnapshot {
   std::vector<PointField> fields;  // those that the series was opened with
 };
 
-// One entry per shape (disc or sphere) of every body; on rank 0.
+// The lists of SeriesOptions::names: bodies, or links in links.vtkhdf; bodies are not in particles.vtkhdf,
+// groups in no other.
+inline const std::string kBodyNames = "names", kMaterialNames = "materials", kGroupNames = "groups";
+
+enum BodyPointKind : int { kTouchingShape, kCenterOfMass, kDrawnShape };
+
+// One entry per shape (disc or sphere) and one per centre of mass of every body; on rank 0.
 struct BodySnapshot {
   std::span<const int> body;               // index into the model's bodies
-  std::span<const Real> radius;            // [m]
-  std::span<const Vec3> position;          // of the shape's centre [m]
-  std::span<const Vec3> velocity;          // of the shape's centre [m/s]
+  std::span<const int> kind;               // a BodyPointKind
+  std::span<const Real> radius;            // 0 of centres [m]
+  std::span<const Vec3> position;          // [m]
+  std::span<const Vec3> velocity;          // [m/s]
   std::span<const Real> angle;             // of the body [rad]
   std::span<const Real> angular_velocity;  // of the body [rad/s]
-  std::span<const Vec3> force;             // contact force on the shape [N]
-  std::span<const int> contacts;
-  // Of the bodies, where some are spatial; else empty. orientation: scalar first, 4 numbers a shape.
+  std::span<const Vec3> force;             // contact force on the shape, or the body [N]
+  std::span<const int> contacts;           // likewise
+  std::span<const Vec3> origin;            // of the body's frame [m]
+  // Of the bodies, where some are spatial; else empty. orientation: scalar first, 4 numbers a point.
   std::span<const Real> orientation{};
-  std::span<const Vec3> spin{};    // angular velocity, global [rad/s]
-  std::span<const Vec3> origin{};  // of the body's frame [m]
+  std::span<const Vec3> spin{};  // angular velocity, global [rad/s]
 };
 
 // The meshes of walls and bodies, those that the writer was made with; on rank 0.
@@ -57,8 +64,8 @@ struct LineSnapshot {
 struct WantedLines {
   bool contacts = false;
   std::vector<std::string> contact_fields = {};
-  std::int64_t likely_contacts = 0;  // how many there may be
-  std::string links = {};            // names of the links, one per line; on rank 0, where there are some
+  std::int64_t likely_contacts = 0;     // how many there may be
+  std::vector<std::string> links = {};  // names of the links; on rank 0, where there are some
 };
 
 // Writes DIRECTORY/particles.vtkhdf + particles.xdmf and, where there are bodies, bodies.vtkhdf +
@@ -71,9 +78,9 @@ class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
   // cut off); 0 starts new files and removes old ones. options.fields: those of the particles beside
-  // the global id. options.names: of the bodies. options.triangles: of the meshes, on rank 0, where there are
-  // some. Throws IoError where the files hold fewer snapshots, other fields or other triangles, or where
-  // there are lines that are not wanted, or none that are.
+  // the global id. options.names: lists of the names above. options.triangles: of the meshes, on rank 0,
+  // where there are some. Throws IoError where the files hold fewer snapshots, other fields or other
+  // triangles, or where there are lines that are not wanted, or none that are.
   SnapshotWriter(const std::string& directory, const SeriesOptions& options, const WantedLines& lines = {});
   // Both throw IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,

@@ -138,6 +138,17 @@ void VtkHdfSeries::require_fields() const {
                   options_.lines ? "" : "keep output.fields as it was, or "));
 }
 
+// Of another version's file, or another deck's.
+void VtkHdfSeries::require_fields_of(const Hdf5File& file, const PointSnapshot& snapshot) const {
+  const std::vector<std::string> held = file.dataset_names(field_group());
+  for (const PointField& field : snapshot.fields)
+    if (std::ranges::find(held, field.name) == held.end())
+      throw IoError(
+          fmt::format("{}: holds no field {}, which this version of the program is to write; "
+                      "choose another folder",
+                      path(), field.name));
+}
+
 void VtkHdfSeries::cut(std::size_t keep) {
   remove_xdmf();  // it would refer to rows that are gone; the next append writes it
   places_.resize(keep);
@@ -149,6 +160,7 @@ void VtkHdfSeries::cut(std::size_t keep) {
       file.resize_rows(kSteps + name, steps);
     }
     if (has_cell_fields()) file.resize_rows(field_offsets(), steps);
+    cut_names(file, steps);
     file.resize_rows(kRoot + "Points", last.first_point + last.points);
     if (options_.triangles)
       cut_triangles(file, *options_.triangles, steps);
@@ -189,7 +201,7 @@ void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
   file.write_text_attribute("/Scree", "title", options_.title);
   file.write_text_attribute("/Scree", "version", version());
   file.write_text_attribute("/Scree", "commit", commit());
-  if (!options_.names.empty()) file.write_text("/Scree/names", options_.names);
+  for (const SeriesNames& names : options_.names) create_names(file, names);
 }
 
 void VtkHdfSeries::lay_out_fields(Hdf5File& file, const PointSnapshot& first, RowStorage storage) const {
@@ -241,6 +253,8 @@ void VtkHdfSeries::append_cell_offsets(Hdf5File& file, std::int64_t first_cell) 
 void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
                              const SnapshotPlace& place) const {
   if (places_.empty()) lay_out(file, snapshot);
+  require_fields_of(file, snapshot);
+  append_names(file);
   if (starts_part(place)) {
     append_one(file, kRoot + "NumberOfPoints", snapshot.points);
     if (!options_.triangles) add_cells(file, cells(), snapshot.points);

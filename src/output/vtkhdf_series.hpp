@@ -19,6 +19,7 @@
 
 #include "base/types.hpp"
 #include "output/series_cells.hpp"
+#include "output/series_names.hpp"
 #include "output/series_triangles.hpp"
 #include "output/twin_file.hpp"
 
@@ -58,7 +59,7 @@ struct SeriesOptions {
   Ranks ranks = {};     // that have the points; the constructor and append() are collective
   // Those of the snapshots to come, where files that are continued are to be looked at for them.
   std::optional<std::vector<std::string>> fields = {};
-  std::string names = {};  // a text for the dataset /Scree/names, where it is not empty
+  std::vector<SeriesNames> names = {};            // of a new file; those without entries are left out
   std::optional<SeriesTriangles> triangles = {};  // of a series of triangles, which one rank writes
   bool lines = false;                             // between each two points; every rank has whole ones
   std::int64_t likely_points = 0;                 // of a snapshot, where the first one may have few
@@ -86,6 +87,7 @@ class VtkHdfSeries {
   void require_fields() const;
   bool has_cell_fields() const { return options_.triangles || options_.lines; }
   const SeriesCells& cells() const { return options_.lines ? kLines : kVertices; }  // without triangles
+  void require_fields_of(const Hdf5File& file, const PointSnapshot& snapshot) const;
   const std::string& field_group() const;
   std::string field_offsets() const;
   RowPart field_rows(const SnapshotPlace& place, RowPart own) const;  // own: points

@@ -25,9 +25,9 @@ namespace scree {
 
 namespace {
 
-// In files without compression, of a particle (in a snapshot without its fields), of a shape, contact or body
-// [B]; tests/performance/bytes_per_item.py.
-constexpr Real kSnapshotPoint = 42, kSnapshotShape = 120, kSnapshotContact = 147, kCheckpointParticle = 186,
+// In files without compression, of a particle (in a snapshot without its fields), of a shape or centre, of a
+// contact, of a body [B]; tests/performance/bytes_per_item.py.
+constexpr Real kSnapshotPoint = 42, kSnapshotShape = 150, kSnapshotContact = 147, kCheckpointParticle = 186,
                kCheckpointBody = 170;
 // Of one that rotates, and more where contacts resist rolling; of a contact that remembers, but for its
 // numbers, and of the row of a particle's.
@@ -35,8 +35,6 @@ constexpr Real kCheckpointRotation = 96, kCheckpointRolling = 16, kCheckpointCon
 
 // Contacts of a particle in a dense packing, each with another one.
 constexpr Real kTouching = 6;
-
-constexpr std::array<const char*, kSides> kSideNames = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
 std::string range(Real smallest, Real largest, const char* unit) {
   if (smallest == largest) return fmt::format("{:.6g} {}", smallest, unit);
@@ -207,13 +205,14 @@ Real checkpoint_particle(const Model& model) {
 
 std::string output_lines(const Model& model) {
   const auto particles = static_cast<Real>(model.particles.totals.count);
-  Real shapes = 0, snapshot_particle = kSnapshotPoint;
+  Real points = static_cast<Real>(model.bodies.size()), snapshot_particle = kSnapshotPoint;
   for (const OutputField& field : wanted_fields(model.output))
     snapshot_particle += static_cast<Real>(field.bytes);
   if (model.output.contacts) snapshot_particle += kTouching / 2 * kSnapshotContact;
-  for (const Body& body : model.bodies) shapes += static_cast<Real>(body.shapes.size());
+  for (const Body& body : model.bodies)
+    points += static_cast<Real>(body.shapes.size() + body.drawn_shapes.size());
   const Real snapshots = outputs(model.time.end, model.output.snapshot_interval),
-             size = snapshot_particle * particles + kSnapshotShape * shapes,
+             size = snapshot_particle * particles + kSnapshotShape * points,
              state = checkpoint_particle(model) * particles +
                      kCheckpointBody * static_cast<Real>(model.bodies.size());
   const Real interval = model.output.checkpoint_interval;
@@ -234,17 +233,21 @@ std::string memory_line(const Model& model, int ranks) {
   const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
       kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));
-  const Real meshes = bytes_of_meshes(model);
+  const std::int64_t shapes = size_of(model).shapes;
+  const Real meshes = bytes_of_meshes(model),
+             surfaces = meshes + kBytesPerShape * static_cast<Real>(shapes);  // on every rank
   const std::string most = ranks == 1 ? ""
                                       : fmt::format(" on all ranks together, {} on rank 0",
-                                                    megabytes(particles / ranks + unknowns + meshes));
+                                                    megabytes(particles / ranks + unknowns + surfaces));
   const FreeMemory free = free_memory();
   const MemoryBound& bound = free.process.bytes < free.host.bytes ? free.process : free.host;
   return fmt::format(
-      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown{}); {} "
+      "memory         about {} of state and scratch{} (estimate: {} B per particle, {} B per unknown{}{}); "
+      "{} "
       "are free here "
       "({})\n",
-      megabytes(particles + unknowns + ranks * meshes), most, per_particle, kBytesPerUnknown,
+      megabytes(particles + unknowns + ranks * surfaces), most, per_particle, kBytesPerUnknown,
+      shapes == 0 ? "" : fmt::format(", {} B per shape on every rank", kBytesPerShape),
       meshes == 0 ? "" : fmt::format(", {} B per triangle on every rank", bytes_per_triangle(model)),
       megabytes(bound.bytes), bound.set_by);
 }

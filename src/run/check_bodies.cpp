@@ -57,26 +57,33 @@ std::string solid_lines(const Model& model) {
 
 std::string multibody_lines(const Model& model) {
   if (model.bodies.empty()) return "bodies         none\n";
-  std::int64_t shapes = 0, meshes = 0, bare = 0;
+  std::int64_t shapes = 0, meshes = 0, drawn_shapes = 0, drawn_meshes = 0, bare = 0;
   for (const Body& body : model.bodies) {
     shapes += std::ssize(body.shapes), meshes += std::ssize(body.meshes);
-    bare += body.shapes.empty() && body.meshes.empty();
+    drawn_shapes += std::ssize(body.drawn_shapes), drawn_meshes += std::ssize(body.drawn_meshes);
+    bare +=
+        body.shapes.empty() && body.meshes.empty() && body.drawn_shapes.empty() && body.drawn_meshes.empty();
   }
   const int coordinates = BodyLayout(model.bodies).columns(), constraints = constraint_count(model);
   const std::int64_t elements =
       std::ssize(model.spring_dampers) + std::ssize(model.torsional_spring_dampers) +
       std::ssize(model.bushings) + std::ssize(model.applied_forces) + std::ssize(model.motors) +
       std::ssize(model.joint_springs) + std::ssize(model.joint_limits) + std::ssize(model.joint_frictions);
-  std::string lines = fmt::format("bodies         {} with {}{}, {}, {}, {}\n", model.bodies.size(),
-                                  counted(shapes, "shape", "shapes"),
-                                  meshes == 0 ? "" : ", " + counted(meshes, "mesh", "meshes"),
-                                  counted(std::ssize(model.joints), "joint", "joints"),
-                                  counted(std::ssize(model.drivers), "driver", "drivers"),
-                                  counted(elements, "force element", "force elements"));
+  std::string lines =
+      fmt::format("bodies         {} with {}{}, {}, {}, {}\n", model.bodies.size(),
+                  counted(shapes + drawn_shapes, "shape", "shapes"),
+                  meshes + drawn_meshes == 0 ? "" : ", " + counted(meshes + drawn_meshes, "mesh", "meshes"),
+                  counted(std::ssize(model.joints), "joint", "joints"),
+                  counted(std::ssize(model.drivers), "driver", "drivers"),
+                  counted(elements, "force element", "force elements"));
   if (bare > 0 && !model.walls.empty())
     lines += fmt::format("               {} no shapes{}: {} through walls and touch{} nothing\n",
                          counted(bare, "body has", "bodies have"), model.meshes.empty() ? "" : " or meshes",
                          bare == 1 ? "it passes" : "they pass", bare == 1 ? "es" : "");
+  if (drawn_shapes + drawn_meshes > 0)
+    lines += fmt::format("               of these {}{} collide with nothing\n",
+                         counted(drawn_shapes, "shape", "shapes"),
+                         drawn_meshes == 0 ? "" : " and " + counted(drawn_meshes, "mesh", "meshes"));
   lines += solid_lines(model);
   lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
   // Of rows that may repeat each other the rank counts, which the bodies' solver reports.

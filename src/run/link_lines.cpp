@@ -52,9 +52,9 @@ void LinkLines::add_pin(const std::string& name, LinkKind kind, const int (&body
   add(name, kind, {body[to], body[to]}, {point[to], {}});
 }
 
-std::string LinkLines::names() const {
-  std::string names;
-  for (const Line& line : lines_) names += line.name + '\n';
+std::vector<std::string> LinkLines::names() const {
+  std::vector<std::string> names;
+  for (const Line& line : lines_) names.push_back(line.name);
   return names;
 }
 

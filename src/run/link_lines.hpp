@@ -35,7 +35,7 @@ class LinkLines {
   // The model is kept.
   explicit LinkLines(const Model& model);
   bool empty() const { return lines_.empty(); }
-  std::string names() const;  // one per line
+  std::vector<std::string> names() const;
   // motion: of the bodies in this state, at the time t.
   Look look(const Multibody& multibody, const MultibodyState& state, Real t,
             std::span<const BodyMotion> motion) const;

@@ -17,13 +17,24 @@ Real area(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
 
 }  // namespace
 
-MeshSurfaces::MeshSurfaces(const Model& model) : model_(model), surfaces_(model) {
-  for (Index s = 0; s < surfaces_.placed(); ++s) {
-    if (surfaces_.at(s).kind != SurfaceKind::mesh) continue;
-    const SurfaceMesh& mesh = *model.meshes[static_cast<std::size_t>(surfaces_.at(s).mesh)].surface;
-    parts_.push_back({s, points_, triangles_, &mesh});
-    points_ += mesh.vertices.size(), triangles_ += mesh.triangles.size();
+MeshSurfaces::MeshSurfaces(const Model& model) : model_(model) {
+  const SurfaceSet surfaces(model);
+  for (Index s = 0; s < surfaces.placed(); ++s) {
+    const Surface& of = surfaces.at(s);
+    const int wall = surfaces.is_on_body(s) ? -1 : static_cast<int>(surfaces.number_of(s));
+    if (of.kind == SurfaceKind::mesh)
+      add({s, of.carrier, wall, of.material, of.point, 0, 0, nullptr}, of.mesh);
   }
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& drawn : model.bodies[b].drawn_meshes)
+      add({-1, static_cast<int>(b), -1, drawn.material, drawn.offset, 0, 0, nullptr}, drawn.mesh);
+}
+
+void MeshSurfaces::add(Part part, int mesh) {
+  part.mesh = model_.meshes[static_cast<std::size_t>(mesh)].surface.get();
+  part.first_point = points_, part.first_triangle = triangles_;
+  points_ += part.mesh->vertices.size(), triangles_ += part.mesh->triangles.size();
+  parts_.push_back(part);
 }
 
 SeriesTriangles MeshSurfaces::triangles() const {
@@ -35,14 +46,11 @@ SeriesTriangles MeshSurfaces::triangles() const {
       {"surface", "mesh of a body or a wall, counted from 0 in this order", {}},
       {"body", "body that the mesh belongs to, counted from 0 in the deck's order; -1: a wall's", {}},
       {"wall", "wall that the mesh is, counted from 0 in the deck's order; -1: a body's", {}},
-      {"material", "material, counted from 0 in the deck's order", {}},
+      {"material", "material, counted from 0 in the deck's order; -1: none, it touches nothing", {}},
       {"triangle", "number of the triangle in its file or shape, counted from 0", {}}};
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     const Part& part = parts_[p];
-    const Surface& surface = surfaces_.at(part.surface);
-    const bool on_body = surfaces_.is_on_body(part.surface);
-    const int of_part[] = {static_cast<int>(p), on_body ? surface.carrier : -1,
-                           on_body ? -1 : surfaces_.number_of(part.surface), surface.material};
+    const int of_part[] = {static_cast<int>(p), part.wall < 0 ? part.carrier : -1, part.wall, part.material};
     for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
       const auto row = part.first_triangle + static_cast<std::size_t>(part.mesh->original[t]);
       for (std::size_t k = 0; k < 3; ++k)
@@ -58,7 +66,7 @@ SeriesTriangles MeshSurfaces::triangles() const {
 // In the periodic box as particles are: the middle of the mesh in it, its triangles together.
 void MeshSurfaces::place(const Part& part, const BodyMotion& carrier, Vec3* position) const {
   const Mat3 axes = rotation_matrix(orientation(carrier));
-  const Vec3 point = point_motion(carrier, surfaces_.at(part.surface).point).position,
+  const Vec3 point = point_motion(carrier, part.point).position,
              middle = point + axes * (Real(0.5) * (part.mesh->box.min + part.mesh->box.max));
   ImageCount unused;
   const Vec3 shift = Subdomain(model_.space).wrap(middle, unused) - middle;
@@ -71,7 +79,7 @@ void MeshSurfaces::take_works(const std::vector<std::int64_t>& works, Look& look
     if (!model_.output.shows(field)) return;
     to.resize(triangles_);
     for (const Part& part : parts_)
-      for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
+      for (std::size_t t = 0; part.surface >= 0 && t < part.mesh->triangles.size(); ++t) {
         const std::size_t row = part.first_triangle + static_cast<std::size_t>(part.mesh->original[t]);
         to[row] = value(values[row], *part.mesh, part.mesh->triangles[t]);
       }
@@ -95,8 +103,7 @@ MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion, std::s
   if (model_.output.shows(SurfaceField::shear)) look.shear.resize(triangles_);
   take_works(works, look);
   for (const Part& part : parts_)
-    place(part, motion[static_cast<std::size_t>(surfaces_.at(part.surface).carrier)],
-          look.position.data() + part.first_point);
+    place(part, motion[static_cast<std::size_t>(part.carrier)], look.position.data() + part.first_point);
   for (const TriangleLoad& load : loads) {
     const auto part = std::ranges::find(parts_, load.surface, &Part::surface);
     const SurfaceMesh& mesh = *part->mesh;

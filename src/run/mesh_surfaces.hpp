@@ -13,7 +13,8 @@
 
 namespace scree {
 
-// One after the other in the order of SurfaceSet, triangles in the order of the file or the shape.
+// One after the other in the order of SurfaceSet, then those that touch nothing; triangles in the order of
+// the file or the shape.
 class MeshSurfaces {
  public:
   // Where they are at one instant, and what acts on them.
@@ -35,15 +36,18 @@ class MeshSurfaces {
 
  private:
   struct Part {
-    Index surface;                            // of the placed ones
+    Index surface;      // of the placed ones, or -1: it touches nothing
+    int carrier, wall;  // wall: index into Model::walls, or -1 where the carrier is a body
+    int material;
+    Vec3 point;                               // its origin in the carrier's frame [m]
     std::size_t first_point, first_triangle;  // rows
     const SurfaceMesh* mesh;
   };
+  void add(Part part, int mesh);
   void take_works(const std::vector<std::int64_t>& works, Look& look) const;
   void place(const Part& part, const BodyMotion& carrier, Vec3* position) const;
 
   const Model& model_;
-  SurfaceSet surfaces_;
   std::vector<Part> parts_;
   std::size_t points_ = 0, triangles_ = 0;
 };

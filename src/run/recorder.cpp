@@ -61,12 +61,17 @@ std::vector<TracedParticle> traced_of(const Model& model, const Ranks& ranks, Ba
   return traced;
 }
 
-// The part of all ranks' particles that this rank writes.
-ParticleOutput in_id_order(const Ranks& ranks, std::int64_t particles, ParticleOutput p) {
-  const IdOrder order(ranks, particles, p.global_id);
+// The part of all ranks' particles that this rank writes, with the fields that follow from their ids.
+ParticleOutput in_id_order(const Ranks& ranks, const Model& model, ParticleOutput p) {
+  const IdOrder order(ranks, model.particles.totals.count, p.global_id);
   p.global_id = order.apply(std::move(p.global_id)), p.position = order.apply(std::move(p.position));
   for (OutputValues& of_field : p.fields)
     std::visit([&](auto& values) { values = order.apply(std::move(values)); }, of_field);
+  const std::vector<OutputField> wanted = wanted_fields(model.output);
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    if (wanted[k].of_id)
+      p.fields.insert(p.fields.begin() + static_cast<std::ptrdiff_t>(k),
+                      groups_of(model.particles.groups, p.global_id));
   return p;
 }
 
@@ -85,11 +90,12 @@ std::vector<PointField> point_fields(const Output& output, const ParticleOutput&
   return fields;
 }
 
-// One per line, in the order in which the fields count the bodies.
-std::string body_names(const Model& model) {
-  std::string names;
-  for (const Body& body : model.bodies) names += body.name + '\n';
-  return names;
+// In the order in which the fields count them.
+std::vector<SeriesNames> names_of(const Model& model) {
+  SeriesNames bodies{kBodyNames, {}}, groups{kGroupNames, {}};
+  for (const Body& body : model.bodies) bodies.entries.push_back(body.name);
+  for (const ParticleGroup& group : model.particles.groups) groups.entries.push_back(group.name);
+  return {bodies, {kMaterialNames, model.contact.material_names}, groups};
 }
 
 }  // namespace
@@ -112,7 +118,7 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
                         model.output.compression,
                         link.ranks(),
                         model.output.fields,
-                        body_names(model)};
+                        names_of(model)};
   if (surfaces_) options.triangles = surfaces_->triangles();
   snapshots_.emplace(directory, options, wanted_lines());
   if (writes_late()) backend.set_idle_work([this] { write_pending(); });
@@ -185,9 +191,15 @@ void Recorder::balance(State& state, HistorySample& sample) const {
 
 void Recorder::snapshot(State& state) {
   write_pending();
+  const Reports::Instant now(backend_.reports());
   backend_.reports().start_output();
-  PendingSnapshot next{state.clock.time, backend_.reports().pack_shapes(), {}, {}, {}, {}, {}, {}, {}, {}};
+  PendingSnapshot next{state.clock.time, {}, {}, {}, {}};
   const std::vector<BodyMotion> motion = link_.motion();
+  if (!model_.bodies.empty()) {
+    const ShapePack shapes = backend_.reports().pack_shapes();
+    const std::vector<ContactSum> contacts = backend_.reports().carrier_contacts();
+    if (link_.ranks().is_root()) next.bodies = body_points(model_, shapes, motion, contacts);
+  }
   if (!model_.meshes.empty()) {
     const Output& output = model_.output;
     std::vector<TriangleLoad> loads;
@@ -196,7 +208,6 @@ void Recorder::snapshot(State& state) {
     const std::vector<std::int64_t> works = all_works(backend_.particles().works(), link_.ranks());
     if (surfaces_) next.surfaces = surfaces_->look(motion, loads, works);
   }
-  take_shapes(next, motion);
   if (model_.output.contacts) next.contacts = backend_.reports().contact_lines();
   if (links_) next.links = links_->look(*link_.multibody(), state.bodies, state.clock.time, motion);
   pending_ = std::move(next);
@@ -204,32 +215,15 @@ void Recorder::snapshot(State& state) {
   if (!writes_late()) write_pending();
 }
 
-// Of the bodies what stands beside each of their shapes.
-void Recorder::take_shapes(PendingSnapshot& next, const std::vector<BodyMotion>& motion) const {
-  for (const int body : next.shapes.body) {
-    next.angle.push_back(motion[body].angle);
-    next.angular_velocity.push_back(motion[body].angular_velocity);
-    if (!has_spatial_bodies(model_)) continue;
-    const Quaternion p = orientation(motion[body]);
-    next.orientation.insert(next.orientation.end(), {p.w, p.x, p.y, p.z});
-    next.spin.push_back(global_spin(motion[body]));
-    next.origin.push_back(
-        point_motion(motion[body], -model_.bodies[static_cast<std::size_t>(body)].center_of_mass).position);
-  }
-}
-
 void Recorder::write_pending() {
   if (!pending_) return;
   PendingSnapshot snapshot = *std::exchange(pending_, std::nullopt);
-  const ParticleOutput p =
-      in_id_order(link_.ranks(), model_.particles.totals.count, backend_.reports().output());
+  const ParticleOutput p = in_id_order(link_.ranks(), model_, backend_.reports().output());
   ContactNetwork contacts;
   if (model_.output.contacts) contacts = ContactNetwork(model_, link_.ranks(), std::move(snapshot.contacts));
-  const ShapePack& s = snapshot.shapes;
   const MeshSurfaces::Look& surfaces = snapshot.surfaces;
   snapshots_->append(snapshot.time, {p.global_id, p.position, point_fields(model_.output, p)},
-                     {s.body, s.radius, s.position, s.velocity, snapshot.angle, snapshot.angular_velocity,
-                      s.force, s.contacts, snapshot.orientation, snapshot.spin, snapshot.origin},
+                     snapshot.bodies.view(),
                      {surfaces.position, surfaces.pressure, surfaces.shear, surfaces.impact_work,
                       surfaces.sliding_work, surfaces.wear_depth},
                      contacts.snapshot(), snapshot.links.snapshot());

@@ -10,6 +10,7 @@
 #include "model/model.hpp"
 #include "output/history.hpp"
 #include "output/snapshot.hpp"
+#include "run/body_points.hpp"
 #include "run/history_columns.hpp"
 #include "run/link_lines.hpp"
 #include "run/mesh_surfaces.hpp"
@@ -48,18 +49,14 @@ class Recorder : public Records {
   // Taken; its particles are with the backend until they are written.
   struct PendingSnapshot {
     Real time;
-    ShapePack shapes;
-    std::vector<Real> angle, angular_velocity;  // of the shapes' bodies
-    std::vector<Real> orientation;              // where bodies are spatial, likewise: quaternions
-    std::vector<Vec3> spin, origin;             // angular velocities, global; origins of the frames
-    MeshSurfaces::Look surfaces;                // on rank 0, where there are meshes
-    ContactLines contacts;                      // where they are shown
-    LinkLines::Look links;                      // on rank 0, where they are shown
+    BodyPoints bodies;            // on rank 0
+    MeshSurfaces::Look surfaces;  // likewise, where there are meshes
+    ContactLines contacts;        // where they are shown
+    LinkLines::Look links;        // on rank 0, where they are shown
   };
 
   WantedLines wanted_lines() const;
   bool writes_late() const;
-  void take_shapes(PendingSnapshot& snapshot, const std::vector<BodyMotion>& motion) const;
   HistorySample take_sample(State& state, Real h) const;  // collective; updates the balance in the state
   void balance(State& state, HistorySample& sample) const;
 

@@ -47,13 +47,10 @@ class FolderBeside {
   std::string path_;
 };
 
-// Pictures find the bodies that have no shapes in the history.
-constexpr std::size_t kMostBare = 1000;
-Output output_of_start(const Model& model) {
+// What pictures are drawn from.
+Output output_of_start() {
   Output output;
   output.fields = {"radius", "velocity"};
-  for (std::size_t b = 0; b < model.bodies.size() && output.history_bodies.size() < kMostBare; ++b)
-    if (model.bodies[b].shapes.empty()) output.history_bodies.push_back(static_cast<int>(b));
   return output;
 }
 
@@ -82,7 +79,7 @@ void write_start(const Model& model, const std::string& folder, const Ranks& ran
 void draw_start(Model model, const std::string& resolved_deck, const std::string& program,
                 const std::string& file, const Ranks& ranks) {
   catch_signals();  // the folder is removed first
-  model.output = output_of_start(model);
+  model.output = output_of_start();
   const FolderBeside folder(file, ranks);
   write_start(model, folder.path(), ranks);
   ranks.on_root([&] {

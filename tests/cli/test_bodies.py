@@ -151,6 +151,39 @@ class RedundancyTest(BodiesTest):
         self.assertIn('"share"', text)
 
 
+class CollidesTest(BodiesTest):
+    PIECES = """
+[[bodies]]
+name = "block"
+mass = 1.0
+inertia = 0.01
+position = [0.0, -1.8]
+shapes = [{ radius = 0.05, count = 3, spacing = [0.08, 0.0] }]
+[[particles]]
+name = "ball"
+kind = "list"
+positions = [[0.05, -1.6]]
+radius = 0.05
+mass = 0.1
+"""
+
+    def test_what_does_not_collide_changes_nothing(self):
+        text = HEAD.format(end=0.4, control="fixed", alpha=-0.05, stiffness=1e4) + self.PIECES
+        self.deck = self.write("deck.toml", text.replace("[time]", 'y_min = "wall"\n[time]'))
+        hashes = []
+        for number, setting in enumerate(("block.collides=false", "block.shapes.0.collides=false", "block.shapes=[]",
+                                          "block.collides=true")):
+            self.run_deck(DONE, f"out {number}", "--set", f"bodies.{setting}")
+            hashes.append(self.record(f"out {number}")["run"]["state_hash"])
+        self.assertEqual(len(set(hashes[:3])), 1)
+        self.assertNotEqual(hashes[3], hashes[0])
+        # Centre of mass and shapes; the block fell through the floor.
+        self.assertIn("of these 3 shapes collide with nothing",
+                      self.expect(DONE, "check", self.deck, "--set", "bodies.block.collides=false").stdout)
+        self.assertIn('NumberOfElements="4"', (self.folder / "out 0/bodies.xdmf").read_text())
+        self.assertIn('NumberOfElements="1"', (self.folder / "out 2/bodies.xdmf").read_text())
+
+
 class OscillationTest(BodiesTest):
     MESSAGE = ("the reactions of joints and drivers change sign at every step",
                "integrator.hht_alpha = 0 does not damp; set it below zero, e.g. -0.05")

@@ -26,7 +26,8 @@ class FieldsTest(CommandLineTest):
         for field in ("radius", "velocity", "mass", "force", "contacts"):
             self.assertIn(field, known)
         self.run_deck(DONE, "standard")
-        self.assertEqual(self.fields_in("standard"), ["global_id", "radius", "velocity", "force", "contacts"])
+        self.assertEqual(self.fields_in("standard"),
+                         ["global_id", "radius", "velocity", "force", "contacts", "material", "group"])
         self.run_deck(DONE, "none", *fields_setting())
         self.assertEqual(self.fields_in("none"), ["global_id"])
         for integrator in ((), EXPLICIT):
@@ -45,6 +46,14 @@ class FieldsTest(CommandLineTest):
         self.assertFalse((self.folder / "out").exists())
         message = self.expect(BAD_INPUT, "check", self.deck, *fields_setting("mass", "mass")).stderr
         self.assertIn('"mass" is repeated', message)
+
+    def test_fields_of_rotation_without_rotation_are_warned_of(self):
+        fields = fields_setting("orientation", "mass", "angular_velocity")
+        warning = self.expect(DONE, "check", self.deck, *fields).stderr
+        self.assertIn("output.fields: angular_velocity, orientation will be the same in all snapshots: no particle "
+                      "rotates, as no pair in contact.pairs has friction", warning)
+        rubs = ("--set", "contact.pairs.0.friction=0.3")
+        self.assertNotIn("output.fields", self.expect(DONE, "check", self.deck, *fields, *rubs).stderr)
 
     def test_a_restart_with_other_fields_wants_another_folder(self):
         half = ("--set", "time.end=0.2")

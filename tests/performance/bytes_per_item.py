@@ -61,9 +61,11 @@ def run(scree, folder, deck, *words):
     return usage.ru_maxrss * 1024
 
 
-def print_files(folder, name, what, count):
+def print_files(folder, name, what, count, points=1):
+    """points: in a snapshot, of each."""
     snapshots = 2
-    print(f"{what}: {(folder / 'out' / name).stat().st_size / snapshots / count:.0f} B in a snapshot, "
+    size = (folder / 'out' / name).stat().st_size
+    print(f"{what}: {size / snapshots / count / points:.0f} B in a snapshot{' per point' if points > 1 else ''}, "
           f"{(folder / 'out/checkpoint_end.h5').stat().st_size / count:.0f} B in a checkpoint")
 
 
@@ -72,7 +74,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         empty = run(scree, folder, BODIES)
-        print_files(folder, "bodies.vtkhdf", "body of one shape", 10000)
+        print_files(folder, "bodies.vtkhdf", "body of one shape", 10000, points=2)
         # The others touch six each, which remember three and six numbers.
         for what, integrator, keys in (("explicit", "velocity-verlet", ""), ("implicit", "hht", ""),
                                        ("explicit, rubbing", "velocity-verlet", RUBS),

@@ -101,6 +101,12 @@ class ReadingTest(FolderTest):
         self.assertEqual(found.body_names[snapshot.bodies["body"][-1]], "net.19")
         self.assertEqual([found.link_names[k] for k in snapshot.links["link"]][:3], ["left_pin", "right_pin", "cord.0"])
         self.assertEqual((len(snapshot.links["force"]), len(snapshot.links["position"])), (21, 42))
+        self.assertEqual((found.group_names, found.material_names), (["block"], ["default"]))
+        np.testing.assert_array_equal(snapshot.particles["group"], np.zeros(9))
+        # Twenty discs, then twenty centres of mass, where the discs are.
+        kind, place = snapshot.bodies["kind"].values, snapshot.bodies["position"].values
+        np.testing.assert_array_equal(kind, np.repeat([0, 1], 20))
+        np.testing.assert_array_equal(place[kind == 1], place[kind == 0])
         with self.assertRaisesRegex(scree.ScreeError, "no surfaces.vtkhdf"):
             snapshot.surfaces
         with self.assertRaisesRegex(KeyError, "no field mass; there are position, "):
@@ -113,7 +119,7 @@ class ReadingTest(FolderTest):
     def test_meshes_of_pyvista(self):
         snapshot = scree.open(DRUM).snapshots[-1]
         blocks = snapshot.to_pyvista()
-        self.assertEqual(blocks.keys(), ["particles", "surfaces", "links"])
+        self.assertEqual(blocks.keys(), ["particles", "bodies", "surfaces", "links"])
         self.assertEqual((blocks["links"].n_lines, blocks["links"].cell_data["torque"].shape), (1, (1,)))
         drum, grains = blocks["surfaces"], blocks["particles"]
         self.assertEqual((drum.n_cells, grains.n_points), (len(snapshot.surfaces.triangles), snapshot.particles.count))

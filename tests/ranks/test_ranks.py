@@ -10,7 +10,7 @@ GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.e
 NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
        'output.history_contacts=["net", "net.9"]']
 FIELDS = ('["radius", "velocity", "mass", "material", "acceleration", "contact_loss", "loss_power", "integrator_loss", '
-          '"image", "force", "contacts", "stress"]')
+          '"image", "force", "contacts", "stress", "group"]')
 # Spheres that fall, slide, stick, roll, part and leave; some of them do not rub on each other.
 RUBBING = [HERE / "rubbing.toml", "parallel.imbalance=0.05"]
 RUBBING_FIELDS = '["velocity", "angular_velocity", "orientation", "acceleration", "contact_loss", "force", "contacts"]'
@@ -157,6 +157,8 @@ class SameBitsTest(RanksTest):
                     for lines in ("contacts.vtkhdf", "links.vtkhdf"):
                         self.assertEqual(self.datasets(parts, lines), self.datasets(whole, lines), lines)
                     self.assertGreater(self.datasets(parts, "contacts.vtkhdf")["VTKHDF/CellData/first"][1][0], 10)
+                for series in ("particles.vtkhdf", "bodies.vtkhdf") if surfaces is not None else ():
+                    self.assertEqual(self.datasets(parts, series), self.datasets(whole, series), series)
                 counts = self.record(parts)["counts"]
                 self.assertGreaterEqual(counts["steps"], 1000)
                 self.assertEqual(counts["history_rows"], self.record(whole)["counts"]["history_rows"])

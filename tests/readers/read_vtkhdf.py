@@ -21,13 +21,16 @@ WIDTHS = {"velocity": 3, "force": 3, "acceleration": 3, "image": 3, "stress": 9,
           "angular_velocity": 3, "angular_acceleration": 3, "orientation": 4}  # of particles' fields; else 1
 BODY_FIELDS = {
     "body": 1,
+    "kind": 1,
     "radius": 1,
     "velocity": 3,
     "angle": 1,
     "angular_velocity": 1,
     "force": 3,
     "contacts": 1,
+    "origin": 3,
 }
+CENTER = 1  # kind of the points of bodies.vtkhdf that are centres of mass
 
 
 def require(condition, message):
@@ -90,7 +93,22 @@ def raw_snapshot(root, step, fields):
     return data
 
 
-def check_step(path, step, polydata, raw, fields):
+# The fields that count the entries of a list in the group Scree.
+COUNTED = {"names": "body", "materials": "material", "groups": "group"}
+
+
+def check_names(where, polydata, names, raw):
+    """The lists are field data of the step, and no field counts past them."""
+    for name, entries in names.items():
+        array = polydata.GetFieldData().GetAbstractArray(name)
+        require(array is not None, f"{where}: no field data {name}")
+        found = [array.GetValue(k) for k in range(array.GetNumberOfValues())]
+        require(found == entries, f"{where}: {name} are {found}")
+        numbers = raw.get(COUNTED[name], np.zeros(0, int))
+        require(((numbers >= 0) & (numbers < len(entries))).all(), f"{where}: {COUNTED[name]} counts past {name}")
+
+
+def check_step(path, step, polydata, raw, fields, names):
     where = f"{path}, step {step}"
     count = len(raw["Points"])
     for kind in ("Points", "Verts", "Cells"):
@@ -110,9 +128,13 @@ def check_step(path, step, polydata, raw, fields):
         values = vtk_to_numpy(array)
         require(np.isfinite(values).all(), f"{where}: {name} is not finite")
         require(np.array_equal(values, raw[name]), f"{where}: {name} differs")
-    require((raw.get("radius", np.ones(1)) > 0).all(), f"{where}: a radius is not positive")
+    kind = raw.get("kind", np.zeros(count, int))
+    radius = raw.get("radius", (kind != CENTER).astype(float))
+    require(np.array_equal(radius > 0, kind != CENTER), f"{where}: a radius is not positive, or one of a centre is")
     identity = raw["global_id" if "global_id" in raw else "body"]
-    require((np.diff(identity) >= 0).all(), f"{where}: not in the order of the ids")
+    for value in np.unique(kind):
+        require((np.diff(identity[kind == value]) >= 0).all(), f"{where}: not in the order of the ids")
+    check_names(where, polydata, names, raw)
 
 
 def check_file(path, fields):
@@ -125,6 +147,8 @@ def check_file(path, fields):
     with h5py.File(path, "r") as file:
         check_attributes(file, path)
         root = file["VTKHDF"]
+        names = {name: lines[()].decode().splitlines() for name, lines in file["Scree"].items()}
+        require("materials" in names, f"{path}: no names of materials")
         check_offsets(root, path, fields)
         times = root["Steps/Values"][:]
         found = reader.GetNumberOfSteps()
@@ -137,7 +161,7 @@ def check_file(path, fields):
             found = reader.GetTimeValue()
             require(found == time, f"{path}, step {step}: time {found} for {time}")
             raw = raw_snapshot(root, step, fields)
-            check_step(path, step, reader.GetOutput(), raw, fields)
+            check_step(path, step, reader.GetOutput(), raw, fields, names)
             counts.append(len(raw["Points"]))
     require(errors.count == 0, f"{path}: VTK reported {errors.count} errors")
     span = f"t = {times[0]:g} .. {times[-1]:g} s"

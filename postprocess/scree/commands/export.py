@@ -48,7 +48,8 @@ def save_mesh(points: Points, path: pathlib.Path) -> None:
     mesh = points.to_pyvista()
     if path.suffix in (".ply", ".stl") and not len(points.triangles):
         ball = pyvista.Sphere(radius=1.0, theta_resolution=16, phi_resolution=12)
-        mesh = mesh.glyph(scale="radius", orient=False, factor=1.0, geom=ball)
+        sized = mesh.extract_points(mesh["radius"] > 0, include_cells=False)  # centres of mass are points
+        mesh = sized.glyph(scale="radius", orient=False, factor=1.0, geom=ball)
     if path.suffix == ".vtu":
         mesh = mesh.cast_to_unstructured_grid()
     mesh.save(path)

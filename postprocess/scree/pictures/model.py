@@ -5,6 +5,7 @@ import numpy as np
 from scree.history import TIME
 from scree.series import POSITION
 
+CENTER = 1  # kind of the points of bodies that are their centres of mass
 GROUND = -1  # indexes the last row of a motion, which is the ground's
 SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 JOINT_KINDS = ("revolute", "translational", "fixed", "distance", "spherical", "universal", "constant-velocity",
@@ -225,20 +226,22 @@ class Model:
         return found
 
     def motion(self, time, bodies, snapshot, history):
-        """Where the bodies are in the snapshot of that time [s]: from their shapes, or where they have none, from
-        the history. bodies: the shapes' Series, or None."""
+        """Where the bodies are in the snapshot of that time [s]; of those that it does not hold, from the history.
+        bodies: their Series, or None."""
         motion = Motion(self.start.origins.copy(), self.start.rotations.copy(), np.zeros_like(self.start.known))
         motion.known[GROUND] = True
         if bodies is not None:
-            index, first = np.unique(bodies.rows(snapshot, "body"), return_index=True)
+            centers = bodies.rows(snapshot, "kind") == CENTER
+            index = bodies.rows(snapshot, "body")[centers]
             motion.rotations[index] = (
-                of_quaternions(bodies.rows(snapshot, "orientation")[first])
+                of_quaternions(bodies.rows(snapshot, "orientation")[centers])
                 if bodies.has("orientation")  # where some are spatial
-                else about_z(bodies.rows(snapshot, "angle")[first])
+                else about_z(bodies.rows(snapshot, "angle")[centers])
             )
-            offsets = np.array([self.offsets[body][0] for body in index]).reshape(-1, 3)
-            points = bodies.rows(snapshot, POSITION)[first]
-            motion.origins[index] = points - turned(offsets, motion.rotations[index])
+            # Points are in the periodic box, origins wherever the body has come to.
+            origins, period = bodies.rows(snapshot, "origin")[centers], self.period
+            apart = bodies.rows(snapshot, POSITION)[centers] - origins
+            motion.origins[index] = origins + period * np.round(apart / np.where(period > 0, period, np.inf))
             motion.known[index] = True
         for body in np.flatnonzero(~motion.known):
             found = {

@@ -22,7 +22,7 @@ from scree.pictures.scenes import WALL_OPACITY, DiscScene, SphereScene
 from scree.pictures.surfaces import Surfaces
 from scree.quantity import Quantity
 from scree.run import Run
-from scree.series import Series
+from scree.series import POSITION, Series
 
 COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
 FRAMES_PER_SECOND = 25
@@ -60,6 +60,13 @@ class DrawnRun:
     def motion(self, snapshot: int) -> Motion:
         found: Motion = self.model.motion(self.particles.times[snapshot], self.bodies, snapshot, self.history)
         return found
+
+    def shapes(self, snapshot: int) -> tuple[np.ndarray, np.ndarray]:
+        """Centres and radii of the bodies' discs or spheres [m]; their centres of mass have no size."""
+        if self.bodies is None:
+            return np.empty((0, 3)), np.empty(0)
+        radii = self.bodies.rows(snapshot, "radius")
+        return self.bodies.rows(snapshot, POSITION)[radii > 0], radii[radii > 0]
 
     def unseen(self) -> int:
         """How many bodies no result tells the place of."""

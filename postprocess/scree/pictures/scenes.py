@@ -208,11 +208,10 @@ class DiscScene:
             axes.plot(*on_wall.T, "-", color="#404040", linewidth=1.4, zorder=0.8)
 
     def draw(self, snapshot):
-        particles, bodies = self.run.particles, self.run.bodies
+        particles, (points, radii) = self.run.particles, self.run.shapes(snapshot)
         place_discs(self.colors, particles.rows(snapshot, POSITION)[:, :2], particles.rows(snapshot, "radius"))
         self.colors.set_array(particles.speed(snapshot))
-        if bodies:
-            place_discs(self.shapes, bodies.rows(snapshot, POSITION)[:, :2], bodies.rows(snapshot, "radius"))
+        place_discs(self.shapes, points[:, :2], radii)
         self.surfaces.draw(snapshot)
         self.mechanism.draw(snapshot)
 
@@ -344,14 +343,11 @@ class SphereScene:
             axes.text(*(origin + 1.35 * length * direction), name, ha="center", va="center", fontsize=12)
 
     def draw(self, snapshot):
-        particles, bodies = self.run.particles, self.run.bodies
+        particles, (shapes, sizes) = self.run.particles, self.run.shapes(snapshot)
         points, radii = particles.rows(snapshot, POSITION), particles.rows(snapshot, "radius")
         colors = self.colors.to_rgba(particles.speed(snapshot))[:, :3]
-        if bodies:
-            shapes = bodies.rows(snapshot, POSITION)
-            points = np.concatenate([points, shapes])
-            radii = np.concatenate([radii, bodies.rows(snapshot, "radius")])
-            colors = np.concatenate([colors, np.tile(matplotlib.colors.to_rgb(BODY_COLOR), (len(shapes), 1))])
+        points, radii = np.concatenate([points, shapes]), np.concatenate([radii, sizes])
+        colors = np.concatenate([colors, np.tile(matplotlib.colors.to_rgb(BODY_COLOR), (len(shapes), 1))])
         if not self.use_vtk:
             self.draw_discs(self.project(points), radii, colors)
             self.surfaces.draw(snapshot)

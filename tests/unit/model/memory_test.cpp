@@ -24,6 +24,7 @@ count = 7
 mass = 1.0
 inertia = 1.0
 position = [0.0, 0.0]
+shapes = [{ radius = 0.1 }, { radius = 0.1, offset = [0.1, 0.0], size = [5, 4], spacing = [0.1, 0.1], sides = ["y_min"] }]
 [[bodies]]
 name = "bob"
 mass = 1.0
@@ -44,7 +45,7 @@ local_points = [[0.0, 1.0], [0.0, 0.0]]
 stiffness = 1.0
 )";
   const ModelSize size = bodies_and_links(parse_deck(deck, "deck.toml", {}).root);
-  CHECK(size.bodies == 8);
+  CHECK((size.bodies == 8 && size.shapes == 7 * (1 + 5)));
   CHECK(size.links == 1 + 7 + 7);  // a chain of 7 counted as 7
 }
 

@@ -227,4 +227,18 @@ TEST_CASE("masses: given, from density, from the material") {
   CHECK(contains(model_error(deck_2d(list + "mass = 1.0\ndensity = 1.0\n")), "not used together with mass"));
 }
 
+TEST_CASE("groups are told by the ids of their particles") {
+  const std::string keys = "radius = 0.01\nmass = 1.0\n";
+  const ParticleSet p =
+      model_of(deck_2d("[[particles]]\nname = \"pair\"\nkind = \"list\"\npositions = [[0, 0], [0.1, 0]]\n" +
+                       keys + "[[particles]]\nkind = \"list\"\npositions = []\n" + keys +
+                       "[[particles]]\nkind = \"row\"\norigin = [0, 0.5]\nspacing = [0.1, 0]\ncount = 3\n" +
+                       keys))
+          .particles;
+  REQUIRE(p.groups.size() == 3);
+  CHECK((p.groups[0].name == "pair" && p.groups[1].name == "1" && p.groups[2].name == "2"));
+  CHECK(groups_of(p.groups, std::vector<GlobalId>{0, 1, 2, 4}) == std::vector<int>{0, 0, 2, 2});
+  CHECK(groups_of(p.groups, std::vector<GlobalId>{3}) == std::vector<int>{2});
+}
+
 }  // namespace scree

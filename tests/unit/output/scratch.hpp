@@ -60,7 +60,9 @@ struct PredictableSnapshot {
              {"contacts", {"1", "touching neighbours and walls"}, 1, contacts.data() + first}}};
   }
   ParticleSnapshot particles() const { return particles(0, position.size()); }
-  BodySnapshot bodies() const { return {body, scalar, vector, vector, scalar, scalar, vector, number}; }
+  BodySnapshot bodies() const {
+    return {body, number, scalar, vector, vector, scalar, scalar, vector, number, vector};
+  }
   void append_to(SnapshotWriter& writer) const { writer.append(time, particles(), bodies()); }
 
   Real time;

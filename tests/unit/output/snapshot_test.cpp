@@ -54,7 +54,7 @@ const WantedLines kLinesWanted{true, {"overlap", "kind"}, 0, "spring\npin\n"};
 
 SnapshotWriter line_writer(const ScratchDirectory& scratch, int keep,
                            const WantedLines& lines = kLinesWanted) {
-  return {scratch.path(), {.title = "title", .keep = keep, .names = "body\n"}, lines};
+  return {scratch.path(), {.title = "title", .keep = keep, .names = {{kBodyNames, {"body"}}}}, lines};
 }
 
 // Snapshots with so many contacts from the writer's next one on.
@@ -230,7 +230,7 @@ TEST_CASE("a restarted run goes on with its lines, and with no others") {
   CHECK_THROWS_AS(line_writer(scratch, 5, other), IoError);
   other = kLinesWanted, other.contacts = false;
   CHECK_THROWS_AS(line_writer(scratch, 5, other), IoError);
-  other = kLinesWanted, other.links = "";
+  other = kLinesWanted, other.links = {};
   CHECK_THROWS_AS(line_writer(scratch, 5, other), IoError);
   CHECK_NOTHROW(line_writer(scratch, 5));
   std::filesystem::remove(scratch / "links.vtkhdf");
@@ -268,6 +268,51 @@ TEST_CASE("a restarted run cuts off later snapshots and goes on") {
   CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{5, 4, 4, 4, 2});
   CHECK(Hdf5File(scratch / "bodies.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points") == 15);
   CHECK(occurrences(file_text(scratch / "particles.xdmf"), "<Time") == 5);
+}
+
+TEST_CASE("names are in the files whose fields count them, and with every snapshot") {
+  ScratchDirectory scratch;
+  SeriesOptions options{.title = "title", .keep = 0};
+  options.names = {{kBodyNames, {"a", "bü"}}, {kMaterialNames, {"steel"}}, {kGroupNames, {}}};
+  {
+    SnapshotWriter writer(scratch.path(), options);
+    write_snapshots(writer, {2, 2, 2}, 2);
+  }
+  options.keep = 1;
+  SnapshotWriter writer(scratch.path(), options);
+  write_snapshots(writer, {3}, 2);
+  const Hdf5File bodies(scratch / "bodies.vtkhdf", Hdf5Access::read),
+      particles(scratch / "particles.vtkhdf", Hdf5Access::read);
+  CHECK(bodies.dataset_names("/Scree") == std::vector<std::string>{"materials", "names"});
+  CHECK(particles.dataset_names("/Scree") == std::vector<std::string>{"materials"});
+  CHECK(bodies.read_text("/Scree/names") == "a\nbü\n");
+  CHECK(bodies.read_texts("/VTKHDF/FieldData/names") == std::vector<std::string>{"a", "bü"});
+  CHECK(bodies.read_array<std::int64_t>("/VTKHDF/Steps/FieldDataSizes/names") ==
+        std::vector<std::int64_t>{1, 2, 1, 2});
+  CHECK(bodies.read_array<std::int64_t>("/VTKHDF/Steps/FieldDataOffsets/names") ==
+        std::vector<std::int64_t>{0, 0});
+}
+
+TEST_CASE("a file without a field that is to be written is left as it is") {
+  ScratchDirectory scratch;
+  {
+    SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 0});
+    write_snapshots(writer, {2}, 2);
+  }
+  SnapshotWriter writer(scratch.path(), {.title = "title", .keep = 1});
+  const PredictableSnapshot next(1, 2, 2);
+  BodySnapshot bodies = next.bodies();
+  const std::vector<Real> turns(8);
+  bodies.orientation = turns, bodies.spin = next.vector;
+  std::string message;
+  try {
+    writer.append(next.time, next.particles(), bodies);
+  } catch (const IoError& error) {
+    message = error.what();
+  }
+  CHECK(message.find("bodies.vtkhdf: holds no field orientation") != std::string::npos);
+  CHECK(Hdf5File(scratch / "bodies.vtkhdf", Hdf5Access::read).rows("/VTKHDF/Points") == 2);
+  CHECK(read_predictable_particles(scratch / "particles.vtkhdf") == std::vector<int>{2});
 }
 
 TEST_CASE("the XDMF is complete at every snapshot, and written a few times only") {
