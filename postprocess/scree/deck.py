@@ -34,9 +34,9 @@ def place(elements: Any, part: str, path: str) -> int:
 
 
 class Deck(MutableMapping[str, Any]):
-    """Keys are the paths of `--set`: deck["contact.pairs.0.friction"], deck["walls.belt.surface_velocity"]. Numbers, texts
-    and truths come as Python's own; lists and tables are the deck's, so that changes in them change it. Comments stay
-    where they are. Iterating gives the names of the tables at the top.
+    """Keys are the paths of `--set`: deck["contact.pairs.0.friction"], deck["walls.belt.surface_velocity"]. Numbers,
+    texts and truths come as Python's own; lists and tables are the deck's, so that changes in them change it. Comments
+    stay where they are. Iterating gives the names of the tables at the top.
 
         deck = scree.Deck(gravity=[0, 0, -9.81], space={"dimension": 3, "min": [0, 0, 0], "max": [1, 1, 1]})
         deck["time.end"] = 0.5
@@ -82,7 +82,7 @@ class Deck(MutableMapping[str, Any]):
             elif isinstance(holder, Mapping):
                 key = part
             else:
-                raise ScreeError(f"{path}: {'.'.join(parts[:k])} has no keys of its own")
+                raise MissingError(f"{path}: {'.'.join(parts[:k])} has no keys of its own")
             if k + 1 == len(parts):
                 return holder, key
             if isinstance(key, str) and key not in holder:

@@ -1,6 +1,6 @@
 """Particles for decks, made outside the program: graded by a sieve curve, in layers, or as another run has left them.
 
-    grains = scree.packing.graded([1e-3, 2e-3, 4e-3], [0.0, 0.4, 1.0], low=[0, 0, 0], high=[0.1, 0.1, 0.1], fraction=0.3)
+    grains = scree.packing.graded([1e-3, 2e-3, 4e-3], [0.0, 0.4, 1.0], low=[0, 0, 0], high=[0.05] * 3, fraction=0.3)
     deck.add("particles", name="grains", density=2650.0, **grains.write("grains.csv"))
 """
 
@@ -25,8 +25,8 @@ AXES = "xyz"
 
 
 def write_columns(path: Path, columns: Mapping[str, np.ndarray]) -> dict[str, Any]:
-    """A particle file of `kind = "file"`: HDF5 where the name ends in .h5 or .hdf5, else CSV, with all bits. Returns what
-    [[particles]] says of it."""
+    """A particle file of `kind = "file"`: HDF5 where the name ends in .h5 or .hdf5, else CSV, with all bits. Returns
+    what [[particles]] says of it."""
     target = pathlib.Path(path)
     if target.suffix in (".h5", ".hdf5"):
         with h5py.File(target, "w") as file:
@@ -68,9 +68,9 @@ def volumes(radii: np.ndarray, dimension: int) -> np.ndarray:
 def sieve_radii(diameters: Numbers, passing: Numbers, volume: float, dimension: int = 3, seed: int = 1) -> np.ndarray:
     """Radii [m] of as many grains as have this volume together [m^3] (discs: area [m^2]), by a sieve curve.
 
-    diameters: of the sieves [m], growing. passing: the share of the mass that passes each, from 0 for the first to 1 for
-    the last. Between two sieves mass is spread evenly over the logarithm of the diameter. Each share is met to within
-    half a grain.
+    diameters: of the sieves [m], growing. passing: the share of the mass that passes each, from 0 for the first to 1
+    for the last. Between two sieves mass is spread evenly over the logarithm of the diameter. Each share is met to
+    within half a grain.
     """
     sieves, shares = np.asarray(diameters, dtype=float), np.diff(np.asarray(passing, dtype=float))
     if len(sieves) < 2 or len(shares) + 1 != len(sieves) or sieves[0] <= 0 or (np.diff(sieves) <= 0).any():
@@ -93,8 +93,8 @@ def sieve_radii(diameters: Numbers, passing: Numbers, volume: float, dimension: 
 
 def place(radii: Numbers, low: Numbers, high: Numbers, gap: float = 0.0, seed: int = 1, tries: int = 10000) -> Grains:
     """Random places in the box, wholly inside it and without overlap, the largest first; gap: least distance between
-    surfaces [m]. Throws ScreeError where none is found for a grain: with one size that is at some 0.35 of the box, in the
-    plane 0.5, with several sizes later."""
+    surfaces [m]. Throws ScreeError where none is found for a grain: with one size that is from 0.3 of the box on, in
+    the plane from 0.5, with several sizes later. Denser beds settle in the program (`settled`)."""
     sizes = np.sort(np.asarray(radii, dtype=float))[::-1]
     lower, upper = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     if not len(sizes) or (upper - lower < 2 * sizes[0]).any():
@@ -114,7 +114,7 @@ def place(radii: Numbers, low: Numbers, high: Numbers, gap: float = 0.0, seed: i
                 break
         else:
             share = volumes(sizes[:k], len(lower)).sum() / np.prod(upper - lower)
-            raise ScreeError(f"places for {k} of {len(sizes)} grains, {share:.3g} of the box; no more after {tries} tries")
+            raise ScreeError(f"places for {k} of {len(sizes)} grains, {share:.3g} of the box; not one in {tries} tries")
     return Grains(places, sizes)
 
 
@@ -126,8 +126,8 @@ def graded(diameters: Numbers, passing: Numbers, low: Numbers, high: Numbers, fr
 
 def layers(low: Numbers, high: Numbers, heights: Numbers, curves: Sequence[tuple[Numbers, Numbers]], fraction: float,
            seed: int = 1) -> list[Grains]:
-    """One sample per layer, from the bottom of the box up its last axis. heights: of the layers [m], together no more than
-    the box's; curves: (diameters, passing) of each."""
+    """One sample per layer, from the bottom of the box up its last axis. heights: of the layers [m], together no more
+    than the box's; curves: (diameters, passing) of each."""
     if sum(heights) > (high[-1] - low[-1]) * (1 + 1e-12) or len(heights) != len(curves):
         raise ScreeError("layers: there must be a curve for each, and their heights must fit into the box")
     found, bottom = [], float(low[-1])
@@ -167,7 +167,8 @@ def settled(run: Run, folder: Path, number: int = -1) -> list[dict[str, Any]]:
         table: dict[str, Any] = {"name": f"settled_{name}"}
         if len(names) > 1:
             table["material"] = name
-        table |= particles.to_particle_file(pathlib.Path(folder) / f"settled_{name}.h5", deck["space"]["dimension"], rows)
+        path = pathlib.Path(folder) / f"settled_{name}.h5"
+        table |= particles.to_particle_file(path, deck["space"]["dimension"], rows)
         groups = [group for group in deck.get("particles", []) if group.get("material", names[0]) == name]
         density = next((m.get("density") for m in deck.get("materials", []) if m["name"] == name), None)
         known = {key: value for key in ("mass", "density") if (value := shared(groups, key)) is not None}

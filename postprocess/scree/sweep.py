@@ -82,7 +82,8 @@ def is_done(line: str, folder: pathlib.Path) -> bool:
     return kept == line.split() and (folder / "run_record.json").stat().st_mtime > deck.stat().st_mtime
 
 
-def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto", scree: Path | None = None) -> dict[int, str]:
+def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto",
+              scree: Path | None = None) -> dict[int, str]:
     """Runs the lines of the list on this machine, so many at a time, each on one rank, to RESULTS/N, with its log in
     RESULTS/N.log. As in an array what is done is left as it is, and what has a checkpoint goes on from it. Returns the
     messages of the runs that failed, by element; the others go on."""
@@ -137,9 +138,9 @@ def measured(measure: Callable[[Run], Any], run: Run) -> Any:
 
 
 def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]]) -> pandas.DataFrame:
-    """A row for each line of the list that names a deck, by its number from 1: the deck, where it is not the same in all,
-    what the line sets, the run's status, and what each measure says of it; a run that has no results yet has the status
-    "not begun" and no measures, and one that has not got far enough for a measure has none of it.
+    """A row for each line of the list that names a deck, by its number from 1: the deck, where it is not the same in
+    all, what the line sets, the run's status, and what each measure says of it; a run that has no results yet has the
+    status "not begun" and no measures, and one that has not got far enough for a measure has none of it.
 
         scree.sweep.table("LIST", "results/study", {"force": lambda run: run.history["contacts/floor/fy"][-1]})
     """

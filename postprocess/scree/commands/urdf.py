@@ -11,9 +11,11 @@ from scree.errors import ScreeError, ScreeWarning
 
 def describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("robot", type=pathlib.Path, metavar="URDF")
-    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DECK", help="default: the name of URDF, with .toml")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DECK",
+                        help="default: the name of URDF, with .toml")
     parser.add_argument("--overwrite", action="store_true", help="a deck of this name may be there")
-    parser.add_argument("--free", action="store_true", help="nothing holds the root; default: it is fixed to the ground")
+    parser.add_argument("--free", action="store_true",
+                        help="nothing holds the root, which is otherwise fixed to the ground")
     parser.add_argument("--xyz", type=float, nargs=3, default=(0.0, 0.0, 0.0), metavar=("X", "Y", "Z"),
                         help="where the root's frame is [m]")
     parser.add_argument("--rpy", type=float, nargs=3, default=(0.0, 0.0, 0.0), metavar=("R", "P", "Y"),
@@ -25,8 +27,8 @@ def describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--package", nargs="+", default=[], action="extend", metavar="NAME=FOLDER",
                         help="what package://NAME stands for")
     parser.add_argument("--stop-stiffness", type=float, metavar="K",
-                        help="of the stops at the joints' limits [N m/rad or N/m]; default: each gives way by 0.02 rad or "
-                             "m under the effort of its limit")
+                        help="of the stops at the joints' limits [N m/rad or N/m]; default: each gives way by 0.02 rad "
+                             "or m under the effort of its limit")
 
 
 def pairs(words: Sequence[str]) -> dict[str, str]:

@@ -56,7 +56,8 @@ def geometry_of(deck: Deck, part: Part, options: Options) -> dict[str, Any]:
         table = meshes.mesh_table(geometry, pose, deck.folder, options.packages)
         if table is not None:
             names = [mesh["name"] for mesh in deck.get("meshes", [])]
-            name = next(n for n in (link.name, *(f"{link.name}_{k}" for k in range(2, len(names) + 3))) if n not in names)
+            numbered = (f"{link.name}_{k}" for k in range(2, len(names) + 3))
+            name = next(each for each in (link.name, *numbered) if each not in names)
             deck.add("meshes", name=name, **table)
             used.append({"mesh": name, "material": MATERIAL})
     return {key: tables for key, tables in (("shapes", shapes), ("meshes", used)) if tables}
@@ -146,8 +147,8 @@ def tail(deck: Deck) -> str:
 
 
 def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Deck:
-    """Of a URDF: links as bodies, joints between markers, limits as stops, damping and friction, mimics as couplers, and
-    geometry that particles touch; of what the file does not say, a space that has room for it, a time, and comments
+    """Of a URDF: links as bodies, joints between markers, limits as stops, damping and friction, mimics as couplers,
+    and geometry that particles touch; of what the file does not say, a space that has room for it, a time, and comments
     where the rest goes. Joint coordinates are those of the file.
 
     Throws ScreeError with file and line for what is wrong; warns (ScreeWarning) of what is left out.

@@ -56,7 +56,7 @@ def file_mesh(geometry: Geometry, folder: pathlib.Path, packages: Mapping[str, s
     scale = scale_of(geometry)
     trouble = ""
     if path.suffix.lower() not in FORMATS:
-        trouble = f"is no STL, OBJ or PLY, and is left out; convert it, and name the new file in {geometry.element.place}"
+        trouble = "is no STL, OBJ or PLY, and is left out; convert it, and name the new file here"
     elif scale is None:
         trouble = "is left out: a deck's mesh has one scale, above 0, along all axes"
     if trouble:
@@ -67,7 +67,8 @@ def file_mesh(geometry: Geometry, folder: pathlib.Path, packages: Mapping[str, s
     return {"kind": "file", "file": os.path.relpath(path, folder), **sized, **sheet}
 
 
-def mesh_table(geometry: Geometry, pose: Pose, folder: pathlib.Path, packages: Mapping[str, str]) -> dict[str, Any] | None:
+def mesh_table(geometry: Geometry, pose: Pose, folder: pathlib.Path,
+               packages: Mapping[str, str]) -> dict[str, Any] | None:
     """What [[meshes]] says of it, but for the name; None, with a warning, for what a deck cannot have. pose: in the
     frame of its body."""
     table: dict[str, Any] | None

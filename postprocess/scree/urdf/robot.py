@@ -89,8 +89,9 @@ def read_inertia(link: Element) -> tuple[float, np.ndarray, np.ndarray]:
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     principal = np.linalg.eigvalsh(tensor)
     if principal[0] <= 0 or principal[2] > (principal[0] + principal[1]) * (1 + 1e-6):
-        link.fail(f"inertia: principal moments {', '.join(f'{value:.6g}' for value in principal)} kg m^2 are those of no "
-                  "body; they must be above 0, and none above the sum of the two others")
+        moments = ", ".join(f"{value:.6g}" for value in principal)
+        link.fail(f"inertia: principal moments {moments} kg m^2 are those of no body; they must be above 0, and none "
+                  "above the sum of the two others")
     return mass, pose.origin, pose.rotation @ tensor @ pose.rotation.T
 
 
@@ -155,7 +156,7 @@ def read_joint(element: Element) -> Joint:
     if kind not in TYPES:
         element.fail(f'type = "{kind}": must be one of {", ".join(TYPES)}')
     dynamics, mimic = element.first("dynamics"), element.first("mimic")
-    damping, friction = ((dynamics.number("damping", 0.0), dynamics.number("friction", 0.0)) if dynamics else (0.0, 0.0))
+    damping, friction = (dynamics.number(name, 0.0) if dynamics else 0.0 for name in ("damping", "friction"))
     if damping < 0 or friction < 0:
         element.fail("dynamics: damping and friction must not be below 0")
     mimics = (mimic.text("joint"), mimic.number("multiplier", 1.0), mimic.number("offset", 0.0)) if mimic else None

@@ -1,8 +1,8 @@
 """What a deck needs and a robot's file does not say."""
 
 HEAD = """\
-# Made from a URDF. The frames of bodies are those of its links, and the coordinates of joints are its own, so that limits
-# and positions mean the same. What it does not say stands here and, as comments, at the end.
+# Made from a URDF. The frames of bodies are those of its links, and the coordinates of joints are its own, so that
+# limits and positions mean the same. What it does not say stands here and, as comments, at the end.
 title = ""
 gravity = [0.0, 0.0, -9.80665]
 
@@ -13,7 +13,7 @@ max = [0.0, 0.0, 0.0]
 leaving = "drift"
 
 [time]
-end = 1.0                           # steps are chosen by their error; with many particles see input/README.md
+end = 1.0                           # steps are chosen by their error; with many particles see input/choosing.md
 
 [output]
 snapshot_interval = 0.02
@@ -28,9 +28,9 @@ stiffness = 0.0
 """
 
 TAIL = """
-# A joint that closes a loop, between the frames of two links. The markers must meet at t = 0; scree-post urdf starts the
-# robot there with --position JOINT=VALUE. Of hinges about parallel axes the last one is a point-on-line, whose first
-# marker's z is along these axes: a fourth hinge would say again what the others say. In space a spherical joint, or others.
+# A joint that closes a loop, between the frames of two links. The markers must meet at t = 0; scree-post urdf starts
+# the robot there with --position JOINT=VALUE. Of hinges about parallel axes the last one is a point-on-line, whose
+# first marker's z is along these axes: one more hinge would say again what the others say. Others are spherical, say.
 # [[markers]]
 # name = "loop_parent"
 # body = "ground"

@@ -41,7 +41,7 @@ class Part:
 @dataclass(frozen=True)
 class Tree:
     parts: list[Part]  # the ground first
-    joints: list[tuple[Joint, Part, Pose, Part]]  # with the parent's part, the joint's frame in it, and the child's part
+    joints: list[tuple[Joint, Part, Pose, Part]]  # with the parent's part, the joint's frame in it, the child's part
     held: Part | None  # that of a root with mass, where it is fixed to the ground
     coordinates: dict[str, float]  # at t = 0, of the joints that have one [rad or m]
 
@@ -54,8 +54,8 @@ def find_root(robot: Robot) -> Link:
             if name not in robot.links:
                 joint.element.fail(f'there is no link "{name}"')
         if joint.child in above:
-            joint.element.fail(f'closes a loop: link "{joint.child}" hangs on joint "{above[joint.child].name}" already. '
-                               "A robot's file is a tree; leave the joint out and add it to the deck")
+            joint.element.fail(f'closes a loop: link "{joint.child}" hangs on joint "{above[joint.child].name}". A '
+                               "robot's file is a tree; leave the joint out and add it to the deck")
         above[joint.child] = joint
     roots = [link for name, link in robot.links.items() if name not in above]
     for name in robot.links:
@@ -100,7 +100,8 @@ def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, flo
         if joint.type in MOVING:
             found[joint.name] = start(joint, (joint.name,))
             if joint.type != "prismatic" and abs(found[joint.name]) > np.pi:
-                raise ScreeError(f"{robot.path}: joint {joint.name} starts at {found[joint.name]:.6g}: must be from -pi to pi")
+                raise ScreeError(f"{robot.path}: joint {joint.name} starts at {found[joint.name]:.6g}: must be from "
+                                 "-pi to pi")
         elif joint.mimics:
             joint.element.fail(f"a {joint.type} joint cannot mimic another one")
     return found
