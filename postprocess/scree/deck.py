@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import pathlib
 import tempfile
@@ -36,7 +37,8 @@ def place(elements: Any, part: str, path: str) -> int:
 class Deck(MutableMapping[str, Any]):
     """Keys are the paths of `--set`: deck["contact.pairs.0.friction"], deck["walls.belt.surface_velocity"]. Numbers,
     texts and truths come as Python's own; lists and tables are the deck's, so that changes in them change it. Comments
-    stay where they are. Iterating gives the names of the tables at the top.
+    stay where they are; tables of one list that stand apart are written together. Iterating gives the names of the
+    tables at the top.
 
         deck = scree.Deck(gravity=[0, 0, -9.81], space={"dimension": 3, "min": [0, 0, 0], "max": [1, 1, 1]})
         deck["time.end"] = 0.5
@@ -154,7 +156,8 @@ class Deck(MutableMapping[str, Any]):
         """Files that the deck refers to by relative paths are referred to from the new place."""
         target, written = pathlib.Path(path), self.copy()
         folder = target.resolve().parent
-        for table in (table for key in FILES for table in written.get(key, [])):
+        lists = [written[key] for key in FILES if key in written and is_list_of_tables(written[key])]
+        for table in itertools.chain(*lists):
             if folder != self.folder and not os.path.isabs(table.get("file", "/")):
                 table["file"] = os.path.relpath(self.folder / table["file"], folder)
         target.write_text(str(written), encoding="utf-8")

@@ -20,7 +20,10 @@ def is_list_of_tables(value: Any) -> bool:
 
 
 def plain(value: Any) -> Any:
-    """Numpy's numbers and arrays, tuples and paths as TOML has them. Throws ScreeError for what it has not."""
+    """Numpy's numbers and arrays, tuples, paths and what is of another deck as TOML has them, without comments. Throws
+    ScreeError for what it has not."""
+    if isinstance(value, tomlkit.items.Item):
+        return value.unwrap()
     if isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, np.ndarray | np.generic):

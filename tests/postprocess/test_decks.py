@@ -82,6 +82,21 @@ class DictionaryTest(FolderTest):
         self.assertEqual(found, ("consistent", "other", 0.1))
         self.assertEqual(again.to_dict(), deck.to_dict())
 
+    def test_tables_that_stand_apart(self):
+        deck = scree.Deck.parse("[contact]\nskin = 1.0\n[[bodies]]\nname = 'a'\n[[contact.pairs]]\nstiffness = 1.0\n"
+                                "[time]\nend = 1.0\n[[bodies]]\nname = 'b'\nmass = 2.0  # kg\n")
+        deck["contact.skin"] = 2.0
+        deck["contact.pairs.0.stiffness"] = 3.0
+        deck.add("contact.pairs", stiffness=4.0)
+        deck["bodies.a.mass"] = deck["bodies"][1]["mass"]
+        deck.add("bodies", **deck["bodies.b"])["name"] = "c"
+        bodies = [{"name": name, "mass": 2.0} for name in "abc"]
+        wanted = {"contact": {"skin": 2.0, "pairs": [{"stiffness": 3.0}, {"stiffness": 4.0}]}, "time": {"end": 1.0},
+                  "bodies": bodies}
+        self.assertEqual(deck.to_dict(), wanted)
+        self.assertEqual(scree.Deck.parse(str(deck)).to_dict(), wanted)
+        self.assertEqual(str(deck).count("kg"), 1)
+
     def test_a_copy_is_another_deck(self):
         deck = scree.Deck.read(DECK)
         other = deck.copy()

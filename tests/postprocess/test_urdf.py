@@ -29,7 +29,7 @@ from scree.urdf.robot import read
 from scree.urdf.tree import Part
 
 PROGRAM = os.environ["SCREE"]
-ROUND_OFF = 1e-9  # of positions after some thousand steps [m]
+ROUND_OFF = 1e-12  # of positions after 500 steps [m]
 
 
 def link(name, mass=1.0, center="0 0 0", rpy="0 0 0", moments=(0.01, 0.02, 0.02), more=""):

@@ -137,12 +137,12 @@ def size_of(tree: Tree, kind: str) -> float:
     return far + max([*shapes, *centers, 0.0])
 
 
-def tail(deck: Deck) -> str:
+def tail(deck: Deck, moving: list[Joint]) -> str:
     """Comments with names and measures of this deck."""
     low, high = (np.array(deck[f"space.{end}"], dtype=float) for end in ("min", "max"))
     low[2] += 0.7 * (high[2] - low[2])  # above the robot, in most cases
     return TAIL.format(body=deck["bodies"][-1]["name"] if "bodies" in deck else "LINK",
-                       joint=deck["joints"][-1]["name"] if "joints" in deck else "JOINT",
+                       joint=moving[-1].name if moving else "JOINT",
                        low=low.tolist(), high=high.tolist(), radius=float(f"{(high - low).min() / 50:.1g}"))
 
 
@@ -175,4 +175,4 @@ def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Dec
     add_couplers(deck, moving)
     deck["output.history_coordinates"] = len(moving)
     deck["output.history_bodies"] = [part.name for part in tree.parts if part.name != GROUND]
-    return Deck.parse(str(deck) + tail(deck), deck.name, deck.folder)
+    return Deck.parse(str(deck) + tail(deck, moving), deck.name, deck.folder)
