@@ -1,4 +1,4 @@
-"""Results of Scree in Python.
+"""Decks and results of Scree in Python.
 
     import scree
     run = scree.open("results/net_400")
@@ -6,14 +6,20 @@
     run.to_dataframe("energy/*")             # pandas
     run.snapshots[-1].particles["velocity"]  # [particles][3]
     run.snapshots.at(0.5).to_pyvista()       # all of an instant, for pyvista
+
+    deck = scree.Deck.read("input/paper/net_400.toml")
+    deck["time.end"] = 0.5
+    run = deck.run("results/half")
 """
 
-from scree import sweep
-from scree.errors import ScreeError
+from scree import clumps, packing, sweep, urdf
+from scree.deck import Deck
+from scree.errors import MissingError, ScreeError, ScreeWarning
 from scree.history import History
 from scree.quantity import Quantity
-from scree.run import Run
+from scree.run import Run, reader
 from scree.run import open_run as open
 from scree.snapshots import Points, Snapshot, Snapshots
 
-__all__ = ["History", "Points", "Quantity", "Run", "ScreeError", "Snapshot", "Snapshots", "open", "sweep"]
+__all__ = ["Deck", "History", "MissingError", "Points", "Quantity", "Run", "ScreeError", "ScreeWarning", "Snapshot",
+           "Snapshots", "clumps", "open", "packing", "reader", "sweep", "urdf"]

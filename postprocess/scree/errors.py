@@ -2,4 +2,14 @@
 
 
 class ScreeError(Exception):
-    """Results or words that cannot be used; the text names what, and says why."""
+    """Results, decks or words that cannot be used; the text names what, and says why."""
+
+
+class MissingError(ScreeError, KeyError):
+    """A column, a field or a key that is not there; a KeyError, too, as of any dictionary."""
+
+    __str__ = Exception.__str__  # a KeyError's is quoted
+
+
+class ScreeWarning(UserWarning):
+    """What was done otherwise than one may think."""

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from scree import files
-from scree.errors import ScreeError
+from scree.errors import MissingError, ScreeError
 from scree.quantity import Quantity
 
 if TYPE_CHECKING:
@@ -73,13 +73,14 @@ class History(Mapping[str, Quantity]):
         return len(self._labels)
 
     def __getitem__(self, name: str) -> Quantity:
-        if name not in self._labels:
-            near = [path for path in self if name.split("/")[-1] in path][:5]
-            raise KeyError(f"no column {name}" + (f"; there are {', '.join(near)}" if near else ""))
         return self.read(name)[name]
 
     def read(self, *names: str) -> dict[str, Quantity]:
-        """Columns of these names, or all, from one look into the files."""
+        """Columns of these names, or all, from one look into the files. Throws MissingError where one is not there."""
+        for name in names:
+            if name not in self._labels:
+                near = [path for path in self if name.split("/")[-1] in path][:5]
+                raise MissingError(f"no column {name}" + (f"; there are {', '.join(near)}" if near else ""))
         self._load(names or self._labels)
         return {name: Quantity(self._read[name], *self._labels[name]) for name in names or self._labels}
 

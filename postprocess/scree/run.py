@@ -19,6 +19,8 @@ from scree.snapshots import KINDS, Snapshots
 if TYPE_CHECKING:
     import pandas
 
+    from scree.times import Reader
+
 Folder = str | os.PathLike[str]
 
 
@@ -151,3 +153,11 @@ def open_run(folder: Folder, *later: Folder, earlier: bool = True) -> Run:
     if not (run.history or len(run.snapshots) or run.record or run.is_going_on):
         raise ScreeError(f"{run.folder}: holds no results of a run")
     return run
+
+
+def reader(path: Folder) -> Reader:
+    """pyvista's reader of a .vtkhdf of a run, with the times that pyvista's own does not know: time_values,
+    set_active_time_value(), read()."""
+    from scree.times import Reader
+
+    return Reader(path)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from scree.errors import ScreeError
+from scree.errors import MissingError, ScreeError
 from scree.quantity import Quantity
 from scree.series import POSITION, Series
 
@@ -39,7 +40,7 @@ class Points(Mapping[str, Quantity]):
 
     def __getitem__(self, name: str) -> Quantity:
         if name not in self:
-            raise KeyError(f"no field {name}; there are {', '.join(self)}")
+            raise MissingError(f"no field {name}; there are {', '.join(self)}")
         if name not in self._read:
             self._read[name] = self._series.quantity(self._snapshot, name)
         return self._read[name]
@@ -60,24 +61,38 @@ class Points(Mapping[str, Quantity]):
         return self._series.lines(self._snapshot)
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """A row per particle or shape, of surfaces per triangle, of contacts and links per line, with its ends as
-        "start_x", ..., "end_x", ...; a column per field, a field of several numbers as "velocity_x", ... Units by
-        column in attrs["units"]."""
+        """A row per particle or shape, of surfaces per triangle, of contacts and links per line; a column per field, a
+        field of several numbers as "velocity_x", ... x, y and z are a point's place, or that of a triangle's centre;
+        lines have their ends, as "start_x", ..., "end_x", ... Units by column in attrs["units"]."""
         import pandas
 
         of_cells = any(map(self._series.is_of_cells, self))
         columns, units = {}, {}
         fields = {name: field for name, field in self.items() if self._series.is_of_cells(name) == of_cells}
+        place = self[POSITION]
         if self._series.has_lines:
-            ends = self[POSITION]
-            fields = {name: Quantity(ends.values[k::2], ends.unit, ends.description)
+            fields = {name: Quantity(place.values[k::2], place.unit, place.description)
                       for k, name in enumerate(("start", "end"))} | fields
+        elif of_cells:
+            fields = {POSITION: Quantity(place.values[self.triangles].mean(axis=1), place.unit, place.description)} | fields
         for name, field in fields.items():
             for column, values in components(name, field.values).items():
                 columns[column], units[column] = values, field.unit
         frame = pandas.DataFrame(columns)
         frame.attrs["units"] = units
         return frame
+
+    def to_particle_file(self, path: str | os.PathLike[str], dimension: int = 3,
+                         rows: np.ndarray | slice = slice(None)) -> dict[str, Any]:
+        """A file of particles for another deck, CSV or by a name in .h5 HDF5: places and, where these are fields,
+        velocities, radii and masses. rows: those to take. Returns what [[particles]] says of the file."""
+        from scree.packing import write_columns
+
+        columns = dict(zip("xyz"[:dimension], self[POSITION].values[rows].T))
+        if "velocity" in self:
+            columns |= {f"v{axis}": values for axis, values in zip("xyz"[:dimension], self["velocity"].values[rows].T)}
+        columns |= {name: self[name].values[rows] for name in ("radius", "mass") if name in self}
+        return write_columns(path, columns)
 
     def to_pyvista(self) -> pyvista.PolyData:
         """Points as vertices or, of surfaces, triangles, of contacts and links lines, with all fields; the snapshot's

@@ -1,20 +1,27 @@
-"""Parameter studies: the list of runs for a SLURM array (jobs/array.sbatch), and one table of what they gave."""
+"""Parameter studies: the list of runs for a SLURM array (jobs/array.sbatch) or for this machine, and one table of what
+they gave."""
 
 from __future__ import annotations
 
 import itertools
 import os
 import pathlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
+from scree import program
+from scree.deck import Deck
 from scree.errors import ScreeError
+from scree.record import CHECKPOINTS, read_record
 from scree.run import Run, open_run
 
 if TYPE_CHECKING:
     import pandas
 
 Path = str | os.PathLike[str]
+OWN_OPTIONS = ("--output", "--restart", "--backend")  # of the runner, each with a word
+OF_LATER = CHECKPOINTS[:2]  # checkpoints that a run goes on from
 
 
 def word(value: Any) -> str:
@@ -29,14 +36,84 @@ def word(value: Any) -> str:
     return text
 
 
-def write_list(path: Path, deck: Path, keys: Mapping[str, Sequence[Any]]) -> int:
+def write_list(path: Path, deck: Path | Deck, keys: Mapping[str, Sequence[Any]]) -> int:
     """Writes a line "DECK --set KEY=VALUE ..." for each combination of the keys' values, the last key's changing
-    fastest; returns their number. keys: as --set names them, "contact.pairs.0.friction", with the values to try."""
+    fastest; returns their number. keys: as --set names them, "contact.pairs.0.friction", with the values to try. A deck
+    made in Python is written beside the list, under its name with .toml."""
+    file = deck
+    if isinstance(deck, Deck):
+        file = pathlib.Path(path).with_suffix(".toml")
+        deck.write(file)
     combinations = list(itertools.product(*keys.values()))
-    lines = [" ".join([word(str(deck)), *(f"--set {key}={word(value)}" for key, value in zip(keys, values))])
+    lines = [" ".join([word(str(file)), *(f"--set {key}={word(value)}" for key, value in zip(keys, values))])
              for values in combinations]
     pathlib.Path(path).write_text("".join(f"{line}\n" for line in lines))
     return len(lines)
+
+
+def write_decks(path: Path, decks: Mapping[str, Deck]) -> int:
+    """Writes each deck as NAME.toml into a folder beside the list, which has the list's name without its suffix, and a
+    line for each; returns their number. For studies that no keys can say."""
+    folder = pathlib.Path(path).with_suffix("")
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [word(str(folder / f"{name}.toml")) for name in decks]
+    for line, deck in zip(lines, decks.values()):
+        deck.write(line)
+    pathlib.Path(path).write_text("".join(f"{line}\n" for line in lines))
+    return len(lines)
+
+
+def elements(path: Path) -> Iterator[tuple[int, str]]:
+    """Numbers, from 1, and lines of the list that name a deck."""
+    for number_of_line, line in enumerate(pathlib.Path(path).read_text().splitlines(), 1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            yield number_of_line, line.strip()
+
+
+def is_done(line: str, folder: pathlib.Path) -> bool:
+    """Whether the folder has the results of this line, of the deck as it is."""
+    record = read_record(folder)
+    if record is None or record["run"]["status"] != "done":
+        return False
+    words = str(record["run"]["command_line"]).split()[2:]
+    own = {k for k, each in enumerate(words) for k in (k, k + 1) if each in OWN_OPTIONS}
+    kept = [each for k, each in enumerate(words) if k not in own and each != "--overwrite"]
+    deck = pathlib.Path(line.split()[0])
+    return kept == line.split() and (folder / "run_record.json").stat().st_mtime > deck.stat().st_mtime
+
+
+def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto",
+              scree: Path | None = None) -> dict[int, str]:
+    """Runs the lines of the list on this machine, so many at a time, each on one rank, to RESULTS/N, with its log in
+    RESULTS/N.log. As in an array what is done is left as it is, and what has a checkpoint goes on from it. Returns the
+    messages of the runs that failed, by element; the others go on."""
+    where = program.required(scree)
+    base = pathlib.Path(results)
+    base.mkdir(parents=True, exist_ok=True)
+
+    def run(element: int, line: str) -> None:
+        folder = base / str(element)
+        if is_done(line, folder):
+            return
+        checkpoints = sorted((folder / name for name in OF_LATER if (folder / name).exists()),
+                             key=lambda file: file.stat().st_mtime)
+        begun = ["--restart", checkpoints[-1]] if checkpoints else ["--overwrite"]
+        with open(base / f"{element}.log", "a") as log:
+            program.call([where, "run", *line.split(), "--output", folder, "--backend", backend, *begun], {}, log)
+
+    failed: dict[int, str] = {}
+    with ThreadPoolExecutor(at_once) as pool:
+        begun: dict[int, Future[None]] = {element: pool.submit(run, element, line) for element, line in elements(path)}
+        try:
+            for element, future in begun.items():
+                try:
+                    future.result()
+                except (ScreeError, OSError) as error:
+                    failed[element] = str(error)
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return failed
 
 
 def settings(line: str) -> dict[str, str]:
@@ -61,19 +138,20 @@ def measured(measure: Callable[[Run], Any], run: Run) -> Any:
 
 
 def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]]) -> pandas.DataFrame:
-    """A row for each line of the list that names a deck, by its number from 1: what it sets, the run's status, and what
-    each measure says of it; a run that has no results yet has the status "not begun" and no measures, and one that has
-    not got far enough for a measure has none of it.
+    """A row for each line of the list that names a deck, by its number from 1: the deck, where it is not the same in
+    all, what the line sets, the run's status, and what each measure says of it; a run that has no results yet has the
+    status "not begun" and no measures, and one that has not got far enough for a measure has none of it.
 
         scree.sweep.table("LIST", "results/study", {"force": lambda run: run.history["contacts/floor/fy"][-1]})
     """
     import pandas
 
+    lines = dict(elements(path))
+    several = len({line.split()[0] for line in lines.values()}) > 1
     rows = {}
-    for element, line in enumerate(pathlib.Path(path).read_text().splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        row: dict[str, Any] = {key: number(value) for key, value in settings(line).items()}
+    for element, line in lines.items():
+        row: dict[str, Any] = {"deck": pathlib.Path(line.split()[0]).stem} if several else {}
+        row |= {key: number(value) for key, value in settings(line).items()}
         folder = pathlib.Path(results) / str(element)
         try:
             run = open_run(folder)

@@ -55,7 +55,7 @@ class PictureTest(CommandLineTest):
 
     def test_bodies_without_shapes_are_seen(self):
         bare = self.write("bare.toml", DECK.replace("shapes = [{ radius = 0.1 }]\n", ""))
-        self.check(DONE, "start.png", self.drawer('grep -q pad "$2/history.h5"'), bare)
+        self.check(DONE, "start.png", self.drawer('grep -q pad "$2/bodies.vtkhdf"'), bare)
 
     def test_failures_are_one_message_and_leave_nothing(self):
         for code, lines, message in (

@@ -156,6 +156,13 @@ class ExportTest(CommandTest):
         np.testing.assert_array_equal(history["energy/total [J]"], run.history["energy/total"])
         self.assertEqual(list(history)[0], "time [s]")
 
+    def test_tables_of_triangles_have_their_places(self):
+        self.command(DONE, "export", DRUM, "--times", "0", "--kinds", "surfaces", "-o", self.folder)
+        table = pandas.read_csv(self.folder / "surfaces_0000.csv")
+        surfaces = scree.open(DRUM).snapshots[0].surfaces
+        corners = surfaces["position"][surfaces.triangles]
+        np.testing.assert_allclose(table[["x [m]", "y [m]", "z [m]"]], corners.mean(axis=1), atol=1e-12)
+
     def test_files_for_vtk(self):
         self.command(DONE, "export", DRUM, "--format", "vtp", "-o", self.folder)
         series = xml.etree.ElementTree.parse(self.folder / "surfaces.pvd").findall(".//DataSet")

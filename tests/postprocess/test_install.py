@@ -44,6 +44,8 @@ class InstallTest(unittest.TestCase):
             said = self.run_program([folder / "venv/bin/scree-post", "plot", NET, "-o", picture], environment)
             self.assertEqual(said.strip(), str(picture))
             self.assertTrue((site / "scree/py.typed").exists())
+            check = self.run_program([python, "-c", "import scree; print(scree.Deck(space=1).problems())"], environment)
+            self.assertIn("time: missing", check)
             packed = {path.relative_to(site) for path in (site / "scree").rglob("*.py")}
             self.assertEqual(packed, {path.relative_to(SOURCE) for path in (SOURCE / "scree").rglob("*.py")})
 
@@ -54,7 +56,13 @@ class InstallTest(unittest.TestCase):
 
     def test_the_libraries_of_the_tests_are_those_of_the_package(self):
         pinned = [line.split("==")[0] for line in (SOURCE / "requirements.txt").read_text().splitlines()]
-        self.assertEqual(sorted([*map(name_of, PROJECT["dependencies"]), "flit_core"]), pinned)  # and pip's back end
+        of_tests = ["flit_core", "mypy"]  # pip's back end, and what looks at types
+        self.assertEqual(sorted([*map(name_of, PROJECT["dependencies"]), *of_tests]), pinned)
+
+    def test_types(self):
+        with tempfile.TemporaryDirectory(prefix="scree_types_") as cache:
+            self.run_program([sys.executable, "-m", "mypy", "--cache-dir", cache, "--config-file",
+                              SOURCE / "pyproject.toml", SOURCE / "scree"], os.environ)
 
     def test_package_and_program_have_one_version(self):
         program = re.search(r"project\(scree VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]

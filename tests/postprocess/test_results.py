@@ -38,6 +38,31 @@ def run(output, *settings, words=(), cwd=None):
                    stdout=subprocess.DEVNULL)
 
 
+# As a run does it: the copy without the name gets new numbers, and then the name. An exchange takes less time than 200
+# numbers do to be read.
+WRITER = """
+import ctypes, os, sys, h5py
+path, hidden = sys.argv[1], sys.argv[1] + ".copy"
+exchange = ctypes.CDLL(None, use_errno=True).renameat2
+files = {}
+for name in (path, hidden):
+    with h5py.File(name, "w", libver="latest") as file:
+        for k in range(200):
+            file[str(k)] = 0
+handles = [os.open(name, os.O_RDWR) for name in (path, hidden)]
+with h5py.File(path, "r") as file:
+    places = [file[str(k)].id.get_offset() for k in range(200)]
+print("begins", flush=True)
+number = 0
+while True:
+    number += 1
+    for place in places:
+        os.pwrite(handles[number % 2], number.to_bytes(8, "little"), place)
+    if exchange(-100, path.encode(), -100, hidden.encode(), 2) != 0:
+        raise OSError(ctypes.get_errno())
+"""
+
+
 class FolderTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="scree_results_")
@@ -62,8 +87,11 @@ class ReadingTest(FolderTest):
         self.assertEqual((energy.unit, energy.shape, found.history.rows), ("J", (31,), 31))
         self.assertEqual(energy.description, "kinetic energy of particles and bodies")
         np.testing.assert_allclose(found.history.time, np.linspace(0, 0.03, 31), atol=1e-12)
-        with self.assertRaisesRegex(KeyError, "no column energy/kinetik"):
-            found.history["energy/kinetik"]
+        for error in (KeyError, scree.ScreeError):
+            with self.assertRaisesRegex(error, "^no column energy/kinetik"):
+                found.history["energy/kinetik"]
+            with self.assertRaisesRegex(error, "^no column energy/kinetik"):
+                found.history.read("energy/total", "energy/kinetik")
         with self.assertRaisesRegex(scree.ScreeError, r"no column energy/x\*"):
             found.history.names("energy/x*")
 
@@ -109,8 +137,9 @@ class ReadingTest(FolderTest):
         np.testing.assert_array_equal(place[kind == 1], place[kind == 0])
         with self.assertRaisesRegex(scree.ScreeError, "no surfaces.vtkhdf"):
             snapshot.surfaces
-        with self.assertRaisesRegex(KeyError, "no field mass; there are position, "):
-            snapshot.particles["mass"]
+        for error in (KeyError, scree.ScreeError):
+            with self.assertRaisesRegex(error, "^no field mass; there are position, "):
+                snapshot.particles["mass"]
         table = snapshot.particles.to_dataframe()
         np.testing.assert_array_equal(table["velocity_y"], velocity[:, 1])
         np.testing.assert_array_equal(table["x"], snapshot.particles["position"][:, 0])
@@ -131,7 +160,24 @@ class ReadingTest(FolderTest):
         self.assertEqual(ball.n_cells, 1)  # each point is a vertex
         table = snapshot.surfaces.to_dataframe()
         self.assertEqual(len(table), drum.n_cells)
-        self.assertTrue({"pressure", "shear_x", "body"} <= set(table) and "x" not in table)
+        self.assertTrue({"pressure", "shear_x", "body"} <= set(table))
+        np.testing.assert_allclose(table[["x", "y", "z"]], drum.cell_centers().points, atol=1e-12)
+        self.assertEqual(table.attrs["units"]["x"], "m")
+
+    def test_times_in_the_reader_of_pyvista(self):
+        for folder, kind in ((self.results, "particles"), (self.results, "bodies"), (DRUM, "surfaces")):
+            snapshots, reader = scree.open(folder).snapshots, scree.reader(folder / f"{kind}.vtkhdf")
+            self.assertEqual(reader.time_values, list(snapshots.times))
+            for snapshot in (snapshots[-1], snapshots[1], snapshots[0]):
+                reader.set_active_time_value(snapshot.time)
+                mesh = reader.read()
+                self.assertEqual(reader.active_time_value, snapshot.time)
+                np.testing.assert_array_equal(mesh.points, getattr(snapshot, kind)["position"])
+            reader.set_active_time_point(1)
+            self.assertEqual(reader.active_time_value, snapshots.times[1])
+        np.testing.assert_array_equal(mesh.cell_data["pressure"], snapshot.surfaces["pressure"])
+        with self.assertRaisesRegex(scree.ScreeError, "no snapshot at 7 s; the nearest is at "):
+            reader.set_active_time_value(7)
 
     def test_what_is_no_run(self):
         for folder, text in ((self.folder / "none", "no such folder"), (self.folder, "holds no results of a run")):
@@ -260,6 +306,23 @@ class GoingOnTest(FolderTest):
         with self.assertRaisesRegex(scree.ScreeError, "none.h5: no such file"):
             files.read(self.folder / "none.h5", take)
 
+    def test_a_file_that_is_written_faster_than_it_can_be_read(self):
+        """What is taken is of one instant: all of the file's numbers are the same."""
+        path = self.folder / "file.h5"
+        writer = subprocess.Popen([sys.executable, "-c", WRITER, path], stdout=subprocess.PIPE)
+        self.addCleanup(writer.stdout.close)
+        self.addCleanup(writer.wait)
+        self.addCleanup(writer.kill)
+        writer.stdout.readline()  # it goes on
+        found = []
+        for _ in range(20):
+            numbers = files.read(path, lambda file: [int(file[name][()]) for name in sorted(file)])
+            self.assertEqual(len(set(numbers)), 1)
+            found.append(numbers[0])
+        self.assertIsNone(writer.poll())
+        self.assertEqual(found, sorted(found))
+        self.assertGreater(found[-1], found[0])
+
     def test_a_lock_says_that_a_run_goes_on(self):
         run(self.folder / "out")
         here = pathlib.Path("/proc/sys/kernel/hostname").read_text().strip()
@@ -309,35 +372,6 @@ class PageTest(FolderTest):
                     self.assertIn(unit, re.split(r", | or ", units), name)
                 met.update(fitting)
         self.assertEqual(set(patterns) - met, set())
-
-
-class SweepTest(FolderTest):
-    def test_a_list_of_runs_and_their_table(self):
-        path, study = self.folder / "list", self.folder / "study"
-        deck = DECK.with_name("net_9.toml")
-        count = scree.sweep.write_list(path, deck, {"time.step": [1e-3, np.float64(5e-4)],
-                                                    "space.leaving": ["drift", "remove"]})
-        lines = path.read_text().splitlines()
-        self.assertEqual((count, len(lines)), (4, 4))
-        self.assertEqual(lines[1], f"{deck} --set time.step=0.001 --set space.leaving=remove")
-        path.write_text("# first\n" + path.read_text())  # as jobs/array.sbatch takes it
-        for element in (2, 4):
-            subprocess.run([PROGRAM, "run", *lines[element - 2].split(), "--set", "time.end=0.01", "--output",
-                            study / str(element)], check=True, timeout=LIMIT, stdout=subprocess.DEVNULL)
-        table = scree.sweep.table(path, study, {"steps": lambda run: run.history["step/steps"][-1],
-                                                "nothing": lambda run: run.history["nothing"][-1]})
-        self.assertEqual(list(table.index), [2, 3, 4, 5])
-        self.assertEqual(list(table["status"]), ["done", "not begun", "done", "not begun"])
-        self.assertEqual((table["steps"][2], table["steps"][4], table["time.step"][4]), (10, 20, 5e-4))
-        self.assertTrue(np.isnan(table["steps"][5]))
-        self.assertTrue(table["nothing"].isna().all())
-
-    def test_words_of_a_list_have_no_blanks(self):
-        self.assertEqual([scree.sweep.word(value) for value in (True, 2, [0.5, 0], "hht")],
-                         ["true", "2", "[0.5,0]", "hht"])
-        for value in ("two words", ""):
-            with self.assertRaisesRegex(scree.ScreeError, "without blanks"):
-                scree.sweep.word(value)
 
 
 class WordsTest(unittest.TestCase):

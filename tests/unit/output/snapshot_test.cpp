@@ -50,7 +50,7 @@ void write_surfaces(SnapshotWriter& writer, int end) {
 }
 
 // Contacts and links, with values that say where they belong.
-const WantedLines kLinesWanted{true, {"overlap", "kind"}, 0, "spring\npin\n"};
+const WantedLines kLinesWanted{true, {"overlap", "kind"}, 0, {"spring", "pin"}};
 
 SnapshotWriter line_writer(const ScratchDirectory& scratch, int keep,
                            const WantedLines& lines = kLinesWanted) {

@@ -1,0 +1,205 @@
+"""Decks as dictionaries: read, made, changed, written, checked and run."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import pathlib
+import tempfile
+from collections.abc import Iterator, Mapping, MutableMapping
+from subprocess import PIPE
+from typing import Any
+
+import tomlkit
+import tomlkit.exceptions
+import tomlkit.items
+
+from scree import program, schema
+from scree.errors import MissingError, ScreeError
+from scree.run import Run, open_run
+from scree.toml_items import block, inline, is_list_of_tables, of_deck, plain, unwrapped
+
+Path = str | os.PathLike[str]
+FILES = ("meshes", "particles")  # lists whose elements may have a `file`, relative to the deck's folder
+
+
+def place(elements: Any, part: str, path: str) -> int:
+    """Of the element of a list of tables that has this name or, where none has, this number."""
+    names = [table.get("name") for table in elements if isinstance(table, Mapping)]
+    if part in names:
+        return names.index(part)
+    if part.isdigit() and int(part) < len(elements):
+        return int(part)
+    raise MissingError(f"{path}: there are {len(elements)} elements, counted from 0" if part.isdigit() else
+                       f"{path}: no element is named {part}; there are {', '.join(filter(None, names)) or 'none'}")
+
+
+class Deck(MutableMapping[str, Any]):
+    """Keys are the paths of `--set`: deck["contact.pairs.0.friction"], deck["walls.belt.surface_velocity"]. Numbers,
+    texts and truths come as Python's own; lists and tables are the deck's, so that changes in them change it. Comments
+    stay where they are; tables of one list that stand apart are written together. Iterating gives the names of the
+    tables at the top.
+
+        deck = scree.Deck(gravity=[0, 0, -9.81], space={"dimension": 3, "min": [0, 0, 0], "max": [1, 1, 1]})
+        deck["time.end"] = 0.5
+        deck.add("particles", name="block", kind="random", ...)
+    """
+
+    def __init__(self, **tables: Any) -> None:
+        """Files that the deck refers to are looked for from `folder`: that of the deck's file, else the current one."""
+        self._document = tomlkit.document()
+        self.name = "deck"  # in messages
+        self.folder = pathlib.Path.cwd()
+        for key, value in tables.items():
+            self[key] = value
+
+    @classmethod
+    def read(cls, path: Path) -> Deck:
+        """Throws ScreeError where the file cannot be read or is no TOML."""
+        try:
+            text = pathlib.Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ScreeError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        return cls.parse(text, os.fspath(path), pathlib.Path(path).resolve().parent)
+
+    @classmethod
+    def parse(cls, text: str, name: str = "deck", folder: Path = ".") -> Deck:
+        """Of a text in TOML. name: for messages; folder: from which its files are looked for."""
+        deck = cls()
+        deck.name, deck.folder = name, pathlib.Path(folder).resolve()
+        try:
+            deck._document = tomlkit.parse(text)
+        except tomlkit.exceptions.TOMLKitError as error:
+            raise ScreeError(f"{name}: no TOML: {error}") from error
+        return deck
+
+    def _parent(self, path: str, make: bool) -> tuple[Any, str | int]:
+        """The table or list of tables that holds what the path leads to, and its key there. make: tables on the way
+        that are not there."""
+        parts = path.split(".")
+        holder: Any = self._document
+        for k, part in enumerate(parts):
+            if is_list_of_tables(holder) or (isinstance(holder, tomlkit.items.AoT) and not holder):
+                key: str | int = place(holder, part, path)
+            elif isinstance(holder, Mapping):
+                key = part
+            else:
+                raise MissingError(f"{path}: {'.'.join(parts[:k])} has no keys of its own")
+            if k + 1 == len(parts):
+                return holder, key
+            if isinstance(key, str) and key not in holder:
+                if not make:
+                    raise MissingError(f"{path}: {'.'.join(parts[: k + 1])} is not there")
+                holder[key] = tomlkit.table() if k == 0 else tomlkit.inline_table()
+            holder = holder[key]
+        raise AssertionError("a path has a part at least")
+
+    def __getitem__(self, path: str) -> Any:
+        holder, key = self._parent(path, make=False)
+        if isinstance(key, str) and key not in holder:
+            raise MissingError(f"{path}: is not there; there are {', '.join(holder) or 'no keys'}")
+        return unwrapped(holder[key])
+
+    def __setitem__(self, path: str, value: Any) -> None:
+        holder, key = self._parent(path, make=True)
+        value = plain(value)
+        if isinstance(key, int) and not isinstance(value, dict):
+            raise ScreeError(f"{path}: must be a table")
+        if isinstance(holder, tomlkit.items.AoT) and isinstance(key, int):
+            del holder[key]
+            holder.insert(key, block(value))
+        else:
+            within = isinstance(holder, (tomlkit.items.InlineTable, tomlkit.items.Array))
+            holder[key] = inline(value) if within else of_deck(value, path.count("."))
+
+    def __delitem__(self, path: str) -> None:
+        self[path]  # throws where it is not there
+        holder, key = self._parent(path, make=False)
+        del holder[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._document)
+
+    def __len__(self) -> int:
+        """Number of tables and keys at the top."""
+        return len(self._document)
+
+    def add(self, path: str, **table: Any) -> Any:
+        """Appends a table to a list of tables, which is made where there is none, and returns it:
+        deck.add("bodies", name="lid", mass=2.0), deck.add("bodies.lid.shapes", radius=0.1)."""
+        if path not in self:
+            self[path] = [table]
+        else:
+            elements = self[path]
+            if not isinstance(elements, list) or (elements and not is_list_of_tables(elements)):
+                raise ScreeError(f"{path}: is no list of tables")
+            new = block(plain(table)) if isinstance(elements, tomlkit.items.AoT) else inline(plain(table))
+            elements.append(new)
+        return self[path][-1]
+
+    def to_dict(self) -> dict[str, Any]:
+        """A copy as plain dictionaries and lists."""
+        found: dict[str, Any] = self._document.unwrap()
+        return found
+
+    def copy(self) -> Deck:
+        return Deck.parse(str(self), self.name, self.folder)
+
+    def __str__(self) -> str:
+        """In TOML."""
+        return tomlkit.dumps(self._document)
+
+    def __repr__(self) -> str:
+        return f"<{self.name}: {', '.join(self) or 'an empty deck'}>"
+
+    def write(self, path: Path) -> None:
+        """Files that the deck refers to by relative paths are referred to from the new place."""
+        target, written = pathlib.Path(path), self.copy()
+        folder = target.resolve().parent
+        lists = [written[key] for key in FILES if key in written and is_list_of_tables(written[key])]
+        for table in itertools.chain(*lists):
+            if folder != self.folder and not os.path.isabs(table.get("file", "/")):
+                table["file"] = os.path.relpath(self.folder / table["file"], folder)
+        target.write_text(str(written), encoding="utf-8")
+
+    def problems(self) -> list[str]:
+        """What the deck's keys and their values break of the JSON schema, a line each. What they mean together only
+        the program knows."""
+        return schema.problems(self.to_dict())
+
+    def check(self, scree: Path | None = None) -> str:
+        """Returns what `scree check` says of the deck; nothing where the program is not there. scree: the program, by
+        default $SCREE, the one on the PATH or that of this repository. Throws ScreeError with all `problems`, or with
+        the program's message."""
+        found = self.problems()
+        if found:
+            raise ScreeError("\n".join(f"{self.name}: {problem}" for problem in found))
+        where = program.find(scree)
+        if where is None:
+            return ""
+        with tempfile.TemporaryDirectory(prefix="scree_deck_") as folder:
+            path = pathlib.Path(folder).resolve() / "deck.toml"
+            self.write(path)
+            return program.call([where, "check", path], {str(path): self.name})
+
+    def run(self, directory: Path, *options: str, ranks: int = 1, backend: str = "auto", quiet: bool = False,
+            launcher: str = "mpirun", scree: Path | None = None) -> Run:
+        """Runs the deck and returns the results. It is written into their directory, as deck.toml.
+
+        options: further words of `scree run`, as "--overwrite". quiet: the program's progress is not shown. launcher:
+        what starts several ranks. Throws ScreeError with the program's message where it does not end well.
+        """
+        where = program.required(scree)
+        folder = pathlib.Path(directory)
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / "deck.toml"
+        earlier = path.read_bytes() if path.exists() else None
+        self.write(path)
+        several = [*launcher.split(), "-n", str(ranks)] if ranks > 1 else []
+        words: list[Path] = [*several, where, "run", path, "--output", folder, "--backend", backend, *options]
+        try:
+            program.call(words, {str(path): self.name}, PIPE if quiet else None)
+        except program.RefusedError:  # the folder stays as it was
+            path.unlink() if earlier is None else path.write_bytes(earlier)
+            raise
+        return open_run(folder)

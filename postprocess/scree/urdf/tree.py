@@ -1,0 +1,154 @@
+"""A robot as the bodies that a deck has of it: where its links stand, and which of them make one body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from scree.errors import ScreeError
+from scree.frames import Pose, about
+from scree.urdf.robot import MOVING, Geometry, Joint, Link, Robot
+
+GROUND = "ground"
+
+
+@dataclass
+class Part:
+    """Links that move as one, in the frame of the first one. name: of the first one with a mass, or "ground"."""
+
+    name: str
+    pose: Pose  # at t = 0
+    links: list[tuple[Link, Pose]] = field(default_factory=list)  # with their frames in that of the part
+
+    def mass_properties(self) -> tuple[float, np.ndarray, np.ndarray]:
+        """Mass [kg], centre of mass and inertia tensor about it [kg m^2], in the part's frame."""
+        heavy = [(link, pose) for link, pose in self.links if link.mass > 0]
+        masses = np.array([link.mass for link, _ in heavy])
+        centers = np.array([pose.place(link.center) for link, pose in heavy])
+        center = masses @ centers / masses.sum()
+        inertia = np.zeros((3, 3))
+        for (link, pose), offset in zip(heavy, centers - center):
+            inertia += pose.rotation @ link.inertia @ pose.rotation.T
+            inertia += link.mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+        return float(masses.sum()), center, inertia
+
+    def geometry(self, kind: str) -> list[tuple[Link, Geometry, Pose]]:
+        return [(link, each, pose @ each.pose) for link, pose in self.links for each in link.geometry.get(kind, [])]
+
+
+@dataclass(frozen=True)
+class Tree:
+    parts: list[Part]  # the ground first
+    joints: list[tuple[Joint, Part, Pose, Part]]  # with the parent's part, the joint's frame in it, the child's part
+    held: Part | None  # that of a root with mass, where it is fixed to the ground
+    coordinates: dict[str, float]  # at t = 0, of the joints that have one [rad or m]
+
+
+def find_root(robot: Robot) -> Link:
+    """Throws ScreeError where links and joints are no tree."""
+    above: dict[str, Joint] = {}
+    for joint in robot.joints.values():
+        for name in (joint.parent, joint.child):
+            if name not in robot.links:
+                joint.element.fail(f'there is no link "{name}"')
+        if joint.child in above:
+            joint.element.fail(f'closes a loop: link "{joint.child}" hangs on joint "{above[joint.child].name}". A '
+                               "robot's file is a tree; leave the joint out and add it to the deck")
+        above[joint.child] = joint
+    roots = [link for name, link in robot.links.items() if name not in above]
+    for name in robot.links:
+        seen = [name]
+        while seen[-1] in above:
+            seen.append(above[seen[-1]].parent)
+            if seen[-1] == name:
+                raise ScreeError(f"{robot.path}: links hang on each other in a circle: {' <- '.join(seen)}")
+            if seen.count(seen[-1]) > 1:
+                break  # a circle further up, which has its own turn
+    if len(roots) != 1:
+        names = ", ".join(f'"{link.name}"' for link in roots)
+        raise ScreeError(f"{robot.path}: {f'several links hang on no joint: {names}' if roots else 'has no links'}; "
+                         "there must be one")
+    return roots[0]
+
+
+def start_coordinates(robot: Robot, given: Mapping[str, float]) -> dict[str, float]:
+    """Of the joints that have one: as given or 0, and what mimics another joint follows it."""
+    for name in given:
+        if name not in robot.joints or robot.joints[name].type not in MOVING:
+            raise ScreeError(f"{robot.path}: no joint {name} with a coordinate; there are: "
+                             f"{', '.join(j.name for j in robot.joints.values() if j.type in MOVING) or 'none'}")
+        if robot.joints[name].mimics:
+            raise ScreeError(f"{robot.path}: joint {name} follows another one, and starts where that says")
+    found: dict[str, float] = {}
+
+    def start(joint: Joint, followers: tuple[str, ...]) -> float:
+        if joint.mimics is None:
+            return given.get(joint.name, 0.0)
+        name, multiple, added = joint.mimics
+        other = robot.joints.get(name)
+        if other is None or other.type not in MOVING:
+            joint.element.fail(f'mimics "{name}", which is no joint with a coordinate')
+        if name in followers:
+            joint.element.fail("mimics itself")
+        if multiple == 0:
+            joint.element.fail("mimics another joint 0 times; make it fixed")
+        return multiple * start(other, (*followers, name)) + added
+
+    for joint in robot.joints.values():
+        if joint.type in MOVING:
+            found[joint.name] = start(joint, (joint.name,))
+            if joint.type != "prismatic" and abs(found[joint.name]) > np.pi:
+                raise ScreeError(f"{robot.path}: joint {joint.name} starts at {found[joint.name]:.6g}: must be from "
+                                 "-pi to pi")
+        elif joint.mimics:
+            joint.element.fail(f"a {joint.type} joint cannot mimic another one")
+    return found
+
+
+def moved(joint: Joint, coordinate: float) -> Pose:
+    """Of the child's frame in the joint's."""
+    if joint.type == "prismatic":
+        return Pose.at(coordinate * joint.axis)
+    return Pose.at(rotation=about(joint.axis, coordinate))
+
+
+def plant(robot: Robot, base: Pose, free: bool, given: Mapping[str, float]) -> Tree:
+    """base: of the root link's frame. free: the root is held by nothing; else a root with mass is fixed to the ground,
+    and one without is part of it. Links without mass become parts of those to which they are fixed."""
+    root, coordinates = find_root(robot), start_coordinates(robot, given)
+    ground = Part(GROUND, Pose.at())
+    parts, joints = [ground], []
+    where: dict[str, tuple[Part, Pose]] = {}  # of each link its part, and its frame there
+
+    def settle(link: Link, part: Part, pose: Pose) -> None:
+        if part.name == "" and link.mass > 0:
+            part.name = link.name
+        part.links.append((link, pose))
+        where[link.name] = part, pose
+
+    def new(link: Link, pose: Pose) -> None:
+        parts.append(Part("", pose))
+        settle(link, parts[-1], Pose.at())
+
+    if root.mass > 0 or free:
+        new(root, base)
+    else:
+        settle(root, ground, base)
+    waiting = [root.name]
+    while waiting:
+        above = waiting.pop(0)
+        for joint in (each for each in robot.joints.values() if each.parent == above):
+            child, (part, pose) = robot.links[joint.child], where[above]
+            frame = pose @ joint.pose
+            if joint.type == "fixed" and (child.mass == 0 or part.name == ""):
+                settle(child, part, frame)
+            else:
+                new(child, part.pose @ frame @ moved(joint, coordinates.get(joint.name, 0.0)))
+                joints.append((joint, part, frame, parts[-1]))
+            waiting.append(child.name)
+    for part in parts:
+        if part.name == "":
+            part.links[0][0].element.fail("moves, but neither it nor a link that is fixed to it has a mass")
+    return Tree(parts, joints, parts[1] if root.mass > 0 and not free else None, coordinates)
