@@ -94,7 +94,7 @@ def pictures(run: Run, look: Look) -> str:
     drawn = DrawnRun(run)
     numbers = sorted({0, len(run.snapshots) - 1})
     look.fit(drawn, numbers)
-    picture = make_picture(drawn, numbers, look)
+    picture = make_picture(drawn, numbers, look, fine=True)
     picture.draw(numbers[-1])
     last = image(picture.figure, f"the run at t = {run.snapshots[-1].time:g} s")
     return f"<h2>The last state</h2>{last}"
