@@ -23,8 +23,8 @@ def run(words: argparse.Namespace) -> int:
 
     Writes RESULT_DIR/final.png, RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg) and RESULT_DIR/history.png.
     Particles are drawn to scale and coloured by their speed, bodies in orange, with walls, joints, springs and, where
-    springs have actuators, cylinders: discs in 2D, lit spheres in 3D. One looks through drums, pipes and meshes from files, and
-    sees their sharp edges.
+    springs have actuators, cylinders: discs in 2D, lit spheres in 3D. One looks through drums, pipes and meshes from
+    files.
     Bodies without shapes are seen where output.history_bodies names them.
     """
     opened = open_run(words.folder)

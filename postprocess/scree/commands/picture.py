@@ -13,7 +13,8 @@ from scree.run import open_run
 
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
-    parser.add_argument("--time", type=float, metavar="TIME", help="of the snapshot [s], the nearest; default: the last")
+    parser.add_argument("--time", type=float, metavar="TIME",
+                        help="of the snapshot [s], the nearest; default: the last")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="a .png, .jpg, .pdf or .svg; default RESULT_DIR/picture.png")
     add_look(parser)

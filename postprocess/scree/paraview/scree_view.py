@@ -32,9 +32,10 @@ FORCES = "d9d9d9 f6c37c ee8a3a cc3d26 7a0c1e"
 PRESSURES = "f3b27a e66100 b52b10 5c0a14"  # of meshes: from the colour of bodies on
 BODY, INK, PALE, FLOOR = (0.90, 0.38, 0.0), (0.15, 0.15, 0.15), (0.6, 0.6, 0.6), (0.85, 0.85, 0.85)
 SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
-UNITS = {"velocity": "m/s", "force": "N", "pressure": "Pa", "shear": "Pa", "normal_force": "N", "radius": "m",
-         "mass": "kg", "angular_velocity": "rad/s", "impact_work": "J", "sliding_work": "J", "wear_depth": "m"}
-NAMES = {"velocity": "speed", "angular_velocity": "angular speed"}  # of vectors' lengths
+UNITS = {"velocity": "m/s", "angular_velocity": "rad/s", "force": "N", "reaction": "N", "normal_force": "N",
+         "pressure": "Pa", "shear": "Pa", "radius": "m", "mass": "kg", "impact_work": "J", "sliding_work": "J",
+         "wear_depth": "m"}
+NAMES = {"velocity": "speed", "angular_velocity": "angular speed", "reaction": "force in joints and links"}
 
 
 class Trouble(Exception):
@@ -120,8 +121,9 @@ def letters(view, share):
     return max(12, round(view.ViewSize[1] / share))
 
 
-def color_by(display, view, association, field, limit, colors, place):
+def color_by(display, view, field, limit, colors, place):
     """Colours what is shown by a field, on a scale from 0 to limit that stands at one of the picture's places."""
+    association = "POINTS" if information(display.Input, "POINTS", field) else "CELLS"
     vector = information(display.Input, association, field).GetNumberOfComponents() > 1
     simple.ColorBy(display, (association, field, "Magnitude") if vector else (association, field))
     function = simple.GetColorTransferFunction(field)
@@ -158,7 +160,7 @@ class Scene:
 
     def color(self, display, kind, association, field, colors):
         limit = largest(self.sources[kind], association, field, times_of(self.sources[kind]))
-        color_by(display, self.view, association, field, limit, colors, self.bars)
+        color_by(display, self.view, field, limit, colors, self.bars)
         self.bars += 1
 
     def show_balls(self, kind):
@@ -187,7 +189,7 @@ class Scene:
         display = self.show_balls("particles")
         self.color(display, "particles", "POINTS", field, SPEEDS)
         if "contacts" in self.sources:
-            display.Opacity = 0.15
+            display.Opacity = 0.3
 
     def show_bodies(self):
         paint(self.show_balls("bodies"), BODY)
@@ -215,16 +217,16 @@ class Scene:
         display = simple.Show(source, self.view)
         display.SetRepresentationType("Surface")
         display.LineWidth, display.RenderLinesAsTubes = 6.0, 1
-        if information(source, "CELLS", "force"):
-            self.color(display, "links", "CELLS", "force", FORCES)
+        if information(source, "CELLS", "reaction"):  # whose length knows no push and pull
+            self.color(display, "links", "CELLS", "reaction", FORCES)
 
     def show_contacts(self):
         """Tubes that are the thicker the larger the force, up to ten times."""
         source = self.sources["contacts"]
         if information(source, "CELLS", "normal_force") is None:
             return
-        of_points = simple.CellDatatoPointData(Input=source)
-        of_points.PassCellData = 1
+        lines = simple.ExtractSurface(registrationName="lines of contacts", Input=source)
+        of_points = simple.CellDatatoPointData(registrationName="forces at their ends", Input=lines)
         tubes = simple.Tube(registrationName="contact forces", Input=of_points)
         tubes.Scalars, tubes.VaryRadius = ["POINTS", "normal_force"], "By Scalar"
         tubes.RadiusFactor, tubes.Radius = 10.0, 1e-3 * float(np.ptp(self.bounds(), axis=0).max())

@@ -185,7 +185,8 @@ def animation_writer(format: str, frames_per_second: int) -> matplotlib.animatio
     if not has_ffmpeg():
         raise ScreeError("an mp4 needs the program ffmpeg; make a gif instead")
     # Players want even numbers of pixels and this pixel format.
-    options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "18", "-movflags", "+faststart"]
+    options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "18", "-movflags",
+               "+faststart"]
     return matplotlib.animation.FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=options)
 
 
