@@ -25,7 +25,7 @@ GLYPHS = 20000  # particles up to which each is a sphere of triangles; more are 
 SAMPLES = 5  # times that are looked at for the colour scales
 ROOM = 0.84  # share of the picture for what is shown
 STRAYS = 1  # percentage of the particles, at each end of each axis, that need not be in the picture
-GLASS = 0.35  # opacity of meshes
+HOLLOW, GLASS = ("drum", "pipe", "file"), 0.35  # kinds of meshes that may hold particles; opacity where there are such
 AZIMUTH, ELEVATION = 30, 26  # of the eye in space [degrees]
 SPEEDS = "ead9ae a9cdb0 45a3b3 2364a8 1b2560"  # of particles, from rest on; each step is darker
 FORCES = "d9d9d9 f6c37c ee8a3a cc3d26 7a0c1e"
@@ -35,7 +35,7 @@ SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 UNITS = {"velocity": "m/s", "angular_velocity": "rad/s", "force": "N", "reaction": "N", "normal_force": "N",
          "pressure": "Pa", "shear": "Pa", "radius": "m", "mass": "kg", "impact_work": "J", "sliding_work": "J",
          "wear_depth": "m"}
-NAMES = {"velocity": "speed", "angular_velocity": "angular speed", "reaction": "force in joints and links"}
+NAMES = {"velocity": "speed", "angular_velocity": "angular speed", "reaction": "link force"}
 
 
 class Trouble(Exception):
@@ -43,23 +43,22 @@ class Trouble(Exception):
 
 
 def resolved_deck(folder):
-    """Of the deck's first lines and its table [space], {key: value}; empty while the run has written no record."""
-    path = os.path.join(folder, "run_record.json")
+    """Of the deck's first lines and its table [space], {key: value}, and whether a mesh may hold particles ("hollow");
+    empty while the run has written no record."""
+    path, found, table = os.path.join(folder, "run_record.json"), {}, ""
     if not os.path.exists(path):
         return {}
-    with open(path) as file:
-        text = json.load(file)["run"]["resolved_deck"]
-    found, table = {}, ""
-    for line in text.splitlines():
+    for line in json.load(open(path, encoding="utf-8"))["run"]["resolved_deck"].splitlines():
         if line.startswith("["):
             table = line.strip("[] ")
         pair = re.fullmatch(r"(\w+) *= *(.*)", line)
         if pair and table in ("", "space"):
-            value = pair[2].strip()
             try:
-                found[pair[1]] = json.loads(value.replace("'", '"'))
-            except ValueError:
-                found[pair[1]] = value
+                found[pair[1]] = json.loads(pair[2])
+            except ValueError:  # a text that TOML writes in another way
+                found[pair[1]] = pair[2].strip("'")
+        if pair and table == "meshes" and pair[1] == "kind":
+            found["hollow"] = found.get("hollow", False) or json.loads(pair[2]) in HOLLOW
     return found
 
 
@@ -103,11 +102,9 @@ def largest(source, association, field, times):
     found = 0.0
     for time in sorted({times[round(k * (len(times) - 1) / (SAMPLES - 1))] for k in range(SAMPLES)}):
         source.UpdatePipeline(time)
-        if information(source, association, field) is None:
-            continue
         data = servermanager.Fetch(source)
-        data = data.GetPointData() if association == "POINTS" else data.GetCellData()
-        values = vtk_to_numpy(data.GetArray(field))
+        array = (data.GetPointData() if association == "POINTS" else data.GetCellData()).GetArray(field)
+        values = vtk_to_numpy(array) if array else np.empty(0)
         sizes = np.linalg.norm(values, axis=1) if values.ndim > 1 else values
         found = max([found, *np.percentile(sizes[sizes > 0], [99])]) if (sizes > 0).any() else found
     if found <= 0:
@@ -195,11 +192,11 @@ class Scene:
         paint(self.show_balls("bodies"), BODY)
 
     def show_surfaces(self):
-        """Like glass, so that a drum shows what it holds, with their sharp edges."""
+        """With their sharp edges; like glass where there are drums or the like, so that these show what they hold."""
         source = self.sources["surfaces"]
         display = simple.Show(source, self.view)
         display.SetRepresentationType("Surface")
-        display.Opacity, display.Ambient, display.Diffuse = GLASS, 0.3, 0.7
+        display.Opacity, display.Ambient, display.Diffuse = GLASS if self.deck.get("hollow", True) else 1.0, 0.3, 0.7
         if information(source, "CELLS", "pressure"):
             self.color(display, "surfaces", "CELLS", "pressure", PRESSURES)
         else:

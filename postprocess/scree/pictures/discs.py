@@ -10,8 +10,8 @@ from scree.pictures.palette import BODY_COLOR, EDGE_COLOR, PALE_INK
 from scree.pictures.walls import solids
 from scree.series import POSITION
 
-SHINE = 0.1  # opacity of the brighter discs on a particle, which together make it look round
-SHINES = ((0.72, 0.12), (0.52, 0.2), (0.32, 0.26))  # their radius and distance from its middle, over its radius
+SHINE = 0.14  # opacity of the brighter discs on a particle, which together make it look round
+SHINES = ((0.65, 0.15), (0.35, 0.25))  # their radius and distance from its middle, over its radius
 SHINE_AT = np.array([-0.65, 0.76])
 MOST_SHINY = 5000  # particles, up to which each has an edge and shines
 

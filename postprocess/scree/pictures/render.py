@@ -20,6 +20,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
+from PIL import Image
 
 from scree.errors import ScreeError
 from scree.pictures.discs import DiscScene
@@ -174,7 +175,12 @@ def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look, fine: bo
 
 def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
     picture.draw(snapshot)
-    picture.figure.savefig(path)
+    if path.suffix == ".png":  # smaller than with the transparency that matplotlib gives it
+        picture.figure.canvas.draw()
+        pixels = np.asarray(picture.figure.canvas.buffer_rgba())[..., :3]
+        Image.fromarray(np.ascontiguousarray(pixels)).save(path, optimize=True)
+    else:
+        picture.figure.savefig(path)
     plt.close(picture.figure)
 
 

@@ -16,7 +16,7 @@ if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         "VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"
     )  # else it looks for a display and warns
 
-LIGHTS = ((-0.6, 0.9, 1.0, 0.8), (0.9, 0.2, 0.8, 0.25), (0.0, 0.3, 1.0, 0.12))  # right, up, to the eye; how strong
+LIGHTS = ((-0.6, 0.9, 1.0, 0.8), (0.9, 0.2, 0.8, 0.25), (0.0, 0.2, 1.0, 0.22))  # right, up, to the eye; how strong
 SUN = np.array([-0.35, 1.0, 0.25])  # where what throws a shadow on the ground is: right, up, to the eye
 SHADOW, SOFTNESS = 0.42, 0.02  # how dark shadows are; how wide their edge, over the shadows' picture
 OCCLUSION, SAMPLES = 0.035, 48  # reach of the darkness between close things, over the scene; where it is looked for
@@ -200,8 +200,8 @@ class SphereRenderer:
                 actor.ForceTranslucentOn()
             opacity = 1
         actor.GetProperty().LightingOn()
-        actor.GetProperty().SetAmbient(0.3)  # what is turned from the light is not black
-        actor.GetProperty().SetDiffuse(0.75)
+        actor.GetProperty().SetAmbient(0.35)  # what is turned from the light is not black
+        actor.GetProperty().SetDiffuse(0.8)
         actor.GetProperty().SetOpacity(opacity)
 
     def _cast_shadows(self):
