@@ -1,5 +1,5 @@
 #!/usr/bin/env pvbatch
-"""What postprocess/scree/paraview/scree_view.py shows of a run in the plane and of one with meshes in space.
+"""What postprocess/scree/paraview/view.py shows of a run in the plane and of one with meshes in space.
 
     xvfb-run -a pvbatch tests/readers/test_paraview.py NET_400 DRUM_LIFTERS
 
@@ -20,7 +20,7 @@ from paraview.vtk.util.numpy_support import vtk_to_numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "postprocess/scree/paraview"))
 
-import scree_view
+import view as shown_view
 
 SIZE = [800, 600]
 
@@ -51,7 +51,7 @@ def shown(folder, **chosen):
     simple.ResetSession()
     view = simple.CreateView("RenderView")
     view.ViewSize = SIZE
-    scene = scree_view.show(str(folder), **chosen)
+    scene = shown_view.show(str(folder), **chosen)
     path = folder / "paraview_view.png"
     simple.SaveScreenshot(str(path), view, ImageResolution=SIZE)
     return scene, pixels(path)
@@ -89,9 +89,9 @@ def check_drum(folder):
     drawn = (image.min(axis=2) < 250).mean()
     require(0.15 < drawn < 0.7, f"{folder}: a share of {drawn} of the picture is drawn")
     try:
-        scree_view.show(str(folder), field="colour")
+        shown_view.show(str(folder), field="colour")
         require(False, f"{folder}: takes a field that is not there")
-    except scree_view.Trouble as trouble:
+    except shown_view.Trouble as trouble:
         require("no field colour; there are " in str(trouble), trouble)
 
 

@@ -7,7 +7,7 @@ from scree.cli import add_folder
 from scree.errors import ScreeError
 from scree.run import open_run
 
-SCRIPT = pathlib.Path(__file__).parents[1] / "paraview" / "scree_view.py"
+SCRIPT = pathlib.Path(__file__).parents[1] / "paraview" / "view.py"
 LINE = "FOLDER = None"
 
 

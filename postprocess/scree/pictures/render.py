@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import pathlib
 import subprocess
 import sys
@@ -176,9 +177,9 @@ def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look, fine: bo
 def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
     picture.draw(snapshot)
     if path.suffix == ".png":  # smaller than with the transparency that matplotlib gives it
-        picture.figure.canvas.draw()
-        pixels = np.asarray(picture.figure.canvas.buffer_rgba())[..., :3]
-        Image.fromarray(np.ascontiguousarray(pixels)).save(path, optimize=True)
+        drawn = io.BytesIO()
+        picture.figure.savefig(drawn, format="png")
+        Image.open(drawn).convert("RGB").save(path, optimize=True)
     else:
         picture.figure.savefig(path)
     plt.close(picture.figure)

@@ -1,8 +1,8 @@
 """Shows the results of a run in ParaView: particles and bodies as lit spheres of true size, meshes with the pressure on
 them, joints and force elements coloured by force, contacts as tubes, the space, time and title.
 
-    pvbatch scree_view.py RESULT_DIR -o picture.png [--time T] [--color FIELD] [--size WIDTH HEIGHT]
-    paraview --script=view.py                       # made by scree-post paraview RESULT_DIR; File > Load State, too
+    pvbatch view.py RESULT_DIR -o picture.png [--time T] [--color FIELD] [--size WIDTH HEIGHT]
+    paraview --script=RESULT_DIR/view.py            # made by scree-post paraview RESULT_DIR; File > Load State, too
 
 As a macro it shows the results that the active source was opened from. ParaView 5.11 or newer; in those before 5.13 the
 .xdmf files are read, later the .vtkhdf files. Needs nothing but ParaView's own Python.
@@ -370,7 +370,7 @@ def folder_at_hand():
 
 
 def from_words():
-    parser = argparse.ArgumentParser(prog="scree_view.py")
+    parser = argparse.ArgumentParser(prog="view.py")
     parser.add_argument("folder", nargs="?", metavar="RESULT_DIR")
     parser.add_argument("-o", "--output", metavar="FILE", help="a picture to save: .png, .jpg, .tif")
     parser.add_argument("--time", type=float, metavar="T", help="of the snapshot [s]; default: the last one")
