@@ -279,7 +279,8 @@ class Scene:
             box = np.array(source.GetDataInformation().GetBounds())
             if kind == "particles" and source.GetDataInformation().GetNumberOfPoints() > 0:
                 points = vtk_to_numpy(servermanager.Fetch(source).GetPoints().GetData())
-                box = np.percentile(points, [STRAYS, 100 - STRAYS], axis=0).T.reshape(-1)
+                reach = information(source, "POINTS", "radius").GetRange(0)[1] * np.array([[-1], [1]])
+                box = (np.percentile(points, [STRAYS, 100 - STRAYS], axis=0) + reach).T.reshape(-1)
             inside = (np.maximum(box[::2], space[0]), np.minimum(box[1::2], space[1]))
             least, most = inside if kind in ("particles", "contacts") else (box[::2], box[1::2])
             if (most >= least).all():
