@@ -154,18 +154,6 @@ class PictureTest(unittest.TestCase):
         np.testing.assert_array_equal(Model(deck(gravity=[9.8, 0, 0], space=space)).up, [-1, 0, 0])
         np.testing.assert_array_equal(Model(deck(gravity=[0, 0, 0], space=space)).up, [0, 0, 1])
 
-    @unittest.skipUnless(vtk_renders(), "VTK cannot render here")
-    def test_a_sphere_throws_its_shadow_on_the_ground(self):
-        from scree.pictures.spheres import SphereRenderer
-        up = np.array([0.0, 0.0, 1.0])
-        renderer = SphereRenderer((200, 200), np.zeros(3), picture_axes(up), 2.0, 2.0)
-        renderer.add_ground(up, -0.5)
-        image = renderer.image(np.zeros((1, 3)), np.full(1, 0.5), np.array([[1.0, 1.0, 1.0]]))
-        light = image.min(axis=2)
-        below, sides = light[125:140, 90:130].min(), np.concatenate([light[:10], light[-10:]])
-        self.assertTrue(100 < below < 225, below)
-        self.assertEqual(sides.min(), 255)
-
     def test_the_box_is_the_space(self):
         run = drawn(BOX)
         scene = SphereScene(run, [len(run.particles) - 1], use_vtk=False)
@@ -212,12 +200,6 @@ class SurfaceTest(unittest.TestCase):
             self.assertGreater((np.abs(self.image(run) - plain).max(axis=2) > 0.1).mean(), 0.1)
         with self.assertRaises(ScreeError):
             run.surfaces.color_by("speed", snapshots)
-
-    def test_one_looks_through_what_may_hold_particles(self):
-        expected = {DRUM: ({True}, set()), EXCAVATOR: ({False}, set()), SCREW: ({False}, {False, True})}
-        for results, sides in expected.items():
-            glass = drawn(results).surfaces.glass
-            self.assertEqual((set(glass["bodies"]), set(glass["walls"])), sides)
 
     def test_an_opaque_drum_hides_what_it_holds(self):
         run = drawn(DRUM)
