@@ -31,7 +31,6 @@ SPEEDS = "ead9ae a9cdb0 45a3b3 2364a8 1b2560"  # of particles, from rest on; eac
 FORCES = "d9d9d9 f6c37c ee8a3a cc3d26 7a0c1e"
 PRESSURES = "f3b27a e66100 b52b10 5c0a14"  # of meshes: from the colour of bodies on
 BODY, INK, PALE, FLOOR = (0.90, 0.38, 0.0), (0.15, 0.15, 0.15), (0.6, 0.6, 0.6), (0.85, 0.85, 0.85)
-SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 UNITS = {"velocity": "m/s", "angular_velocity": "rad/s", "force": "N", "reaction": "N", "normal_force": "N",
          "pressure": "Pa", "shear": "Pa", "radius": "m", "mass": "kg", "impact_work": "J", "sliding_work": "J",
          "wear_depth": "m"}
@@ -68,17 +67,12 @@ def reads_vtkhdf():
     return (program.GetVersionMajor(), program.GetVersionMinor()) >= (5, 13)
 
 
-def has_snapshots(path):
-    """Of an .xdmf: one without any cannot be read."""
-    return "<Time" in open(path).read(4096)
-
-
 def open_series(folder, name):
     """The source of one kind of snapshots; None where the run has none."""
     data, text = (os.path.join(folder, name + suffix) for suffix in (".vtkhdf", ".xdmf"))
     if reads_vtkhdf() and os.path.exists(data):
         source = simple.OpenDataFile(data)
-    elif os.path.exists(text) and has_snapshots(text):
+    elif os.path.exists(text) and "<Time" in open(text).read(4096):  # one without snapshots cannot be read
         source = simple.Xdmf3ReaderS(FileName=[text])
     else:
         return None
@@ -88,7 +82,7 @@ def open_series(folder, name):
 
 
 def times_of(source):
-    return [float(time) for time in np.atleast_1d(source.TimestepValues)]
+    return np.atleast_1d(source.TimestepValues).tolist()
 
 
 def information(source, association, field):
@@ -120,8 +114,9 @@ def letters(view, share):
 
 def color_by(display, view, field, limit, colors, place):
     """Colours what is shown by a field, on a scale from 0 to limit that stands at one of the picture's places."""
-    association = "POINTS" if information(display.Input, "POINTS", field) else "CELLS"
-    vector = information(display.Input, association, field).GetNumberOfComponents() > 1
+    association = "CELLS" if information(display.Input, "CELLS", field) else "POINTS"
+    array = information(display.Input, association, field)  # none where there are no points at this time
+    vector = array is not None and array.GetNumberOfComponents() > 1
     simple.ColorBy(display, (association, field, "Magnitude") if vector else (association, field))
     function = simple.GetColorTransferFunction(field)
     steps = [[int(color[k : k + 2], 16) / 255 for k in (0, 2, 4)] for color in colors.split()]
@@ -180,6 +175,8 @@ class Scene:
 
     def show_particles(self, field):
         source = self.sources["particles"]
+        if not source.GetDataInformation().GetNumberOfPoints():
+            return
         if information(source, "POINTS", field) is None:
             raise Trouble(f"{self.folder}: particles have no field {field}; there are "
                           f"{', '.join(sorted(source.PointData.keys()))}")
@@ -205,8 +202,8 @@ class Scene:
         edges = simple.FeatureEdges(registrationName="edges of surfaces", Input=triangles)
         edges.FeatureAngle = 30
         lines = simple.Show(edges, self.view)
-        paint(lines, INK)
         lines.LineWidth = 1.5
+        paint(lines, INK)
 
     def show_links(self):
         """Joints and force elements."""
@@ -250,7 +247,7 @@ class Scene:
         self.show_box("space", low, high, PALE, "Outline")
         up = self.up()
         axis = int(np.argmax(np.abs(up)))
-        if not self.planar and self.deck.get(SIDES[2 * axis + (up[axis] < 0)]) == "wall":
+        if not self.planar and self.deck.get("xyz"[axis] + ("_max" if up[axis] < 0 else "_min")) == "wall":
             level = high if up[axis] < 0 else low
             ends = [np.where(np.arange(3) == axis, level, corner) for corner in (low, high)]
             self.show_box("floor", *ends, FLOOR, "Surface")
@@ -323,7 +320,10 @@ class Scene:
     def show(self, field):
         """Everything. field: that colours the particles."""
         for source in self.sources.values():
-            source.UpdatePipeline(times_of(source)[-1])
+            for time in reversed(times_of(source)):  # to the last one that shows which fields there are
+                source.UpdatePipeline(time)
+                if source.GetDataInformation().GetNumberOfPoints() > 0:
+                    break
         if "particles" in self.sources:
             self.show_particles(field)
         for kind in ("bodies", "surfaces", "links", "contacts"):
