@@ -6,7 +6,7 @@
 #
 # --pictures installs what postprocess/draw needs and no more. --package installs what the program and packages of it need
 # (jobs/packaging/README.md) and no more: nothing for tests or pictures, and no .venv.
-# --paraview adds Debian's ParaView, for the reader test that opens the .xdmf files in it.
+# --paraview adds Debian's ParaView, for the tests that open results in it.
 # --slurm adds SLURM, for the test that starts one on this machine and submits the sbatch files to it. Its services are
 # not configured and do not run by themselves.
 # --ccache adds ccache; with CMAKE_CXX_COMPILER_LAUNCHER=ccache in the environment builds keep what they have compiled.

@@ -3,7 +3,7 @@
 #
 #     tests/run.sh [--paraview] [--slurm] [CTEST OPTIONS]
 #
-# --paraview adds the test that opens the results in Debian's ParaView, and installs that. --slurm installs SLURM; the
+# --paraview adds the tests that open results in Debian's ParaView, and installs that. --slurm installs SLURM; the
 # test of the sbatch files is skipped without it. CTEST OPTIONS select tests, for instance -L unit or -R verification.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

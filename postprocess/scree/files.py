@@ -82,6 +82,8 @@ def read(path: pathlib.Path, what: Callable[[h5py.File], Found]) -> Found:
 
 def text(value: object) -> str:
     """Of an attribute or a dataset of text."""
+    if isinstance(value, h5py.Empty):
+        return ""
     return value.decode() if isinstance(value, bytes) else str(value)
 
 

@@ -24,6 +24,7 @@ from scree.history import TIME, History
 
 # Okabe and Ito's palette, told apart by the colour-blind; lines beyond eight repeat it dashed.
 COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"]
+PREFIXED = ("N", "N m", "J", "W", "m", "m/s", "s", "Pa")  # units that take prefixes
 WIDTH = 11  # of a figure [inch]
 LEGEND = 34  # characters of a legend's line
 
@@ -132,11 +133,19 @@ def energy_panels(history: History) -> list[Panel]:
     return found
 
 
+def wants_prefix(lines: Sequence[Line], unit: str) -> bool:
+    """Whether ticks read better as kN or mm than with a power of ten."""
+    largest = max((np.nanmax(np.abs(line.values), initial=0.0) for line in lines), default=0.0)
+    return unit in PREFIXED and largest > 0 and not 0.01 <= largest < 10000
+
+
 def column_panels(history: History, names: Sequence[str]) -> list[Panel]:
     """A panel for each group and unit."""
     found = []
     for title, axis, legends in panels(history, names):
-        found.append(Panel(title, axis, [Line(history[name].values, label) for name, label in legends.items()]))
+        lines = [Line(history[name].values, label) for name, label in legends.items()]
+        unit = history[next(iter(legends))].unit
+        found.append(Panel(title, axis, lines, unit=unit if wants_prefix(lines, unit) else ""))
     return found
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import html
 import io
+import re
+from fnmatch import fnmatch
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -19,12 +21,14 @@ STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #202020; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
 h1 { margin-bottom: 0 } h2 { margin-top: 2.5rem; border-bottom: 1px solid #dddddd }
 table { border-collapse: collapse } td, th { padding: 0.15rem 1.5rem 0.15rem 0; text-align: left; vertical-align: top }
-th { font-weight: normal; color: #606060 } img { max-width: 100% }
+th { font-weight: normal; color: #606060; white-space: nowrap } img { max-width: 100% }
 pre { background: #f6f6f6; padding: 1rem; overflow: auto }
-.status { color: #606060 } .warning { background: #fff3d6; padding: 0.3rem 1rem; margin: 0.4rem 0 }
+a { color: #0072b2; text-decoration: none } nav a { margin-right: 1.2rem } .status { color: #606060 }
+.warning { background: #fff3d6; padding: 0.3rem 1rem; margin: 0.4rem 0 }
 .bar { background: #0072b2; height: 0.8rem; min-width: 1px }
 """
 FEWEST_STAGES = 0.005  # share of the time from which on a stage has a row
+MECHANISM = ("efforts/*/effort", "contacts/*/f[xyz]")  # columns that say what acted on bodies and in joints
 STEPS = ("step/contacts", "step/length")  # columns that say how the run went
 
 
@@ -37,6 +41,17 @@ def image(figure: Figure, text: str) -> str:
     figure.savefig(data, format="png")
     plt.close(figure)
     return f'<img alt="{escaped(text)}" src="data:image/png;base64,{base64.b64encode(data.getvalue()).decode()}">'
+
+
+def heading(title: str) -> str:
+    """Of a section, to which links() leads."""
+    return f'<h2 id="{title.lower().replace(" ", "-")}">{title}</h2>'
+
+
+def links(body: str) -> str:
+    """To all sections of the page."""
+    found = re.findall(r'<h2 id="([^"]+)">([^<]+)</h2>', body)
+    return "<nav>" + "".join(f'<a href="#{place}">{title}</a>' for place, title in found) + "</nav>"
 
 
 def table(rows: list[tuple[str, str]]) -> str:
@@ -85,7 +100,7 @@ def stages(record: dict[str, Any]) -> str:
             name, seconds = escaped(stage["stage"].replace("_", " ")), duration(float(stage["seconds"]))
             rows += f"<tr><th>{name}</th><td>{seconds}</td><td>{100 * share:.1f} %</td><td style=\"width: 20rem\">" \
                     f'<div class="bar" style="width: {100 * share:.1f}%"></div></td></tr>'
-    return f"<h2>Where the time went</h2><table>{rows}</table>"
+    return f"{heading('Where the time went')}<table>{rows}</table>"
 
 
 def pictures(run: Run, look: Look) -> str:
@@ -94,19 +109,23 @@ def pictures(run: Run, look: Look) -> str:
     drawn = DrawnRun(run)
     numbers = sorted({0, len(run.snapshots) - 1})
     look.fit(drawn, numbers)
-    picture = make_picture(drawn, numbers, look)
+    picture = make_picture(drawn, numbers, look, fine=True)
     picture.draw(numbers[-1])
     last = image(picture.figure, f"the run at t = {run.snapshots[-1].time:g} s")
-    return f"<h2>The last state</h2>{last}"
+    return heading("The last state") + last
 
 
 def plots(run: Run) -> str:
     found = ""
     if energy_panels(run.history):
-        found += "<h2>Energy</h2>" + image(history_figure(run.history, ""), "energies over time")
+        found += heading("Energy") + image(history_figure(run.history, ""), "energies over time")
+    acting = [name for name in run.history if any(fnmatch(name, pattern) for pattern in MECHANISM)]
+    if acting:
+        found += heading("Efforts and contact forces") + image(history_figure(run.history, "", acting, energies=False),
+                                                               "efforts and contact forces over time")
     steps = [name for name in STEPS if name in run.history]
     if steps and column_panels(run.history, steps):
-        found += "<h2>Contacts and steps</h2>" + image(history_figure(run.history, "", steps, energies=False),
+        found += heading("Contacts and steps") + image(history_figure(run.history, "", steps, energies=False),
                                                        "contacts and length of the steps over time")
     return found
 
@@ -121,7 +140,7 @@ def deck(run: Run) -> str:
     """As the run resolved it, while there is a record."""
     if run.record is None:
         return ""
-    return "<h2>Deck</h2><details><summary>with every default</summary>" \
+    return f"{heading('Deck')}<details><summary>with every default</summary>" \
            f"<pre>{escaped(run.record['run']['resolved_deck'])}</pre></details>"
 
 
@@ -133,6 +152,7 @@ def page(run: Run, look: Look) -> str:
     summary = table(facts(run.record)) if run.record else ""
     history = plots(run) if run.history.rows else ""
     timing = stages(run.record) if run.record else ""
-    body = head + warnings(run) + summary + pictures(run, look) + history + timing + deck(run)
+    sections = pictures(run, look) + history + timing + deck(run)
+    body = head + links(sections) + warnings(run) + summary + sections
     return f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escaped(run.title)}</title>' \
            f"<style>{STYLE}</style></head><body>{body}</body></html>\n"

@@ -5,6 +5,7 @@
 takes the folders of their results. Needs postprocess/requirements.txt. What pictures show is tested by
 tests/readers/test_draw.py."""
 
+import ast
 import contextlib
 import html.parser
 import io
@@ -199,22 +200,56 @@ class FilmTest(CommandTest):
                             (("--rate", "-1"), "not above 0"),
                             (("--surfaces", "pressure"), "surfaces are coloured in")):
             self.assertIn(text, self.command(WRONG, "animate", NET, *words))
-        self.assertIn("a view is for runs in the plane",
+        self.assertIn("a view and axes are for runs in the plane",
                       self.command(WRONG, "animate", DRUM, "--view", 0, 1, 0, 1))
 
 
+class PictureTest(CommandTest):
+    def test_the_nearest_snapshot(self):
+        path = self.folder / "picture.png"
+        self.assertEqual(self.command(DONE, "picture", NET, "--time", "0.12", "-o", path).strip(), str(path))
+        last, axes = self.folder / "last.png", self.folder / "axes.png"
+        self.command(DONE, "picture", NET, "-o", last)
+        self.command(DONE, "picture", NET, "-o", axes, "--axes")
+        self.assertEqual(len({each.read_bytes() for each in (path, last, axes)}), 3)
+        again = self.folder / "again.png"
+        self.command(DONE, "picture", NET, "--time", "0.1", "-o", again)
+        self.assertEqual(again.read_bytes(), path.read_bytes())
+
+    def test_what_is_refused(self):
+        self.assertIn("xyz", self.command(WRONG, "picture", NET, "-o", self.folder / "picture.xyz"))
+        self.assertIn("for runs in the plane", self.command(WRONG, "picture", DRUM, "--axes"))
+
+
+class ParaviewTest(CommandTest):
+    def test_a_file_that_names_its_folder(self):
+        """What it shows is tested by tests/readers/test_paraview.py."""
+        path = self.folder / "with space's" / "view.py"
+        path.parent.mkdir()
+        self.assertEqual(self.command(DONE, "paraview", NET, "-o", path).strip(), str(path))
+        tree = ast.parse(path.read_text())
+        names = {node.targets[0].id: node.value for node in tree.body if isinstance(node, ast.Assign)
+                 and isinstance(node.targets[0], ast.Name)}
+        self.assertEqual(ast.literal_eval(names["FOLDER"]), str(NET))
+        self.assertIn("must end in .py", self.command(WRONG, "paraview", NET, "-o", self.folder / "view.pvsm"))
+
+
 class Page(html.parser.HTMLParser):
-    """The texts, the pictures, and what is open at the end."""
+    """The texts, pictures and links, where these lead, and what is open at the end."""
 
     def __init__(self, text):
         super().__init__()
-        self.texts, self.pictures, self.open = [], [], []
+        self.texts, self.pictures, self.links, self.places, self.open = [], [], [], [], []
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
         if tag == "img":
             self.pictures.append(dict(attributes)["src"])
-        elif tag != "meta":
+        self.links += [value for name, value in attributes if name == "href"]
+        self.places += [value for name, value in attributes if name == "id"]
+        if tag == "img":
+            return
+        if tag != "meta":
             self.open.append(tag)
 
     def handle_endtag(self, tag):
@@ -229,14 +264,16 @@ class ReportTest(CommandTest):
         path = self.folder / "report.html"
         self.command(DONE, "report", NET, "-o", path)
         page = Page(path.read_text())
-        self.assertEqual((page.open, len(page.pictures)), ([], 3))
+        self.assertEqual((page.open, len(page.pictures)), ([], 4))
         self.assertTrue(all(picture.startswith("data:image/png;base64,iVBOR") for picture in page.pictures))
         text = "\n".join(page.texts)
         record = scree.open(NET).record
         for part in ("5.3 net and 400 particles", "400 particles, 20 bodies", record["run"]["state_hash"],
                      'name = "net"', "contact force", "particle-steps per second"):
             self.assertIn(part, text)
-        self.assertIsNone(re.search(r"(?:src|href)=\"(?!data:)", path.read_text()))
+        self.assertIsNone(re.search(r"(?:src|href)=\"(?!data:|#)", path.read_text()))
+        self.assertEqual(page.links, [f"#{place}" for place in page.places])
+        self.assertIn("Efforts and contact forces", text)
 
     def test_warnings_and_words_that_html_would_take(self):
         other = self.copy_of_the_net()

@@ -21,10 +21,13 @@ sys.path.insert(0, str(ROOT / "postprocess"))
 
 import scree
 from scree.errors import ScreeError
+from scree.pictures.discs import DiscScene
+from scree.pictures.framing import picture_axes
 from scree.pictures.mechanism import SHORT, Mechanism, barrels, shortest_tree, zigzags
 from scree.pictures.model import GROUND, Model
+from scree.pictures.palette import BODY_COLOR
 from scree.pictures.render import DrawnRun, Look, make_picture, save_picture, vtk_renders
-from scree.pictures.scenes import BODY_COLOR, WALL_OPACITY, DiscScene, SphereScene, picture_axes
+from scree.pictures.space import SphereScene
 from scree.pictures.surfaces import sharp_edges
 from scree.pictures.walls import cut, rectangle, section, solids
 
@@ -136,7 +139,8 @@ class PictureTest(unittest.TestCase):
             self.assertEqual(picture.bar is not None, particles)
             self.assertEqual(len(picture.figure.axes), 1 + particles)
             self.assertEqual("particle" in picture.caption(0), particles)
-        self.assertTrue(picture.caption(0).endswith("t = 0 s, 3 bodies (orange)"))
+        self.assertEqual(picture.caption(0), "t = 0 s, 3 bodies (orange)")
+        self.assertEqual(picture.title.get_text(), "slider-crank")
 
     def test_gravity_points_down(self):
         for up in np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0], [0.6, 0, -0.8]], dtype=float):
@@ -171,7 +175,7 @@ class SurfaceTest(unittest.TestCase):
     def test_a_drum_shows_what_it_holds(self):
         """Against the same picture without the drum, and without the grains."""
         run = drawn(DRUM)
-        run.surfaces = None
+        run.surfaces.triangles = {}
         bare = self.image(run)
         run = drawn(DRUM)
         full = self.image(run)
@@ -216,7 +220,7 @@ class SurfaceTest(unittest.TestCase):
         self.assertEqual(make_picture(run, [0], look(run, fastest=0.3)).scene.colors.norm.vmax, 0.3)
 
     @staticmethod
-    def image(run, opacity=WALL_OPACITY):
+    def image(run, opacity=None):
         with tempfile.TemporaryDirectory() as folder:
             path, last = pathlib.Path(folder) / "picture.png", len(run.particles) - 1
             save_picture(make_picture(run, [last], look(run, opacity=opacity, with_vtk=vtk_renders())), last, path)

@@ -23,7 +23,8 @@ def run(words: argparse.Namespace) -> int:
 
     Writes RESULT_DIR/final.png, RESULT_DIR/animation.mp4 (.gif where there is no ffmpeg) and RESULT_DIR/history.png.
     Particles are drawn to scale and coloured by their speed, bodies in orange, with walls, joints, springs and, where
-    springs have actuators, cylinders: discs in 2D, lit spheres in 3D. Meshes are see-through, with their sharp edges.
+    springs have actuators, cylinders: discs in 2D, lit spheres in 3D. One looks through drums, pipes and meshes from
+    files.
     """
     opened = open_run(words.folder)
     if words.list:
@@ -43,7 +44,7 @@ def run(words: argparse.Namespace) -> int:
     last = len(drawn.particles) - 1
     frames = chosen_frames(len(drawn.particles), 1 if words.no_animation else words.frames)
     look.fit(drawn, [*frames, last])
-    save_picture(make_picture(drawn, [last], look), last, words.folder / "final.png")
+    save_picture(make_picture(drawn, [last], look, fine=True), last, words.folder / "final.png")
     print(words.folder / "final.png", flush=True)
     if len(frames) > 1:
         path = words.folder / ("animation.mp4" if has_ffmpeg() else "animation.gif")

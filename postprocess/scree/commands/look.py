@@ -33,12 +33,13 @@ def count(text: str) -> int:
 def add_look(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--view", type=float, nargs=4, metavar=("XMIN", "XMAX", "YMIN", "YMAX"),
                         help="part of the plane to show, 2D only [m]; default: all but stray particles")
+    parser.add_argument("--axes", action="store_true", help="coordinates in place of a scale bar, 2D only")
     parser.add_argument("--surfaces", metavar="FIELD",
                         help="colour meshes by one of the run's output.surface_fields, such as wear_depth; 3D only, "
                              "with VTK")
     parser.add_argument("--opacity", type=share, metavar="SHARE",
-                        help="of meshes on bodies, 3D with VTK only: from 0 to 1, where nothing shows through "
-                             "(default 0.18)")
+                        help="of meshes on bodies, 3D with VTK only: from 0 to 1, where nothing shows through; "
+                             "default: 0.1 of drums, pipes and meshes from files, else 1")
     parser.add_argument("--fastest", type=positive, metavar="SPEED",
                         help="upper end of the colour scale [m/s]; default: of the fastest particles in the pictures")
     parser.add_argument("--no-vtk", action="store_true", help="draw spheres without VTK, as shaded discs")
@@ -51,7 +52,5 @@ def add_frames(parser: argparse.ArgumentParser) -> None:
 def chosen_look(words: argparse.Namespace) -> Look:
     from scree.pictures.render import Look
 
-    look = Look(view=words.view, fastest=words.fastest, surfaces=words.surfaces, with_vtk=not words.no_vtk)
-    if words.opacity is not None:
-        look.opacity = words.opacity
-    return look
+    return Look(view=words.view, axes=words.axes, opacity=words.opacity, fastest=words.fastest,
+                surfaces=words.surfaces, with_vtk=not words.no_vtk)

@@ -14,7 +14,7 @@ from scree.run import open_run
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     parser.add_argument("--time", type=float, metavar="TIME",
-                        help="of the snapshot [s]: the nearest; default: the last")
+                        help="of the snapshot [s], the nearest; default: the last")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="a .png, .jpg, .pdf or .svg; default RESULT_DIR/picture.png")
     add_look(parser)
@@ -33,7 +33,7 @@ def run(words: argparse.Namespace) -> int:
     path = words.output or words.folder / "picture.png"
     look.fit(drawn, [snapshot])
     try:
-        save_picture(make_picture(drawn, [snapshot], look), snapshot, path)
+        save_picture(make_picture(drawn, [snapshot], look, fine=True), snapshot, path)
     except ValueError as error:  # of a suffix that it does not know
         raise ScreeError(f"{path}: {error}") from error
     print(path)

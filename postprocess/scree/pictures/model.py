@@ -12,6 +12,7 @@ JOINT_KINDS = ("revolute", "translational", "fixed", "distance", "spherical", "u
                "cylindrical", "screw", "planar", "point-on-line", "point-on-plane")
 SLIDES = ("translational", "cylindrical", "screw", "point-on-line")  # along an axis
 SPRING_TABLES = {"spring_dampers": "spring", "torsional_spring_dampers": "torsional"}
+HOLLOW = ("drum", "pipe", "file")  # meshes that may hold particles
 UNDRIVEN = (None, 0, {"kind": "constant", "value": 0})  # actuators of springs that are no more than springs
 
 
@@ -130,10 +131,20 @@ class Model:
         self.boundaries = {side: space[side] for side in SIDES[: 4 if self.planar else 6]}
         planes = [wall for wall in deck.get("walls", []) if "mesh" not in wall]
         self.walls = [(in_space(wall["point"]), in_space(wall["normal"])) for wall in planes]
+        self.holding = self._holding(deck)
         densities = {material["name"]: material.get("density") for material in deck.get("materials", [])}
         self._read_bodies(deck.get("bodies", []), densities)
         self._markers = {marker["name"]: marker for marker in deck.get("markers", [])}
         self._read_connections(deck)
+
+    @staticmethod
+    def _holding(deck):
+        """Of each mesh on bodies and walls, as results count them, whether it may hold particles."""
+        kinds = {mesh["name"]: mesh["kind"] for mesh in deck.get("meshes", [])}
+        names = [use["mesh"] for body in deck.get("bodies", []) for _ in range(body.get("count", 1))
+                 for use in body.get("meshes", [])]
+        names += [wall["mesh"] for wall in deck.get("walls", []) if "mesh" in wall]
+        return [kinds[name] in HOLLOW for name in names]
 
     def _read_bodies(self, tables, densities):
         self.names, self.offsets, self.rows, self.centers_of_mass = [], [], {}, []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import pathlib
 import subprocess
 import sys
@@ -15,16 +16,23 @@ matplotlib.use("Agg")
 import matplotlib.animation
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import MaxNLocator
+from PIL import Image
 
 from scree.errors import ScreeError
+from scree.pictures.discs import DiscScene
 from scree.pictures.model import Model, Motion
-from scree.pictures.scenes import WALL_OPACITY, DiscScene, SphereScene
+from scree.pictures.palette import INK, PALE_INK, SPEED_MAP
+from scree.pictures.space import SphereScene
 from scree.pictures.surfaces import Surfaces
 from scree.quantity import Quantity
 from scree.run import Run
 from scree.series import POSITION, Series
 
-COLOR_MAP = "viridis"  # ordered in lightness, safe for the colour-blind
 FRAMES_PER_SECOND = 25
 
 
@@ -46,14 +54,14 @@ class DrawnRun:
     """What pictures show of a run."""
 
     def __init__(self, run: Run) -> None:
-        self.model = Model(run.deck)
+        self.title, self.model = run.title, Model(run.deck)
         particles = run.series("particles")
         if particles is None:
             raise ScreeError(f"{run.folder}: holds no snapshots")
         self.particles = particles
         self.bodies = run.series("bodies")
         surfaces = run.series("surfaces")
-        self.surfaces = Surfaces(surfaces) if surfaces else None
+        self.surfaces = Surfaces(surfaces, self.model.holding) if surfaces else None
         bare = any(len(offsets) == 0 for offsets in self.model.offsets)
         self.history: Mapping[str, Quantity] = run.history if bare else {}
 
@@ -94,19 +102,27 @@ class Picture:
     def __init__(self, scene: DiscScene | SphereScene, run: DrawnRun, snapshots: Sequence[int], fastest: float) -> None:
         self.scene, self.run = scene, run
         width, height = scene.size()
-        self.figure, axes = plt.subplots(figsize=(width + 1.6, height + 1.1), dpi=120, layout="constrained")
-        scene.set_up(axes, COLOR_MAP, fastest)
+        layout = ConstrainedLayoutEngine(w_pad=0.15, h_pad=0.2)
+        self.figure, axes = plt.subplots(figsize=(width + 1.6, height + 1.3), dpi=120, layout=layout)
+        scene.set_up(axes, SPEED_MAP, fastest)
         self.bar = None
         if any(len(run.particles.rows(snapshot, "radius")) for snapshot in snapshots):
-            self.bar = self.figure.colorbar(scene.colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
-            self.bar.set_label("particle speed [m/s]", fontsize=13)
-            self.bar.ax.tick_params(labelsize=11)
+            self.bar = self.add_bar(axes, scene.colors, "particle speed [m/s]")
         if isinstance(scene, SphereScene) and run.surfaces and run.surfaces.field:
-            bar = self.figure.colorbar(scene.surface_colors, ax=axes, extend="max", shrink=0.85, pad=0.02)
-            bar.set_label(run.surfaces.label(), fontsize=13)
-            bar.ax.tick_params(labelsize=11)
-        self.title = axes.set_title(" ", fontsize=14, loc="left")
-        axes.tick_params(labelsize=11)
+            self.add_bar(axes, scene.surface_colors, run.surfaces.label())
+        self.title, self.subtitle = (
+            axes.annotate(text, (0, 1), (0, height), xycoords="axes fraction", textcoords="offset points",
+                          fontsize=size, color=color)
+            for text, height, size, color in ((run.title, 28, 16, INK), (" ", 9, 12, PALE_INK)))
+
+    def add_bar(self, axes: Axes, colors: ScalarMappable, label: str) -> Colorbar:
+        bar = self.figure.colorbar(colors, ax=axes, extend="max", shrink=0.5, aspect=25, pad=0.02)
+        bar.set_label(label, fontsize=12, color=INK)
+        bar.ax.tick_params(labelsize=11, color=PALE_INK, labelcolor=INK)
+        bar.locator = MaxNLocator(5)
+        bar.outline.set_visible(False)
+        bar.update_ticks()
+        return bar
 
     def caption(self, snapshot: int) -> str:
         parts = [f"t = {self.run.particles.times[snapshot]:.4g} s"]
@@ -115,11 +131,11 @@ class Picture:
             parts.append(counted(len(self.run.particles.rows(snapshot, "radius")), "particle", "particles"))
         if bodies:
             parts.append(counted(bodies, "body", "bodies") + " (orange)")
-        return f"{self.run.model.title}\n{', '.join(parts)}"
+        return ", ".join(parts)
 
     def draw(self, snapshot: int) -> None:
         self.scene.draw(snapshot)
-        self.title.set_text(self.caption(snapshot))
+        self.subtitle.set_text(self.caption(snapshot))
         if self.figure.get_layout_engine() is not None:
             self.figure.canvas.draw()
             self.figure.set_layout_engine("none")  # laid out once, so that frames are quick and nothing jumps
@@ -134,15 +150,16 @@ class Look:
     """What a user may choose of pictures."""
 
     view: Sequence[float] | None = None  # part of the plane, of runs in it [m]
-    opacity: float = WALL_OPACITY  # of meshes on bodies
+    axes: bool = False  # with coordinates, of runs in the plane, in place of a scale bar
+    opacity: float | None = None  # of meshes on bodies; None: solid ones are opaque, those that hold particles are not
     fastest: float | None = None  # upper end of the colour scale [m/s]
     surfaces: str | None = None  # field by which meshes are coloured
     with_vtk: bool = True  # spheres are drawn by VTK, where it can
 
     def fit(self, drawn: DrawnRun, snapshots: Iterable[int]) -> None:
         """Makes ready for pictures of this run at these snapshots. Throws ScreeError where it cannot look like this."""
-        if self.view and not drawn.model.planar:
-            raise ScreeError("a view is for runs in the plane")
+        if (self.view or self.axes) and not drawn.model.planar:
+            raise ScreeError("a view and axes are for runs in the plane")
         self.with_vtk = self.with_vtk and not drawn.model.planar and vtk_renders()
         if self.surfaces:
             if not self.with_vtk or not drawn.surfaces:
@@ -150,16 +167,21 @@ class Look:
             drawn.surfaces.color_by(self.surfaces, snapshots)
 
 
-def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look) -> Picture:
-    """A picture that fits all of these snapshots. look: fitted."""
-    scene = (DiscScene(drawn, snapshots, look.view) if drawn.model.planar else
-             SphereScene(drawn, snapshots, look.with_vtk, look.opacity))
+def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look, fine: bool = False) -> Picture:
+    """A picture that fits all of these snapshots. look: fitted; fine: smoother than a frame of a film need be."""
+    scene = (DiscScene(drawn, snapshots, look.view, look.axes) if drawn.model.planar else
+             SphereScene(drawn, snapshots, look.with_vtk, look.opacity, fine))
     return Picture(scene, drawn, snapshots, look.fastest or speed_limit(drawn.particles, snapshots))
 
 
 def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
     picture.draw(snapshot)
-    picture.figure.savefig(path)
+    if path.suffix == ".png":  # smaller than with the transparency that matplotlib gives it
+        drawn = io.BytesIO()
+        picture.figure.savefig(drawn, format="png")
+        Image.open(drawn).convert("RGB").save(path, optimize=True)
+    else:
+        picture.figure.savefig(path)
     plt.close(picture.figure)
 
 
@@ -170,7 +192,8 @@ def animation_writer(format: str, frames_per_second: int) -> matplotlib.animatio
     if not has_ffmpeg():
         raise ScreeError("an mp4 needs the program ffmpeg; make a gif instead")
     # Players want even numbers of pixels and this pixel format.
-    options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "20"]
+    options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "18", "-movflags",
+               "+faststart"]
     return matplotlib.animation.FFMpegWriter(fps=frames_per_second, codec="libx264", extra_args=options)
 
 

@@ -1,4 +1,4 @@
-"""Lit spheres through VTK, rendered off screen.
+"""Lit spheres and meshes on a ground, through VTK, rendered off screen.
 
 Run as a program, it tells by its exit code whether VTK can do so here.
 """
@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import vtk
+from PIL import Image, ImageFilter
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 if sys.platform == "linux" and not os.environ.get("DISPLAY"):
@@ -15,54 +16,89 @@ if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         "VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow"
     )  # else it looks for a display and warns
 
+LIGHTS = ((-0.6, 0.9, 1.0, 0.8), (0.9, 0.2, 0.8, 0.25), (0.0, 0.2, 1.0, 0.22))  # right, up, to the eye; how strong
+SUN = np.array([-0.35, 1.0, 0.25])  # where what throws a shadow on the ground is: right, up, to the eye
+SHADOW, SOFTNESS = 0.42, 0.02  # how dark shadows are; how wide their edge, over the shadows' picture
+OCCLUSION, SAMPLES = 0.035, 48  # reach of the darkness between close things, over the scene; where it is looked for
+SHARP = 30  # edges at which faces turn by more are no round ones [degrees]
+
 
 def polylines(lines):
     """VTK's form of lines [n][points][3]."""
     count, length = lines.shape[:2]
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(lines.reshape(-1, 3)), deep=True))
-    cells = vtk.vtkCellArray()
-    for i in range(count):
-        cells.InsertNextCell(length, range(i * length, (i + 1) * length))
     data = vtk.vtkPolyData()
     data.SetPoints(points)
-    data.SetLines(cells)
+    data.SetLines(cells(np.arange(count * length).reshape(count, length)))
     return data
+
+
+def cells(corners):
+    """VTK's form of the cells [n][k] of points."""
+    found = vtk.vtkCellArray()
+    offsets = np.arange(0, corners.size + 1, max(corners.shape[1], 1), dtype=np.int64)
+    found.SetData(*(numpy_to_vtk(values, deep=True) for values in (offsets, corners.reshape(-1).astype(np.int64))))
+    return found
 
 
 class SphereRenderer:
     def __init__(self, pixels, center, axes_of_picture, half_height, extent):
         """pixels: width, height; axes_of_picture: right, up, towards the eye; extent: of the scene [m]."""
+        self._center, self._axes, self._extent = center, axes_of_picture, extent
+        self._renderer = renderer = vtk.vtkRenderer()
+        renderer.SetBackground(1, 1, 1)
+        self._add_spheres()
+        self._lines, self._triangles, self._without_shadow = {}, {}, []
+        self._ground = None
+        self._aim(half_height)
+        self._light()
+        self._window = vtk.vtkRenderWindow()
+        self._window.SetOffScreenRendering(1)
+        self._window.SetMultiSamples(0)
+        self._window.SetSize(int(pixels[0]), int(pixels[1]))
+        self._window.AddRenderer(renderer)
+
+    def _add_spheres(self):
+        """Each is a point, which the graphics card makes a sphere."""
         self._data = vtk.vtkPolyData()
-        ball = vtk.vtkSphereSource()
-        ball.SetRadius(1.0)
-        ball.SetThetaResolution(20)
-        ball.SetPhiResolution(14)
-        mapper = vtk.vtkGlyph3DMapper()
+        mapper = vtk.vtkOpenGLSphereMapper()
         mapper.SetInputData(self._data)
-        mapper.SetSourceConnection(ball.GetOutputPort())
-        mapper.SetScaleModeToScaleByMagnitude()
         mapper.SetScaleArray("radius")
         mapper.SelectColorArray("color")
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SetColorModeToDirectScalars()
         actor = vtk.vtkActor()
         actor.SetMapper(mapper)
-        actor.GetProperty().SetAmbient(0.25)
-        actor.GetProperty().SetDiffuse(0.75)
-        actor.GetProperty().SetSpecular(0.15)
+        actor.GetProperty().SetAmbient(0.22)
+        actor.GetProperty().SetDiffuse(0.85)
+        actor.GetProperty().SetSpecular(0.12)
         actor.GetProperty().SetSpecularPower(30)
+        self._renderer.AddActor(actor)
 
-        self._renderer = renderer = vtk.vtkRenderer()
-        renderer.SetBackground(1, 1, 1)
-        renderer.AddActor(actor)
-        self._lines, self._triangles = {}, {}
-        self._aim(renderer, center, axes_of_picture, half_height, extent)
-        self._window = vtk.vtkRenderWindow()
-        self._window.SetOffScreenRendering(1)
-        self._window.SetMultiSamples(0)
-        self._window.SetSize(int(pixels[0]), int(pixels[1]))
-        self._window.AddRenderer(renderer)
+    def _aim(self, half_height):
+        camera = self._camera = self._renderer.GetActiveCamera()
+        camera.ParallelProjectionOn()
+        camera.SetParallelScale(half_height)
+        camera.SetFocalPoint(*self._center)
+        camera.SetPosition(*(self._center + 5 * self._extent * self._axes[2]))
+        camera.SetViewUp(*self._axes[1])
+        camera.SetClippingRange(self._extent, 9 * self._extent)
+
+    def _light(self):
+        renderer = self._renderer
+        renderer.AutomaticLightCreationOff()
+        for *place, strength in LIGHTS:
+            light = vtk.vtkLight()
+            light.SetLightTypeToCameraLight()
+            light.SetPosition(*place)
+            light.SetIntensity(strength)
+            renderer.AddLight(light)
+        renderer.SetUseSSAO(True)
+        renderer.SetSSAORadius(OCCLUSION * self._extent)
+        renderer.SetSSAOBias(0.005 * self._extent)
+        renderer.SetSSAOKernelSize(SAMPLES)
+        renderer.SetSSAOBlur(True)
 
     def _add(self, source, color):
         """An actor without light, of what a VTK algorithm or data set gives."""
@@ -82,7 +118,9 @@ class SphereRenderer:
     def add_box(self, low, high):
         source = vtk.vtkOutlineSource()
         source.SetBounds(low[0], high[0], low[1], high[1], low[2], high[2])
-        self._add(source, (0.6, 0.6, 0.6))
+        actor = self._add(source, (0.72, 0.72, 0.72))
+        actor.GetProperty().SetOpacity(0.8)
+        self._without_shadow.append(actor)
 
     def add_face(self, polygon, color, opacity):
         """A plane polygon [n][3]."""
@@ -90,6 +128,37 @@ class SphereRenderer:
         data.SetPolys(data.GetLines())
         data.SetLines(None)
         self._add(data, color).GetProperty().SetOpacity(opacity)
+
+    def add_ground(self, up, height):
+        """A plane on which nothing is seen but shadows. height: along the unit vector up [m]."""
+        right, top, _ = self._sun_axes(up)
+        self._reach = 1.5 * self._extent  # half width of the shadows' picture [m]
+        middle = self._center + (height - self._center @ up) * up
+        sides = np.array([right - (right @ up) * up, top - (top @ up) * up])
+        sides /= np.linalg.norm(sides, axis=1)[:, None]
+        signs = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        corners = middle + self._reach * signs @ sides
+        data = polylines(corners[None])
+        data.SetPolys(data.GetLines())
+        data.SetLines(None)
+        places = 0.5 + (corners - middle) @ np.array([right, top]).T / (2 * self._reach)
+        data.GetPointData().SetTCoords(numpy_to_vtk(np.ascontiguousarray(places), deep=True))
+        self._ground = self._add(data, (1, 1, 1))
+        self._ground.ForceTranslucentOn()
+        self._texture = vtk.vtkTexture()
+        self._texture.InterpolateOn()
+        self._texture.RepeatOff()
+        self._ground.SetTexture(self._texture)
+        self._middle, self._up = middle, up
+        self._without_shadow.append(self._ground)
+
+    def _sun_axes(self, up):
+        """Right and top of the shadows' picture, and where it is seen from."""
+        sun = SUN[0] * self._axes[0] + SUN[1] * up + SUN[2] * np.cross(self._axes[0], up)
+        sun /= np.linalg.norm(sun)
+        right = np.cross(self._axes[1], sun)
+        right /= np.linalg.norm(right)
+        return np.array([right, np.cross(sun, right), sun])
 
     def set_lines(self, style, lines, color, radius):
         """Lines [n][points][3] as tubes, in place of those of the same style."""
@@ -100,10 +169,12 @@ class SphereRenderer:
         tube = vtk.vtkTubeFilter()
         tube.SetInputData(polylines(lines))
         tube.SetRadius(radius)
-        tube.SetNumberOfSides(10)
+        tube.SetNumberOfSides(12)
         tube.CappingOn()
         self._lines[style] = self._add(tube, color)
         self._lines[style].GetProperty().LightingOn()
+        self._lines[style].GetProperty().SetAmbient(0.2)
+        self._lines[style].GetProperty().SetDiffuse(0.85)
 
     def set_triangles(self, style, points, triangles, color, opacity, colors=None):
         """In place of those of the same style. colors: [triangles][4] of 0 to 255, in place of the one."""
@@ -113,49 +184,83 @@ class SphereRenderer:
             return
         corners = vtk.vtkPoints()
         corners.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
-        cells = vtk.vtkCellArray()
-        offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
-        cells.SetData(*(numpy_to_vtk(values, deep=True) for values in (offsets, triangles.reshape(-1))))
         data = vtk.vtkPolyData()
         data.SetPoints(corners)
-        data.SetPolys(cells)
-        self._triangles[style] = self._add(data, color)
+        data.SetPolys(cells(triangles))
         if colors is not None:
             data.GetCellData().SetScalars(numpy_to_vtk(np.ascontiguousarray(colors), deep=True))
-            self._triangles[style].GetMapper().ScalarVisibilityOn()
-            self._triangles[style].ForceTranslucentOn()
+        normals = vtk.vtkPolyDataNormals()
+        normals.SetInputData(data)
+        normals.SetFeatureAngle(SHARP)
+        normals.ConsistencyOff()
+        actor = self._triangles[style] = self._add(normals, color)
+        if colors is not None:
+            actor.GetMapper().ScalarVisibilityOn()
+            if (colors[:, 3] < 255).any():
+                actor.ForceTranslucentOn()
             opacity = 1
-        self._triangles[style].GetProperty().LightingOn()
-        self._triangles[style].GetProperty().SetAmbient(0.3)  # what is turned from the light is not black
-        self._triangles[style].GetProperty().SetDiffuse(0.7)
-        self._triangles[style].GetProperty().SetInterpolationToFlat()
-        self._triangles[style].GetProperty().SetOpacity(opacity)
+        actor.GetProperty().LightingOn()
+        actor.GetProperty().SetAmbient(0.35)  # what is turned from the light is not black
+        actor.GetProperty().SetDiffuse(0.8)
+        actor.GetProperty().SetOpacity(opacity)
 
-    @staticmethod
-    def _aim(renderer, center, axes_of_picture, half_height, extent):
-        camera = renderer.GetActiveCamera()
+    def _cast_shadows(self):
+        """Onto the ground, of all that is opaque: where the sun sees something, and a little beside it."""
+        sun, renderer = self._sun_axes(self._up), self._renderer
+        camera = vtk.vtkCamera()
         camera.ParallelProjectionOn()
-        camera.SetParallelScale(half_height)
-        camera.SetFocalPoint(*center)
-        camera.SetPosition(*(center + 5 * extent * axes_of_picture[2]))
-        camera.SetViewUp(*axes_of_picture[1])
-        camera.SetClippingRange(extent, 9 * extent)
-        renderer.AutomaticLightCreationOff()
-        light = vtk.vtkLight()
-        light.SetLightTypeToCameraLight()
-        light.SetPosition(-0.5, 0.7, 1)
-        renderer.AddLight(light)
+        camera.SetParallelScale(self._reach)
+        camera.SetFocalPoint(*self._middle)
+        camera.SetPosition(*(self._middle + 5 * self._extent * sun[2]))
+        camera.SetViewUp(*sun[1])
+        camera.SetClippingRange(self._extent, 9 * self._extent)
+        for actor in self._without_shadow:
+            actor.VisibilityOff()
+        renderer.SetUseSSAO(False)
+        renderer.SetActiveCamera(camera)
+        self._window.Render()
+        width, height = self._window.GetSize()
+        depths = vtk.vtkFloatArray()
+        self._window.GetZbufferData(0, 0, width - 1, height - 1, depths)
+        seen = vtk_to_numpy(depths).reshape(height, width) < 1
+        for actor in self._without_shadow:
+            actor.VisibilityOn()
+        renderer.SetUseSSAO(True)
+        renderer.SetActiveCamera(self._camera)
+        self._set_shadows(seen)
+
+    def _set_shadows(self, seen):
+        """seen: [height][width]; the texture shows the square in its middle, whose sides are those of its height."""
+        height, width = seen.shape
+        size = min(height, 512)
+        image = Image.fromarray((255 * seen).astype(np.uint8))
+        image = image.resize((round(size * width / height), size), Image.Resampling.BOX)
+        pad = (size - image.width) // 2
+        square = Image.new("L", (size, size))
+        square.paste(image, (pad, 0))
+        soft = np.asarray(square.filter(ImageFilter.GaussianBlur(SOFTNESS * size)), dtype=float)
+        pixels = np.zeros((size, size, 4), dtype=np.uint8)
+        pixels[..., :3] = 30
+        pixels[..., 3] = (SHADOW * soft).round()
+        data = vtk.vtkImageData()
+        data.SetDimensions(size, size, 1)
+        data.GetPointData().SetScalars(numpy_to_vtk(pixels.reshape(-1, 4), deep=True))
+        self._texture.SetInputData(data)
 
     def image(self, points, radii, colors):
         """Pixels [height][width][3], 0..255; colors [n][3] in 0..1."""
         coordinates = vtk.vtkPoints()
         coordinates.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
         self._data.SetPoints(coordinates)
-        for name, values in (("radius", radii), ("color", np.round(255 * colors).astype(np.uint8))):
+        self._data.SetVerts(cells(np.arange(len(points)).reshape(-1, 1)))
+        # Of radii the mapper takes single precision for granted.
+        for name, values in (("radius", radii.astype(np.float32)), ("color", np.round(255 * colors).astype(np.uint8))):
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)
             self._data.GetPointData().AddArray(array)
         self._data.Modified()
+        if self._ground:
+            self._cast_shadows()
         self._window.Render()
         grab = vtk.vtkWindowToImageFilter()
         grab.SetInput(self._window)

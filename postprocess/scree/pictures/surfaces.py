@@ -25,7 +25,8 @@ def sharp_edges(points, triangles):
 class Surfaces:
     """Of a run that has meshes."""
 
-    def __init__(self, series):
+    def __init__(self, series, holding):
+        """holding: of each mesh on bodies and walls, whether it may hold particles, so that one looks through it."""
         self._series = series
         self.field = None  # what colours them: a name, and the upper end of the scale
         self.limit = 0.0
@@ -33,6 +34,8 @@ class Surfaces:
         self.bodies = np.unique(body[body >= 0])  # those that have meshes
         self._rows = {"walls": body < 0, "bodies": body >= 0}
         self.triangles = {whose: triangles[rows] for whose, rows in self._rows.items()}
+        through = np.array([*holding, False])[series.rows(0, "surface")]
+        self.glass = {whose: through[rows] for whose, rows in self._rows.items()}
         points = series.rows(0, POSITION)
         self._edges = {whose: sharp_edges(points, found) for whose, found in self.triangles.items()}
 
