@@ -74,7 +74,8 @@ class Points(Mapping[str, Quantity]):
             fields = {name: Quantity(place.values[k::2], place.unit, place.description)
                       for k, name in enumerate(("start", "end"))} | fields
         elif of_cells:
-            fields = {POSITION: Quantity(place.values[self.triangles].mean(axis=1), place.unit, place.description)} | fields
+            centers = place.values[self.triangles].mean(axis=1)
+            fields = {POSITION: Quantity(centers, place.unit, place.description)} | fields
         for name, field in fields.items():
             for column, values in components(name, field.values).items():
                 columns[column], units[column] = values, field.unit
