@@ -33,7 +33,8 @@ refuse() {
 (($# >= 2)) || refuse "usage: jobs/slurm_run.sh DECK RESULTS [SCREE OPTIONS]"
 deck=$1 results=$2
 options=("${@:3}")
-tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+tree=$(readlink -f "${BASH_SOURCE[0]}")
+tree=${tree%/jobs/*}
 if [[ -e "$tree/CMakeLists.txt" ]]; then scree=$tree/build/release/scree; else scree=${tree%/*/*}/bin/scree; fi
 scree=${SCREE:-$scree}
 requeues=${SCREE_REQUEUES:-0}
