@@ -1,6 +1,9 @@
 // The lines that snapshots show of joints and force elements.
 #include "run/link_lines.hpp"
 
+#include <string>
+#include <vector>
+
 #include "coupling/body_link.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -39,7 +42,7 @@ type = "revolute"
 bodies = ["ground", "bob"]
 point = [0.0, 0.0]
 )");
-  CHECK(shown.lines.names() == "pin\n");
+  CHECK(shown.lines.names() == std::vector<std::string>{"pin"});
   for (int step = 0; step < 3; ++step) {
     const std::vector<Reaction> reactions =
         shown.run.multibody().reactions(shown.run.bodies(), shown.run.time());
@@ -75,7 +78,7 @@ stiffness = 10.0
 damping = 2.0
 free_angle = 0.5
 )");
-  CHECK(shown.lines.names() == "spring\ncylinder\ncoil\n");
+  CHECK(shown.lines.names() == std::vector<std::string>{"spring", "cylinder", "coil"});
   CHECK(shown.at.kind == std::vector{1, 2, 4});
   CHECK(near(shown.at.force[0], 100 * (0.5 - 0.2) + 7 * 1.0, {.relative = 1e-14}));
   CHECK(near(shown.at.reaction[0], -37 * Vec3{0.6, 0.8, 0}, {.relative = 1e-14}));
