@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 
 from scree.cli import add_folder
 from scree.commands import plot
@@ -34,13 +33,10 @@ def run(words: argparse.Namespace) -> int:
     if words.only == "history":
         return 0
 
-    from scree.pictures.render import (DrawnRun, chosen_frames, counted, has_ffmpeg, make_picture, save_animation,
+    from scree.pictures.render import (DrawnRun, chosen_frames, has_ffmpeg, make_picture, save_animation,
                                        save_picture)
 
     drawn, look = DrawnRun(opened), chosen_look(words)
-    if drawn.unseen():
-        print(f"{counted(drawn.unseen(), 'body', 'bodies')} without shapes and not in output.history_bodies: not drawn",
-              file=sys.stderr)
     last = len(drawn.particles) - 1
     frames = chosen_frames(len(drawn.particles), 1 if words.no_animation else words.frames)
     look.fit(drawn, [*frames, last])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scree.pictures.model import GROUND, JOINT_KINDS, SLIDES, Motion, turned
+from scree.pictures.model import GROUND, JOINT_KINDS, SLIDES, turned
 
 COILS = 6  # of a spring
 SHORT = 4  # springs shorter than so many units are straight lines
@@ -80,34 +80,29 @@ class Mechanism:
         return np.array(owner, dtype=int), np.array(lines).reshape(-1, 2, 3)
 
     def _ends(self, motion, kind):
-        """Ends of the connections of a kind whose bodies are known, the second where its image is nearest; and
-        their bodies and axes."""
+        """Ends of the connections of a kind, the second where its image is nearest; and their bodies and axes."""
         if kind not in self.model.connections:
             return np.empty((0, 2, 3)), np.empty((0, 2), dtype=int), np.empty((0, 3))
         pairs, local, axes = self.model.connections[kind]
-        known = motion.known[pairs].all(axis=1)
-        pairs, local, axes = pairs[known], local[known], axes[known]
         ends = motion.places(pairs, local)
         period = self.model.period
         apart = ends[:, 1] - ends[:, 0]
         ends[:, 1] -= period * np.round(apart / np.where(period > 0, period, np.inf))
         return ends, pairs, turned(axes, motion.rotations[pairs[:, 0]])
 
-    def _start_lengths(self, motion):
-        """Of the cylinders whose bodies are known in this motion [m]."""
-        start = self.model.start
-        ends = self._ends(Motion(start.origins, start.rotations, motion.known), "cylinder")[0]
+    def _start_lengths(self):
+        """Of the cylinders [m]."""
+        ends = self._ends(self.model.start, "cylinder")[0]
         return np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
 
     def draw(self, snapshot):
         """({style: lines [n][points][3]}, {joint's kind: points [n][3]}); "held" are points on the ground."""
         motion = self.motion(snapshot)
         owner, local = self._bars
-        shown = motion.known[owner]
-        bars = motion.places(owner[shown][:, None], local[shown])
+        bars = motion.places(owner[:, None], local)
         lines = {"bar": bars, "spring": zigzags(self._ends(motion, "spring")[0], self.unit)}
         lines["rod"] = self._ends(motion, "cylinder")[0]
-        lines["barrel"] = barrels(lines["rod"], self._start_lengths(motion))
+        lines["barrel"] = barrels(lines["rod"], self._start_lengths())
         points, held, guides = {}, [], []
         for kind in (*JOINT_KINDS, "torsional", "spring", "cylinder"):
             ends, pairs, axes = self._ends(motion, kind)

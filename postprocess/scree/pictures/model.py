@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from scree.history import TIME
 from scree.series import POSITION
 
 CENTER = 1  # kind of the points of bodies that are their centres of mass
@@ -92,10 +91,10 @@ def turned_back(vectors, rotations):
 
 
 class Motion:
-    """Of the frames of all bodies and, last, the ground. known: whether the results tell where the body is."""
+    """Of the frames of all bodies and, last, the ground."""
 
-    def __init__(self, origins, rotations, known):
-        self.origins, self.rotations, self.known = origins, rotations, known
+    def __init__(self, origins, rotations):
+        self.origins, self.rotations = origins, rotations
 
     def places(self, bodies, local):
         """Points fixed to bodies, in the global frame [m]."""
@@ -139,12 +138,16 @@ class Model:
 
     @staticmethod
     def _holding(deck):
-        """Of each mesh on bodies and walls, as results count them, whether it may hold particles."""
+        """Of each mesh on bodies and walls, as results count them, whether it may hold particles: those that touch
+        something, then those that do not."""
         kinds = {mesh["name"]: mesh["kind"] for mesh in deck.get("meshes", [])}
-        names = [use["mesh"] for body in deck.get("bodies", []) for _ in range(body.get("count", 1))
-                 for use in body.get("meshes", [])]
-        names += [wall["mesh"] for wall in deck.get("walls", []) if "mesh" in wall]
-        return [kinds[name] in HOLLOW for name in names]
+        names = {True: [], False: []}  # by whether they touch something
+        for body in deck.get("bodies", []):
+            for _ in range(body.get("count", 1)):
+                for use in body.get("meshes", []):
+                    names[body["collides"] and use["collides"]].append(use["mesh"])
+        names[True] += [wall["mesh"] for wall in deck.get("walls", []) if "mesh" in wall]
+        return [kinds[name] in HOLLOW for name in names[True] + names[False]]
 
     def _read_bodies(self, tables, densities):
         self.names, self.offsets, self.rows, self.centers_of_mass = [], [], {}, []
@@ -159,10 +162,7 @@ class Model:
                 origins.append(in_space(table["position"]) + i * in_space(table["spacing"]))
                 rotations.append(start_rotation(table))
         self.centers_of_mass.append(np.zeros(3))  # the ground
-        count = len(self.names)
-        self.start = Motion(
-            np.array([*origins, np.zeros(3)]), np.array([*rotations, np.eye(3)]), np.ones(count + 1, dtype=bool)
-        )
+        self.start = Motion(np.array([*origins, np.zeros(3)]), np.array([*rotations, np.eye(3)]))
         self._index = {name: i for i, name in enumerate(self.names)} | {"ground": GROUND}
 
     def _pairs(self, table):
@@ -236,38 +236,20 @@ class Model:
                 found.append((self.high if i % 2 else self.low, normal))
         return found
 
-    def motion(self, time, bodies, snapshot, history):
-        """Where the bodies are in the snapshot of that time [s]; of those that it does not hold, from the history.
-        bodies: their Series, or None."""
-        motion = Motion(self.start.origins.copy(), self.start.rotations.copy(), np.zeros_like(self.start.known))
-        motion.known[GROUND] = True
-        if bodies is not None:
-            centers = bodies.rows(snapshot, "kind") == CENTER
-            index = bodies.rows(snapshot, "body")[centers]
-            motion.rotations[index] = (
-                of_quaternions(bodies.rows(snapshot, "orientation")[centers])
-                if bodies.has("orientation")  # where some are spatial
-                else about_z(bodies.rows(snapshot, "angle")[centers])
-            )
-            # Points are in the periodic box, origins wherever the body has come to.
-            origins, period = bodies.rows(snapshot, "origin")[centers], self.period
-            apart = bodies.rows(snapshot, POSITION)[centers] - origins
-            motion.origins[index] = origins + period * np.round(apart / np.where(period > 0, period, np.inf))
-            motion.known[index] = True
-        for body in np.flatnonzero(~motion.known):
-            found = {
-                name: np.interp(time, history[TIME], history[column])
-                for name in (*"xyz", "origin_x", "origin_y", "origin_z", "angle", "e0", "e1", "e2", "e3")
-                if (column := f"bodies/{self.names[body]}/{name}") in history
-            }
-            if not found:
-                continue
-            # Without columns of their own the frame's origin is the centre of mass.
-            motion.origins[body] = [found.get(f"origin_{name}", found[name]) for name in "xyz"]
-            motion.rotations[body] = (
-                about_z(found["angle"])
-                if "angle" in found
-                else of_quaternions(np.array([found[f"e{k}"] for k in range(4)]))
-            )
-            motion.known[body] = True
+    def motion(self, bodies, snapshot):
+        """Where the bodies are in a snapshot. bodies: their Series; None where there are none."""
+        motion = Motion(self.start.origins.copy(), self.start.rotations.copy())
+        if bodies is None:
+            return motion
+        centers = bodies.rows(snapshot, "kind") == CENTER
+        index = bodies.rows(snapshot, "body")[centers]
+        motion.rotations[index] = (
+            of_quaternions(bodies.rows(snapshot, "orientation")[centers])
+            if bodies.has("orientation")  # where some are spatial
+            else about_z(bodies.rows(snapshot, "angle")[centers])
+        )
+        # Points are in the periodic box, origins wherever the body has come to.
+        origins, period = bodies.rows(snapshot, "origin")[centers], self.period
+        apart = bodies.rows(snapshot, POSITION)[centers] - origins
+        motion.origins[index] = origins + period * np.round(apart / np.where(period > 0, period, np.inf))
         return motion

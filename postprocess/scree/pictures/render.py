@@ -6,7 +6,7 @@ import io
 import pathlib
 import subprocess
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import matplotlib
@@ -29,7 +29,6 @@ from scree.pictures.model import Model, Motion
 from scree.pictures.palette import INK, PALE_INK, SPEED_MAP
 from scree.pictures.space import SphereScene
 from scree.pictures.surfaces import Surfaces
-from scree.quantity import Quantity
 from scree.run import Run
 from scree.series import POSITION, Series
 
@@ -62,11 +61,9 @@ class DrawnRun:
         self.bodies = run.series("bodies")
         surfaces = run.series("surfaces")
         self.surfaces = Surfaces(surfaces, self.model.holding) if surfaces else None
-        bare = any(len(offsets) == 0 for offsets in self.model.offsets)
-        self.history: Mapping[str, Quantity] = run.history if bare else {}
 
     def motion(self, snapshot: int) -> Motion:
-        found: Motion = self.model.motion(self.particles.times[snapshot], self.bodies, snapshot, self.history)
+        found: Motion = self.model.motion(self.bodies, snapshot)
         return found
 
     def shapes(self, snapshot: int) -> tuple[np.ndarray, np.ndarray]:
@@ -75,13 +72,6 @@ class DrawnRun:
             return np.empty((0, 3)), np.empty(0)
         radii = self.bodies.rows(snapshot, "radius")
         return self.bodies.rows(snapshot, POSITION)[radii > 0], radii[radii > 0]
-
-    def unseen(self) -> int:
-        """How many bodies no result tells the place of."""
-        seen = self.motion(len(self.particles) - 1).known
-        if self.surfaces:
-            seen[self.surfaces.bodies] = True
-        return int((~seen).sum())
 
 
 def speed_limit(particles: Series, snapshots: Iterable[int]) -> float:

@@ -31,7 +31,6 @@ class Surfaces:
         self.field = None  # what colours them: a name, and the upper end of the scale
         self.limit = 0.0
         triangles, body = series.triangles(0), series.rows(0, "body")
-        self.bodies = np.unique(body[body >= 0])  # those that have meshes
         self._rows = {"walls": body < 0, "bodies": body >= 0}
         self.triangles = {whose: triangles[rows] for whose, rows in self._rows.items()}
         through = np.array([*holding, False])[series.rows(0, "surface")]
