@@ -59,7 +59,7 @@ def plane_bounds(run, snapshots):
     way = np.maximum(way[0], run.model.low), np.minimum(way[1], run.model.high)
     boxes = [(low, high), body_bounds(run, snapshots)] + [way] * bool((way[1] >= way[0]).all())
     low, high = union(*boxes)
-    if not np.isfinite(low).all() or not (high >= low).all():
+    if not (np.isfinite(low).all() and (high >= low).all() and (high > low).any()):
         low, high = run.model.low, run.model.high
     margin = 0.04 * max(high - low)
     return low - margin, high + margin
