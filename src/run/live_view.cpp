@@ -31,13 +31,16 @@ double LiveView::wall_seconds() const { return seconds_between(start_, Clock::no
 void LiveView::begin(const State& state) {
   start_time_ = state.clock.time;
   last_look_ = Clock::now();
-  take(state, 0, -1);
+  add_to_rate(state);
 }
 
-void LiveView::take(const State& state, Real h, std::int64_t contacts) {
-  Progress& now = status_.progress;
+void LiveView::add_to_rate(const State& state) {
   rate_.add(seconds_between(start_, last_look_), state.counts.steps, state.clock.time);
-  now.time = state.clock.time, now.steps = state.counts.steps, now.step = h;
+}
+
+void LiveView::take(const State& state, std::int64_t contacts) {
+  Progress& now = status_.progress;
+  now.time = state.clock.time, now.steps = state.counts.steps;
   now.particles = model_.particles.totals.count - state.carried_out.left;
   now.contacts = contacts;
   now.balance_error = balance_error(state.balance), now.exchanged = state.balance.exchanged;
@@ -52,7 +55,9 @@ bool LiveView::look(const State& state, Real h, std::int64_t contacts) {
   const int tenths = static_cast<int>(10 * share);
   if (seconds_between(last_look_, now) < kLookSeconds && tenths == tenths_reported_) return false;
   last_look_ = now;
-  take(state, h, contacts);
+  status_.progress.step = h;
+  add_to_rate(state);
+  take(state, contacts);
   const bool logged = tenths != tenths_reported_ || seconds_between(last_logged_, now) > kLogSeconds;
   log_.progress(progress_line(status_.progress), logged);
   if (logged) tenths_reported_ = tenths, last_logged_ = now;
@@ -65,11 +70,13 @@ void LiveView::checkpoint_written(const std::string& name, Real time) {
   status_.checkpoint = name, status_.checkpoint_time = time, status_.checkpoint_written = utc_now();
 }
 
-void LiveView::write(const std::string& state, std::int64_t snapshots, std::int64_t history_rows) {
+void LiveView::write(const std::string& word, const State& state, std::int64_t contacts,
+                     std::int64_t snapshots) {
   if (!options_.ranks.is_root()) return;
-  status_.state = state, status_.written = utc_now();
+  status_.state = word, status_.written = utc_now();
   status_.wall_seconds = wall_seconds();
-  status_.snapshots = snapshots, status_.history_rows = history_rows;
+  take(state, contacts);
+  status_.snapshots = snapshots, status_.history_rows = state.history_rows;
   status_.warnings = log_.warnings();
   try {
     write_status(options_.output_directory, status_);

@@ -28,8 +28,9 @@ class LiveView {
   bool look(const State& state, Real h, std::int64_t contacts);
   // name: of the file.
   void checkpoint_written(const std::string& name, Real time);
-  // Leaves the status file, on rank 0. A disk that is full does not end a run here: results will tell.
-  void write(const std::string& state, std::int64_t snapshots, std::int64_t history_rows);
+  // Leaves the status file, on rank 0. A disk that is full does not end a run here: results will tell. word:
+  // RunStatus::state; contacts: as above.
+  void write(const std::string& word, const State& state, std::int64_t contacts, std::int64_t snapshots);
 
   const std::string& started() const { return status_.started; }  // UTC
   double wall_seconds() const;                                    // since then
@@ -37,7 +38,8 @@ class LiveView {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void take(const State& state, Real h, std::int64_t contacts);
+  void add_to_rate(const State& state);
+  void take(const State& state, std::int64_t contacts);
 
   const Model& model_;
   const RunOptions& options_;

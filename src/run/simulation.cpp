@@ -201,7 +201,8 @@ void Simulation::progress(const State& state, Real h) {
 }
 
 void Simulation::show_status(const std::string& status) {
-  live_.write(status, recorder_ ? recorder_->snapshots_written() : state_.snapshots, state_.history_rows);
+  live_.write(status, state_, recorder_ ? recorder_->contacts() : -1,
+              recorder_ ? recorder_->snapshots_written() : state_.snapshots);
 }
 
 ExitCode Simulation::run() {

@@ -42,7 +42,7 @@ Seen look_into(const std::string& folder) {
   if (!fs::is_directory(folder, error)) throw InputError(folder + ": there is no such folder");
   Seen seen;
   seen.owner = FolderLock(folder).owner();
-  const bool told = fs::exists(folder + "/" + kStatusName, error);
+  const bool told = fs::is_regular_file(folder + "/" + kStatusName, error);
   if (!told && seen.owner) {
     seen.word = "starting";
     return seen;

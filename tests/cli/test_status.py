@@ -39,7 +39,9 @@ class StatusTest(CommandLineTest):
         self.assertEqual(run.wait(LIMIT), STOPPED)
         text = self.status("out")
         self.assertIn(f"state          stopped by signal: {signal.strsignal(signal.SIGTERM)}; process {run.pid}", text)
-        self.assertRegex(text, r"checkpoint     checkpoint\.h5, t = \S+ s, written \d+ s ago\n")
+        # It tells of its end, where its checkpoint is, too.
+        self.assertRegex(text, r"simulated      (\S+) of 1000 s .*\n(.*\n)*"
+                               r"checkpoint     checkpoint\.h5, t = \1 s, written \d+ s ago\n")
 
     def test_a_run_that_is_done(self):
         self.run_deck(DONE, "out")
@@ -81,6 +83,7 @@ class StatusTest(CommandLineTest):
         path.write_text(text.replace("steps = 4000", "steps = 'many'"))
         self.assertIn("status.toml: is damaged: steps is missing", message(IO_FAILED))
         path.unlink()
+        path.mkdir()
         self.assertIn("no run has left a status.toml here", message(BAD_INPUT))
 
     def test_overwriting_removes_it_and_a_restart_begins_anew(self):
