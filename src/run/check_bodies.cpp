@@ -76,14 +76,16 @@ std::string multibody_lines(const Model& model) {
                   counted(std::ssize(model.joints), "joint", "joints"),
                   counted(std::ssize(model.drivers), "driver", "drivers"),
                   counted(elements, "force element", "force elements"));
+  if (drawn_shapes + drawn_meshes > 0)
+    lines += fmt::format("               of these {}{}{} collide{} with nothing\n",
+                         drawn_shapes == 0 ? "" : counted(drawn_shapes, "shape", "shapes"),
+                         drawn_shapes == 0 || drawn_meshes == 0 ? "" : " and ",
+                         drawn_meshes == 0 ? "" : counted(drawn_meshes, "mesh", "meshes"),
+                         drawn_shapes + drawn_meshes == 1 ? "s" : "");
   if (bare > 0 && !model.walls.empty())
     lines += fmt::format("               {} no shapes{}: {} through walls and touch{} nothing\n",
                          counted(bare, "body has", "bodies have"), model.meshes.empty() ? "" : " or meshes",
                          bare == 1 ? "it passes" : "they pass", bare == 1 ? "es" : "");
-  if (drawn_shapes + drawn_meshes > 0)
-    lines += fmt::format("               of these {}{} collide with nothing\n",
-                         counted(drawn_shapes, "shape", "shapes"),
-                         drawn_meshes == 0 ? "" : " and " + counted(drawn_meshes, "mesh", "meshes"));
   lines += solid_lines(model);
   lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
   // Of rows that may repeat each other the rank counts, which the bodies' solver reports.
