@@ -45,7 +45,7 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 done, 2 bad usage or deck, or too little memory for it, 3 the simulation failed,\n"
     "4 a file could not be read or written,\n"
     "5 stopped by a signal (SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU) after writing a\n"
-    "checkpoint, or without one where the model was still being built.\n"
+    "checkpoint, or without one where the model was still being built, or its picture drawn.\n"
     "Words behind -- go to PETSc, with the prefix mbs_ for the multibody solve, e.g. -- -mbs_ksp_view";
 
 struct CommandLine {
@@ -118,6 +118,13 @@ void warn_of_run(const Model& model, Log& log) {
     if (!warning.empty()) log.warning(warning);
 }
 
+// Whether a signal has reached a rank; says so, and what there is not. Collective.
+bool is_stopped(const Ranks& ranks, const char* lacking, Log& log) {
+  const int signal = static_cast<int>(ranks.max(signal_received()));
+  if (signal != 0) log.info(fmt::format("stopped by signal ({}) {}", strsignal(signal), lacking));
+  return signal != 0;
+}
+
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
@@ -125,11 +132,8 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const std::string directory = output_directory(arguments, deck);
   ranks.on_root([&] { ResultsFolder({directory, arguments.restart, arguments.overwrite}).check(); });
   const Model model = build_model(deck, log, RanksShare(ranks));
-  if (const int signal = static_cast<int>(ranks.max(signal_received())); signal != 0) {
-    log.info(fmt::format("stopped by signal ({}) before the first step: there is no new checkpoint",
-                         strsignal(signal)));
+  if (is_stopped(ranks, "before the first step: there is no new checkpoint", log))
     return ExitCode::stopped_by_signal;
-  }
   warn_of_run(model, log);
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
@@ -183,6 +187,7 @@ ExitCode check(const Arguments& arguments) {
   naming_memory(size, ranks.size(), [&] {
     draw_start(std::move(model), deck.resolved_text(), drawer, arguments.picture, ranks);
   });
+  if (is_stopped(ranks, "before the picture was drawn", log)) return ExitCode::stopped_by_signal;
   log.info("picture        " + arguments.picture);
   return ExitCode::done;
 }

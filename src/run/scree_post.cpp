@@ -6,7 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "run/signals.hpp"
 
 namespace scree {
 namespace {
@@ -42,6 +43,17 @@ std::string above_this_program() {
   for (; folder.has_relative_path(); folder = folder.parent_path())
     if (const fs::path path = folder / "postprocess" / kName; can_run(path)) return path.string();
   return "";
+}
+
+// Of waitpid(). A signal does not end that call.
+int status_at_end(pid_t process) {
+  constexpr useconds_t kLook = 20000;  // [us]
+  int status = 0;
+  while (waitpid(process, &status, WNOHANG) == 0) {
+    if (signal_received() != 0) kill(process, SIGTERM);
+    usleep(kLook);
+  }
+  return status;
 }
 
 // What it said last, without the word that begins its messages.
@@ -95,10 +107,8 @@ void run_scree_post(const std::string& program, const std::vector<std::string>& 
   const int error = posix_spawn(&process, program.c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw IoError(fmt::format("{}: cannot be started: {}", program, std::strerror(error)));
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  judge(status, program, last_message(log));
+  const int status = status_at_end(process);
+  if (signal_received() == 0) judge(status, program, last_message(log));
 }
 
 }  // namespace scree

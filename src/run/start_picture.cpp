@@ -82,6 +82,7 @@ void draw_start(Model model, const std::string& resolved_deck, const std::string
   model.output = output_of_start();
   const FolderBeside folder(file, ranks);
   write_start(model, folder.path(), ranks);
+  if (ranks.max(signal_received()) != 0) return;
   ranks.on_root([&] {
     RunRecord record;
     record.resolved_deck = resolved_deck;

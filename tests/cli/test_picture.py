@@ -11,7 +11,7 @@ import unittest
 
 import matplotlib.image
 
-from test_cli import BAD_INPUT, DECK, DONE, ENVIRONMENT, IO_FAILED, LIMIT, SCREE, CommandLineTest
+from test_cli import BAD_INPUT, DECK, DONE, ENVIRONMENT, IO_FAILED, LIMIT, SCREE, STOPPED, CommandLineTest
 
 POSTPROCESS = pathlib.Path(__file__).resolve().parents[2] / "postprocess"
 
@@ -67,14 +67,16 @@ class PictureTest(CommandLineTest):
         self.assertIn("SCREE_POST = none: is no program", self.check(BAD_INPUT, "start.png", "none").stderr)
 
     def test_a_signal_leaves_nothing(self):
+        drawer = self.drawer("touch words", f"exec sleep {2 * LIMIT}")
         run = subprocess.Popen([SCREE, "check", str(self.deck), "--picture", "start.png"], cwd=self.folder,
-                               env=dict(ENVIRONMENT, SCREE_POST=str(self.drawer("touch words", "sleep 1"))),
-                               stdout=subprocess.DEVNULL)
+                               env=dict(ENVIRONMENT, SCREE_POST=str(drawer)), stdout=subprocess.PIPE, text=True)
         self.addCleanup(run.kill)
         while run.poll() is None and not (self.folder / "words").exists():
             time.sleep(0.05)
         run.send_signal(signal.SIGTERM)
-        run.wait(LIMIT)
+        said = run.communicate(timeout=LIMIT)[0]
+        self.assertEqual(run.returncode, STOPPED)
+        self.assertIn(f"stopped by signal ({signal.strsignal(signal.SIGTERM)}) before the picture was drawn", said)
         self.assert_nothing_is_left()
 
     def test_without_scree_post_the_message_says_how_to_get_it(self):
