@@ -64,8 +64,14 @@ class Hdf5File {
   void append_rows(const std::string& name, const T* values, std::int64_t rows) {
     append_rows(name, hdf5_type<T>(), values, rows);
   }
+  // Of width 1.
+  template <class T>
+  void append_row(const std::string& name, T value) {
+    append_rows(name, &value, 1);
+  }
   // Rows past the new number are cut off; new ones hold nothing until SharedRows writes them.
   void resize_rows(const std::string& name, std::int64_t rows);
+  void add_rows(const std::string& name, std::int64_t more) { resize_rows(name, rows(name) + more); }
   std::int64_t rows(const std::string& name) const;
   int width(const std::string& name) const;
   bool is_compressed(const std::string& name) const;

@@ -10,14 +10,6 @@ namespace {
 const std::string kRoot = "/VTKHDF/";
 constexpr std::int64_t kPartsPerChunk = 128;
 
-void add_rows(Hdf5File& file, const std::string& name, std::int64_t rows) {
-  file.resize_rows(name, file.rows(name) + rows);
-}
-
-void append_one(Hdf5File& file, const std::string& name, std::int64_t value) {
-  file.append_rows(name, &value, 1);
-}
-
 // Row k of a part holds k times the step; numbers: of these rows.
 void write_numbers(SharedRows& file, const std::string& name, std::int64_t first_row, RowPart numbers,
                    std::int64_t step) {
@@ -58,11 +50,11 @@ void create_cells(Hdf5File& file, const SeriesCells& cells, const RowStorage& of
 
 void add_cells(Hdf5File& file, const SeriesCells& cells, std::int64_t points) {
   const std::string own = kRoot + cells.group + "/", none = kRoot + cells.nothing;
-  add_rows(file, own + "Connectivity", points);
-  add_rows(file, own + "Offsets", points / cells.points + 1);
-  if (cells.points > 1) append_one(file, own + "NumberOfCells", points / cells.points);
-  append_one(file, none + "/NumberOfCells", 0);
-  append_one(file, none + "/Offsets", 0);
+  file.add_rows(own + "Connectivity", points);
+  file.add_rows(own + "Offsets", points / cells.points + 1);
+  if (cells.points > 1) file.append_row(own + "NumberOfCells", points / cells.points);
+  file.append_row(none + "/NumberOfCells", std::int64_t{0});
+  file.append_row(none + "/Offsets", std::int64_t{0});
 }
 
 void cut_cells(Hdf5File& file, const SeriesCells& cells, const PartPlace& last, std::int64_t points) {

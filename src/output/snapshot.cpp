@@ -13,23 +13,6 @@ namespace {
 
 constexpr const char* kGlobalId = "global_id";
 
-static_assert(sizeof(Vec3) == 3 * sizeof(Real), "a Vec3 array is written as a [n][3] dataset");
-
-PointField scalar(const char* name, const char* unit, const char* description, std::span<const Real> values) {
-  return {name, {unit, description}, 1, values.data()};
-}
-
-// [n][3]
-const Real* components(std::span<const Vec3> values) { return reinterpret_cast<const Real*>(values.data()); }
-
-PointField vector(const char* name, const char* unit, const char* description, std::span<const Vec3> values) {
-  return {name, {unit, description}, 3, components(values)};
-}
-
-PointField number(const char* name, const char* description, std::span<const int> values) {
-  return {name, {"1", description}, 1, values.data()};
-}
-
 PointSnapshot particle_points(Real time, const ParticleSnapshot& particles, const Ranks& ranks) {
   const std::int64_t own = std::ssize(particles.position);
   PointSnapshot snapshot{
@@ -46,42 +29,42 @@ PointSnapshot body_points(Real time, const BodySnapshot& bodies) {
   const std::int64_t points = std::ssize(bodies.position);
   PointSnapshot snapshot{time, points, {0, points}, components(bodies.position), {}};
   snapshot.fields = {
-      number("body", "body that the point belongs to, counted from 0 in the deck's order", bodies.body),
-      number("kind", "0: a shape, 1: a body's centre of mass, 2: a shape that touches nothing", bodies.kind),
-      scalar("radius", "m", "radius of the shape; 0 of a centre of mass", bodies.radius),
-      vector("velocity", "m/s", "velocity of the point", bodies.velocity),
-      scalar("angle", "rad", "angle of the body about z", bodies.angle),
-      scalar("angular_velocity", "rad/s", "angular velocity of the body about z", bodies.angular_velocity),
-      vector("force", "N", "total contact force on the shape; of a centre of mass that on the body",
-             bodies.force),
-      number("contacts", "touching neighbours and walls, likewise", bodies.contacts),
-      vector("origin", "m", "origin of the body's frame", bodies.origin)};
+      field_of("body", {"1", "body that the point belongs to, counted from 0 in the deck's order"},
+               bodies.body),
+      field_of("kind", {"1", "0: a shape, 1: a body's centre of mass, 2: a shape that touches nothing"},
+               bodies.kind),
+      field_of("radius", {"m", "radius of the shape; 0 of a centre of mass"}, bodies.radius),
+      field_of("velocity", {"m/s", "velocity of the point"}, bodies.velocity),
+      field_of("angle", {"rad", "angle of the body about z"}, bodies.angle),
+      field_of("angular_velocity", {"rad/s", "angular velocity of the body about z"},
+               bodies.angular_velocity),
+      field_of("force", {"N", "total contact force on the shape; of a centre of mass that on the body"},
+               bodies.force),
+      field_of("contacts", {"1", "touching neighbours and walls, likewise"}, bodies.contacts),
+      field_of("origin", {"m", "origin of the body's frame"}, bodies.origin)};
   if (bodies.orientation.empty()) return snapshot;
   snapshot.fields.push_back({"orientation",
                              {"1", "unit quaternion of the body's frame, scalar first, of continuous sign"},
                              4,
                              bodies.orientation.data()});
   snapshot.fields.push_back(
-      vector("spin", "rad/s", "angular velocity of the body, global axes", bodies.spin));
+      field_of("spin", {"rad/s", "angular velocity of the body, global axes"}, bodies.spin));
   return snapshot;
 }
 
 PointSnapshot surface_points(Real time, const SurfaceSnapshot& surfaces) {
   const std::int64_t points = std::ssize(surfaces.position);
   PointSnapshot snapshot{time, points, {0, points}, components(surfaces.position), {}};
-  const auto add_scalar = [&](const char* name, const char* unit, const char* description,
-                              std::span<const Real> values) {
-    if (!values.empty()) snapshot.fields.push_back(scalar(name, unit, description, values));
+  const auto add = [&](const char* name, const DatasetLabel& label, const auto& values) {
+    if (!values.empty()) snapshot.fields.push_back(field_of(name, label, values));
   };
-  add_scalar("pressure", "Pa", "normal contact forces on the triangle over its area", surfaces.pressure);
-  if (!surfaces.shear.empty())
-    snapshot.fields.push_back(
-        vector("shear", "Pa", "tangential contact forces on the triangle over its area", surfaces.shear));
-  add_scalar("impact_work", "J", "taken by the damping of normal contact forces since t = 0",
-             surfaces.impact_work);
-  add_scalar("sliding_work", "J", "taken by friction since t = 0", surfaces.sliding_work);
-  add_scalar("wear_depth", "m", "volume worn off since t = 0 after Archard over the triangle's area",
-             surfaces.wear_depth);
+  add("pressure", {"Pa", "normal contact forces on the triangle over its area"}, surfaces.pressure);
+  add("shear", {"Pa", "tangential contact forces on the triangle over its area"}, surfaces.shear);
+  add("impact_work", {"J", "taken by the damping of normal contact forces since t = 0"},
+      surfaces.impact_work);
+  add("sliding_work", {"J", "taken by friction since t = 0"}, surfaces.sliding_work);
+  add("wear_depth", {"m", "volume worn off since t = 0 after Archard over the triangle's area"},
+      surfaces.wear_depth);
   return snapshot;
 }
 

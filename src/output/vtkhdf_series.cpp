@@ -24,11 +24,6 @@ const std::string kCellDataOffsets = "/VTKHDF/Steps/CellDataOffsets/";
 constexpr std::int64_t kStepsPerChunk = 128;
 constexpr std::size_t kXdmfGrowth = 5;  // the .xdmf is written when it has grown by one in so many
 
-template <class T>
-void append_one(Hdf5File& file, const std::string& name, T value) {
-  file.append_rows(name, &value, 1);
-}
-
 // Large enough to be written at the disk's speed, small enough not to bloat the file of a small run.
 std::int64_t points_per_chunk(std::int64_t points) { return std::clamp<std::int64_t>(points, 128, 65536); }
 
@@ -41,10 +36,6 @@ void create_field(Hdf5File& file, const std::string& name, const PointField& fie
 void write_field(SharedRows& file, const std::string& name, const PointField& field, RowPart part) {
   const auto write = [&](const auto* values) { file.write(name, field.width, part, values); };
   std::visit(write, field.values);
-}
-
-void add_rows(Hdf5File& file, const std::string& name, std::int64_t rows) {
-  file.resize_rows(name, file.rows(name) + rows);
 }
 
 // The connectivity ids of cells of one point have the cells' numbers; of triangles both are 0.
@@ -256,17 +247,17 @@ void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
   require_fields_of(file, snapshot);
   append_names(file);
   if (starts_part(place)) {
-    append_one(file, kRoot + "NumberOfPoints", snapshot.points);
+    file.append_row(kRoot + "NumberOfPoints", snapshot.points);
     if (!options_.triangles) add_cells(file, cells(), snapshot.points);
   }
-  add_rows(file, kRoot + "Points", snapshot.points);
+  file.add_rows(kRoot + "Points", snapshot.points);
   const RowPart rows = field_rows(place, {0, snapshot.points});
-  for (const PointField& field : snapshot.fields) add_rows(file, field_group() + field.name, rows.count);
-  append_one(file, kSteps + "Values", snapshot.time);
-  append_one(file, kSteps + "PartOffsets", place.part);
-  append_one(file, kSteps + "NumberOfParts", std::int64_t{1});
-  append_one(file, kSteps + "PointOffsets", place.first_point);
-  if (has_cell_fields()) append_one(file, field_offsets(), rows.first);
+  for (const PointField& field : snapshot.fields) file.add_rows(field_group() + field.name, rows.count);
+  file.append_row(kSteps + "Values", snapshot.time);
+  file.append_row(kSteps + "PartOffsets", place.part);
+  file.append_row(kSteps + "NumberOfParts", std::int64_t{1});
+  file.append_row(kSteps + "PointOffsets", place.first_point);
+  if (has_cell_fields()) file.append_row(field_offsets(), rows.first);
   append_cell_offsets(file, place.first_cell);
   file.write_integer_attribute(kSteps, "NSteps", {static_cast<std::int64_t>(places_.size()) + 1});
 }

@@ -13,11 +13,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "base/types.hpp"
+#include "base/vec3.hpp"
 #include "output/series_cells.hpp"
 #include "output/series_names.hpp"
 #include "output/series_triangles.hpp"
@@ -33,6 +36,20 @@ struct PointField {
   int width = 1;
   std::variant<const Real*, const int*, const GlobalId*> values;
 };
+
+static_assert(sizeof(Vec3) == 3 * sizeof(Real), "a Vec3 array is written as a [n][3] dataset");
+inline const Real* components(std::span<const Vec3> values) {
+  return reinterpret_cast<const Real*>(values.data());
+}
+
+// Of values that last: a number each, or a vector.
+template <class Values>
+PointField field_of(const char* name, const DatasetLabel& label, const Values& values) {
+  if constexpr (std::is_convertible_v<const Values&, std::span<const Vec3>>)
+    return {name, label, 3, components(values)};
+  else
+    return {name, label, 1, values.data()};
+}
 
 struct PointSnapshot {
   Real time = 0;                   // [s]

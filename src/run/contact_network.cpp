@@ -34,21 +34,20 @@ void ContactNetwork::add(const ContactLine& line, const SurfaceSet& surfaces) {
 
 LineSnapshot ContactNetwork::snapshot() const {
   LineSnapshot out{ends_, {}};
-  const auto add = [&](const char* name, const char* unit, const char* description, const auto& values) {
-    out.fields.push_back({name, {unit, description}, 1, values.data()});
+  const auto add = [&](const char* name, const DatasetLabel& label, const auto& values) {
+    out.fields.push_back(field_of(name, label, values));
   };
-  add("normal_force", "N", "along the normal; above 0: pushes the two apart", normal_force_);
-  add("tangential_force", "N", "size of the force across the normal", tangential_force_);
-  out.fields.push_back(
-      {"force", {"N", "on the first particle"}, 3, reinterpret_cast<const Real*>(force_.data())});
-  add("overlap", "m", "how far the two overlap; below 0 where they attract each other apart", overlap_);
-  if (rubs_) add("slip", "m", "how far the spring of friction is stretched", slip_);
-  add("first", "1", "global id of the particle at the line's start, the lower one of two", first_);
-  add("second", "1", "global id of the particle at its end; -1: none", second_);
-  add("kind", "1", "what is at its end: 0 a particle, 1 a wall, 2 a body", kind_);
-  add("wall", "1", "which wall, counted from 0 in the deck's order, sides of the space last; -1: none",
+  add("normal_force", {"N", "along the normal; above 0: pushes the two apart"}, normal_force_);
+  add("tangential_force", {"N", "size of the force across the normal"}, tangential_force_);
+  add("force", {"N", "on the first particle"}, force_);
+  add("overlap", {"m", "how far the two overlap; below 0 where they attract each other apart"}, overlap_);
+  if (rubs_) add("slip", {"m", "how far the spring of friction is stretched"}, slip_);
+  add("first", {"1", "global id of the particle at the line's start, the lower one of two"}, first_);
+  add("second", {"1", "global id of the particle at its end; -1: none"}, second_);
+  add("kind", {"1", "what is at its end: 0 a particle, 1 a wall, 2 a body"}, kind_);
+  add("wall", {"1", "which wall, counted from 0 in the deck's order, sides of the space last; -1: none"},
       wall_);
-  add("body", "1", "which body, counted from 0 in the deck's order; -1: none", body_);
+  add("body", {"1", "which body, counted from 0 in the deck's order; -1: none"}, body_);
   return out;
 }
 

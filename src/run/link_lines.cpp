@@ -101,22 +101,20 @@ void LinkLines::add_forces(const Multibody& multibody, const MultibodyState& sta
 
 LineSnapshot LinkLines::Look::snapshot() const {
   LineSnapshot out{ends, {}};
-  const auto add = [&](const char* name, const char* unit, const char* description, const auto& values) {
-    out.fields.push_back({name, {unit, description}, 1, values.data()});
+  const auto add = [&](const char* name, const DatasetLabel& label, const auto& values) {
+    out.fields.push_back(field_of(name, label, values));
   };
-  add("link", "1", "number of the joint or force element, which counts the names", link);
-  add("kind", "1", "0 joint, 1 spring-damper, 2 one with an actuator, 3 bushing, 4 torsional spring-damper",
+  add("link", {"1", "number of the joint or force element, which counts the names"}, link);
+  add("kind", {"1", "0 joint, 1 spring-damper, 2 one with an actuator, 3 bushing, 4 torsional spring-damper"},
       kind);
-  add("force", "N", "size of a joint's reaction and a bushing's force; tension of a spring-damper", force);
-  add("torque", "N m",
-      "size of a joint's reaction torque and a bushing's; of a torsional spring-damper that on its second "
-      "body",
+  add("force", {"N", "size of a joint's reaction and a bushing's force; tension of a spring-damper"}, force);
+  add("torque",
+      {"N m",
+       "size of a joint's reaction torque and a bushing's; of a torsional spring-damper that on its second "
+       "body"},
       torque);
-  add("length", "m", "of the line; of a spring-damper between its points", length);
-  out.fields.push_back({"reaction",
-                        {"N", "force on the second body, global axes"},
-                        3,
-                        reinterpret_cast<const Real*>(reaction.data())});
+  add("length", {"m", "of the line; of a spring-damper between its points"}, length);
+  add("reaction", {"N", "force on the second body, global axes"}, reaction);
   return out;
 }
 
