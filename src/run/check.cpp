@@ -19,6 +19,7 @@
 #include "model/memory.hpp"
 #include "run/check_bodies.hpp"
 #include "run/check_meshes.hpp"
+#include "run/link_lines.hpp"
 #include "run/step_trials.hpp"
 
 namespace scree {
@@ -26,9 +27,9 @@ namespace scree {
 namespace {
 
 // In files without compression, of a particle (in a snapshot without its fields), of a shape or centre, of a
-// contact, of a body [B]; tests/performance/bytes_per_item.py.
-constexpr Real kSnapshotPoint = 42, kSnapshotShape = 150, kSnapshotContact = 147, kCheckpointParticle = 186,
-               kCheckpointBody = 170;
+// contact, of a link, of a body [B]; tests/performance/bytes_per_item.py.
+constexpr Real kSnapshotPoint = 42, kSnapshotShape = 150, kSnapshotContact = 147, kSnapshotLink = 150,
+               kCheckpointParticle = 186, kCheckpointBody = 170;
 // Of one that rotates, and more where contacts resist rolling; of a contact that remembers, but for its
 // numbers, and of the row of a particle's.
 constexpr Real kCheckpointRotation = 96, kCheckpointRolling = 16, kCheckpointContact = 16, kCheckpointRow = 8;
@@ -211,8 +212,9 @@ std::string output_lines(const Model& model) {
   if (model.output.contacts) snapshot_particle += kTouching / 2 * kSnapshotContact;
   for (const Body& body : model.bodies)
     points += static_cast<Real>(body.shapes.size() + body.drawn_shapes.size());
+  const Real links = model.output.links ? static_cast<Real>(LinkLines(model).names().size()) : 0;
   const Real snapshots = outputs(model.time.end, model.output.snapshot_interval),
-             size = snapshot_particle * particles + kSnapshotShape * points,
+             size = snapshot_particle * particles + kSnapshotShape * points + kSnapshotLink * links,
              state = checkpoint_particle(model) * particles +
                      kCheckpointBody * static_cast<Real>(model.bodies.size());
   const Real interval = model.output.checkpoint_interval;

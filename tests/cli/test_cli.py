@@ -193,7 +193,7 @@ class UsageTest(CommandLineTest):
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
         for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; "
-                     'a particle that leaves: "drift"', "snapshots      2 of about 0.7 kB", "particles      6",
+                     'a particle that leaves: "drift"', "snapshots      2 of about 1.1 kB", "particles      6",
                      "checkpoints    one at the end, about 1.3 kB", "degrees of freedom", "contact", "memory", "petsc",
                      "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
                      "in steps of 0.0001 s with 0.9792", "fixed step 0.0001 s (4000 steps)"):
@@ -369,8 +369,8 @@ class RunTest(CommandLineTest):
               "inertia = 0.01\nshapes = [{{ radius = 1e-9 }}]\n"
         group = '[[particles]]\nname = "many"\nkind = "random"\ncount = {}\nmin = [-0.3, -1.0]\nmax = [0.3, 0.9]\n' \
                 "radius = {}\nmass = 1.0\n"
-        cases = ((row.format(10000000, 1e-9), r"not enough memory: building the bodies takes about 20 GB, [0-9.]+ GB "
-                  r"are free \(ulimit -v, the address space\); a run of 10000001 bodies takes at least 30 GB on one "
+        cases = ((row.format(10000000, 1e-9), r"not enough memory: building the bodies takes about 23 GB, [0-9.]+ GB "
+                  r"are free \(ulimit -v, the address space\); a run of 10000001 bodies takes at least 42 GB on one "
                   r"rank; take fewer bodies"),
                  (row.format(6000000, 2e-7), r'body "row\.[0-9]+" starts at \(0\.35.+, outside the space'),
                  (group.format(1000000000, 1e-6), "not enough memory: building the particles takes about 280 GB"),

@@ -46,6 +46,13 @@ mass = 1.0
 inertia = 0.1
 shapes = [{ radius = 0.5 }]
 """
+JOINTS = """
+[[joints]]
+name = "pin"
+type = "revolute"
+chain = "row"
+local_points = [[1.0, 0.0], [-1.0, 0.0]]
+"""
 
 
 def run(scree, folder, deck, *words):
@@ -75,6 +82,8 @@ def main():
         folder = pathlib.Path(name)
         empty = run(scree, folder, BODIES)
         print_files(folder, "bodies.vtkhdf", "body of one shape", 10000, points=2)
+        run(scree, folder, BODIES + JOINTS)
+        print(f"link: {(folder / 'out/links.vtkhdf').stat().st_size / 2 / 9999:.0f} B in a snapshot")
         # The others touch six each, which remember three and six numbers.
         for what, integrator, keys in (("explicit", "velocity-verlet", ""), ("implicit", "hht", ""),
                                        ("explicit, rubbing", "velocity-verlet", RUBS),
