@@ -28,7 +28,7 @@ import pandas
 import pyvista
 import scree
 from scree.cli import main
-from scree.differences import apart, differences, over
+from scree.differences import apart, differences, matched, over
 from scree.plots import balance_panel, energy_panels, history_figure
 
 NET, DRUM = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
@@ -137,6 +137,22 @@ class CompareTest(CommandTest):
         self.assertIn(f"energy/total: in {NET} alone", said)
         self.assertIn(f"bodies: in {NET} alone", said)
         self.assertIn("drum", self.command(DIFFERENT, "compare", NET, DRUM))
+
+    def test_times_that_only_one_run_has(self):
+        """What follows is compared at the times of both, not by number."""
+        other = self.copy_of_the_net()
+        with h5py.File(other / "history.h5", "r+") as file:
+            for column in scree.files.datasets(file).values():
+                kept = np.delete(column[:], [5, 6])
+                column.resize(kept.shape)
+                column[:] = kept
+            file["step/time"][3] += 1e-12
+        said = self.command(DIFFERENT, "compare", NET, other, "--tolerance", "1e-9")
+        self.assertIn(f"rows: 2 more rows from t = 0.005 s to 0.006 s in {NET}\n", said)
+        self.assertIn("1 difference (999 rows", said)
+        first, second = matched(np.array([0, 0.1, 0.2, 0.3]), np.array([0, 0.2 + 1e-11, 0.25, 0.3, 0.4]))
+        self.assertEqual((first.tolist(), second.tolist()), ([0, 2, 3], [0, 1, 3]))
+        self.assertEqual([len(found) for found in matched(np.array([0.5]), np.array([0.5]))], [1, 1])
 
     def test_numbers_that_are_none(self):
         nan, inf = np.nan, np.inf

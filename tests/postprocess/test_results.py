@@ -110,6 +110,12 @@ class ReadingTest(FolderTest):
         self.assertEqual(np.max(energy), energy.values.max())
         self.assertEqual((2 * energy - energy)[-1], energy[-1])
         self.assertIn("31 values in J", repr(energy))
+        for name in ("max", "min", "mean", "sum", "std", "argmax", "argmin", "tolist"):
+            self.assertEqual(getattr(energy, name)(), getattr(energy.values, name)())
+        positions = scree.open(self.results).snapshots[-1].particles["position"]
+        self.assertEqual((positions.T.shape, positions.mean(axis=0).shape), ((3, len(positions)), (3,)))
+        self.assertEqual((energy.astype(np.float32).dtype, energy.ndim, energy.size), (np.float32, 1, 31))
+        self.assertFalse(np.shares_memory(energy.copy(), energy.values))
 
     def test_a_table_of_the_history(self):
         frame = scree.open(self.results).to_dataframe("energy/*", "step/time")
