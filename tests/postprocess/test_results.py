@@ -237,6 +237,12 @@ class RestartTest(FolderTest):
         self.compare(scree.open(self.folder / "first", self.folder / "second", self.folder / "third"), whole)
         alone = scree.open(self.folder / "third", earlier=False)
         self.assertEqual((alone.history.rows, len(alone.snapshots)), (10, 1))
+        self.assertEqual(alone.warnings, joined.warnings)
+        run("third", "time.end=0.04", words=("--restart", "third/checkpoint_end.h5"), cwd=self.folder)
+        with self.assertWarnsRegex(scree.ScreeWarning, r'third: begins at t = 0.021 s, .*open\("EARLIER", "third"\)'):
+            within = scree.open(self.folder / "third")  # its record names itself
+        self.assertIn("begins at t = 0.021 s", within.warnings[0])
+        run("third", words=("--restart", "second/checkpoint_end.h5", "--overwrite"), cwd=self.folder)
         shutil.rmtree(self.folder / "second")
         with self.assertRaisesRegex(scree.ScreeError, "went on from second/checkpoint_end.h5, which is not found"):
             scree.open(self.folder / "third")
