@@ -132,6 +132,14 @@ class Run:
         return self._series["particles"].names("groups") if self._series else []
 
     @property
+    def wall_names(self) -> list[str]:
+        """As the field "wall" of contacts and surfaces counts them: the deck's [[walls]], then the sides of the space
+        that are walls, as "x_min"."""
+        space = self.deck["space"]
+        return [wall["name"] for wall in self.deck.get("walls", [])] + [
+            f"{axis}_{end}" for axis in "xyz" for end in ("min", "max") if space.get(f"{axis}_{end}") == "wall"]
+
+    @property
     def link_names(self) -> list[str]:
         """Of joints and force elements, in the order in which the field "link" counts them."""
         found = self._series.get("links")

@@ -151,6 +151,18 @@ class ReadingTest(FolderTest):
         np.testing.assert_array_equal(table["x"], snapshot.particles["position"][:, 0])
         self.assertEqual(table.attrs["units"]["velocity_y"], "m/s")
 
+    def test_contacts_name_their_walls(self):
+        deck = scree.Deck.read(ROOT / "input/examples/conveyor.toml")
+        deck["time.end"], deck["output.contacts"] = 1e-4, True
+        deck["particles.grains.size"] = [2, 1, 1]
+        deck["space.z_min"], deck["space.x_min"] = "wall", "wall"
+        found = deck.run(self.folder / "belt", quiet=True)
+        names = [wall["name"] for wall in found.deck["walls"]]
+        self.assertEqual(found.wall_names[: len(names) + 1], [*names, "x_min"])
+        self.assertIn("z_min", found.wall_names)
+        contacts = found.snapshots[-1].contacts
+        self.assertEqual((contacts.count, len(contacts["position"])), (len(contacts["wall"]), 2 * contacts.count))
+
     def test_meshes_of_pyvista(self):
         snapshot = scree.open(DRUM).snapshots[-1]
         blocks = snapshot.to_pyvista()
