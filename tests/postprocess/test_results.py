@@ -415,7 +415,7 @@ class WordsTest(unittest.TestCase):
                     ("contacts/a/contacts", "1", "contacts of it"))}
         self.assertEqual(panels(history, list(history)),
                          [("Force on it", "force [N]", {"contacts/a/fx": "a, x", "contacts/b/fx": "b, x"}),
-                          ("A, contacts of it", "number", {"contacts/a/contacts": "a"})])
+                          ("a, contacts of it", "number", {"contacts/a/contacts": "a"})])
 
 
 if __name__ == "__main__":

@@ -254,7 +254,8 @@ class CommandTest(UrdfTest):
                          + "<transmission/>")
         said = self.command(0, path, "--position", "j=0.2", "-o", self.folder / "other.toml")
         for text in ("not read: <transmission>", "x.dae is no STL, OBJ or PLY, and is left out",
-                     "j starts at 0.2, outside", "no effort from which the stiffness"):
+                     "j starts at 0.2, outside", "no effort from which the stiffness",
+                     "limits of velocity are left out, as a deck has none: of j"):
             self.assertIn(text, said)
         subprocess.run([PROGRAM, "check", self.folder / "other.toml"], check=True, stdout=subprocess.DEVNULL)
         self.assertIn("is there already", self.command(2, path, "-o", self.folder / "other.toml"))

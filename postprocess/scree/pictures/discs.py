@@ -26,7 +26,8 @@ class DiscScene:
     def size(self):
         return figure_size(self.view[1] - self.view[0], self.view[3] - self.view[2])
 
-    def set_up(self, axes, color_map, limit):
+    def set_up(self, axes, coloring):
+        self.coloring = coloring
         axes.set_aspect("equal")
         axes.set_xlim(self.view[:2])
         axes.set_ylim(self.view[2:])
@@ -41,8 +42,7 @@ class DiscScene:
             draw_scale_bar(axes)
         self.shiny = len(self.run.particles.rows(0, "radius")) < MOST_SHINY
         edge = 0.4 if self.shiny else 0.0
-        self.colors = disc_collection(axes, cmap=color_map, edgecolors=EDGE_COLOR, linewidths=edge)
-        self.colors.set_clim(0, limit)
+        self.colors = disc_collection(axes, cmap=coloring.map, norm=coloring.norm, edgecolors=EDGE_COLOR, linewidths=edge)
         self.shapes = disc_collection(axes, facecolors=BODY_COLOR, edgecolors=EDGE_COLOR, linewidths=0.6)
         self.shines = [disc_collection(axes, facecolors="white", alpha=SHINE, linewidths=0) for _ in SHINES]
         unit = SMALL * max(self.view[1] - self.view[0], self.view[3] - self.view[2])
@@ -63,16 +63,21 @@ class DiscScene:
                 continue
             ends = np.array([corners[0][:2], corners[1][:2]])
             ends[:, i // 2] = corners[i % 2][i // 2]
-            axes.plot(*ends.T, styles[kind], color=PALE_INK, linewidth=1.0, zorder=0.7)
+            axes.plot(*ends.T, styles[kind], color=PALE_INK, linewidth=1.0, zorder=0.7, clip_on=self.is_cut(ends))
         for polygon, (point, normal) in solids(self.run.model, low, high):
             on_wall = polygon[np.abs((polygon - point) @ normal) <= 1e-9 * np.linalg.norm(normal) * max(high - low)]
             axes.plot(*on_wall.T, "-", color=EDGE_COLOR, linewidth=3.0, zorder=0.4)  # half of it under what is solid
+
+    def is_cut(self, line):
+        """Whether part of it is outside the picture; where it lies on the edge its whole width shows."""
+        low, high = np.array(self.view[::2]), np.array(self.view[1::2])
+        return bool((line < low).any() or (line > high).any())
 
     def draw(self, snapshot):
         particles, (shapes, sizes) = self.run.particles, self.run.shapes(snapshot)
         points, radii = particles.rows(snapshot, POSITION)[:, :2], particles.rows(snapshot, "radius")
         place_discs(self.colors, points, radii)
-        self.colors.set_array(particles.speed(snapshot))
+        self.colors.set_array(self.coloring.values(particles, snapshot))
         for discs, (size, distance) in zip(self.shines if self.shiny else (), SHINES):
             place_discs(discs, points + distance * radii[:, None] * SHINE_AT, size * radii)
         place_discs(self.shapes, shapes[:, :2], sizes)
