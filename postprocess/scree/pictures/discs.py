@@ -63,15 +63,10 @@ class DiscScene:
                 continue
             ends = np.array([corners[0][:2], corners[1][:2]])
             ends[:, i // 2] = corners[i % 2][i // 2]
-            axes.plot(*ends.T, styles[kind], color=PALE_INK, linewidth=1.0, zorder=0.7, clip_on=self.is_cut(ends))
+            axes.plot(*ends.T, styles[kind], color=PALE_INK, linewidth=1.0, zorder=0.7)
         for polygon, (point, normal) in solids(self.run.model, low, high):
             on_wall = polygon[np.abs((polygon - point) @ normal) <= 1e-9 * np.linalg.norm(normal) * max(high - low)]
             axes.plot(*on_wall.T, "-", color=EDGE_COLOR, linewidth=3.0, zorder=0.4)  # half of it under what is solid
-
-    def is_cut(self, line):
-        """Whether part of it is outside the picture; where it lies on the edge its whole width shows."""
-        low, high = np.array(self.view[::2]), np.array(self.view[1::2])
-        return bool((line < low).any() or (line > high).any())
 
     def draw(self, snapshot):
         particles, (shapes, sizes) = self.run.particles, self.run.shapes(snapshot)
