@@ -28,8 +28,8 @@ try:
 
     import scree
 except ModuleNotFoundError as error:
-    sys.exit(f"error: {HERE}: {error}. Start it by the repository's .venv/bin/python from a place in the repository, or "
-             "install the package: pip install REPOSITORY/postprocess")
+    sys.exit(f"error: {HERE}: {error}. Start it by the repository's .venv/bin/python from a place in it, or install "
+             "the package: pip install REPOSITORY/postprocess")
 
 DECK = "input/examples/conveyor.toml"
 KEYS = {

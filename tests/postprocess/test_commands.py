@@ -28,6 +28,7 @@ import pandas
 import pyvista
 import scree
 from scree.cli import main
+from scree.columns import axis, panels, words
 from scree.differences import apart, differences, matched, over
 from scree.plots import balance_panel, energy_panels, history_figure
 
@@ -98,6 +99,26 @@ class PlotTest(CommandTest):
         said = self.command(WRONG, "plot", NET, "-o", self.folder / "no" / "plot.png")
         self.assertRegex(said, r"^error: .*No such file or directory.*\n$")
         self.command(WRONG, "plot")
+
+
+class WordsTest(unittest.TestCase):
+    def test_columns_have_words(self):
+        for name, unit, description, legend in (
+                ("contacts/bucket/fx", "N", "contact force on the body", "bucket, contact force on the body, x"),
+                ("reactions/pin/torque_z", "N m", "reaction torque", "pin, reaction torque, about z"),
+                ("bodies/top/e0", "1", "orientation, a unit quaternion", "top, orientation, w"),
+                ("coordinates/axle/angle_rate", "rad/s", "its rate", "rate of axle angle"),
+                ("step/contacts", "1", "touching pairs, walls included", "touching pairs")):
+            self.assertEqual(words(name, unit, description).legend(True), legend)
+        self.assertEqual((axis("N"), axis("1"), axis("kg/s")), ("force [N]", "number", "[kg/s]"))
+
+    def test_a_panel_says_what_its_lines_share(self):
+        history = {name: scree.Quantity(np.zeros(2), unit, text) for name, unit, text in
+                   (("contacts/a/fx", "N", "force on it"), ("contacts/b/fx", "N", "force on it"),
+                    ("contacts/a/contacts", "1", "contacts of it"))}
+        self.assertEqual(panels(history, list(history)),
+                         [("Force on it", "force [N]", {"contacts/a/fx": "a, x", "contacts/b/fx": "b, x"}),
+                          ("a, contacts of it", "number", {"contacts/a/contacts": "a"})])
 
 
 class CompareTest(CommandTest):

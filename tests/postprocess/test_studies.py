@@ -91,7 +91,8 @@ class StudyTest(FolderTest):
         self.assertEqual([(results / f"{element}/run_record.json").stat().st_mtime_ns for element in (1, 3)], stamps)
         deck["time.end"] = 0.02
         deck.write(path.with_suffix(".toml"))
-        self.assertEqual(scree.sweep.run_local(path, results, scree=PROGRAM, quiet=True), {})  # each from its checkpoint
+        failed = scree.sweep.run_local(path, results, scree=PROGRAM, quiet=True)  # each from its checkpoint
+        self.assertEqual(failed, {})
         table = scree.sweep.table(path, results, {"steps": lambda run: run.history["step/steps"][-1]})
         self.assertEqual(list(table["steps"]), [20, 20, 40, 40])
 

@@ -44,7 +44,7 @@ def joint(name, kind, parent, child, xyz="0 0 0", rpy="0 0 0", axis="0 1 0", mor
            f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>{more}</joint>\n'
 
 
-LIMITS = '<limit lower="-1" upper="1" effort="10" velocity="1"/>'
+LIMITS = '<limit lower="-1" upper="1" effort="10"/>'
 BASE = '<link name="world"/>\n'
 PENDULUM = BASE + link("upper", 1.2, "0.2 0.01 0", "0.1 0.2 0.3") + link("lower", 0.8, "0.15 0 0.02") \
     + joint("shoulder", "continuous", "world", "upper", "0 0 0.5", "0 0 0.4", "0 1 0.2") \

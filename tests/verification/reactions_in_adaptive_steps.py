@@ -3,8 +3,8 @@ input/choosing.md.
 
     .venv/bin/python tests/verification/reactions_in_adaptive_steps.py build/release/scree
 
-A pendulum swings beside a disc that bounces. The reaction at its pivot is compared to the one that follows from its place
-and speed; a line per choice of steps, "STEPS: up to ERROR N of LARGEST N"."""
+A pendulum swings beside a disc that bounces. The reaction at its pivot is compared to the one that follows from its
+place and speed; a line per choice of steps, "STEPS: up to ERROR N of LARGEST N"."""
 
 import pathlib
 import sys

@@ -59,7 +59,8 @@ class Coloring:
 def extremes(particles: Series, field: str, snapshots: Iterable[int]) -> tuple[float, float]:
     """The smallest and the largest value, but for the last percent at each end."""
     plain = Coloring(field, "", 0, 1)
-    found = [np.percentile(values, [1, 99]) for values in (plain.values(particles, k) for k in snapshots) if len(values)]
+    values = [plain.values(particles, snapshot) for snapshot in snapshots]
+    found = [np.percentile(each, [1, 99]) for each in values if len(each)]
     return (float(min(low for low, _ in found)), float(max(high for _, high in found))) if found else (0.0, 0.0)
 
 

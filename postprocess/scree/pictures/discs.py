@@ -42,7 +42,8 @@ class DiscScene:
             draw_scale_bar(axes)
         self.shiny = len(self.run.particles.rows(0, "radius")) < MOST_SHINY
         edge = 0.4 if self.shiny else 0.0
-        self.colors = disc_collection(axes, cmap=coloring.map, norm=coloring.norm, edgecolors=EDGE_COLOR, linewidths=edge)
+        self.colors = disc_collection(axes, cmap=coloring.map, norm=coloring.norm, edgecolors=EDGE_COLOR,
+                                      linewidths=edge)
         self.shapes = disc_collection(axes, facecolors=BODY_COLOR, edgecolors=EDGE_COLOR, linewidths=0.6)
         self.shines = [disc_collection(axes, facecolors="white", alpha=SHINE, linewidths=0) for _ in SHINES]
         unit = SMALL * max(self.view[1] - self.view[0], self.view[3] - self.view[2])

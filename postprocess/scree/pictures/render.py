@@ -107,7 +107,8 @@ class Picture:
 
     def add_bar(self, axes: Axes, colors: ScalarMappable, label: str, names: Sequence[str] = ()) -> Colorbar:
         """names: of what the colours stand for, from 0 on, in place of numbers."""
-        bar = self.figure.colorbar(colors, ax=axes, extend="neither" if names else "max", shrink=0.5, aspect=25, pad=0.02)
+        extend = "neither" if names else "max"
+        bar = self.figure.colorbar(colors, ax=axes, extend=extend, shrink=0.5, aspect=25, pad=0.02)
         bar.set_label(label, fontsize=12, color=INK)
         bar.ax.tick_params(labelsize=11, color=PALE_INK, labelcolor=INK)
         if names:

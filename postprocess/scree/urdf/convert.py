@@ -153,7 +153,8 @@ def tail(deck: Deck, moving: list[Joint]) -> str:
     low[2] += 0.7 * (high[2] - low[2])  # above the robot, in most cases
     return TAIL.format(body=deck["bodies"][-1]["name"] if "bodies" in deck else "LINK",
                        joint=moving[-1].name if moving else "JOINT",
-                       low=low.round(6).tolist(), high=high.round(6).tolist(), radius=float(f"{(high - low).min() / 50:.1g}"))
+                       low=low.round(6).tolist(), high=high.round(6).tolist(),
+                       radius=float(f"{(high - low).min() / 50:.1g}"))
 
 
 def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Deck:
