@@ -30,6 +30,7 @@ import scree
 from scree.cli import main
 from scree.columns import axis, panels, words
 from scree.differences import apart, differences, matched, over
+from scree.pictures.render import DrawnRun, Look, make_picture
 from scree.plots import balance_panel, energy_panels, history_figure
 
 NET, DRUM = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
@@ -256,6 +257,25 @@ class PictureTest(CommandTest):
     def test_what_is_refused(self):
         self.assertIn("xyz", self.command(WRONG, "picture", NET, "-o", self.folder / "picture.xyz"))
         self.assertIn("for runs in the plane", self.command(WRONG, "picture", DRUM, "--axes"))
+
+
+class ColorTest(CommandTest):
+    def test_of_a_field(self):
+        drawn = DrawnRun(scree.open(NET))
+        scene = make_picture(drawn, [0], Look(color="radius")).scene
+        np.testing.assert_array_equal(scene.coloring.values(drawn.particles, 0), drawn.particles.rows(0, "radius"))
+        picture = make_picture(drawn, [0], Look(color="group"))
+        self.assertEqual([text.get_text() for text in picture.bar.ax.get_yticklabels()], ["block"])
+        said = self.command(WRONG, "picture", NET, "--color", "nothing")
+        self.assertIn("particles have no field nothing; there are ", said)
+
+    def test_what_rests_looks_so(self):
+        drawn = DrawnRun(scree.open(NET))
+        rows = drawn.particles.rows
+        drawn.particles.rows = lambda snapshot, name: rows(snapshot, name) * (name != "velocity")
+        least = 0.1 * np.sqrt(np.linalg.norm(drawn.model.gravity) * 2 * np.median(rows(0, "radius")))
+        top = make_picture(drawn, [0], Look()).scene.colors.norm.vmax
+        self.assertTrue(least <= top <= 1.5 * least, (least, top))
 
 
 class ParaviewTest(CommandTest):

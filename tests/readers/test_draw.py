@@ -219,23 +219,6 @@ class SurfaceTest(unittest.TestCase):
         run = drawn(DRUM)
         self.assertEqual(make_picture(run, [0], look(run, fastest=0.3)).scene.colors.norm.vmax, 0.3)
 
-    def test_colours_of_a_field(self):
-        run = drawn(DRUM)
-        scene = make_picture(run, [0], look(run, color="radius")).scene
-        np.testing.assert_array_equal(scene.coloring.values(run.particles, 0), run.particles.rows(0, "radius"))
-        self.assertIn("radius [m]", scene.coloring.label)
-        picture = make_picture(run, [0], look(run, color="group"))
-        ticks = [text.get_text() for text in picture.bar.ax.get_yticklabels()]
-        self.assertEqual(ticks, run.particles.names("groups"))
-        self.assertIn("particles have no field nothing; there are ", draw(DRUM, "--color", "nothing").stderr)
-
-    def test_what_rests_looks_so(self):
-        run = drawn(DRUM)
-        run.particles.rows = lambda snapshot, name, rows=run.particles.rows: rows(snapshot, name) * (name != "velocity")
-        least = 0.1 * np.sqrt(9.81 * 2 * np.median(run.particles.rows(0, "radius")))
-        top = make_picture(run, [0], look(run)).scene.colors.norm.vmax
-        self.assertTrue(least <= top <= 1.5 * least, (least, top))
-
     @staticmethod
     def image(run, opacity=None):
         with tempfile.TemporaryDirectory() as folder:
