@@ -11,18 +11,25 @@ Without SLURM, two at a time, in place of the second line:
 
     .venv/bin/python jobs/study.py run study.txt results/study --at-once 2
 
-A study of another deck is a copy of this file with other words in capitals.
+A study of another deck is a copy of this file with other words in capitals: anywhere in the repository, or anywhere at
+all where the package is installed (pip install ./postprocess).
 """
 
 import argparse
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "postprocess"))
+HERE = pathlib.Path(__file__).resolve()
+PACKAGES = [above / "postprocess" for above in HERE.parents if (above / "postprocess/scree/__init__.py").exists()]
+sys.path[:0] = map(str, PACKAGES[:1])
 
-import numpy as np
+try:
+    import numpy as np
 
-import scree
+    import scree
+except ModuleNotFoundError as error:
+    sys.exit(f"error: {HERE}: {error}. Start it by the repository's .venv/bin/python from a place in it, or install "
+             "the package: pip install REPOSITORY/postprocess")
 
 DECK = "input/examples/conveyor.toml"
 KEYS = {

@@ -18,8 +18,8 @@ def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="scree-post", description="Looks at what a run of Scree left in its folder.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, (describe, run) in COMMANDS.items():
-        text = (run.__doc__ or "").strip()
-        described = commands.add_parser(name, help=text.splitlines()[0], description=text)
+        short, *more = (run.__doc__ or "").strip().splitlines()
+        described = commands.add_parser(name, help=short, description="\n".join([f"{short}.", *more]))
         describe(described)
         described.set_defaults(run=run)
     chosen = parser.parse_args(words)

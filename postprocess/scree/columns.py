@@ -70,5 +70,6 @@ def panels(history: History, names: Sequence[str]) -> list[tuple[str, str, dict[
         first, same = next(iter(of_names.values())), len({each.what for each in of_names.values()}) == 1
         legends = {name: each.legend(not same) for name, each in of_names.items()}
         title = first.legend(True) if len(of_names) == 1 else first.what if same else group
-        found.append((title[:1].upper() + title[1:], axis(unit), legends))
+        begins_with_name = len(of_names) == 1 and first.owner
+        found.append((title if begins_with_name else title[:1].upper() + title[1:], axis(unit), legends))
     return found

@@ -30,7 +30,8 @@ def place(elements: Any, part: str, path: str) -> int:
         return names.index(part)
     if part.isdigit() and int(part) < len(elements):
         return int(part)
-    raise MissingError(f"{path}: there are {len(elements)} elements, counted from 0" if part.isdigit() else
+    counted = "there is 1 element" if len(elements) == 1 else f"there are {len(elements)} elements"
+    raise MissingError(f"{path}: {counted}, counted from 0" if part.isdigit() else
                        f"{path}: no element is named {part}; there are {', '.join(filter(None, names)) or 'none'}")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from scree.run import Run
 from scree.snapshots import KINDS
 
+ROUND_OFF = 1e-9  # of the time that runs cover: up to so far apart times are the same
 
 @dataclass(frozen=True)
 class Difference:
@@ -52,33 +53,77 @@ def over(largest: float, scale: float) -> float:
     return largest / scale if scale > 0 else np.inf
 
 
+def matched(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of the times [s] that both have but for round-off, in each. Times grow."""
+    if not len(one) or not len(other):
+        return np.empty(0, int), np.empty(0, int)
+
+    def nearest(times: np.ndarray, among: np.ndarray) -> np.ndarray:
+        after = np.searchsorted(among, times).clip(1, max(len(among) - 1, 1))
+        last = np.minimum(after, len(among) - 1)
+        return np.where(np.abs(among[after - 1] - times) <= np.abs(among[last] - times), after - 1, last)
+
+    there = nearest(one, other)
+    span = max(one[-1], other[-1]) - min(one[0], other[0])
+    rows = np.arange(len(one))
+    both = (np.abs(one - other[there]) <= ROUND_OFF * span) & (nearest(other, one)[there] == rows)
+    return rows[both], there[both]
+
+
+def missing(name: str, runs: tuple[Run, Run], times: tuple[np.ndarray, np.ndarray],
+            common: tuple[np.ndarray, np.ndarray]) -> Iterator[Difference]:
+    """What one run alone has. name: of one of these, in the singular."""
+    for run, all_times, shared in zip(runs, times, common):
+        alone = np.delete(all_times, shared)
+        if len(alone) == 1:
+            yield Difference(f"{name}s", f"one more {name} at t = {alone[0]:.9g} s in {run.folder}")
+        elif len(alone):
+            yield Difference(f"{name}s", f"{len(alone)} more {name}s from t = {alone[0]:.9g} s to {alone[-1]:.9g} s in "
+                                         f"{run.folder}")
+
+
+def common_rows(one: Run, other: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Of the history, by time."""
+    if not (one.history.rows and other.history.rows):
+        return np.empty(0, int), np.empty(0, int)
+    return matched(one.history.time.values, other.history.time.values)
+
+
+def common_snapshots(one: Run, other: Run) -> tuple[np.ndarray, np.ndarray]:
+    return matched(one.snapshots.times, other.snapshots.times)
+
+
+def times_of(run: Run) -> np.ndarray:
+    return run.history.time.values if run.history.rows else np.empty(0)
+
+
 def history_differences(one: Run, other: Run) -> Iterator[Difference]:
     a, b = one.history, other.history
     a.read(), b.read()  # all at once
     for name in sorted(set(a) ^ set(b)):
         yield Difference(name, f"in {one.folder if name in a else other.folder} alone")
-    shared = min(a.rows, b.rows)
-    if a.rows != b.rows:
-        yield Difference("history", f"{a.rows} rows against {b.rows}; the first {shared} are compared")
+    rows = common_rows(one, other)
+    yield from missing("row", (one, other), (times_of(one), times_of(other)), rows)
     for name in a:
-        if name not in b:
+        if name not in b or not len(rows[0]):
             continue
-        first, second = a[name].values[:shared], b[name].values[:shared]
+        first, second = a[name].values[rows[0]], b[name].values[rows[1]]
         if same_bits(first, second):
             continue
         gaps = apart(first, second)
         row = int(gaps.argmax())
-        yield Difference(name, "", float(gaps[row]), over(float(gaps[row]), scale_of(first)), float(a.time[row]),
-                         a[name].unit)
+        yield Difference(name, "", float(gaps[row]), over(float(gaps[row]), scale_of(first)),
+                         float(a.time[rows[0][row]]), a[name].unit)
 
 
-def field_difference(one: Run, other: Run, kind: str, name: str, snapshots: int) -> Difference | None:
-    """None where all bits are the same."""
+def field_difference(one: Run, other: Run, kind: str, name: str,
+                     shared: tuple[np.ndarray, np.ndarray]) -> Difference | None:
+    """Of the snapshots that both have; None where all bits are the same."""
     a, b = one.series(kind), other.series(kind)
     assert a is not None and b is not None
     label, largest, time, scale, same = f"{kind}/{name}", -1.0, 0.0, 0.0, True
-    for snapshot in range(snapshots):
-        first, second = a.rows(snapshot, name), b.rows(snapshot, name)
+    for snapshot, of_other in zip(*shared):
+        first, second = a.rows(snapshot, name), b.rows(of_other, name)
         if first.shape != second.shape:
             return Difference(label, f"{len(first)} rows against {len(second)} at t = {a.times[snapshot]:.9g} s")
         scale = max(scale, scale_of(first))
@@ -92,16 +137,16 @@ def field_difference(one: Run, other: Run, kind: str, name: str, snapshots: int)
 
 
 def snapshot_differences(one: Run, other: Run) -> Iterator[Difference]:
-    shared = min(len(one.snapshots), len(other.snapshots))
-    if len(one.snapshots) != len(other.snapshots):
-        yield Difference("snapshots", f"{len(one.snapshots)} against {len(other.snapshots)}; "
-                                      f"the first {shared} are compared")
-    if not shared:
+    shared = common_snapshots(one, other)
+    yield from missing("snapshot", (one, other), (one.snapshots.times, other.snapshots.times), shared)
+    if not len(shared[0]):
         return
-    times = one.snapshots.times[:shared], other.snapshots.times[:shared]
+    times = one.snapshots.times[shared[0]], other.snapshots.times[shared[1]]
     if not same_bits(*times):
         gaps = apart(*times)
-        yield Difference("snapshots", f"times differ by up to {gaps.max():.3g} s")
+        latest = int(gaps.argmax())
+        yield Difference("times of snapshots", "", float(gaps[latest]), over(float(gaps[latest]), scale_of(times[0])),
+                         float(times[0][latest]), "s")
     for kind in KINDS:
         series = one.series(kind), other.series(kind)
         if series[0] is None or series[1] is None:
@@ -118,5 +163,6 @@ def snapshot_differences(one: Run, other: Run) -> Iterator[Difference]:
 
 
 def differences(one: Run, other: Run) -> list[Difference]:
-    """All columns of the history and all fields of the snapshots that have not the same bits; none where all have."""
+    """All columns of the history and all fields of the snapshots that have not the same bits at the times that both
+    runs have, and what one of them has alone; none where all is the same."""
     return [*history_differences(one, other), *snapshot_differences(one, other)]

@@ -26,7 +26,8 @@ AXES = "xyz"
 
 def write_columns(path: Path, columns: Mapping[str, np.ndarray]) -> dict[str, Any]:
     """A particle file of `kind = "file"`: HDF5 where the name ends in .h5 or .hdf5, else CSV, with all bits. Returns
-    what [[particles]] says of it."""
+    what [[particles]] says of it, with the path as it is given here: relative to the current folder, as in a deck made
+    in Python, whose write() puts it right; a deck that was read takes paths relative to its own folder."""
     target = pathlib.Path(path)
     if target.suffix in (".h5", ".hdf5"):
         with h5py.File(target, "w") as file:
@@ -57,12 +58,23 @@ class Grains:
         return Grains(np.concatenate([self.positions, other.positions]), np.concatenate([self.radii, other.radii]))
 
     def write(self, path: Path) -> dict[str, Any]:
-        """As CSV, or HDF5 by a name that ends in .h5. Returns what [[particles]] says of the file."""
+        """As CSV, or HDF5 by a name that ends in .h5. Returns what [[particles]] says of the file, with the path as it
+        is given: see write_columns()."""
         return write_columns(path, dict(zip(AXES, self.positions.T)) | {"radius": self.radii})
 
 
 def volumes(radii: np.ndarray, dimension: int) -> np.ndarray:
     return np.asarray(np.pi * radii**2 if dimension == 2 else 4 / 3 * np.pi * radii**3)
+
+
+def curve(diameters: Numbers, passing: Numbers) -> tuple[np.ndarray, np.ndarray]:
+    """The sieves [m] and the share of the mass between each two of them. Throws ScreeError for what is no curve."""
+    sieves, shares = np.asarray(diameters, dtype=float), np.diff(np.asarray(passing, dtype=float))
+    if len(sieves) < 2 or len(shares) + 1 != len(sieves) or sieves[0] <= 0 or (np.diff(sieves) <= 0).any():
+        raise ScreeError("a sieve curve: diameters must be above 0 and grow, with a share that passes for each")
+    if passing[0] != 0 or passing[-1] != 1 or (shares < 0).any():
+        raise ScreeError("a sieve curve: what passes must grow from 0 for the first sieve to 1 for the last")
+    return sieves, shares
 
 
 def sieve_radii(diameters: Numbers, passing: Numbers, volume: float, dimension: int = 3, seed: int = 1) -> np.ndarray:
@@ -72,11 +84,7 @@ def sieve_radii(diameters: Numbers, passing: Numbers, volume: float, dimension: 
     for the last. Between two sieves mass is spread evenly over the logarithm of the diameter. Each share is met to
     within half a grain.
     """
-    sieves, shares = np.asarray(diameters, dtype=float), np.diff(np.asarray(passing, dtype=float))
-    if len(sieves) < 2 or len(shares) + 1 != len(sieves) or sieves[0] <= 0 or (np.diff(sieves) <= 0).any():
-        raise ScreeError("a sieve curve: diameters must be above 0 and grow, with a share that passes for each")
-    if passing[0] != 0 or passing[-1] != 1 or (shares < 0).any():
-        raise ScreeError("a sieve curve: what passes must grow from 0 for the first sieve to 1 for the last")
+    sieves, shares = curve(diameters, passing)
     random, found = np.random.default_rng(seed), []
     for low, high, share in zip(sieves, sieves[1:], shares):
         ends = np.array([low, high]) ** -dimension  # numbers fall with this power of the diameter
@@ -118,10 +126,23 @@ def place(radii: Numbers, low: Numbers, high: Numbers, gap: float = 0.0, seed: i
     return Grains(places, sizes)
 
 
-def graded(diameters: Numbers, passing: Numbers, low: Numbers, high: Numbers, fraction: float, seed: int = 1) -> Grains:
-    """Grains by a sieve curve (sieve_radii) at random places in a box, of which they fill this fraction."""
+def mean_volume(diameters: Numbers, passing: Numbers, dimension: int) -> float:
+    """Of the grains of a sieve curve [m^3], of discs the area [m^2]."""
+    sieves, shares = curve(diameters, passing)
+    # Between two sieves, where volume is even over the logarithm of the diameter d, the mean of 1 / d^dimension.
+    each = -np.diff(sieves**-dimension) / (dimension * np.diff(np.log(sieves)))
+    return float(1 / (shares @ each) * volumes(np.ones(1) / 2, dimension)[0])
+
+
+def graded(diameters: Numbers, passing: Numbers, low: Numbers, high: Numbers, fraction: float | None = None,
+           seed: int = 1, *, count: int | None = None) -> Grains:
+    """Grains by a sieve curve (sieve_radii) at random places in a box, of which they fill this fraction; or about so
+    many of them, as the curve has on average in that volume."""
+    if (fraction is None) == (count is None):
+        raise ScreeError("graded grains: either fraction or count must be given")
     box = float(np.prod(np.asarray(high, dtype=float) - np.asarray(low, dtype=float)))
-    return place(sieve_radii(diameters, passing, fraction * box, len(low), seed), low, high, seed=seed)
+    volume = count * mean_volume(diameters, passing, len(low)) if count is not None else (fraction or 0.0) * box
+    return place(sieve_radii(diameters, passing, volume, len(low), seed), low, high, seed=seed)
 
 
 def layers(low: Numbers, high: Numbers, heights: Numbers, curves: Sequence[tuple[Numbers, Numbers]], fraction: float,

@@ -26,7 +26,7 @@ from scree.history import TIME, History
 COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"]
 PREFIXED = ("N", "N m", "J", "W", "m", "m/s", "s", "Pa")  # units that take prefixes
 WIDTH = 11  # of a figure [inch]
-LEGEND = 34  # characters of a legend's line
+LEGEND, LEGEND_LINE = 34, 0.235  # characters of a legend's line; its height [inch]
 
 # Columns of the group energy: legend and colour, the same in every plot.
 STORED = {
@@ -145,7 +145,9 @@ def column_panels(history: History, names: Sequence[str]) -> list[Panel]:
     for title, axis, legends in panels(history, names):
         lines = [Line(history[name].values, label) for name, label in legends.items()]
         unit = history[next(iter(legends))].unit
-        found.append(Panel(title, axis, lines, unit=unit if wants_prefix(lines, unit) else ""))
+        rows = sum(len(textwrap.wrap(line.label, LEGEND)) for line in lines if np.any(line.values))
+        height = max(3.0, LEGEND_LINE * rows)  # as high as its legend
+        found.append(Panel(title, axis, lines, height, unit=unit if wants_prefix(lines, unit) else ""))
     return found
 
 

@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
 from scree.errors import ScreeError
-from scree.pictures.render import DrawnRun, Look, make_picture
+from scree.pictures.render import DrawnRun, Look, counted, make_picture
 from scree.plots import column_panels, energy_panels, history_figure
 from scree.run import Run
 
@@ -29,6 +29,8 @@ a { color: #0072b2; text-decoration: none } nav a { margin-right: 1.2rem } .stat
 """
 FEWEST_STAGES = 0.005  # share of the time from which on a stage has a row
 MECHANISM = ("efforts/*/effort", "contacts/*/f[xyz]")  # columns that say what acted on bodies and in joints
+REACTIONS = ("reactions/{}/f[xyz]", "reactions/{}/torque*")
+MOST_JOINTS = 6  # whose reactions are shown
 STEPS = ("step/contacts", "step/length")  # columns that say how the run went
 
 
@@ -73,7 +75,8 @@ def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
     rejected = counts["rejected_error"] + counts["rejected_newton"]
     rows = [
         ("simulated", f"{record['measures']['simulated_time']:.6g} s in {steps:,} steps, {rejected:,} more rejected"),
-        ("model", f"{particles:,} particles, {counts['bodies']:,} bodies, {counts['left']:,} particles have left"),
+        ("model", f"{counted(particles, 'particle', 'particles')}, {counted(counts['bodies'], 'body', 'bodies')}, "
+                  f"{counted(counts['left'], 'particle has', 'particles have')} left"),
         ("took", f"{duration(cost['wall_seconds'])} on the wall{pace}; {cost['peak_memory_kib'] / 1024:,.0f} MiB"),
         ("on", f"{run['ranks']} {'rank' if run['ranks'] == 1 else 'ranks'}, {escaped(run['backend'])}, "
                f"{escaped(record['host']['name'])} ({escaped(record['host']['processor'])})"),
@@ -115,6 +118,18 @@ def pictures(run: Run, look: Look) -> str:
     return heading("The last state") + last
 
 
+def reactions(run: Run) -> str:
+    """Of the first joints."""
+    joints = list(dict.fromkeys(name.split("/")[1] for name in run.history if name.startswith("reactions/")))
+    patterns = [pattern.format(joint) for joint in joints[:MOST_JOINTS] for pattern in REACTIONS]
+    names = [name for name in run.history if any(fnmatch(name, pattern) for pattern in patterns)]
+    if not names:
+        return ""
+    more = f"<p>Of the first {MOST_JOINTS} of {len(joints)} joints.</p>" if len(joints) > MOST_JOINTS else ""
+    return heading("Joint reactions") + more + image(history_figure(run.history, "", names, energies=False),
+                                                     "forces and torques in joints over time")
+
+
 def plots(run: Run) -> str:
     found = ""
     if energy_panels(run.history):
@@ -123,6 +138,7 @@ def plots(run: Run) -> str:
     if acting:
         found += heading("Efforts and contact forces") + image(history_figure(run.history, "", acting, energies=False),
                                                                "efforts and contact forces over time")
+    found += reactions(run)
     steps = [name for name in STEPS if name in run.history]
     if steps and column_panels(run.history, steps):
         found += heading("Contacts and steps") + image(history_figure(run.history, "", steps, energies=False),

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import pathlib
+import warnings
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from scree.errors import ScreeError
+from scree.errors import ScreeError, ScreeWarning
 from scree.history import History, HistoryFile
 from scree.record import came_from, is_going_on, read_deck, read_record
 from scree.series import Series, SeriesFile
@@ -50,9 +51,9 @@ def rows_before(times: np.ndarray, limit: float) -> int:
 class Run:
     """Made by scree.open(). History and snapshots are those that there were then, or at the last refresh()."""
 
-    def __init__(self, folders: Sequence[pathlib.Path]) -> None:
-        """folders: in the order of time; the last one is that of the run itself."""
-        self.folders = list(folders)
+    def __init__(self, folders: Sequence[pathlib.Path], is_part: bool = False) -> None:
+        """folders: in the order of time; the last one is that of the run itself. is_part: its start is left out."""
+        self.folders, self._is_part = list(folders), is_part
         self.refresh()
 
     @property
@@ -65,6 +66,7 @@ class Run:
         self.record: dict[str, Any] | None = read_record(self.folder)
         self.is_going_on = is_going_on(self.folder)
         parts = [Part(folder) for folder in self.folders]
+        self._begin = parts[0].start
         # A later folder's rows take the place of an earlier one's of the same time and after.
         limits = [min((later.start for later in parts[k + 1 :]), default=np.inf) for k in range(len(parts))]
         histories = [(part.history, rows_before(part.history.times, limit))
@@ -101,9 +103,17 @@ class Run:
         return str(self.record["run"]["status"]) if self.record else "ended without a record: killed?"
 
     @property
+    def lost_start(self) -> str:
+        """Says that what was before the first row is not here; empty where all is."""
+        if self._is_part or not 0 < self._begin < np.inf:
+            return ""
+        return f"{self.folders[0]}: begins at t = {self._begin:.9g} s, and what was before is in a folder that no " \
+               f'record names; scree.open("EARLIER", "{self.folders[0].name}") joins the two'
+
+    @property
     def warnings(self) -> list[str]:
-        """Of the record."""
-        return list(self.record["warnings"]) if self.record else []
+        """Of the record, and lost_start."""
+        return [self.lost_start] * bool(self.lost_start) + (list(self.record["warnings"]) if self.record else [])
 
     @property
     def body_names(self) -> list[str]:
@@ -120,6 +130,14 @@ class Run:
     def group_names(self) -> list[str]:
         """Of [[particles]], likewise, as the field "group"; its number where the deck gives none."""
         return self._series["particles"].names("groups") if self._series else []
+
+    @property
+    def wall_names(self) -> list[str]:
+        """As the field "wall" of contacts and surfaces counts them: the deck's [[walls]], then the sides of the space
+        that are walls, as "x_min"."""
+        space = self.deck["space"]
+        return [wall["name"] for wall in self.deck.get("walls", [])] + [
+            f"{axis}_{end}" for axis in "xyz" for end in ("min", "max") if space.get(f"{axis}_{end}") == "wall"]
 
     @property
     def link_names(self) -> list[str]:
@@ -140,7 +158,8 @@ def open_run(folder: Folder, *later: Folder, earlier: bool = True) -> Run:
     """The run in a folder. Where it went on from a checkpoint in another one, what was written there up to then comes
     first; earlier=False leaves that out. Several folders, in the order of time, are joined as they are named.
 
-    Throws ScreeError where there is no such folder or nothing of a run in it, or where the earlier one is not found.
+    Throws ScreeError where there is no such folder or nothing of a run in it, or where the earlier one is not found;
+    warns where the run begins after t = 0 and no earlier one is known.
     """
     folders = [pathlib.Path(path).resolve() for path in (folder, *later)]
     for path in folders:
@@ -149,9 +168,11 @@ def open_run(folder: Folder, *later: Folder, earlier: bool = True) -> Run:
     if earlier and not later:
         while (before := came_from(folders[0], read_record(folders[0]))) and before not in folders:
             folders.insert(0, before)
-    run = Run(folders)
+    run = Run(folders, is_part=not earlier)
     if not (run.history or len(run.snapshots) or run.record or run.is_going_on):
         raise ScreeError(f"{run.folder}: holds no results of a run")
+    if run.lost_start:
+        warnings.warn(run.lost_start, ScreeWarning, stacklevel=2)
     return run
 
 

@@ -54,10 +54,16 @@ def allowed(way: Iterable[Any]) -> str:
     for schema in reversed(list(way)):
         text = schema.get("description", "") if isinstance(schema, Mapping) else ""
         if "\n\n" in text:
-            return str(text).rsplit("\n\n", 1)[1].split(";")[0].rstrip(".")
+            takes = str(text).rsplit("\n\n", 1)[1].split(";")[0].rstrip(".")
+            return above_zero(takes) if any("exclusiveMinimum" in each for each in schema.get("anyOf", [])) else takes
         if isinstance(schema, Mapping) and schema.get("type") in ("array", "object") and text:
             return "a table" if schema["type"] == "object" else "a list of tables"
     return ""
+
+
+def above_zero(takes: str) -> str:
+    """Of a number or a table, where a number has a lower limit of its own."""
+    return takes.replace("a number [", "a number above 0 [").replace("] or a table", "], or a table")
 
 
 def condition(way: Iterable[Any]) -> str:

@@ -47,8 +47,9 @@ class Points(Mapping[str, Quantity]):
 
     @property
     def count(self) -> int:
-        """Of points."""
-        return self._series.count(self._snapshot)
+        """Of particles or the bodies' points, of surfaces' corners, and of contacts and links that of the lines. len()
+        is the number of fields."""
+        return len(self.lines) if self._series.has_lines else self._series.count(self._snapshot)
 
     @property
     def triangles(self) -> np.ndarray:
@@ -160,14 +161,14 @@ class Snapshot:
 
     @property
     def contacts(self) -> Points:
-        """The contacts of particles as lines, those that the deck's output.contacts asked for. Throws ScreeError where
-        it did not."""
+        """The contacts of particles as lines, those that the deck's output.contacts asked for; `.count` of them. The
+        fields "wall" and "body" count the run's wall_names and body_names. Throws ScreeError where it did not."""
         return self._points("contacts")
 
     @property
     def links(self) -> Points:
-        """Joints and force elements as lines. The field "link" counts the run's link_names. Throws ScreeError where
-        there are none, or where output.links is false."""
+        """Joints and force elements as lines, `.count` of them. The field "link" counts the run's link_names. Throws
+        ScreeError where there are none, or where output.links is false."""
         return self._points("links")
 
     def to_pyvista(self) -> pyvista.MultiBlock:
@@ -177,7 +178,8 @@ class Snapshot:
         return pyvista.MultiBlock({kind: self._points(kind).to_pyvista() for kind in self._series})
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{self._series[kind].count(self.number)} points of {kind}" for kind in self._series)
+        counts = ", ".join(f"{self._points(kind).count} {'' if series.has_lines else 'points of '}{kind}"
+                           for kind, series in self._series.items())
         return f"<snapshot {self.number} at t = {self.time:.9g} s: {counts}>"
 
 

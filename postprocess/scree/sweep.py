@@ -6,6 +6,8 @@ from __future__ import annotations
 import itertools
 import os
 import pathlib
+import sys
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 Path = str | os.PathLike[str]
 OWN_OPTIONS = ("--output", "--restart", "--backend")  # of the runner, each with a word
 OF_LATER = CHECKPOINTS[:2]  # checkpoints that a run goes on from
+LOG, ERROR = "log.txt", "error: "  # of a run on this machine; how its line of an error begins
 
 
 def word(value: Any) -> str:
@@ -82,28 +85,46 @@ def is_done(line: str, folder: pathlib.Path) -> bool:
     return kept == line.split() and (folder / "run_record.json").stat().st_mtime > deck.stat().st_mtime
 
 
-def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto",
-              scree: Path | None = None) -> dict[int, str]:
+def run_line(line: str, folder: pathlib.Path, backend: str, where: pathlib.Path) -> str:
+    """Returns what became of it: "done", or that it was. Throws ScreeError with the program's message, which the log
+    has, too."""
+    if is_done(line, folder):
+        return "done before"
+    checkpoints = sorted((folder / name for name in OF_LATER if (folder / name).exists()),
+                         key=lambda file: file.stat().st_mtime)
+    begun = ["--restart", checkpoints[-1]] if checkpoints else ["--overwrite"]
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / LOG, "a", encoding="utf-8") as log:
+        try:
+            program.call([where, "run", *line.split(), "--output", folder, "--backend", backend, *begun], {}, log)
+        except ScreeError as error:
+            log.write(f"{ERROR}{error}\n")
+            raise
+    return "done"
+
+
+def run_local(path: Path, results: Path, at_once: int = 1, backend: str = "auto", scree: Path | None = None,
+              quiet: bool = False) -> dict[int, str]:
     """Runs the lines of the list on this machine, so many at a time, each on one rank, to RESULTS/N, with its log in
-    RESULTS/N.log. As in an array what is done is left as it is, and what has a checkpoint goes on from it. Returns the
-    messages of the runs that failed, by element; the others go on."""
-    where = program.required(scree)
-    base = pathlib.Path(results)
-    base.mkdir(parents=True, exist_ok=True)
+    RESULTS/N/log.txt. As in an array what is done is left as it is, and what has a checkpoint goes on from it. Returns
+    the messages of the runs that failed, by element; the others go on. quiet: without a line for each as it ends, on
+    the standard error."""
+    where, lines = program.required(scree), dict(elements(path))
+    ended = itertools.count(1)
 
     def run(element: int, line: str) -> None:
-        folder = base / str(element)
-        if is_done(line, folder):
-            return
-        checkpoints = sorted((folder / name for name in OF_LATER if (folder / name).exists()),
-                             key=lambda file: file.stat().st_mtime)
-        begun = ["--restart", checkpoints[-1]] if checkpoints else ["--overwrite"]
-        with open(base / f"{element}.log", "a") as log:
-            program.call([where, "run", *line.split(), "--output", folder, "--backend", backend, *begun], {}, log)
+        start = time.monotonic()
+        word = "failed"
+        try:
+            word = run_line(line, pathlib.Path(results) / str(element), backend, where)
+        finally:
+            if not quiet:
+                print(f"{next(ended)} of {len(lines)}: run {element} {word}, {time.monotonic() - start:.1f} s",
+                      file=sys.stderr, flush=True)
 
     failed: dict[int, str] = {}
     with ThreadPoolExecutor(at_once) as pool:
-        begun: dict[int, Future[None]] = {element: pool.submit(run, element, line) for element, line in elements(path)}
+        begun: dict[int, Future[None]] = {element: pool.submit(run, element, line) for element, line in lines.items()}
         try:
             for element, future in begun.items():
                 try:
@@ -129,18 +150,31 @@ def number(text: str) -> float | str:
         return text
 
 
-def measured(measure: Callable[[Run], Any], run: Run) -> Any:
+def measured(name: str, measure: Callable[[Run], Any], run: Run) -> Any:
     """None where the run has not got so far that there is anything to measure."""
     try:
         return measure(run)
-    except (ScreeError, KeyError, IndexError):
+    except (ScreeError, KeyError, IndexError) as error:
+        if run.status == "done":
+            raise ScreeError(f'{run.folder}: measure "{name}": {error}') from error
         return None
+
+
+def status_without_results(folder: pathlib.Path) -> str:
+    """By the log of run_local, where there is one."""
+    try:
+        lines = (folder / LOG).read_text(encoding="utf-8").splitlines()
+    except FileNotFoundError:
+        return "not begun"
+    errors = [line.removeprefix(ERROR) for line in lines if line.startswith(ERROR)]
+    return f"failed: {errors[-1]}" if errors else "not begun"
 
 
 def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]]) -> pandas.DataFrame:
     """A row for each line of the list that names a deck, by its number from 1: the deck, where it is not the same in
-    all, what the line sets, the run's status, and what each measure says of it; a run that has no results yet has the
-    status "not begun" and no measures, and one that has not got far enough for a measure has none of it.
+    all, what the line sets, the run's status, and what each measure says of it. A run without results has the status
+    "not begun", or "failed" with the message where run_local was refused, and no measures; one that is not done and has
+    not got far enough for a measure has none of it. Throws ScreeError where a measure fails on a run that is done.
 
         scree.sweep.table("LIST", "results/study", {"force": lambda run: run.history["contacts/floor/fy"][-1]})
     """
@@ -156,9 +190,9 @@ def table(path: Path, results: Path, measures: Mapping[str, Callable[[Run], Any]
         try:
             run = open_run(folder)
         except ScreeError:
-            row["status"] = "not begun"
+            row["status"] = status_without_results(folder)
         else:
             row["status"] = run.status
-            row |= {name: measured(measure, run) for name, measure in measures.items()}
+            row |= {name: measured(name, measure, run) for name, measure in measures.items()}
         rows[element] = row
     return pandas.DataFrame.from_dict(rows, orient="index").rename_axis("element")

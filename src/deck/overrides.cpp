@@ -63,7 +63,8 @@ toml::table& element(toml::array& list, const std::string& id, const std::string
   const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), number);
   const bool numeric = error == std::errc() && end == id.data() + id.size();
   if (numeric && number < list.size() && list[number].is_table()) return *list[number].as_table();
-  if (numeric) throw InputError(fmt::format("{}: there are {} elements, counted from 0", place, list.size()));
+  const std::string count = list.size() == 1 ? "is 1 element" : fmt::format("are {} elements", list.size());
+  if (numeric) throw InputError(fmt::format("{}: there {}, counted from 0", place, count));
   throw InputError(fmt::format("{}: no element is named \"{}\"{}", place, id, suggestion(id, names)));
 }
 

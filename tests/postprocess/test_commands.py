@@ -28,7 +28,9 @@ import pandas
 import pyvista
 import scree
 from scree.cli import main
-from scree.differences import apart, differences, over
+from scree.columns import axis, panels, words
+from scree.differences import apart, differences, matched, over
+from scree.pictures.render import DrawnRun, Look, make_picture
 from scree.plots import balance_panel, energy_panels, history_figure
 
 NET, DRUM = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
@@ -100,6 +102,26 @@ class PlotTest(CommandTest):
         self.command(WRONG, "plot")
 
 
+class WordsTest(unittest.TestCase):
+    def test_columns_have_words(self):
+        for name, unit, description, legend in (
+                ("contacts/bucket/fx", "N", "contact force on the body", "bucket, contact force on the body, x"),
+                ("reactions/pin/torque_z", "N m", "reaction torque", "pin, reaction torque, about z"),
+                ("bodies/top/e0", "1", "orientation, a unit quaternion", "top, orientation, w"),
+                ("coordinates/axle/angle_rate", "rad/s", "its rate", "rate of axle angle"),
+                ("step/contacts", "1", "touching pairs, walls included", "touching pairs")):
+            self.assertEqual(words(name, unit, description).legend(True), legend)
+        self.assertEqual((axis("N"), axis("1"), axis("kg/s")), ("force [N]", "number", "[kg/s]"))
+
+    def test_a_panel_says_what_its_lines_share(self):
+        history = {name: scree.Quantity(np.zeros(2), unit, text) for name, unit, text in
+                   (("contacts/a/fx", "N", "force on it"), ("contacts/b/fx", "N", "force on it"),
+                    ("contacts/a/contacts", "1", "contacts of it"))}
+        self.assertEqual(panels(history, list(history)),
+                         [("Force on it", "force [N]", {"contacts/a/fx": "a, x", "contacts/b/fx": "b, x"}),
+                          ("a, contacts of it", "number", {"contacts/a/contacts": "a"})])
+
+
 class CompareTest(CommandTest):
     def change(self, folder, name, dataset, row, by):
         with h5py.File(folder / name, "r+") as file:
@@ -137,6 +159,22 @@ class CompareTest(CommandTest):
         self.assertIn(f"energy/total: in {NET} alone", said)
         self.assertIn(f"bodies: in {NET} alone", said)
         self.assertIn("drum", self.command(DIFFERENT, "compare", NET, DRUM))
+
+    def test_times_that_only_one_run_has(self):
+        """What follows is compared at the times of both, not by number."""
+        other = self.copy_of_the_net()
+        with h5py.File(other / "history.h5", "r+") as file:
+            for column in scree.files.datasets(file).values():
+                kept = np.delete(column[:], [5, 6])
+                column.resize(kept.shape)
+                column[:] = kept
+            file["step/time"][3] += 1e-12
+        said = self.command(DIFFERENT, "compare", NET, other, "--tolerance", "1e-9")
+        self.assertIn(f"rows: 2 more rows from t = 0.005 s to 0.006 s in {NET}\n", said)
+        self.assertIn("1 difference (999 rows", said)
+        first, second = matched(np.array([0, 0.1, 0.2, 0.3]), np.array([0, 0.2 + 1e-11, 0.25, 0.3, 0.4]))
+        self.assertEqual((first.tolist(), second.tolist()), ([0, 2, 3], [0, 1, 3]))
+        self.assertEqual([len(found) for found in matched(np.array([0.5]), np.array([0.5]))], [1, 1])
 
     def test_numbers_that_are_none(self):
         nan, inf = np.nan, np.inf
@@ -219,6 +257,25 @@ class PictureTest(CommandTest):
     def test_what_is_refused(self):
         self.assertIn("xyz", self.command(WRONG, "picture", NET, "-o", self.folder / "picture.xyz"))
         self.assertIn("for runs in the plane", self.command(WRONG, "picture", DRUM, "--axes"))
+
+
+class ColorTest(CommandTest):
+    def test_of_a_field(self):
+        drawn = DrawnRun(scree.open(NET))
+        scene = make_picture(drawn, [0], Look(color="radius")).scene
+        np.testing.assert_array_equal(scene.coloring.values(drawn.particles, 0), drawn.particles.rows(0, "radius"))
+        picture = make_picture(drawn, [0], Look(color="group"))
+        self.assertEqual([text.get_text() for text in picture.bar.ax.get_yticklabels()], ["block"])
+        said = self.command(WRONG, "picture", NET, "--color", "nothing")
+        self.assertIn("particles have no field nothing; there are ", said)
+
+    def test_what_rests_looks_so(self):
+        drawn = DrawnRun(scree.open(NET))
+        rows = drawn.particles.rows
+        drawn.particles.rows = lambda snapshot, name: rows(snapshot, name) * (name != "velocity")
+        least = 0.1 * np.sqrt(np.linalg.norm(drawn.model.gravity) * 2 * np.median(rows(0, "radius")))
+        top = make_picture(drawn, [0], Look()).scene.colors.norm.vmax
+        self.assertTrue(least <= top <= 1.5 * least, (least, top))
 
 
 class ParaviewTest(CommandTest):

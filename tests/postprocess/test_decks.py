@@ -164,6 +164,12 @@ class CheckTest(FolderTest):
         with self.assertRaisesRegex(scree.ScreeError, r"box.toml: bodies.lid.mass = -1: must be a number above 0 \["):
             deck.check(PROGRAM)
 
+    def test_a_number_where_a_table_may_stand(self):
+        deck = scree.Deck.read(DECK)
+        deck["particles.block.radius"] = -1
+        self.assertEqual(deck.problems(),
+                         ["particles.block.radius = -1: must be a number above 0 [m], or a table with a kind"])
+
     def test_what_only_the_program_knows(self):
         deck = scree.Deck.read(DECK)
         deck["joints.left_pin.bodies"] = ["ground", "net.20"]

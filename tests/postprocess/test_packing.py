@@ -71,6 +71,10 @@ class PackingTest(FolderTest):
             deck.folder = self.folder
             deck.add("particles", name="grains", density=2650.0, **grains.write(self.folder / name))
             self.assertIn(f"particles      {len(grains)},", deck.check(PROGRAM))
+        for corners, dimension in ((([0] * 3, [0.05] * 3), 3), (([0] * 2, [0.2] * 2), 2)):
+            self.assertLess(abs(len(packing.graded(SIEVES, PASSING, *corners, count=1000)) / 1000 - 1), 0.05)
+        with self.assertRaisesRegex(scree.ScreeError, "either fraction or count"):
+            packing.graded(SIEVES, PASSING, low, high)
         discs = packing.graded([0.01, 0.02], [0, 1], [0, 0], [0.2, 0.2], fraction=0.4)
         self.check_places(discs, [0, 0], [0.2, 0.2])
         flat = box(2, 0.2)

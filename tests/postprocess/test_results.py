@@ -23,7 +23,6 @@ sys.path.insert(0, str(ROOT / "postprocess"))
 
 import scree
 from scree import files
-from scree.columns import axis, panels, words
 
 PROGRAM, DRUM = os.environ["SCREE"], pathlib.Path(sys.argv[1]).resolve()
 DECK = ROOT / "input/paper/net_9.toml"
@@ -110,6 +109,12 @@ class ReadingTest(FolderTest):
         self.assertEqual(np.max(energy), energy.values.max())
         self.assertEqual((2 * energy - energy)[-1], energy[-1])
         self.assertIn("31 values in J", repr(energy))
+        for name in ("max", "min", "mean", "sum", "std", "argmax", "argmin", "tolist"):
+            self.assertEqual(getattr(energy, name)(), getattr(energy.values, name)())
+        positions = scree.open(self.results).snapshots[-1].particles["position"]
+        self.assertEqual((positions.T.shape, positions.mean(axis=0).shape), ((3, len(positions)), (3,)))
+        self.assertEqual((energy.astype(np.float32).dtype, energy.ndim, energy.size), (np.float32, 1, 31))
+        self.assertFalse(np.shares_memory(energy.copy(), energy.values))
 
     def test_a_table_of_the_history(self):
         frame = scree.open(self.results).to_dataframe("energy/*", "step/time")
@@ -144,6 +149,17 @@ class ReadingTest(FolderTest):
         np.testing.assert_array_equal(table["velocity_y"], velocity[:, 1])
         np.testing.assert_array_equal(table["x"], snapshot.particles["position"][:, 0])
         self.assertEqual(table.attrs["units"]["velocity_y"], "m/s")
+
+    def test_contacts_name_their_walls(self):
+        deck = scree.Deck.read(ROOT / "input/examples/conveyor.toml")
+        deck["time.end"], deck["output.contacts"] = 1e-4, True
+        deck["particles.grains.size"] = [2, 1, 1]
+        deck["space.z_min"], deck["space.x_min"] = "wall", "wall"
+        found = deck.run(self.folder / "belt", quiet=True)
+        names = [wall["name"] for wall in found.deck["walls"]]
+        self.assertEqual(found.wall_names, [*names, "x_min", "y_min", "y_max", "z_min"])
+        contacts = found.snapshots[-1].contacts
+        self.assertEqual(len(contacts["position"]), 2 * contacts.count)
 
     def test_meshes_of_pyvista(self):
         snapshot = scree.open(DRUM).snapshots[-1]
@@ -231,6 +247,12 @@ class RestartTest(FolderTest):
         self.compare(scree.open(self.folder / "first", self.folder / "second", self.folder / "third"), whole)
         alone = scree.open(self.folder / "third", earlier=False)
         self.assertEqual((alone.history.rows, len(alone.snapshots)), (10, 1))
+        self.assertEqual(alone.warnings, joined.warnings)
+        run("third", "time.end=0.04", words=("--restart", "third/checkpoint_end.h5"), cwd=self.folder)
+        with self.assertWarnsRegex(scree.ScreeWarning, r'third: begins at t = 0.021 s, .*open\("EARLIER", "third"\)'):
+            within = scree.open(self.folder / "third")  # its record names itself
+        self.assertIn("begins at t = 0.021 s", within.warnings[0])
+        run("third", words=("--restart", "second/checkpoint_end.h5", "--overwrite"), cwd=self.folder)
         shutil.rmtree(self.folder / "second")
         with self.assertRaisesRegex(scree.ScreeError, "went on from second/checkpoint_end.h5, which is not found"):
             scree.open(self.folder / "third")
@@ -372,26 +394,6 @@ class PageTest(FolderTest):
                     self.assertIn(unit, re.split(r", | or ", units), name)
                 met.update(fitting)
         self.assertEqual(set(patterns) - met, set())
-
-
-class WordsTest(unittest.TestCase):
-    def test_columns_have_words(self):
-        for name, unit, description, legend in (
-                ("contacts/bucket/fx", "N", "contact force on the body", "bucket, contact force on the body, x"),
-                ("reactions/pin/torque_z", "N m", "reaction torque", "pin, reaction torque, about z"),
-                ("bodies/top/e0", "1", "orientation, a unit quaternion", "top, orientation, w"),
-                ("coordinates/axle/angle_rate", "rad/s", "its rate", "rate of axle angle"),
-                ("step/contacts", "1", "touching pairs, walls included", "touching pairs")):
-            self.assertEqual(words(name, unit, description).legend(True), legend)
-        self.assertEqual((axis("N"), axis("1"), axis("kg/s")), ("force [N]", "number", "[kg/s]"))
-
-    def test_a_panel_says_what_its_lines_share(self):
-        history = {name: scree.Quantity(np.zeros(2), unit, text) for name, unit, text in
-                   (("contacts/a/fx", "N", "force on it"), ("contacts/b/fx", "N", "force on it"),
-                    ("contacts/a/contacts", "1", "contacts of it"))}
-        self.assertEqual(panels(history, list(history)),
-                         [("Force on it", "force [N]", {"contacts/a/fx": "a, x", "contacts/b/fx": "b, x"}),
-                          ("A, contacts of it", "number", {"contacts/a/contacts": "a"})])
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@
 
 Needs postprocess/requirements.txt."""
 
+import contextlib
+import io
 import os
 import pathlib
 import subprocess
@@ -45,13 +47,15 @@ class ListTest(FolderTest):
         for element in (2, 4):
             subprocess.run([PROGRAM, "run", *lines[element - 2].split(), "--set", "time.end=0.01", "--output",
                             study / str(element)], check=True, timeout=LIMIT, stdout=subprocess.DEVNULL)
-        table = scree.sweep.table(path, study, {"steps": lambda run: run.history["step/steps"][-1],
-                                                "nothing": lambda run: run.history["nothing"][-1]})
+        steps = {"steps": lambda run: run.history["step/steps"][-1]}
+        table = scree.sweep.table(path, study, steps)
         self.assertEqual(list(table.index), [2, 3, 4, 5])
         self.assertEqual(list(table["status"]), ["done", "not begun", "done", "not begun"])
         self.assertEqual((table["steps"][2], table["steps"][4], table["time.step"][4]), (10, 20, 5e-4))
         self.assertTrue(np.isnan(table["steps"][5]))
-        self.assertTrue(table["nothing"].isna().all())
+        for nothing in (lambda run: run.history["nothing"][-1], lambda run: run.history["step/steps"][100]):
+            with self.assertRaisesRegex(scree.ScreeError, 'study/2: measure "nothing": '):
+                scree.sweep.table(path, study, steps | {"nothing": nothing})
 
     def test_words_of_a_list_have_no_blanks(self):
         self.assertEqual([scree.sweep.word(value) for value in (True, 2, [0.5, 0], "hht")],
@@ -67,20 +71,28 @@ class StudyTest(FolderTest):
         deck.update(QUICK)
         keys = {"time.step": [1e-3, 5e-4], "bodies.net.mass": [1.0, -1]}
         self.assertEqual(scree.sweep.write_list(path, deck, keys), 4)
-        failed = scree.sweep.run_local(path, results, at_once=2, scree=PROGRAM)
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            failed = scree.sweep.run_local(path, results, at_once=2, scree=PROGRAM)
+        for line in (" of 4: run 1 done, ", " of 4: run 2 failed, "):
+            self.assertIn(line, said.getvalue())
         self.assertEqual(sorted(failed), [2, 4])
         self.assertIn("bodies.net.mass must be a number above 0", failed[2])
         table = scree.sweep.table(path, results, {"steps": lambda run: run.history["step/steps"][-1]})
         self.assertEqual(list(table), ["time.step", "bodies.net.mass", "status", "steps"])
-        self.assertEqual(list(table["status"]), ["done", "not begun", "done", "not begun"])
+        self.assertEqual(list(table["status"][[1, 3]]), ["done", "done"])
+        self.assertRegex(table["status"][2], "^failed: .*bodies.net.mass must be a number above 0")
         self.assertEqual(list(table["steps"].dropna()), [10, 20])
+        told = subprocess.run([PROGRAM, "status", *sorted(results.iterdir())], capture_output=True, text=True)
+        self.assertEqual([name in told.stdout for name in ("study/1 ", "study/3 ", "log")], [True, True, False])
         stamps = [(results / f"{element}/run_record.json").stat().st_mtime_ns for element in (1, 3)]
         path.write_text(path.read_text().replace("=-1", "=2.0"))
-        self.assertEqual(scree.sweep.run_local(path, results, scree=PROGRAM), {})
+        self.assertEqual(scree.sweep.run_local(path, results, scree=PROGRAM, quiet=True), {})
         self.assertEqual([(results / f"{element}/run_record.json").stat().st_mtime_ns for element in (1, 3)], stamps)
         deck["time.end"] = 0.02
         deck.write(path.with_suffix(".toml"))
-        self.assertEqual(scree.sweep.run_local(path, results, scree=PROGRAM), {})  # each from its checkpoint
+        failed = scree.sweep.run_local(path, results, scree=PROGRAM, quiet=True)  # each from its checkpoint
+        self.assertEqual(failed, {})
         table = scree.sweep.table(path, results, {"steps": lambda run: run.history["step/steps"][-1]})
         self.assertEqual(list(table["steps"]), [20, 20, 40, 40])
 
@@ -95,10 +107,22 @@ class StudyTest(FolderTest):
         table = scree.sweep.table(path, self.folder / "none", {})
         self.assertEqual([list(table[name]) for name in table], [["block_1", "block_2"], ["not begun"] * 2])
 
+    def test_a_copy_of_the_example(self):
+        """Anywhere in the repository; outside, without the package, it says what to do."""
+        text = (ROOT / "jobs/study.py").read_text()
+        inside = self.folder / "tree/deep/down"
+        inside.mkdir(parents=True)
+        (self.folder / "tree/postprocess").symlink_to(ROOT / "postprocess")
+        for place, code, words in ((inside, 0, ""), (self.folder, 1, "pip install REPOSITORY/postprocess")):
+            (place / "mine.py").write_text(text)
+            found = subprocess.run([sys.executable, place / "mine.py", "--help"], capture_output=True, text=True)
+            self.assertEqual(found.returncode, code, found.stderr)
+            self.assertIn(words, found.stderr)
+
     def test_the_example_from_list_to_table(self):
         def study(*words):
             subprocess.run([sys.executable, ROOT / "jobs/study.py", *words], check=True, cwd=ROOT, timeout=LIMIT,
-                           stdout=subprocess.DEVNULL)
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
         path, results, csv = (str(self.folder / name) for name in ("study.txt", "results", "study.csv"))
         study("write", path, "--set", "time.end=2e-4", "particles.grains.size=[2,2,1]")

@@ -44,7 +44,7 @@ def joint(name, kind, parent, child, xyz="0 0 0", rpy="0 0 0", axis="0 1 0", mor
            f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>{more}</joint>\n'
 
 
-LIMITS = '<limit lower="-1" upper="1" effort="10" velocity="1"/>'
+LIMITS = '<limit lower="-1" upper="1" effort="10"/>'
 BASE = '<link name="world"/>\n'
 PENDULUM = BASE + link("upper", 1.2, "0.2 0.01 0", "0.1 0.2 0.3") + link("lower", 0.8, "0.15 0 0.02") \
     + joint("shoulder", "continuous", "world", "upper", "0 0 0.5", "0 0 0.4", "0 1 0.2") \
@@ -254,7 +254,8 @@ class CommandTest(UrdfTest):
                          + "<transmission/>")
         said = self.command(0, path, "--position", "j=0.2", "-o", self.folder / "other.toml")
         for text in ("not read: <transmission>", "x.dae is no STL, OBJ or PLY, and is left out",
-                     "j starts at 0.2, outside", "no effort from which the stiffness"):
+                     "j starts at 0.2, outside", "no effort from which the stiffness",
+                     "limits of velocity are left out, as a deck has none: of j"):
             self.assertIn(text, said)
         subprocess.run([PROGRAM, "check", self.folder / "other.toml"], check=True, stdout=subprocess.DEVNULL)
         self.assertIn("is there already", self.command(2, path, "-o", self.folder / "other.toml"))

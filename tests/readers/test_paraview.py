@@ -74,10 +74,18 @@ def check_net(folder):
     view = scene.view
     require(view.ViewTime == times_of(folder)[-1], f"{folder}: not at the last time")
     require(view.CameraParallelProjection and list(view.CameraViewUp) == [0, 1, 0], f"{folder}: not seen along z")
-    area = is_orange(image).sum() * (2 * view.CameraParallelScale / SIZE[1]) ** 2
-    require(abs(area / (20 * np.pi * 0.05**2) - 1) < 0.15, f"{folder}: {area} m^2 of bodies are not 20 discs of 5 cm")
+    beside = is_orange(image[:, : int(0.85 * SIZE[0])])  # the scales, which have orange, too
+    share = beside.sum() * (2 * view.CameraParallelScale / SIZE[1]) ** 2 / (20 * np.pi * 0.05**2)
+    require(0.3 < share < 1.1, f"{folder}: {share} of 20 discs of 5 cm are seen; lines of links lie over them")
     _, early = shown(folder, time=0.101)
     require(abs(simple.GetActiveView().ViewTime - 0.1) < 1e-9, f"{folder}: not at the snapshot nearest to 0.101 s")
+    scene, _ = shown(folder, field="group")
+    places = [bar.Position[1] for bar in scene.bars]
+    require(len(places) == 3 and min(places) > 0, f"{folder}: scales stand at {places}")
+    names = list(simple.GetColorTransferFunction("group").Annotations)
+    require(names == ["0", "block"], f"{folder}: groups have the names {names}")
+    scene, _ = shown(folder, contacts=False)
+    require("contact forces" not in {name for name, _ in simple.GetSources()}, f"{folder}: shows contacts")
     require((np.abs(early - image).max(axis=2) > 40).mean() > 0.02, f"{folder}: looks the same at 0.1 s")
 
 

@@ -4,7 +4,7 @@ import argparse
 import pathlib
 
 from scree.cli import add_folder
-from scree.differences import differences
+from scree.differences import common_rows, common_snapshots, differences
 from scree.run import Run, open_run
 
 
@@ -29,9 +29,10 @@ def state_hash(opened: Run) -> str:
 def run(words: argparse.Namespace) -> int:
     """Whether two runs have the same results, bit for bit
 
-    Compares all columns of the history and all fields of all snapshots, and prints a line for each that differs: the
-    largest difference, its share of the largest value in the first run, and when that is. The exit code is 1 where
-    there is such a line, or, with --tolerance, one past it.
+    Compares all columns of the history and all fields of the snapshots at the times that both runs have, and prints a
+    line for each that differs: the largest difference, its share of the largest value in the first run, and when that
+    is; and a line for what one run has alone. The exit code is 1 where there is a line, or, with --tolerance, one past
+    it.
     """
     one, other = open_run(words.folder), open_run(words.other)
     found = differences(one, other)
@@ -42,13 +43,13 @@ def run(words: argparse.Namespace) -> int:
             print(f"within the tolerance: {len(passed)} columns and fields")
     for each in found:
         print(each)
-    compared = f"{min(one.history.rows, other.history.rows)} rows of the history, " \
-               f"{min(len(one.snapshots), len(other.snapshots))} snapshots"
+    compared = f"{len(common_rows(one, other)[0])} rows of the history, " \
+               f"{len(common_snapshots(one, other)[0])} snapshots"
     hashes = state_hash(one), state_hash(other)
     if all(hashes):
         print(f"state of the last checkpoint: {'the same' if hashes[0] == hashes[1] else 'different'}")
     if found:
-        print(f"{len(found)} differences ({compared})")
+        print(f"{len(found)} {'difference' if len(found) == 1 else 'differences'} ({compared})")
         return 1
     print(f"{'the same' if words.tolerance is not None else 'the same bits'} ({compared})")
     return 0

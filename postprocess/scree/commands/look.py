@@ -40,6 +40,9 @@ def add_look(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--opacity", type=share, metavar="SHARE",
                         help="of meshes on bodies, 3D with VTK only: from 0 to 1, where nothing shows through; "
                              "default: 0.1 of drums, pipes and meshes from files, else 1")
+    parser.add_argument("--color", metavar="FIELD",
+                        help="of the particles, such as group, material, radius or force, of a vector its length; "
+                             "default: their speed")
     parser.add_argument("--fastest", type=positive, metavar="SPEED",
                         help="upper end of the colour scale [m/s]; default: of the fastest particles in the pictures")
     parser.add_argument("--no-vtk", action="store_true", help="draw spheres without VTK, as shaded discs")
@@ -52,5 +55,6 @@ def add_frames(parser: argparse.ArgumentParser) -> None:
 def chosen_look(words: argparse.Namespace) -> Look:
     from scree.pictures.render import Look
 
-    return Look(view=words.view, axes=words.axes, opacity=words.opacity, fastest=words.fastest,
+    chosen = {"color": words.color} if words.color else {}
+    return Look(**chosen, view=words.view, axes=words.axes, opacity=words.opacity, fastest=words.fastest,
                 surfaces=words.surfaces, with_vtk=not words.no_vtk)

@@ -15,7 +15,7 @@ def describe(parser: argparse.ArgumentParser) -> None:
 
 
 def run(words: argparse.Namespace) -> int:
-    """One HTML page of the run: record, warnings, last state, energies, timing, deck
+    """One HTML page of the run: record, warnings, last state, energies, forces, timing, deck
 
     Everything is in the one file, so that it can be sent.
     """

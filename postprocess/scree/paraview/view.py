@@ -1,7 +1,7 @@
 """Shows the results of a run in ParaView: particles and bodies as lit spheres of true size, meshes with the pressure on
 them, joints and force elements coloured by force, contacts as tubes, the space, time and title.
 
-    pvbatch view.py RESULT_DIR -o picture.png [--time T] [--color FIELD] [--size WIDTH HEIGHT]
+    pvbatch view.py RESULT_DIR -o picture.png [--time T] [--color FIELD] [--no-contacts] [--size WIDTH HEIGHT]
     paraview --script=RESULT_DIR/view.py            # made by scree-post paraview RESULT_DIR; File > Load State, too
 
 As a macro it shows the results that the active source was opened from. ParaView 5.11 or newer; in those before 5.13 the
@@ -25,11 +25,14 @@ GLYPHS = 20000  # particles up to which each is a sphere of triangles; more are 
 SAMPLES = 5  # times that are looked at for the colour scales
 ROOM = 0.84  # share of the picture for what is shown
 STRAYS = 1  # percentage of the particles, at each end of each axis, that need not be in the picture
+SEEN_THROUGH = 0.55  # opacity of particles in which contacts are shown
 HOLLOW, GLASS = ("drum", "pipe", "file"), 0.35  # kinds of meshes that may hold particles; opacity where there are such
 AZIMUTH, ELEVATION = 30, 26  # of the eye in space [degrees]
 SPEEDS = "ead9ae a9cdb0 45a3b3 2364a8 1b2560"  # of particles, from rest on; each step is darker
 FORCES = "d9d9d9 f6c37c ee8a3a cc3d26 7a0c1e"
 PRESSURES = "f3b27a e66100 b52b10 5c0a14"  # of meshes: from the colour of bodies on
+CATEGORIES = "0072b2 f0e442 009e73 cc79a7 56b4e9 e69f00 606060 d55e00"  # of groups and materials, then the same again
+NAMED = {"group": "particles", "material": "materials"}  # fields that count the names of a list of the deck's
 BODY, INK, PALE, FLOOR = (0.90, 0.38, 0.0), (0.15, 0.15, 0.15), (0.6, 0.6, 0.6), (0.85, 0.85, 0.85)
 UNITS = {"velocity": "m/s", "angular_velocity": "rad/s", "force": "N", "reaction": "N", "normal_force": "N",
          "pressure": "Pa", "shear": "Pa", "radius": "m", "mass": "kg", "impact_work": "J", "sliding_work": "J",
@@ -42,35 +45,35 @@ class Trouble(Exception):
 
 
 def resolved_deck(folder):
-    """Of the deck's first lines and its table [space], {key: value}, and whether a mesh may hold particles ("hollow");
-    empty while the run has written no record."""
+    """Of the deck's first lines and its table [space], {key: value}, whether a mesh may hold particles ("hollow"), and
+    the names or numbers of its [[particles]] and [[materials]]; empty while the run has written no record."""
     path, found, table = os.path.join(folder, "run_record.json"), {}, ""
     if not os.path.exists(path):
         return {}
     for line in json.load(open(path, encoding="utf-8"))["run"]["resolved_deck"].splitlines():
         if line.startswith("["):
             table = line.strip("[] ")
+            if table in NAMED.values():
+                found[table] = [*found.get(table, []), str(len(found.get(table, [])))]
         pair = re.fullmatch(r"(\w+) *= *(.*)", line)
         if pair and table in ("", "space"):
             try:
                 found[pair[1]] = json.loads(pair[2])
             except ValueError:  # a text that TOML writes in another way
                 found[pair[1]] = pair[2].strip("'")
+        if pair and table in NAMED.values() and pair[1] == "name":
+            found[table][-1] = pair[2].strip("\"'")
         if pair and table == "meshes" and pair[1] == "kind":
             found["hollow"] = found.get("hollow", False) or json.loads(pair[2]) in HOLLOW
     return found
 
 
-def reads_vtkhdf():
-    """Whether this ParaView's reader of .vtkhdf files knows points, lines and triangles over time."""
-    program = servermanager.vtkSMProxyManager
-    return (program.GetVersionMajor(), program.GetVersionMinor()) >= (5, 13)
-
-
 def open_series(folder, name):
     """The source of one kind of snapshots; None where the run has none."""
     data, text = (os.path.join(folder, name + suffix) for suffix in (".vtkhdf", ".xdmf"))
-    if reads_vtkhdf() and os.path.exists(data):
+    program = servermanager.vtkSMProxyManager
+    reads = (program.GetVersionMajor(), program.GetVersionMinor()) >= (5, 13)  # points, lines and triangles over time
+    if reads and os.path.exists(data):
         source = simple.OpenDataFile(data)
     elif os.path.exists(text) and "<Time" in open(text).read(4096):  # one without snapshots cannot be read
         source = simple.Xdmf3ReaderS(FileName=[text])
@@ -112,48 +115,57 @@ def letters(view, share):
     return max(12, round(view.ViewSize[1] / share))
 
 
-def color_by(display, view, field, limit, colors, place):
-    """Colours what is shown by a field, on a scale from 0 to limit that stands at one of the picture's places."""
+def color_by(display, view, field, limit, colors, names):
+    """By a field, of a vector its length: from 0 to limit, or a colour for each name. Returns the bar of the scale."""
     association = "CELLS" if information(display.Input, "CELLS", field) else "POINTS"
     array = information(display.Input, association, field)  # none where there are no points at this time
     vector = array is not None and array.GetNumberOfComponents() > 1
     simple.ColorBy(display, (association, field, "Magnitude") if vector else (association, field))
     function = simple.GetColorTransferFunction(field)
     steps = [[int(color[k : k + 2], 16) / 255 for k in (0, 2, 4)] for color in colors.split()]
-    function.RGBPoints = [x for k, step in enumerate(steps) for x in (limit * k / (len(steps) - 1), *step)]
-    function.ColorSpace, function.AutomaticRescaleRangeMode = "Lab", "Never"
+    if names:
+        function.InterpretValuesAsCategories = 1
+        function.Annotations = [word for number, name in enumerate(names) for word in (str(number), name)]
+        function.IndexedColors = [x for number in range(len(names)) for x in steps[number % len(steps)]]
+    else:
+        function.RGBPoints = [x for k, step in enumerate(steps) for x in (limit * k / (len(steps) - 1), *step)]
+        function.ColorSpace, function.AutomaticRescaleRangeMode = "Lab", "Never"
     bar = simple.GetScalarBar(function, view)
-    words = NAMES.get(field, field.replace("_", " "))
-    bar.Title = f"{words} [{UNITS[field]}]" if field in UNITS else words
+    bar.Title = NAMES.get(field, field.replace("_", " ")) + (f" [{UNITS[field]}]" if field in UNITS else "")
     bar.ComponentTitle, bar.TitleColor, bar.LabelColor, bar.HorizontalTitle = "", INK, INK, 1
     bar.TitleFontSize, bar.LabelFontSize = letters(view, 55), letters(view, 60)
-    bar.Orientation, bar.WindowLocation = "Vertical", "Any Location"
-    bar.Position, bar.ScalarBarLength, bar.ScalarBarThickness = [0.88, 0.66 - 0.31 * place], 0.24, 14
+    bar.Orientation, bar.WindowLocation, bar.ScalarBarThickness = "Vertical", "Any Location", 14
     bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%-.3g", "%-.3g"
     display.SetScalarBarVisibility(view, True)
+    return bar
 
 
 def paint(display, color):
-    display.ColorArrayName = ["POINTS", ""]
-    display.AmbientColor = display.DiffuseColor = color
+    display.ColorArrayName, display.AmbientColor, display.DiffuseColor = ["POINTS", ""], color, color
 
 
 class Scene:
     """What is shown of one folder, in one view."""
 
-    def __init__(self, folder, view):
-        self.folder, self.view, self.deck, self.bars = folder, view, resolved_deck(folder), 0
+    def __init__(self, folder, view, contacts=True):
+        """contacts: whether these are shown."""
+        self.folder, self.view, self.deck, self.bars = folder, view, resolved_deck(folder), []
         self.planar = self.deck.get("dimension", 3) == 2
-        kinds = ("particles", "bodies", "surfaces", "links", "contacts")
+        kinds = ("particles", "bodies", "surfaces", "links", *["contacts"] * contacts)
         self.sources = {kind: source for kind in kinds if (source := open_series(folder, kind))}
         if not self.sources:
             raise Trouble(f"{folder}: holds no snapshots of a run that this ParaView can read")
         self.times = sorted({time for source in self.sources.values() for time in times_of(source)})
 
     def color(self, display, kind, association, field, colors):
+        """Of groups and materials by name, where the record tells these; else from 0 to the largest value."""
+        names = self.deck.get(NAMED.get(field))
         limit = largest(self.sources[kind], association, field, times_of(self.sources[kind]))
-        color_by(display, self.view, field, limit, colors, self.bars)
-        self.bars += 1
+        self.bars.append(color_by(display, self.view, field, limit, CATEGORIES if names else colors, names))
+        step = 0.93 / max(3, len(self.bars))  # one below the other, the shorter the more there are
+        for place, bar in enumerate(self.bars):
+            bar.ScalarBarLength = step - 0.07  # the rest is for the title
+            bar.Position = [0.88, 0.90 - bar.ScalarBarLength - step * place]
 
     def show_balls(self, kind):
         """Points as spheres of their field radius."""
@@ -162,8 +174,8 @@ class Scene:
         if source.GetDataInformation().GetNumberOfPoints() <= GLYPHS:
             display.SetRepresentationType("3D Glyphs")
             display.GlyphType = "Sphere"
-            display.GlyphType.Radius = 1.0
-            display.GlyphType.ThetaResolution, display.GlyphType.PhiResolution = 24, 18
+            ball = display.GlyphType
+            ball.Radius, ball.ThetaResolution, ball.PhiResolution = 1.0, 24, 18
             display.Scaling, display.ScaleMode, display.ScaleFactor = 1, "Magnitude", 1.0
             display.SelectScaleArray = "radius"
         else:
@@ -183,7 +195,7 @@ class Scene:
         display = self.show_balls("particles")
         self.color(display, "particles", "POINTS", field, SPEEDS)
         if "contacts" in self.sources:
-            display.Opacity = 0.3
+            display.Opacity = SEEN_THROUGH
 
     def show_bodies(self):
         paint(self.show_balls("bodies"), BODY)
@@ -199,11 +211,8 @@ class Scene:
         else:
             paint(display, BODY)
         triangles = simple.ExtractSurface(registrationName="triangles of surfaces", Input=source)
-        edges = simple.FeatureEdges(registrationName="edges of surfaces", Input=triangles)
-        edges.FeatureAngle = 30
-        lines = simple.Show(edges, self.view)
-        lines.LineWidth = 1.5
-        paint(lines, INK)
+        edges = simple.FeatureEdges(registrationName="edges of surfaces", Input=triangles, FeatureAngle=30)
+        paint(simple.Show(edges, self.view, LineWidth=1.5), INK)
 
     def show_links(self):
         """Joints and force elements."""
@@ -219,13 +228,16 @@ class Scene:
         source = self.sources["contacts"]
         if information(source, "CELLS", "normal_force") is None:
             return
+        limit = largest(source, "CELLS", "normal_force", times_of(source))
+        thin = 1.5e-3 * float(np.ptp(self.bounds(), axis=0).max())
         lines = simple.ExtractSurface(registrationName="lines of contacts", Input=source)
         of_points = simple.CellDatatoPointData(registrationName="forces at their ends", Input=lines)
-        tubes = simple.Tube(registrationName="contact forces", Input=of_points)
-        tubes.Scalars, tubes.VaryRadius = ["POINTS", "normal_force"], "By Scalar"
-        tubes.RadiusFactor, tubes.Radius = 10.0, 1e-3 * float(np.ptp(self.bounds(), axis=0).max())
-        display = simple.Show(tubes, self.view)
-        self.color(display, "contacts", "CELLS", "normal_force", FORCES)
+        thickness = simple.Calculator(registrationName="thickness of contacts", Input=of_points)
+        thickness.AttributeType, thickness.ResultArrayName = "Point Data", "thickness"
+        thickness.Function = f"{thin}*(1+9*min(1,max(0,normal_force/{limit})))"
+        tubes = simple.Tube(registrationName="contact forces", Input=thickness)
+        tubes.Scalars, tubes.VaryRadius, tubes.Radius = ["POINTS", "thickness"], "By Absolute Scalar", 1.0
+        self.color(simple.Show(tubes, self.view), "contacts", "CELLS", "normal_force", FORCES)
 
     def corners(self):
         low, high = self.deck.get("min"), self.deck.get("max")
@@ -270,8 +282,7 @@ class Scene:
 
     def bounds(self):
         """Of what is shown, but for the space: particles as far as they are in it [m]."""
-        low, high = np.full(3, np.inf), np.full(3, -np.inf)
-        space = self.corners()
+        low, high, space = np.full(3, np.inf), np.full(3, -np.inf), self.corners()
         for kind, source in self.sources.items():
             box = np.array(source.GetDataInformation().GetBounds())
             if kind == "particles" and source.GetDataInformation().GetNumberOfPoints() > 0:
@@ -313,9 +324,8 @@ class Scene:
         center = center + (1 - ROOM) * half * (0.5 * axes[0] + 0.8 * axes[1])  # words stand above it, scales beside
         view.CameraParallelProjection, view.CameraParallelScale = int(self.planar), half
         view.InteractionMode = "2D" if self.planar else "3D"
-        view.CameraFocalPoint, view.CameraViewUp = list(center), list(axes[1])
+        view.CameraFocalPoint, view.CenterOfRotation, view.CameraViewUp = list(center), list(center), list(axes[1])
         view.CameraPosition = list(center + distance * axes[2])
-        view.CenterOfRotation = list(center)
 
     def show(self, field):
         """Everything. field: that colours the particles."""
@@ -333,24 +343,18 @@ class Scene:
         self.show_words()
 
 
-def new_view():
+def show(folder, field="velocity", time=None, contacts=True):
+    """Shows a folder in the active view, at the snapshot nearest to a time [s] or the last one, with its contacts or
+    without. Returns the Scene."""
     view = simple.GetActiveViewOrCreate("RenderView")
     simple._DisableFirstRenderCameraReset()  # which would undo where the eye is put
-    view.UseColorPaletteForBackground = 0
+    view.UseColorPaletteForBackground, view.OrientationAxesLabelColor = 0, INK
     view.BackgroundColorMode, view.Background = "Single Color", [1.0, 1.0, 1.0]
-    view.OrientationAxesLabelColor = INK
     if hasattr(view, "UseSSAO"):  # shadows where spheres are close to each other
         view.UseSSAO = 1
-    return view
-
-
-def show(folder, field="velocity", time=None):
-    """Shows a folder in the active view, at the snapshot nearest to a time [s] or the last one. Returns the Scene."""
-    view = new_view()
-    scene = Scene(os.path.abspath(folder), view)
+    scene = Scene(os.path.abspath(folder), view, contacts)
     scene.show(field)
-    wanted = scene.times[-1] if time is None else time
-    animation = simple.GetAnimationScene()
+    wanted, animation = scene.times[-1] if time is None else time, simple.GetAnimationScene()
     animation.UpdateAnimationUsingDataTimeSteps()
     animation.AnimationTime = min(scene.times, key=lambda each: abs(each - wanted))
     scene.aim()
@@ -370,26 +374,23 @@ def folder_at_hand():
                   "scree-post paraview RESULT_DIR makes")
 
 
-def from_words():
+def main():
+    if not os.path.basename(sys.argv[0]).endswith(".py"):  # ParaView itself: its output window shows what is wrong
+        show(folder_at_hand())
+        return
     parser = argparse.ArgumentParser(prog="view.py")
     parser.add_argument("folder", nargs="?", metavar="RESULT_DIR")
     parser.add_argument("-o", "--output", metavar="FILE", help="a picture to save: .png, .jpg, .tif")
     parser.add_argument("--time", type=float, metavar="T", help="of the snapshot [s]; default: the last one")
     parser.add_argument("--color", default="velocity", metavar="FIELD", help="that colours the particles")
+    parser.add_argument("--no-contacts", action="store_true", help="leave them out; particles are opaque")
     parser.add_argument("--size", type=int, nargs=2, default=[1600, 1200], metavar=("WIDTH", "HEIGHT"))
     words = parser.parse_args()
-    simple.GetActiveViewOrCreate("RenderView").ViewSize = words.size
-    show(words.folder or folder_at_hand(), words.color, words.time)
-    if words.output:
-        simple.SaveScreenshot(words.output, simple.GetActiveView(), ImageResolution=words.size)
-
-
-def main():
-    if not os.path.basename(sys.argv[0]).endswith(".py"):  # ParaView itself: its output window shows what is wrong
-        show(folder_at_hand())
-        return
     try:
-        from_words()
+        simple.GetActiveViewOrCreate("RenderView").ViewSize = words.size
+        show(words.folder or folder_at_hand(), words.color, words.time, not words.no_contacts)
+        if words.output:
+            simple.SaveScreenshot(words.output, simple.GetActiveView(), ImageResolution=words.size)
     except Trouble as trouble:
         print(f"error: {trouble}", file=sys.stderr, flush=True)
         os._exit(2)  # pvbatch turns SystemExit into 0

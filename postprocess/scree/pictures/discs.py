@@ -26,7 +26,8 @@ class DiscScene:
     def size(self):
         return figure_size(self.view[1] - self.view[0], self.view[3] - self.view[2])
 
-    def set_up(self, axes, color_map, limit):
+    def set_up(self, axes, coloring):
+        self.coloring = coloring
         axes.set_aspect("equal")
         axes.set_xlim(self.view[:2])
         axes.set_ylim(self.view[2:])
@@ -41,8 +42,8 @@ class DiscScene:
             draw_scale_bar(axes)
         self.shiny = len(self.run.particles.rows(0, "radius")) < MOST_SHINY
         edge = 0.4 if self.shiny else 0.0
-        self.colors = disc_collection(axes, cmap=color_map, edgecolors=EDGE_COLOR, linewidths=edge)
-        self.colors.set_clim(0, limit)
+        self.colors = disc_collection(axes, cmap=coloring.map, norm=coloring.norm, edgecolors=EDGE_COLOR,
+                                      linewidths=edge)
         self.shapes = disc_collection(axes, facecolors=BODY_COLOR, edgecolors=EDGE_COLOR, linewidths=0.6)
         self.shines = [disc_collection(axes, facecolors="white", alpha=SHINE, linewidths=0) for _ in SHINES]
         unit = SMALL * max(self.view[1] - self.view[0], self.view[3] - self.view[2])
@@ -72,7 +73,7 @@ class DiscScene:
         particles, (shapes, sizes) = self.run.particles, self.run.shapes(snapshot)
         points, radii = particles.rows(snapshot, POSITION)[:, :2], particles.rows(snapshot, "radius")
         place_discs(self.colors, points, radii)
-        self.colors.set_array(particles.speed(snapshot))
+        self.colors.set_array(self.coloring.values(particles, snapshot))
         for discs, (size, distance) in zip(self.shines if self.shiny else (), SHINES):
             place_discs(discs, points + distance * radii[:, None] * SHINE_AT, size * radii)
         place_discs(self.shapes, shapes[:, :2], sizes)

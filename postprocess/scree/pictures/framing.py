@@ -8,6 +8,7 @@ from scree.series import POSITION
 LONGEST_SIDE = 7.5  # of the axes [inch]
 SPREAD = 40  # snapshots in which bodies are looked for
 AZIMUTH, ELEVATION = 30, 26  # of the eye in space [degrees]
+NEAR = 0.2  # of a picture's longest side: a side of the space that is no farther off is shown, too
 SMALL = 0.012  # things without a size of their own, over the picture's longest side
 
 
@@ -61,6 +62,9 @@ def plane_bounds(run, snapshots):
     low, high = union(*boxes)
     if not (np.isfinite(low).all() and (high >= low).all() and (high > low).any()):
         low, high = run.model.low, run.model.high
+    near = NEAR * max(high - low)  # sides of the space that would be cut off by little
+    low = np.where((low > run.model.low) & (low - run.model.low < near), run.model.low, low)
+    high = np.where((high < run.model.high) & (run.model.high - high < near), run.model.high, high)
     margin = 0.04 * max(high - low)
     return low - margin, high + margin
 

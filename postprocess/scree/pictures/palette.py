@@ -5,6 +5,8 @@ from matplotlib.colors import LinearSegmentedColormap
 
 # From sand at rest to dark blue: each step is darker, so that it reads in print and for the colour-blind.
 SPEED_MAP = LinearSegmentedColormap.from_list("speed", ["#ead9ae", "#a9cdb0", "#45a3b3", "#2364a8", "#1b2560"])
+# Okabe and Ito's, of groups and materials, then the same again; the orange is that of bodies.
+CATEGORIES = ["#0072b2", "#f0e442", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#606060"]
 SURFACE_MAP = "YlOrRd"  # of meshes that are coloured by a field
 BODY_COLOR = "#e66100"
 EDGE_COLOR = "#303030"

@@ -20,17 +20,18 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedFormatter, FixedLocator, MaxNLocator
 from PIL import Image
 
 from scree.errors import ScreeError
+from scree.pictures.coloring import SPEED, Coloring, coloring
 from scree.pictures.discs import DiscScene
 from scree.pictures.model import Model, Motion
-from scree.pictures.palette import INK, PALE_INK, SPEED_MAP
+from scree.pictures.palette import INK, PALE_INK
 from scree.pictures.space import SphereScene
 from scree.pictures.surfaces import Surfaces
 from scree.run import Run
-from scree.series import POSITION, Series
+from scree.series import POSITION
 
 FRAMES_PER_SECOND = 25
 
@@ -74,30 +75,19 @@ class DrawnRun:
         return self.bodies.rows(snapshot, POSITION)[radii > 0], radii[radii > 0]
 
 
-def speed_limit(particles: Series, snapshots: Iterable[int]) -> float:
-    """Upper end of the colour scale [m/s]: the fastest particle but for the last percent, rounded up."""
-    speeds = [np.percentile(s, 99) for s in (particles.speed(i) for i in snapshots) if len(s)]
-    largest = max(speeds, default=0.0)
-    if largest <= 0:
-        return 1.0
-    unit = 10.0 ** np.floor(np.log10(largest))
-    return float(
-        next(step * unit for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if step * unit >= largest)
-    )
-
-
 class Picture:
     """One figure whose scene changes from snapshot to snapshot."""
 
-    def __init__(self, scene: DiscScene | SphereScene, run: DrawnRun, snapshots: Sequence[int], fastest: float) -> None:
+    def __init__(self, scene: DiscScene | SphereScene, run: DrawnRun, snapshots: Sequence[int],
+                 colors: Coloring) -> None:
         self.scene, self.run = scene, run
         width, height = scene.size()
         layout = ConstrainedLayoutEngine(w_pad=0.15, h_pad=0.2)
         self.figure, axes = plt.subplots(figsize=(width + 1.6, height + 1.3), dpi=120, layout=layout)
-        scene.set_up(axes, SPEED_MAP, fastest)
+        scene.set_up(axes, colors)
         self.bar = None
         if any(len(run.particles.rows(snapshot, "radius")) for snapshot in snapshots):
-            self.bar = self.add_bar(axes, scene.colors, "particle speed [m/s]")
+            self.bar = self.add_bar(axes, scene.colors, colors.label, colors.names)
         if isinstance(scene, SphereScene) and run.surfaces and run.surfaces.field:
             self.add_bar(axes, scene.surface_colors, run.surfaces.label())
         self.title, self.subtitle = (
@@ -105,11 +95,17 @@ class Picture:
                           fontsize=size, color=color)
             for text, height, size, color in ((run.title, 28, 16, INK), (" ", 9, 12, PALE_INK)))
 
-    def add_bar(self, axes: Axes, colors: ScalarMappable, label: str) -> Colorbar:
-        bar = self.figure.colorbar(colors, ax=axes, extend="max", shrink=0.5, aspect=25, pad=0.02)
+    def add_bar(self, axes: Axes, colors: ScalarMappable, label: str, names: Sequence[str] = ()) -> Colorbar:
+        """names: of what the colours stand for, from 0 on, in place of numbers."""
+        extend = "neither" if names else "max"
+        bar = self.figure.colorbar(colors, ax=axes, extend=extend, shrink=0.5, aspect=25, pad=0.02)
         bar.set_label(label, fontsize=12, color=INK)
         bar.ax.tick_params(labelsize=11, color=PALE_INK, labelcolor=INK)
-        bar.locator = MaxNLocator(5)
+        if names:
+            bar.ax.minorticks_off()
+            bar.locator, bar.formatter = FixedLocator(range(len(names))), FixedFormatter(names)
+        else:
+            bar.locator = MaxNLocator(5)
         bar.outline.set_visible(False)
         bar.update_ticks()
         return bar
@@ -142,12 +138,15 @@ class Look:
     view: Sequence[float] | None = None  # part of the plane, of runs in it [m]
     axes: bool = False  # with coordinates, of runs in the plane, in place of a scale bar
     opacity: float | None = None  # of meshes on bodies; None: solid ones are opaque, those that hold particles are not
-    fastest: float | None = None  # upper end of the colour scale [m/s]
+    color: str = SPEED  # field by which particles are coloured
+    fastest: float | None = None  # upper end of the scale of speeds [m/s]
     surfaces: str | None = None  # field by which meshes are coloured
     with_vtk: bool = True  # spheres are drawn by VTK, where it can
 
     def fit(self, drawn: DrawnRun, snapshots: Iterable[int]) -> None:
         """Makes ready for pictures of this run at these snapshots. Throws ScreeError where it cannot look like this."""
+        if self.fastest and self.color != SPEED:
+            raise ScreeError(f"the fastest speed ends a scale of speeds; particles are coloured by {self.color}")
         if (self.view or self.axes) and not drawn.model.planar:
             raise ScreeError("a view and axes are for runs in the plane")
         self.with_vtk = self.with_vtk and not drawn.model.planar and vtk_renders()
@@ -161,7 +160,8 @@ def make_picture(drawn: DrawnRun, snapshots: Sequence[int], look: Look, fine: bo
     """A picture that fits all of these snapshots. look: fitted; fine: smoother than a frame of a film need be."""
     scene = (DiscScene(drawn, snapshots, look.view, look.axes) if drawn.model.planar else
              SphereScene(drawn, snapshots, look.with_vtk, look.opacity, fine))
-    return Picture(scene, drawn, snapshots, look.fastest or speed_limit(drawn.particles, snapshots))
+    gravity = float(np.linalg.norm(drawn.model.gravity))
+    return Picture(scene, drawn, snapshots, coloring(drawn.particles, look.color, snapshots, gravity, look.fastest))
 
 
 def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:

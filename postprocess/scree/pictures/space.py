@@ -1,7 +1,6 @@
 """A run in space: spheres and meshes, seen from the front and above."""
 
 import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
 
 from scree.pictures.flat import FlatMechanism, FlatSurfaces, disc_collection, place_discs
@@ -67,9 +66,9 @@ class SphereScene:
                     found.append((section(*self.box, point, normal), color, opacity))
         return [face for face in found if len(face[0])]
 
-    def set_up(self, axes, color_map, limit):
-        self.map = plt.get_cmap(color_map)
-        self.colors = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, limit), color_map)
+    def set_up(self, axes, coloring):
+        self.coloring = coloring
+        self.colors = matplotlib.cm.ScalarMappable(coloring.norm, coloring.map)
         if self.run.surfaces:
             self.surface_colors = matplotlib.cm.ScalarMappable(
                 matplotlib.colors.Normalize(0, self.run.surfaces.limit), SURFACE_MAP
@@ -121,7 +120,7 @@ class SphereScene:
     def draw(self, snapshot):
         particles, (shapes, sizes) = self.run.particles, self.run.shapes(snapshot)
         points, radii = particles.rows(snapshot, POSITION), particles.rows(snapshot, "radius")
-        colors = self.colors.to_rgba(particles.speed(snapshot))[:, :3]
+        colors = self.colors.to_rgba(self.coloring.values(particles, snapshot))[:, :3]
         points, radii = np.concatenate([points, shapes]), np.concatenate([radii, sizes])
         colors = np.concatenate([colors, np.tile(rgb(BODY_COLOR), (len(shapes), 1))])
         if not self.use_vtk:

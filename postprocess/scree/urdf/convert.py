@@ -103,19 +103,29 @@ def add_efforts(deck: Deck, joint: Joint, start: float, stop_stiffness: float | 
         deck.add("joint_springs", name=f"{name}_damping", joint=name, damping=joint.damping)
     if joint.friction > 0:
         deck.add("joint_frictions", name=f"{name}_friction", joint=name, effort=joint.friction,
-                 stiffness=joint.friction / STICKS, damping=joint.friction)
+                 stiffness=rounded(joint.friction / STICKS), damping=joint.friction)
     if not np.isfinite([joint.lower, joint.upper]).all():
         return
     if not joint.lower <= start <= joint.upper:
         warn(f"{place}: joint {name} starts at {start:g}, outside its limits from {joint.lower:g} to {joint.upper:g}; "
              f"--position {name}=VALUE starts it elsewhere")
-    stiffness = stop_stiffness or joint.effort / GIVES_WAY
+    stiffness = stop_stiffness or rounded(joint.effort / GIVES_WAY)
     if stiffness > 0:
         deck.add("joint_limits", name=f"{name}_stop", joint=name, lower=joint.lower, upper=joint.upper,
-                 stiffness=stiffness, damping=stiffness * STICKS)
+                 stiffness=stiffness, damping=rounded(stiffness * STICKS))
     else:
         warn(f"{place}: joint {name} has limits but no effort from which the stiffness of its stops would follow, and "
              "goes past them; --stop-stiffness gives one")
+
+
+def has_speed_limit(joint: Joint) -> bool:
+    limit = joint.element.first("limit")
+    return limit is not None and limit.number("velocity", 0.0) > 0
+
+
+def rounded(value: float) -> float:
+    """Without the last digits, which arithmetic leaves."""
+    return float(f"{value:.12g}")
 
 
 def add_couplers(deck: Deck, joints: list[Joint]) -> None:
@@ -143,7 +153,8 @@ def tail(deck: Deck, moving: list[Joint]) -> str:
     low[2] += 0.7 * (high[2] - low[2])  # above the robot, in most cases
     return TAIL.format(body=deck["bodies"][-1]["name"] if "bodies" in deck else "LINK",
                        joint=moving[-1].name if moving else "JOINT",
-                       low=low.tolist(), high=high.tolist(), radius=float(f"{(high - low).min() / 50:.1g}"))
+                       low=low.round(6).tolist(), high=high.round(6).tolist(),
+                       radius=float(f"{(high - low).min() / 50:.1g}"))
 
 
 def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Deck:
@@ -173,6 +184,9 @@ def to_deck(path: str | os.PathLike[str], options: Options | None = None) -> Dec
     for joint in moving:
         add_efforts(deck, joint, tree.coordinates[joint.name], chosen.stop_stiffness)
     add_couplers(deck, moving)
+    with_speeds = [joint.name for joint in moving if has_speed_limit(joint)]
+    if with_speeds:
+        warn(f"{file}: limits of velocity are left out, as a deck has none: of {', '.join(with_speeds)}")
     deck["output.history_coordinates"] = len(moving)
     deck["output.history_bodies"] = [part.name for part in tree.parts if part.name != GROUND]
     return Deck.parse(str(deck) + tail(deck, moving), deck.name, deck.folder)

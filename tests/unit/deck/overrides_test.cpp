@@ -63,7 +63,7 @@ TEST_CASE("errors name the override in place of a line") {
   CHECK(contains(deck_error(kDeck, {"tme.step=1"}), "--set tme.step=1: tme = { step = 1 }: unknown key"));
   CHECK(contains(deck_error(kDeck, {"particles.blok.count=1"}),
                  "--set particles.blok.count=1: no element is named \"blok\"; did you mean \"block\"?"));
-  CHECK(contains(deck_error(kDeck, {"particles.1.count=1"}), "there are 1 elements, counted from 0"));
+  CHECK(contains(deck_error(kDeck, {"particles.1.count=1"}), "there is 1 element, counted from 0"));
   CHECK(contains(deck_error(kDeck, {"time.step"}), "--set time.step: must have the form key.path=value"));
   for (const std::string path : {"", " ", ".", "time.", ".step", "time..step"})
     CHECK(deck_error(kDeck, {path + "=1"}) == "--set " + path + "=1: must have the form key.path=value");

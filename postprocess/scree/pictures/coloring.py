@@ -1,0 +1,86 @@
+"""By what pictures colour the particles: their speed, a field, or the names of groups and materials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.colors import BoundaryNorm, Colormap, ListedColormap, Normalize
+
+from scree.errors import ScreeError
+from scree.pictures.palette import CATEGORIES, SPEED_MAP
+from scree.series import Series
+
+SPEED = "velocity"
+SLOW = 0.1  # of the speed of a fall by a diameter: the scale of speeds ends no lower, so that what is at rest looks so
+
+
+def rounded_up(value: float) -> float:
+    """To a number that reads well."""
+    unit = 10.0 ** np.floor(np.log10(value))
+    return float(next(step * unit for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if step * unit >= 0.999 * value))
+
+
+def slowest_limit(particles: Series, snapshot: int, gravity: float) -> float:
+    """The least upper end of a scale of speeds [m/s]: 0.1 sqrt(g d), with the median diameter d. gravity [m/s^2]."""
+    radii = particles.rows(snapshot, "radius")
+    return SLOW * float(np.sqrt(gravity * 2 * np.median(radii))) if len(radii) else 0.0
+
+
+@dataclass(frozen=True)
+class Coloring:
+    """field: of the particles, of a vector its length. names: of what it counts, where it does. low, high: the scale's
+    ends. label: of the scale, with the unit."""
+
+    field: str
+    label: str
+    low: float
+    high: float
+    names: Sequence[str] = ()
+
+    @property
+    def map(self) -> Colormap:
+        return ListedColormap([CATEGORIES[k % len(CATEGORIES)] for k in range(len(self.names))]) if self.names else \
+            SPEED_MAP
+
+    @property
+    def norm(self) -> Normalize:
+        if self.names:
+            return BoundaryNorm(np.arange(len(self.names) + 1) - 0.5, len(self.names))
+        return Normalize(self.low, self.high)
+
+    def values(self, particles: Series, snapshot: int) -> np.ndarray:
+        """[particles]"""
+        rows = particles.rows(snapshot, self.field)
+        return np.linalg.norm(rows, axis=1) if rows.ndim > 1 else rows
+
+
+def extremes(particles: Series, field: str, snapshots: Iterable[int]) -> tuple[float, float]:
+    """The smallest and the largest value, but for the last percent at each end."""
+    plain = Coloring(field, "", 0, 1)
+    values = [plain.values(particles, snapshot) for snapshot in snapshots]
+    found = [np.percentile(each, [1, 99]) for each in values if len(each)]
+    return (float(min(low for low, _ in found)), float(max(high for _, high in found))) if found else (0.0, 0.0)
+
+
+def coloring(particles: Series, field: str, snapshots: Sequence[int], gravity: float,
+             fastest: float | None = None) -> Coloring:
+    """For these snapshots. fastest: upper end of a scale of speeds [m/s], in place of that of the particles. Throws
+    ScreeError where there is no such field."""
+    if not particles.has(field):
+        raise ScreeError(f"particles have no field {field}; there are "
+                         f"{', '.join(name for name in particles.fields(0) if name != 'position')}")
+    names = particles.names({"group": "groups", "material": "materials"}.get(field, ""))
+    unit, _ = particles.label(field)
+    words = "speed" if field == SPEED else field.replace("_", " ")
+    label = f"particle {words}" + (f" [{unit}]" if unit != "1" else "")
+    if names:
+        return Coloring(field, label, 0, len(names), names)
+    low, high = extremes(particles, field, snapshots)
+    if field == SPEED:
+        high = max(high, slowest_limit(particles, snapshots[-1], gravity))
+        return Coloring(field, label, 0.0, fastest or (rounded_up(high) if high > 0 else 1.0))
+    if low < 0:
+        return Coloring(field, label, low, high)
+    return Coloring(field, label, 0.0, rounded_up(high) if high > 0 else 1.0)
