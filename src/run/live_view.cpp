@@ -31,16 +31,21 @@ double LiveView::wall_seconds() const { return seconds_between(start_, Clock::no
 void LiveView::begin(const State& state) {
   start_time_ = state.clock.time;
   last_look_ = Clock::now();
-  take(state, 0, -1);
+  take(state, -1);
 }
 
-void LiveView::take(const State& state, Real h, std::int64_t contacts) {
+void LiveView::tell(const State& state, const BalanceState& balance, std::int64_t contacts) {
   Progress& now = status_.progress;
-  rate_.add(seconds_between(start_, last_look_), state.counts.steps, state.clock.time);
-  now.time = state.clock.time, now.steps = state.counts.steps, now.step = h;
+  now.time = state.clock.time, now.steps = state.counts.steps;
   now.particles = model_.particles.totals.count - state.carried_out.left;
   now.contacts = contacts;
-  now.balance_error = balance_error(state.balance), now.exchanged = state.balance.exchanged;
+  now.balance_error = balance_error(balance), now.exchanged = balance.exchanged;
+}
+
+void LiveView::take(const State& state, std::int64_t contacts) {
+  Progress& now = status_.progress;
+  rate_.add(seconds_between(start_, last_look_), state.counts.steps, state.clock.time);
+  tell(state, state.balance, contacts);
   now.step_rate = rate_.steps_per_second();
   now.particle_step_rate = now.step_rate * model_.integrator.substeps * static_cast<double>(now.particles);
   now.seconds_left = (now.end - now.time) / rate_.time_per_second();
@@ -48,11 +53,12 @@ void LiveView::take(const State& state, Real h, std::int64_t contacts) {
 
 bool LiveView::look(const State& state, Real h, std::int64_t contacts) {
   const Clock::time_point now = Clock::now();
+  status_.progress.step = h;
   const Real share = (state.clock.time - start_time_) / (model_.time.end - start_time_);
   const int tenths = static_cast<int>(10 * share);
   if (seconds_between(last_look_, now) < kLookSeconds && tenths == tenths_reported_) return false;
   last_look_ = now;
-  take(state, h, contacts);
+  take(state, contacts);
   const bool logged = tenths != tenths_reported_ || seconds_between(last_logged_, now) > kLogSeconds;
   log_.progress(progress_line(status_.progress), logged);
   if (logged) tenths_reported_ = tenths, last_logged_ = now;

@@ -26,6 +26,9 @@ class LiveView {
   // per tenth of the run, and after ten minutes without one. Whether it is time to bring to disk what was
   // recorded.
   bool look(const State& state, Real h, std::int64_t contacts);
+  // What the status file says of the run from now on, where nothing was looked at since: progress at this
+  // state, balance and contacts at the last row of the history.
+  void tell(const State& state, const BalanceState& balance, std::int64_t contacts);
   // name: of the file.
   void checkpoint_written(const std::string& name, Real time);
   // Leaves the status file, on rank 0. A disk that is full does not end a run here: results will tell.
@@ -37,7 +40,7 @@ class LiveView {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void take(const State& state, Real h, std::int64_t contacts);
+  void take(const State& state, std::int64_t contacts);
 
   const Model& model_;
   const RunOptions& options_;

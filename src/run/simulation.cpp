@@ -172,6 +172,7 @@ void Simulation::checkpoint(State& state, const std::string& name) {
   write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
   state.particles = {}, state.contacts = {}, state.works = {};
   live_.checkpoint_written(name, state.clock.time);
+  live_.tell(state, state_.balance, recorder_->contacts());
 }
 
 // Warns once.
@@ -288,6 +289,7 @@ void Simulation::keep_last_good_state(StepLoop& loop) {
                           options_.output_directory));
   } catch (const DeviceError& error) {
     log_.error(std::string("the last good state is lost: ") + error.what());
+    live_.tell(state_, state_.balance, recorder_->contacts());
   }
 }
 
