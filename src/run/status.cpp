@@ -117,7 +117,8 @@ std::string told_lines(const Seen& seen) {
   text += fmt::format("wall time      {}, since {}\n", duration_text(told.wall_seconds), told.started);
   text += fmt::format("steps          {}, the last one of {:.2e} s\n", p.steps, p.step);
   text += fmt::format("rate           {}{}\n", rate_text(p), goes_on ? "" : " at last");
-  text += fmt::format("contacts       {}{}\n", p.contacts < 0 ? "?" : std::to_string(p.contacts), at_last_row);
+  text +=
+      fmt::format("contacts       {}{}\n", p.contacts < 0 ? "?" : std::to_string(p.contacts), at_last_row);
   text += fmt::format("energy         balance error {:.2e} J of {:.4g} J exchanged ({}){}\n", p.balance_error,
                       p.exchanged, balance_text(p), at_last_row);
   text += fmt::format("checkpoint     {}\n", checkpoint_text(told));
