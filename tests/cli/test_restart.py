@@ -213,8 +213,9 @@ class RestartTest(CommandLineTest):
 
     def test_a_folder_is_no_checkpoint_and_an_end_that_is_reached_is_told(self):
         self.run_deck(DONE, "out")
-        self.assertIn(f"takes a file, and this is a folder; its newest checkpoint is {self.folder}/out/checkpoint_end.h5\n",
-                      self.run_deck(BAD_INPUT, "out", "--restart", self.folder / "out").stderr)
+        message = self.run_deck(BAD_INPUT, "out", "--restart", self.folder / "out").stderr
+        newest = self.folder / "out/checkpoint_end.h5"
+        self.assertIn(f"takes a file, and this is a folder; its newest checkpoint is {newest}\n", message)
         result = self.run_deck(DONE, "again", "--restart", self.folder / "out/checkpoint_end.h5")
         self.assertIn("nothing left to do: time.end = 0.4 s is reached", result.stdout)
 

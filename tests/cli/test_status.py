@@ -61,7 +61,8 @@ class StatusTest(CommandLineTest):
         self.assertIn(f"checkpoint     checkpoint_failed.h5, t = {time} s, ", text)
         steps, rows = (re.findall(pattern, text) for pattern in (r"steps +(\d+),", r", (\d+) rows of the history"))
         record = json.loads((self.folder / "out/run_record.json").read_text())
-        self.assertRegex(text, r"(?s)contacts       \d+, at the last row of the history\n.*exchanged .*, at the last row")
+        for number in (r"contacts       \d+", r"exchanged \(\S+\)"):
+            self.assertRegex(text, number + ", at the last row of the history\n")
         self.assertEqual(int(rows[0]), record["counts"]["history_rows"])
         # Explicit steps cannot be undone: the state kept is that of some steps ago.
         self.assertEqual(float(time), round(1e-4 * int(steps[0]), 9))
