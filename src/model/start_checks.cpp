@@ -96,11 +96,12 @@ std::string outside_text(const Space& space, const std::string& name, Vec3 p) {
                                 : fmt::format("({}, {}, {})", a.x, a.y, a.z);
   };
   const Box allowed = start_box(space);
-  const bool beyond[] = {p.x<allowed.min.x, p.x> allowed.max.x, p.y<allowed.min.y, p.y> allowed.max.y,
-                         p.z<allowed.min.z, p.z> allowed.max.z};
+  const Vec3 below = allowed.min - p, above = p - allowed.max;
+  const Real beyond[] = {below.x, above.x, below.y, above.y, below.z, above.z};
   std::string sides;
   for (std::size_t side = 0; side < std::size(beyond); ++side)
-    if (beyond[side]) sides += fmt::format("{} {}", sides.empty() ? ", beyond" : " and", kSideNames[side]);
+    if (beyond[side] > 0)
+      sides += fmt::format("{} {}", sides.empty() ? ", beyond" : " and", kSideNames[side]);
   return fmt::format("{} starts at {}, outside the space from {} to {}{}", name, text(p), text(space.min),
                      text(space.max), sides);
 }
