@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "mbs/scalar_function.hpp"
 #include "model/body_exchange.hpp"
 #include "model/model.hpp"
+#include "model/scalar_function.hpp"
 
 namespace scree {
 

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "deck/nesting.hpp"
@@ -14,6 +17,14 @@
 #include "deck/reader.hpp"
 
 namespace scree {
+
+namespace {
+
+// What toml++ says of a text without quotes, by how it begins.
+constexpr std::array<std::string_view, 3> kBareWords = {
+    "could not determine value type", "parsing boolean: expected", "parsing floating-point: expected"};
+
+}  // namespace
 
 const DeckValue& DeckTable::value(const std::string& key) const {
   const auto found = values_.find(key);
@@ -46,7 +57,11 @@ Deck parse_deck(const std::string& text, const std::string& path, const std::vec
     return {path, read_deck(source, path)};
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    throw InputError(fmt::format("{}:{}:{}: not TOML: {}", path, at.line, at.column, error.description()));
+    const bool bare = std::ranges::any_of(kBareWords, [&](std::string_view words) {
+      return error.description().find(words) != std::string_view::npos;
+    });
+    throw InputError(fmt::format("{}:{}:{}: not TOML: {}{}", path, at.line, at.column, error.description(),
+                                 bare ? "; texts stand in quotes" : ""));
   }
 }
 

@@ -192,8 +192,8 @@ const TableKeys& contact_keys() {
            .at_least(0)
            .left_out("contacts do not rub")
            .about("Coulomb's coefficient of friction between particles, and of particles on walls and on "
-                  "bodies. Where a pair has one particles rotate. In implicit steps not beside "
-                  "bodies that have shapes; bodies slide on each other and on walls without it."),
+                  "bodies. Where a pair has one particles rotate. Bodies slide on each other and on walls "
+                  "without it."),
        real("tangential_stiffness", "N/m")
            .above(0)
            .left_out("2/7 of a linear stiffness; for Hertz's law Mindlin's, from the shear moduli")

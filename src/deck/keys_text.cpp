@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "deck/keys.hpp"
 #include "deck/wrapped.hpp"
 
@@ -53,6 +56,22 @@ void describe_below(std::string& out, const TableKeys& table, const std::string&
   }
 }
 
+// The names of all keys below `table` that take such a quantity, each once.
+void add_names(const TableKeys& table, const TableKeys& quantity, std::vector<std::string>& names) {
+  for (const Key& key : table.keys) {
+    if (key.type == ValueType::table || key.type == ValueType::tables) add_names(*key.table, quantity, names);
+    const bool is_one = key.type == ValueType::quantity && key.table == &quantity;
+    if (is_one && std::find(names.begin(), names.end(), key.name) == names.end()) names.push_back(key.name);
+  }
+}
+
+std::string header_of(const std::string& name, const TableKeys& quantity) {
+  std::vector<std::string> names;
+  add_names(deck_keys(), quantity, names);
+  const std::string keys = wrapped(fmt::format("Of the keys {}.", fmt::join(names, ", ")), kWidth, 2);
+  return name + "\n" + keys.substr(0, keys.size() - 1);
+}
+
 }  // namespace
 
 std::string default_text(const Key& key) {
@@ -90,9 +109,8 @@ std::string keys_text() {
   out += "\n";
   describe_table(out, deck_keys(), "(top of the deck)");
   describe_below(out, deck_keys(), "");
-  describe_table(out, time_function_keys(),
-                 "time function  (motion, actuator, fx, fy, torque, displacement, angle)");
-  describe_table(out, distribution_keys(), "distribution  (radius, mass, density)");
+  describe_table(out, time_function_keys(), header_of("time function", time_function_keys()));
+  describe_table(out, distribution_keys(), header_of("distribution", distribution_keys()));
   return out;
 }
 

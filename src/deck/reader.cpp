@@ -41,6 +41,8 @@ class Reader {
   void read_key(const toml::table& source, const Key& key, DeckTable& table,
                 const std::string& quantity_unit) const;
   void fill_default(const Context& context, DeckTable& table) const;
+  // Whether its default is the one beside another key's value.
+  bool follows_another_key(const Key& key) const;
   const std::string& default_value(const Key& key) const;
   [[noreturn]] void fail_missing(const Context& context, const DeckTable& table) const;
   DeckValue read_value(const toml::node& node, const Context& context) const;
@@ -127,17 +129,28 @@ void Reader::read_key(const toml::table& source, const Key& key, DeckTable& tabl
 }
 
 void Reader::fail_missing(const Context& context, const DeckTable& table) const {
-  const std::string& selector = table.keys().selector;
-  const std::string with =
-      context.key.is_required ? "" : fmt::format("with {} = \"{}\" ", selector, table.text(selector));
+  const TableKeys& keys = table.keys();
+  const std::string& selector = keys.selector;
+  std::string with;
+  if (!context.key.is_required) {
+    with = fmt::format("with {} = \"{}\" ", selector, table.text(selector));
+    const auto kind =
+        std::find_if(keys.keys.begin(), keys.keys.end(), [&](const Key& k) { return k.name == selector; });
+    if (kind != keys.keys.end() && follows_another_key(*kind) &&
+        kind->default_there == "\"" + table.text(selector) + "\"")
+      with = fmt::format("{} = \"{}\" makes {} \"{}\", and then ", kind->where_key, kind->where_value,
+                         selector, table.text(selector));
+  }
   throw InputError(
       fmt::format("{}: {}: missing; {}it must be {}", context.place, context.path, with, allowed(context)));
 }
 
+bool Reader::follows_another_key(const Key& key) const {
+  return !key.where_key.empty() && deck_.at_path(key.where_key).value_or(std::string()) == key.where_value;
+}
+
 const std::string& Reader::default_value(const Key& key) const {
-  const bool is_there =
-      !key.where_key.empty() && deck_.at_path(key.where_key).value_or(std::string()) == key.where_value;
-  return is_there ? key.default_there : key.default_value;
+  return follows_another_key(key) ? key.default_there : key.default_value;
 }
 
 void Reader::fill_default(const Context& context, DeckTable& table) const {
@@ -212,6 +225,8 @@ DeckValue Reader::read_value(const toml::node& node, const Context& context) con
 std::vector<DeckTable> Reader::read_tables(const toml::node& node, const Context& context) const {
   std::vector<DeckTable> tables;
   std::set<std::string> names;
+  if (node.is_table() && context.key.length == 0)
+    fail(node, context, fmt::format("; write [[{}]]", context.path));
   for (const toml::node& entry : list(node, context)) {
     if (!entry.is_table()) fail(node, context);
     const toml::node* name = entry.as_table()->get("name");
@@ -246,7 +261,7 @@ Real Reader::number(const toml::node& node, const toml::node& whole, const Conte
 }
 
 std::int64_t Reader::integer(const toml::node& node, const toml::node& whole, const Context& context) const {
-  if (!node.is_integer()) fail(whole, context);
+  if (!node.is_integer()) fail(whole, context, node.is_floating_point() ? ", without a decimal point" : "");
   number(node, whole, context);
   return node.as_integer()->get();
 }

@@ -33,10 +33,16 @@ std::size_t edit_distance(const std::string& one, const std::string& other) {
   return row[b.size()];
 }
 
-// A letter, or a quarter of them; of two single letters neither is meant for the other.
+// "mesh" of "meshes".
+bool is_singular_of(const std::string& one, const std::string& several) {
+  constexpr std::size_t kShortest = 3;
+  return one.size() >= kShortest && (lower(one) + "s" == several || lower(one) + "es" == several);
+}
+
+// A letter, or a quarter of them, or one for several; of two single letters neither is meant for the other.
 bool is_close(const std::string& a, const std::string& b) {
   const std::size_t letters = std::max(a.size(), b.size()), edits = edit_distance(a, b);
-  return edits < letters && edits <= std::max<std::size_t>(1, letters / 4);
+  return is_singular_of(a, b) || (edits < letters && edits <= std::max<std::size_t>(1, letters / 4));
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mbs/body_poses.hpp"
-#include "mbs/scalar_function.hpp"
 #include "mbs/sparse_term.hpp"
+#include "model/scalar_function.hpp"
 
 namespace scree {
 

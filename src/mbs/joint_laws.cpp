@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "mbs/scalar_function.hpp"
+#include "model/scalar_function.hpp"
 #include "physics/step_contact.hpp"
 
 namespace scree {

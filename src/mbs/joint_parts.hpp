@@ -6,9 +6,9 @@
 
 #include "mbs/constraints.hpp"
 #include "mbs/measure.hpp"
-#include "mbs/scalar_function.hpp"
 #include "model/body_layout.hpp"
 #include "model/model.hpp"
+#include "model/scalar_function.hpp"
 
 namespace scree {
 

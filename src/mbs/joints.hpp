@@ -2,8 +2,8 @@
 #pragma once
 
 #include "mbs/joint_parts.hpp"
-#include "mbs/scalar_function.hpp"
 #include "model/bodies.hpp"
+#include "model/scalar_function.hpp"
 
 namespace scree {
 

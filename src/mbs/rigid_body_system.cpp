@@ -33,6 +33,16 @@ Real characteristic_length(const Model& model) {
   return radius > 0 ? radius : reach > 0 ? reach : 1;
 }
 
+// A natural spline through points that begin level does not begin at rest.
+std::string start_remedy(const TimeFunction& given, const ScalarFunction& motion) {
+  if (given.kind != TimeFunctionKind::table || given.interpolation != Interpolation::natural) return "";
+  return fmt::format(
+      "; its table's natural spline begins with a rate of {:.4g}: interpolation = \"monotone\" stays between "
+      "the "
+      "values, \"clamped\" with end_rates begins as they say",
+      motion(0).rate);
+}
+
 }  // namespace
 
 RigidBodySystem::RigidBodySystem(const Model& model)
@@ -70,10 +80,11 @@ void RigidBodySystem::add_constraints(const Model& model, const BodyPoses& start
     const Joint& joint = model.joints[static_cast<std::size_t>(driver.joint)];
     const std::string title = fmt::format("driver '{}'", driver.name);
     const std::unique_ptr<JointParts> parts = joint_parts(model, driver.joint, layout_);
-    add_driver(coordinate_of(title, joint, driver.coordinate),
-               ScalarFunction(driver.motion, title, model.time.end), *parts);
-    add_group({title, driver.name, driver.deck_label, true}, parts->take(), joint,
-              between(model, joint.body));
+    const ScalarFunction motion(driver.motion, title, model.time.end);
+    add_driver(coordinate_of(title, joint, driver.coordinate), motion, *parts);
+    add_group(
+        {title, driver.name, driver.deck_label, true, motion(0).value, start_remedy(driver.motion, motion)},
+        parts->take(), joint, between(model, joint.body));
   }
   for (const Coupler& coupler : model.couplers) {
     std::vector<std::unique_ptr<Constraint>> rows;

@@ -24,6 +24,8 @@ struct ConstraintGroup {
   std::string name;        // "pin"
   std::string deck_label;  // as of a joint of the model
   bool drives = false;     // it is a driver
+  Real start = 0;          // of a driver, its motion at t = 0
+  std::string remedy{};    // of a driver whose velocity at t = 0 contradicts what else is given
   BodyKind kind = BodyKind::planar;
   int body = kGround;              // the joint's first one
   Quaternion marker{};             // of the joint on it

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "mbs/rank_check.hpp"
@@ -23,6 +24,14 @@ constexpr Real kAccelerationGap = 1e-3;  // the same of accelerations
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+// What is told of a driver besides; per: as below.
+std::string of_driver(const ConstraintGroup& group, std::string_view per) {
+  if (!group.drives) return "";
+  return per == "/s"   ? group.remedy
+         : per.empty() ? fmt::format("; the motion begins at {:.6g}", group.start)
+                       : "";
+}
+
 // Of all groups the one whose gap [m, rad], or its rate with per = "/s", is the farthest above the limit:
 // what is wrong with the length of its length rows or of its angle rows, or nothing. driven: what of a
 // driver.
@@ -41,9 +50,10 @@ std::string group_trouble(const RigidBodySystem& system, const std::vector<Real>
       const Real size = std::sqrt(square);
       if (size <= worst * scale) continue;
       worst = size / scale;
-      trouble = with_label(group.deck_label, fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}",
-                                                         group.title, group.drives ? driven : what, size,
-                                                         angle ? "rad" : "m", per, limit * scale));
+      trouble = with_label(group.deck_label,
+                           fmt::format("{0}: {1} {2:.6g} {3}{4}, allowed is {5:.3g} {3}{4}{6}", group.title,
+                                       group.drives ? driven : what, size, angle ? "rad" : "m", per,
+                                       limit * scale, of_driver(group, per)));
     }
   return trouble;
 }

@@ -16,9 +16,9 @@ constexpr Real kChanged = 1e-10;  // of the largest velocity plus the coordinate
 constexpr Real kZero = 1e-14;     // the same: round-off of a velocity that is 0
 constexpr std::size_t kBodiesShown = 8;
 
-// As a TOML float that reads back to the same bits.
+// The shortest TOML float that reads back to the same bits.
 std::string all_digits(Real value) {
-  const std::string text = fmt::format("{:.17g}", value);
+  const std::string text = fmt::format("{}", value);
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 

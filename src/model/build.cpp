@@ -78,6 +78,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
   share.together([&] { build_meshes(root, model, names); });
   build_space(root, names, model);
   build_time(root, model);
+  check_time_tables(root, model.time.end, log);
   check_bodies_inside(root, model.space);
   ModelSize size = bodies_and_links(root);
   naming_memory(size, share.size(), [&] {
@@ -120,7 +121,7 @@ void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
     if (side != kSideNames.end() &&
         space.boundary[static_cast<std::size_t>(side - kSideNames.begin())] == Boundary::wall)
       entry.fail("name", "is the name of a side of the space that is a wall; choose another one");
-    model.walls.push_back(build_wall(entry, names, space.dimension, deck.table("time").real("end")));
+    model.walls.push_back(build_wall(entry, names, space.dimension));
   }
   const bool walled = std::count(space.boundary.begin(), space.boundary.end(), Boundary::wall) > 0;
   if (walled || table.has("wall_material"))

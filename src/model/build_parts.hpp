@@ -15,8 +15,8 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names);
 // After bodies and walls.
 void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
-// dimension: of the space; end: of the simulated time [s].
-Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension, Real end);
+// dimension: of the space.
+Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension);
 void build_time(const DeckTable& deck, Model& model);  // control and end; also the integrator
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
@@ -42,6 +42,9 @@ void build_parallel(const DeckTable& deck, Model& model);
 // A time function from a quantity of the deck: of a driver, or a force or torque.
 TimeFunction build_motion(const DeckTable& table);
 TimeFunction build_force(const DeckTable& table);
+// Of tables over time anywhere below `table`: whether they cover the run up to `end` [s], an error; a warning
+// where a spline goes noticeably past the values that it goes through.
+void check_time_tables(const DeckTable& table, Real end, Log& log);
 
 // Whether this shape or mesh of the body touches anything.
 bool collides(const DeckTable& body, const DeckTable& surface);

@@ -25,33 +25,22 @@ Vec3 rotation_axis(const DeckTable& table, int dimension) {
   return {0, 0, 1};
 }
 
-// key: of the function of time.
-TimeFunction coordinate_of(const DeckTable& motion, const std::string& key, Real end) {
-  const DeckTable& table = motion.table(key);
-  const TimeFunction function = build_motion(table);
-  if (function.kind == TimeFunctionKind::table && (function.times.front() > 0 || function.times.back() < end))
-    table.fail("times", fmt::format("must cover the whole run, 0 s to time.end = {} s; they go from {} s to "
-                                    "{} s",
-                                    end, function.times.front(), function.times.back()));
-  return function;
-}
-
-WallMotion build_wall_motion(const DeckTable& table, int dimension, Real end) {
+WallMotion build_wall_motion(const DeckTable& table, int dimension) {
   if (table.choice<WallMotionKind>("type") == WallMotionKind::translation)
     return {WallMotionKind::translation,
             unit_vector(table, "direction"),
             {},
-            coordinate_of(table, "displacement", end)};
+            build_motion(table.table("displacement"))};
   return {WallMotionKind::rotation, rotation_axis(table, dimension), table.vector("point"),
-          coordinate_of(table, "angle", end)};
+          build_motion(table.table("angle"))};
 }
 
 }  // namespace
 
-Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension, Real end) {
+Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension) {
   Wall wall{table.text("name"), {}, {}, find_material(names, table, "material")};
   for (const DeckTable& motion : table.tables("motions"))
-    wall.motions.push_back(build_wall_motion(motion, dimension, end));
+    wall.motions.push_back(build_wall_motion(motion, dimension));
   if (table.has("surface_velocity")) wall.surface_velocity = table.vector("surface_velocity");
   if (table.has("mesh")) {
     for (const char* key : {"point", "normal"})

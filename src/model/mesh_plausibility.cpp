@@ -17,6 +17,7 @@ namespace {
 constexpr Real kMostOfCurve = 0.5;  // radius of a particle over that of a concave surface
 constexpr Real kMostSag = 0.1;      // over the largest overlap: so far the force errs where it is greatest
 constexpr Real kMostTrianglesNear = 64;
+constexpr Real kMostOfSpace = 10;  // the length of a mesh
 
 Real area_of(const SurfaceMesh& mesh) {
   Real area = 0;
@@ -63,6 +64,20 @@ Real largest_overlap(const Model& model, const std::set<int>& materials) {
         largest =
             std::max(largest, impact_overlap(limit.law, lightest_mass(limit), impact_speed(model, limit)));
   return largest;
+}
+
+// Of one whose file is in other units, mostly.
+std::string too_large(const Model& model, const ModelMesh& mesh) {
+  const auto longest = [](Vec3 a) { return std::max({a.x, a.y, a.z}); };
+  const Vec3 space = model.space.max - model.space.min, size = mesh.surface->box.max - mesh.surface->box.min;
+  const bool planar = model.space.dimension == 2;
+  const Real of_space = longest(Vec3{space.x, space.y, planar ? 0 : space.z});
+  const Real of_mesh = longest(Vec3{size.x, size.y, planar ? 0 : size.z});
+  if (!(of_mesh > kMostOfSpace * of_space)) return "";
+  return fmt::format(
+      "mesh \"{}\": is {:.4g} m long, in a space of {:.4g} m: is its scale right? 0.001 takes a file in "
+      "mm",
+      mesh.name, of_mesh, of_space);
 }
 
 std::string too_narrow(const Model& model, const ModelMesh& mesh) {
@@ -126,6 +141,8 @@ std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& 
     const ModelMesh& mesh = model.meshes[m];
     if (!used.contains(mesh.name))
       findings.push_back(fmt::format("mesh \"{}\": no wall, body or solid uses it", mesh.name));
+    if (std::string finding = too_large(model, mesh); !finding.empty())
+      findings.push_back(std::move(finding));
     if (materials[m].empty() || model.particles.totals.count == 0) continue;
     for (const std::string& finding :
          {too_narrow(model, mesh), too_coarse(model, mesh, materials[m]), too_fine(model, mesh)})

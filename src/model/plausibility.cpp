@@ -223,6 +223,28 @@ std::string wide_attraction(const Model& model) {
       reach, smallest);
 }
 
+// Such groups have the same places in their boxes, and particles of the same radii in the same order where
+// those are drawn alike.
+std::string same_random_places(const DeckTable& deck) {
+  const std::vector<DeckTable>& groups = deck.tables("particles");
+  const auto alike = [](const DeckTable& a, const DeckTable& b) {
+    for (const DeckTable* table : {&a, &b})
+      if (table->choice<GroupKind>("kind") != GroupKind::random || !table->has("count")) return false;
+    constexpr Real kRoundOff = 1e-12;
+    const Vec3 one = a.vector("max") - a.vector("min"), other = b.vector("max") - b.vector("min");
+    return a.integer("seed") == b.integer("seed") && a.integer("count") == b.integer("count") &&
+           norm(one - other) <= kRoundOff * norm(one);
+  };
+  for (std::size_t k = 1; k < groups.size(); ++k)
+    for (std::size_t i = 0; i < k; ++i)
+      if (alike(groups[i], groups[k]))
+        return fmt::format(
+            "{}: the same count, seed and size of the box as {}: the particles of both groups stand alike in "
+            "their boxes; give one of them another seed",
+            groups[k].label(), groups[i].path());
+  return "";
+}
+
 // Values of a distribution that it may take.
 std::vector<Real> values_of(const DeckTable& distribution) {
   switch (distribution.choice<DistributionKind>("kind")) {
@@ -324,7 +346,8 @@ std::vector<std::string> implausible(const DeckTable& deck, const Model& model) 
                                        wide_attraction(model),
                                        odd_density(deck),
                                        odd_mass(deck, model),
-                                       many_steps(model)};
+                                       many_steps(model),
+                                       same_random_places(deck)};
   for (const PairLimit& limit : pair_limits(model))
     for (const auto& finding : {overdamped, overlap_at_rest, overlap_at_impact})
       findings.push_back(finding(model, limit));

@@ -89,20 +89,37 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
   return items;
 }
 
-[[noreturn]] void refuse_outside(const DeckTable& deck, const Space& space, const std::string& name, Vec3 p) {
-  deck.table("space").fail(
-      "max",
-      fmt::format("{} starts at ({}, {}, {}), outside the space from ({}, {}, {}) to ({}, {}, {})", name, p.x,
-                  p.y, p.z, space.min.x, space.min.y, space.min.z, space.max.x, space.max.y, space.max.z));
+// name: of what starts at p, outside the space.
+std::string outside_text(const Space& space, const std::string& name, Vec3 p) {
+  const auto text = [&](Vec3 a) {
+    return space.dimension == 2 ? fmt::format("({}, {})", a.x, a.y)
+                                : fmt::format("({}, {}, {})", a.x, a.y, a.z);
+  };
+  const Box allowed = start_box(space);
+  const Vec3 below = allowed.min - p, above = p - allowed.max;
+  const Real beyond[] = {below.x, above.x, below.y, above.y, below.z, above.z};
+  std::string sides;
+  for (std::size_t side = 0; side < std::size(beyond); ++side)
+    if (beyond[side] > 0)
+      sides += fmt::format("{} {}", sides.empty() ? ", beyond" : " and", kSideNames[side]);
+  return fmt::format("{} starts at {}, outside the space from {} to {}{}", name, text(p), text(space.min),
+                     text(space.max), sides);
+}
+
+// The deck's table of the group that has this particle.
+const DeckTable& group_of(const DeckTable& deck, const Model& model, GlobalId id) {
+  const GlobalId ids[] = {id};
+  return deck.tables("particles")[static_cast<std::size_t>(groups_of(model.particles.groups, ids).front())];
 }
 
 void check_particles_inside(const DeckTable& deck, const Model& model) {
   const Box allowed = start_box(model.space);
   for (std::size_t i = 0; i < model.particles.size(); ++i) {
     const Vec3 p = model.particles.position[i];
-    if (!allowed.inside(p))
-      refuse_outside(deck, model.space,
-                     fmt::format("particle {}", model.particles.first_id + static_cast<GlobalId>(i)), p);
+    if (allowed.inside(p)) continue;
+    const GlobalId id = model.particles.first_id + static_cast<GlobalId>(i);
+    throw InputError(fmt::format("{}: {}", group_of(deck, model, id).label(),
+                                 outside_text(model.space, fmt::format("particle {}", id), p)));
   }
 }
 
@@ -255,8 +272,8 @@ void check_bodies_inside(const DeckTable& deck, const Space& space) {
           const Vec3 p = first + static_cast<Real>(i) * spacing + offset;
           if (allowed.inside(p)) continue;
           const std::string& name = table.text("name");
-          refuse_outside(deck, space,
-                         row ? fmt::format("body \"{}.{}\"", name, i) : fmt::format("body \"{}\"", name), p);
+          const std::string body = row ? fmt::format("{}.{}", name, i) : name;
+          table.fail("position", outside_text(space, fmt::format("a shape of body \"{}\"", body), p));
         }
       }
     }

@@ -26,6 +26,19 @@ constexpr const char* kBeside[] = {".tmp", ".spare", ".old"};
 // Behind a checkpoint's: one that belongs to the steps which a continued run has taken anew.
 constexpr const char* kEarlier = ".earlier";
 
+// What a run would continue from; empty: there is none.
+std::string newest_checkpoint(const std::string& folder) {
+  std::string newest;
+  for (const char* name : {"checkpoint.h5", "checkpoint_end.h5"}) {
+    const std::string path = folder + "/" + name;
+    std::error_code error;
+    if (fs::exists(path, error) &&
+        (newest.empty() || fs::last_write_time(path, error) > fs::last_write_time(newest, error)))
+      newest = path;
+  }
+  return newest;
+}
+
 void remove_file(const std::string& path) {
   std::error_code error;
   fs::remove(path, error);
@@ -57,20 +70,18 @@ std::vector<std::string> ResultsFolder::results_of_others() const {
   return found;
 }
 
-// The newest checkpoint is what a run would continue from.
 std::string ResultsFolder::way_out() const {
-  std::string newest;
-  for (const char* name : {"checkpoint.h5", "checkpoint_end.h5"}) {
-    const std::string path = options_.folder + "/" + name;
-    std::error_code error;
-    if (fs::exists(path, error) &&
-        (newest.empty() || fs::last_write_time(path, error) > fs::last_write_time(newest, error)))
-      newest = path;
-  }
+  const std::string newest = newest_checkpoint(options_.folder);
   return newest.empty() || !options_.restart.empty() ? "" : ", --restart " + newest + " continues them";
 }
 
 void ResultsFolder::check() const {
+  if (std::error_code error; fs::is_directory(options_.restart, error)) {
+    const std::string newest = newest_checkpoint(options_.restart);
+    throw InputError(
+        fmt::format("--restart {}: takes a file, and this is a folder{}", options_.restart,
+                    newest.empty() ? " without a checkpoint" : "; its newest checkpoint is " + newest));
+  }
   lock_.check();
   check_results();
 }

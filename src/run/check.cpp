@@ -1,6 +1,7 @@
 #include "run/check.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -71,6 +72,18 @@ std::string gravity_line(Vec3 gravity) {
                      gravity.y / size, gravity.z / size);
 }
 
+// Those of the deck's list, and the sides of the space that are walls.
+std::string walls_text(const Model& model) {
+  const std::int64_t sides =
+      std::count(model.space.boundary.begin(), model.space.boundary.end(), Boundary::wall);
+  const std::int64_t placed = std::ssize(model.walls) - sides;
+  if (sides + placed == 0) return "no walls";
+  std::vector<std::string> texts;
+  if (sides > 0) texts.push_back(counted(sides, "side is a wall", "sides are walls"));
+  if (placed > 0) texts.push_back(counted(placed, "wall inside", "walls inside"));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 std::string space_lines(const Model& model, int ranks) {
   const Space& space = model.space;
   const auto corner = [&](Vec3 p) {
@@ -78,7 +91,7 @@ std::string space_lines(const Model& model, int ranks) {
                                 : fmt::format("({}, {}, {})", p.x, p.y, p.z);
   };
   std::string lines = fmt::format("space          {}D, {} to {} m, {}\n", space.dimension, corner(space.min),
-                                  corner(space.max), counted(std::ssize(model.walls), "wall", "walls"));
+                                  corner(space.max), walls_text(model));
   lines += sides_line(space) + gravity_line(model.gravity);
   const ParticleTotals& particles = model.particles.totals;
   if (particles.count == 0) return lines + "particles      none\n";

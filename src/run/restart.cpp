@@ -8,9 +8,9 @@
 #include "base/error.hpp"
 #include "deck/deck.hpp"
 #include "deck/differences.hpp"
-#include "mbs/scalar_function.hpp"
 #include "model/build_parts.hpp"
 #include "model/joint_coordinates.hpp"
+#include "model/scalar_function.hpp"
 #include "run/checkpoint_datasets.hpp"
 
 namespace scree {

@@ -124,6 +124,10 @@ void Simulation::start_or_resume() {
     if (state_.clock.time > model_.time.end)
       throw InputError(fmt::format("--restart {}: the checkpoint is at t = {:.9g} s, past time.end = {:g} s",
                                    options_.restart, state_.clock.time, model_.time.end));
+    if (state_.clock.time == model_.time.end)
+      log_.info(fmt::format(
+          "--restart {}: nothing left to do: time.end = {:g} s is reached; --set time.end=... goes on",
+          options_.restart, model_.time.end));
     if (!continues_files()) state_.history_rows = state_.snapshots = 0;
     step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);

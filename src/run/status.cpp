@@ -109,15 +109,17 @@ std::string told_lines(const Seen& seen) {
   const RunStatus& told = seen.told;
   const Progress& p = told.progress;
   const bool goes_on = seen.word == "running";
+  const char* const at_last_row = told.state.starts_with("failed") ? ", at the last row of the history" : "";
   std::string text = fmt::format("deck           {}, backend {}\n", printable(told.deck), told.backend);
   text += fmt::format("simulated      {:.6g} of {:g} s ({})\n", p.time, p.end, percent_text(p));
   if (goes_on) text += fmt::format("time left      {}\n", duration_text(p.seconds_left));
   text += fmt::format("wall time      {}, since {}\n", duration_text(told.wall_seconds), told.started);
   text += fmt::format("steps          {}, the last one of {:.2e} s\n", p.steps, p.step);
   text += fmt::format("rate           {}{}\n", rate_text(p), goes_on ? "" : " at last");
-  text += fmt::format("contacts       {}\n", p.contacts < 0 ? "?" : std::to_string(p.contacts));
-  text += fmt::format("energy         balance error {:.2e} J of {:.4g} J exchanged ({})\n", p.balance_error,
-                      p.exchanged, balance_text(p));
+  text +=
+      fmt::format("contacts       {}{}\n", p.contacts < 0 ? "?" : std::to_string(p.contacts), at_last_row);
+  text += fmt::format("energy         balance error {:.2e} J of {:.4g} J exchanged ({}){}\n", p.balance_error,
+                      p.exchanged, balance_text(p), at_last_row);
   text += fmt::format("checkpoint     {}\n", checkpoint_text(told));
   text +=
       fmt::format("written        {} snapshots, {} rows of the history\n", told.snapshots, told.history_rows);

@@ -146,8 +146,10 @@ std::string outside_at_start(const Model& model) {
   std::string names;
   for (std::size_t k = 0; k < std::min(beyond.size(), kNamed); ++k) names += (k == 0 ? "" : ", ") + beyond[k];
   if (beyond.size() > kNamed) names += fmt::format(" and {} more", beyond.size() - kNamed);
-  return fmt::format("{} {} beyond an open side of the space: particles that leave there {}; a larger space",
-                     names, beyond.size() > 1 ? "reach" : "reaches", what_is_lost(model));
+  return fmt::format(
+      "{} {} beyond an open side of the space: particles that leave there {}; a larger space "
+      "would keep them",
+      names, beyond.size() > 1 ? "reach" : "reaches", what_is_lost(model));
 }
 
 SurfacesOutside::SurfacesOutside(const Model& model) : model_(model) {
@@ -172,7 +174,7 @@ std::string SurfacesOutside::warning(std::span<const Leaver> leavers, std::span<
       if (!box.reaches(transposed_times(axes, place), diameter)) continue;
       return fmt::format(
           "particle {} leaves the space at t = {:.6g} s at the surfaces of {}: particles that leave {}; a "
-          "larger space",
+          "larger space would keep them",
           leaver.global_id, t, names_[c], what_is_lost(model_));
     }
   }

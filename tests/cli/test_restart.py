@@ -211,6 +211,14 @@ class RestartTest(CommandLineTest):
                 for time in list(whole)[:4]:
                     self.assertEqual(parts[time], whole[time])
 
+    def test_a_folder_is_no_checkpoint_and_an_end_that_is_reached_is_told(self):
+        self.run_deck(DONE, "out")
+        message = self.run_deck(BAD_INPUT, "out", "--restart", self.folder / "out").stderr
+        newest = self.folder / "out/checkpoint_end.h5"
+        self.assertIn(f"takes a file, and this is a folder; its newest checkpoint is {newest}\n", message)
+        result = self.run_deck(DONE, "again", "--restart", self.folder / "out/checkpoint_end.h5")
+        self.assertIn("nothing left to do: time.end = 0.4 s is reached", result.stdout)
+
     def test_checkpoints_that_cannot_be_read(self):
         self.run_deck(DONE, "out", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
         whole = (self.folder / "out" / "checkpoint.h5").read_bytes()

@@ -1,6 +1,8 @@
 """What can be told of a run from outside: scree status. Usage: as test_cli.py"""
 
+import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -55,7 +57,17 @@ class StatusTest(CommandLineTest):
 
     def test_a_run_that_failed(self):
         self.run_deck(FAILED, "out", "--set", "space.leaving=error", "--set", "particles.discs.velocity=[0.0, 50.0]")
-        self.assertRegex(self.status("out"), r"\Astate          failed: .*particle")
+        text = self.status("out")
+        self.assertRegex(text, r"\Astate          failed: .*particle")
+        time, = re.findall(r"simulated      (\S+) of 0\.4 s \(\d+ %\)\n", text)
+        good, = re.findall(r"checkpoint     checkpoint_failed.h5, t = (\S+) s, ", text)
+        self.assertLessEqual(float(good), float(time))
+        steps, rows = (re.findall(pattern, text) for pattern in (r"steps +(\d+),", r", (\d+) rows of the history"))
+        record = json.loads((self.folder / "out/run_record.json").read_text())
+        for number in (r"contacts       \d+", r"exchanged \(\S+\)"):
+            self.assertRegex(text, number + ", at the last row of the history\n")
+        self.assertEqual(int(rows[0]), record["counts"]["history_rows"])
+        self.assertEqual(float(time), round(1e-4 * int(steps[0]), 9))
 
     def test_several_folders_are_a_table(self):
         self.run_deck(DONE, "a")

@@ -34,6 +34,9 @@ TEST_CASE("text that is not TOML") {
   const std::string message = deck_error("[space\ndimension = 2\n");
   CHECK(contains(message, "deck.toml:1:"));
   CHECK(contains(message, "not TOML"));
+  for (const char* bare : {"wall", "fixed", "no"})
+    CHECK(contains(deck_error(with_line(8, fmt::format("control = {}", bare))), "; texts stand in quotes"));
+  CHECK_FALSE(contains(deck_error(with_line(8, "step = 1m")), "quotes"));
 }
 
 TEST_CASE("a repeated key") {
@@ -47,6 +50,9 @@ TEST_CASE("unknown keys and tables get a suggestion") {
         "deck.toml:8:1: time.stp = 0.001: unknown key; did you mean \"step\"?");
   CHECK(contains(deck_error(kSmallDeck + "[contct]\n"),
                  "deck.toml:10:2: contct = { }: unknown key; did you mean \"contact\"?"));
+  CHECK(contains(deck_error(kSmallDeck + "[[mesh]]\n"), "did you mean \"meshes\"?"));
+  CHECK(contains(deck_error(kSmallDeck + "[joints]\n"), "joints = { }: must be "));
+  CHECK(contains(deck_error(kSmallDeck + "[joints]\n"), "; write [[joints]]"));
   const std::string far_off = deck_error(with_line(8, "step = 1e-3\nsomething_else = 1"));
   CHECK(contains(far_off, "time.something_else = 1: unknown key; known: end, step, control"));
 }
@@ -55,7 +61,7 @@ TEST_CASE("values of the wrong type") {
   CHECK(deck_error(with_line(8, "step = \"fast\"")) ==
         "deck.toml:8:8: time.step = \"fast\": must be a number above 0 [s]");
   CHECK(deck_error(with_line(3, "dimension = 2.0")) ==
-        "deck.toml:3:13: space.dimension = 2: must be an integer from 2 to 3");
+        "deck.toml:3:13: space.dimension = 2: must be an integer from 2 to 3, without a decimal point");
   CHECK(deck_error(with_line(4, "min = -1.0")) ==
         "deck.toml:4:7: space.min = -1: must be 2 numbers [m] in brackets");
   CHECK(

@@ -65,7 +65,8 @@ TEST_CASE("the step control follows the particles' integrator where the deck doe
                  "control = \"fixed\""));
   CHECK(contains(resolved(head, {verlet, step, "time.control=adaptive"}), "control = \"adaptive\""));
   CHECK(deck_error(head, {verlet}) ==
-        "deck.toml:5:1: time.step: missing; with control = \"fixed\" it must be a number above 0 [s]");
+        "deck.toml:5:1: time.step: missing; integrator.particles = \"velocity-verlet\" makes control "
+        "\"fixed\", and then it must be a number above 0 [s]");
   const std::string again = resolved(head, {verlet, step});
   CHECK(resolved(again) == again);
 }

@@ -64,17 +64,17 @@ TEST_CASE("the refusal of start velocities says which keys to set to what, with 
   CHECK(contains(
       refusal(model),
       "driver 'motor': the velocities at t = 0 contradict it by 1.85 rad/s, allowed is 1e-08 rad/s; set "
-      "bodies.bob.velocity = [0.0, 0.92500000000000004], bodies.bob.angular_velocity = "
-      "1.8500000000000001, or velocities = \"consistent\" at the top of the deck"));
+      "bodies.bob.velocity = [0.0, 0.925], bodies.bob.angular_velocity = "
+      "1.85, or velocities = \"consistent\" at the top of the deck"));
   // What it says is what passes.
-  model.bodies[0].velocity = {0, 0.92500000000000004, 0};
-  CHECK(contains(refusal(model), "set bodies.bob.angular_velocity = 1.8500000000000001, or"));
-  model.bodies[0].angular_velocity = 1.8500000000000001;
+  model.bodies[0].velocity = {0, 0.925, 0};
+  CHECK(contains(refusal(model), "set bodies.bob.angular_velocity = 1.85, or"));
+  model.bodies[0].angular_velocity = 1.85;
   CHECK(refusal(model) == "nothing was refused");
   model.bodies[0].velocity.x = 0.3;
-  CHECK(contains(refusal(model), "set bodies.bob.velocity = [0.0, 0.92500000000000004], or"));
+  CHECK(contains(refusal(model), "set bodies.bob.velocity = [0.0, 0.925], or"));
   model.space.dimension = 3;
-  CHECK(contains(refusal(model), "bodies.bob.velocity = [0.0, 0.92500000000000004, 0.0], or"));
+  CHECK(contains(refusal(model), "bodies.bob.velocity = [0.0, 0.925, 0.0], or"));
   model.bodies[0].in_row = true;  // its keys are those of the whole row
   CHECK(contains(refusal(model), "; set velocities = \"consistent\" at the top of the deck"));
 }

@@ -220,8 +220,16 @@ TEST_CASE("the space") {
 
 TEST_CASE("start positions outside the space") {
   const std::string message = model_error(kSmallDeck + kPair + particles_at("[[0, 0], [0, 1.5]]"));
+  CHECK(contains(message,
+                 ": particles.0: particle 1 starts at (0, 1.5), outside the space from (-1, -1) to (1, 1), "
+                 "beyond y_max"));
+  const std::string body =
+      "[[bodies]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\nposition = [-2.0, 0.0]\n"
+      "shapes = [{ radius = 0.1 }]\n";
   CHECK(
-      contains(message, "particle 1 starts at (0, 1.5, 0), outside the space from (-1, -1, 0) to (1, 1, 0)"));
+      contains(model_error(kSmallDeck + body),
+               "bodies.b.position = [-2, 0]: a shape of body \"b\" starts at (-2, 0), outside the space from "
+               "(-1, -1) to (1, 1), beyond x_min"));
 }
 
 TEST_CASE("every pair of materials that can meet needs a law") {

@@ -1,6 +1,8 @@
 // Meshes as decks give them: placed, refined, weighed, counted.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "model/mesh_plausibility.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
@@ -68,6 +70,17 @@ TEST_CASE("a body made of a box of triangles weighs what the box does") {
                            "{ kind = \"mesh\", mesh = \"made\", density = 800.0, offset = [0.1, 0.2, 0.3], "
                            "rotation_axis = [1, 2, 3], rotation_angle = 0.7 }")),
               whole);
+}
+
+TEST_CASE("a mesh that is far longer than the space may want a scale") {
+  const auto is_told = [](const char* points) {
+    const auto warnings = model_warnings(kSmallLine, {fmt::format("meshes.line.points={}", points)});
+    return std::ranges::any_of(warnings, [](const std::string& text) {
+      return contains(text, "mesh \"line\": is 40 m long, in a space of 2 m: is its scale right?");
+    });
+  };
+  CHECK(is_told("[[0, 0], [30, 0], [0, 40]]"));
+  CHECK_FALSE(is_told("[[0, 0], [0.3, 0], [0, 0.4]]"));
 }
 
 TEST_CASE("a solid is what its mesh encloses, what the hull of that encloses, or a skin") {

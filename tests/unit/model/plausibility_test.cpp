@@ -38,6 +38,17 @@ struct Case {
 
 TEST_CASE("one warning for each finding, none for what is just below it") {
   const std::string all = kSmallDeck + kPair + kDisc + kBody, spheres = kSpheres + kPair + kSphere;
+  const auto group = [](const std::string& name, const std::string& corners) {
+    return "[[particles]]\nname = \"" + name +
+           "\"\nkind = \"random\"\ncount = 3\nradius = 0.05\nmass = 1.0\n" + corners;
+  };
+  const std::string random = kSmallDeck + kPair + group("a", "min = [-0.9, -0.9]\nmax = [-0.1, -0.1]\n") +
+                             group("c", "min = [0.1, 0.1]\nmax = [0.9, 0.9]\n");
+  const std::string moved =
+      kSmallDeck + kPair + kDisc +
+      "[[walls]]\nname = \"w\"\npoint = [0, -1]\nnormal = [0, 1]\n[[walls.motions]]\ntype = "
+      "\"translation\"\ndirection = [0, 1]\ndisplacement = { kind = \"table\", times = [0, 0.5, 1], values = "
+      "[0, 0.02, 0.02], interpolation = \"monotone\" }\n";
   const std::vector<Case> cases = {
       {all, {kFloor, kGravity, "time.step=1e-4"}, ""},
       {spheres, {"gravity=[0, 0, -10]"}, ""},
@@ -105,6 +116,14 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       {all,
        {"time.end=1e5", "time.step=0.9e-4", "time.control=fixed"},
        "time.end / time.step = 1.11e+09 steps"},
+      {random, {}, "particles.c: the same count, seed and size of the box as particles.a: "},
+      {random, {"particles.c.seed=2"}, ""},
+      {random, {"particles.c.max=[0.5, 0.9]"}, ""},
+      {moved, {}, ""},
+      {moved,
+       {"walls.w.motions.0.displacement.interpolation=natural"},
+       "walls.w.motions.0.displacement: between 0.5 s and 1 s the natural spline goes past the values there, "
+       "to "},
       {all,
        {"time.end=1e5", "time.control=adaptive", "time.max_step=1e-5", "time.step=1e-6"},
        "time.end / time.max_step = 1e+10 steps at least"},

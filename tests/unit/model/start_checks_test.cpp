@@ -70,7 +70,7 @@ TEST_CASE("overlaps of particles that start more than one period outside the spa
   }
   CHECK(contains(error("[[4.99, 0], [-4.98, 0]]"), "particle 0 and particle 1 overlap at t = 0 by 1.4"));
   CHECK(contains(error("[[5, -0.96]]"), "particle 0 and wall \"y_min\" overlap at t = 0 by 0.2"));
-  CHECK(contains(error("[[5, 1.5]]"), "particle 0 starts at (5, 1.5, 0), outside the space"));
+  CHECK(contains(error("[[5, 1.5]]"), "particle 0 starts at (5, 1.5), outside the space"));
   CHECK(error("[[0, 0], [5, 0], [4.5, 0]]").empty());
 }
 
@@ -231,8 +231,8 @@ TEST_CASE("a particle may start periods outside a periodic space, but not where 
         deck, {"space.x_min=periodic", "space.x_max=periodic", "particles.0.positions=[[" + x + ", 0]]"});
   };
   CHECK(error("1e5").empty());
-  CHECK(contains(error("1e9"), "particle 0 starts at (1000000000, 0, 0), outside the space"));
-  CHECK(contains(error("-1e300"), "particle 0 starts at (-1e+300, 0, 0), outside the space"));
+  CHECK(contains(error("1e9"), "particle 0 starts at (1000000000, 0), outside the space"));
+  CHECK(contains(error("-1e300"), "particle 0 starts at (-1e+300, 0), outside the space"));
 }
 
 }  // namespace scree

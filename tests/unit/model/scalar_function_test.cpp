@@ -1,4 +1,4 @@
-#include "mbs/scalar_function.hpp"
+#include "model/scalar_function.hpp"
 
 #include <algorithm>
 #include <array>
@@ -182,6 +182,24 @@ TEST_CASE("monotone tables never overshoot, are twice continuously differentiabl
       REQUIRE(f(t).acceleration == g(t).acceleration);
     }
   }
+}
+
+TEST_CASE("how far a spline leaves the values at its points") {
+  TimeFunction hold = table({0, 1, 2, 3}, {0, 0, 1, 1});
+  const ScalarFunction natural(hold, "hold", 3);
+  const Overshoot found = natural.overshoot();
+  Real lowest = 0, highest = 0;
+  for (int i = 0; i <= 3000; ++i) {
+    const Real value = natural(Real(i) / 1000).value;
+    lowest = std::min(lowest, value), highest = std::max(highest, value - 1);
+  }
+  CHECK(std::abs(found.beyond) >= std::max(-lowest, highest));
+  CHECK(std::abs(found.beyond) < 1.00001 * std::max(-lowest, highest));
+  CHECK(natural(found.t).value == found.value);
+  CHECK(std::abs(natural(found.t).rate) < kRoundOff);
+  CHECK(ScalarFunction(table({0, 1, 2}, {0, 1, 2}), "line", 2).overshoot().beyond == 0);
+  hold.interpolation = Interpolation::monotone;
+  CHECK(ScalarFunction(hold, "hold", 3).overshoot().beyond == 0);
 }
 
 TEST_CASE("tables of smooth data: the error's order") {

@@ -9,6 +9,13 @@
 
 namespace scree {
 
+// How far a function leaves what its points say.
+struct Overshoot {
+  std::size_t segment = 0;  // between points `segment` and the next
+  Real t = 0, value = 0;    // where it is farthest out
+  Real beyond = 0;          // of the range between the two points: above it > 0, below it < 0
+};
+
 class ScalarFunction {
  public:
   // owner: what the function belongs to, e.g. "driver 'crank'"; end: of the simulated time [s]. Throws
@@ -23,6 +30,10 @@ class ScalarFunction {
 
   // Whether the other has the same values, bit for bit, at all instants from 0 to `t` [s], though not after.
   bool same_until(const ScalarFunction& other, Real t) const;
+
+  // The farthest that a spline through a table's points leaves the values at the ends of one of its pieces;
+  // nothing of what is not such a spline.
+  Overshoot overshoot() const;
 
   // t [s]; round-off past a table's ends follows the end tangent, which keeps both derivatives continuous.
   TimeValue operator()(Real t) const {

@@ -1,8 +1,9 @@
-#include "mbs/scalar_function.hpp"
+#include "model/scalar_function.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -166,6 +167,28 @@ bool ScalarFunction::same_until(const ScalarFunction& other, Real t) const {
   };
   return same(a.times, b.times) && same(a.values, b.values) && same(rates_, other.rates_) &&
          same(second_derivatives_, other.second_derivatives_);
+}
+
+// With b = (t - t_i)/d, f' = slope + d/6 ((3 b^2 - 1) m_1 - (3 (1 - b)^2 - 1) m_0) is quadratic in b.
+Overshoot ScalarFunction::overshoot() const {
+  Overshoot farthest;
+  const bool spline =
+      function_.kind == TimeFunction::Kind::table && (function_.interpolation == Interpolation::natural ||
+                                                      function_.interpolation == Interpolation::clamped);
+  for (std::size_t i = 0; spline && i + 1 < function_.times.size(); ++i) {
+    const Real d = function_.times[i + 1] - function_.times[i];
+    const Real m0 = second_derivatives_[i], m1 = second_derivatives_[i + 1];
+    const Real a = d / 2 * (m1 - m0), b = d * m0, c = slope(i) - d / 6 * (2 * m0 + m1);
+    const Real q = -(b + std::copysign(std::sqrt(std::max<Real>(b * b - 4 * a * c, 0)), b)) / 2;
+    for (const Real root : {q / a, c / q}) {
+      if (!(root > 0 && root < 1)) continue;
+      const Real t = function_.times[i] + root * d, value = segment_value(i, t).value;
+      const auto [low, high] = std::minmax(function_.values[i], function_.values[i + 1]);
+      const Real beyond = value - std::clamp(value, low, high);
+      if (std::abs(beyond) > std::abs(farthest.beyond)) farthest = {i, t, value, beyond};
+    }
+  }
+  return farthest;
 }
 
 TimeValue ScalarFunction::table_value(Real t) const {
