@@ -321,7 +321,7 @@ class ReportTest(CommandTest):
         path = self.folder / "report.html"
         self.command(DONE, "report", NET, "-o", path)
         page = Page(path.read_text())
-        self.assertEqual((page.open, len(page.pictures)), ([], 4))
+        self.assertEqual((page.open, len(page.pictures)), ([], 5))  # with the reactions
         self.assertTrue(all(picture.startswith("data:image/png;base64,iVBOR") for picture in page.pictures))
         text = "\n".join(page.texts)
         record = scree.open(NET).record
