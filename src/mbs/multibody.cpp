@@ -28,6 +28,8 @@ constexpr Real kOscillation = 10;
 constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
 // The bodies' error, over the tolerance, from which they decide on the step's length.
 constexpr Real kGoverns = 0.3;
+// Of HHT (deck/keys_setup.cpp).
+constexpr Real kLeastAlpha = -1.0 / 3;
 
 MultibodyState checked_start(const Model& model, RigidBodySystem& system, StartFindings& findings) {
   MultibodyState state;
@@ -272,8 +274,9 @@ std::string Multibody::Impl::oscillation(Real share) const {
   return fmt::format(
       "the reactions of joints and drivers change sign at every step and have grown to {:.0f} "
       "times their mean: an oscillation of the method, which integrator.hht_alpha = {:g} {}; set "
-      "it {}below zero, e.g. -0.05",
-      share, none ? 0 : alpha, none ? "does not damp" : "damps too little", none ? "" : "further ");
+      "it {}below zero, e.g. {:g}",
+      share, none ? 0 : alpha, none ? "does not damp" : "damps too little", none ? "" : "further ",
+      none ? -0.05 : std::max(2 * alpha, kLeastAlpha));
 }
 
 void Multibody::Impl::fail_for_oscillation() const {
