@@ -58,7 +58,7 @@ class Record {
     std::ifstream words("/proc/self/cmdline");
     std::string word;
     std::getline(words, word, '\0');
-    while (std::getline(words, word, '\0')) command_ += " " + word.substr(word.rfind('/') + 1);
+    while (std::getline(words, word, '\0')) command_ += ' ', command_.append(word, word.rfind('/') + 1);
   }
   Record(const Record&) = delete;
   Record& operator=(const Record&) = delete;
