@@ -53,11 +53,11 @@ section() {
 
 try_quickstart() {
   make_system "$folder"
-  copy_tree "$folder/root/scree"
+  copy_tree "$folder/srv/scree"
   SECONDS=0
-  inside "$folder" /root/scree/jobs/quickstart.sh
+  inside "$folder" /srv/scree/jobs/quickstart.sh
   echo "bare_debian.sh: quickstart.sh took $SECONDS s"
-  ls -l "$folder/root/scree/results/net_400"
+  ls -l "$folder/srv/scree/results/net_400"
 }
 
 try_packages() {
@@ -73,14 +73,14 @@ try_packages() {
   inside "$final" bash -euc "$(section test 1)"
   inside "$final" bash -euxc '
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-    mpirun --oversubscribe -n 2 scree run /usr/share/scree/input/paper/net_9.toml --set time.end=0.1 --output /root/net_9
+    mpirun --oversubscribe -n 2 scree run /usr/share/scree/input/paper/net_9.toml --set time.end=0.1 --output /srv/net_9
     mkdir -p "/opt/some place" && tar xzf /kept/*.tar.gz -C "/opt/some place" --strip-components=1
     SCREE_LAUNCHER=env "/opt/some place/share/scree/jobs/one_node.sbatch" \
-      /usr/share/scree/input/examples/pendulum.toml /root/pendulum
+      /usr/share/scree/input/examples/pendulum.toml /srv/pendulum
     apt-get -q update && apt-get -q install -y --no-install-recommends lintian man-db python3-venv >/dev/null
     man scree | head -n 8
-    python3 -m venv /root/env && /root/env/bin/pip install --quiet /usr/share/scree/postprocess
-    /root/env/bin/scree-post compare /root/net_9 /root/net_9
+    python3 -m venv /srv/env && /srv/env/bin/pip install --quiet /usr/share/scree/postprocess
+    /srv/env/bin/scree-post compare /srv/net_9 /srv/net_9
     lintian --allow-root /kept/*.deb || true
     apt-get -q remove -y scree >/dev/null && [[ ! -e /usr/share/scree && ! -e /usr/bin/scree ]]'
   echo "bare_debian.sh: packages are made, installed, run and removed"
