@@ -224,17 +224,21 @@ class ExportTest(CommandTest):
 
 
 class FilmTest(CommandTest):
-    def test_part_of_a_run_as_a_gif(self):
-        path = self.folder / "film.gif"
-        said = self.command(DONE, "animate", NET, "--from", "0.2", "--to", "0.3", "-o", path, "--rate", "5")
-        self.assertEqual(said.strip(), str(path))
+    def test_part_of_a_run_for_pages(self):
         import PIL.Image
-        with PIL.Image.open(path) as film:
-            self.assertEqual((film.n_frames, film.info["duration"]), (3, 200))
+        for name in ("film.gif", "film.webp"):
+            path = self.folder / name
+            said = self.command(DONE, "animate", NET, "--from", "0.2", "--to", "0.3", "-o", path, "--rate", "5",
+                                "--width", "400")
+            self.assertEqual(said.strip(), str(path))
+            with PIL.Image.open(path) as film:
+                film.seek(film.n_frames - 1)
+                film.load()
+                self.assertEqual((film.n_frames, film.info["duration"], film.size[0]), (3, 200, 400))
 
     def test_what_is_refused(self):
         for words, text in ((("--from", "7"), "no snapshot from 7 to inf s; they go from 0 to 1 s"),
-                            (("-o", "film.avi"), "must end in .mp4 or .gif"), (("--frames", "0"), "not above 0"),
+                            (("-o", "film.avi"), "must end in .mp4, .webp or .gif"), (("--frames", "0"), "not above 0"),
                             (("--rate", "-1"), "not above 0"),
                             (("--surfaces", "pressure"), "surfaces are coloured in")):
             self.assertIn(text, self.command(WRONG, "animate", NET, *words))

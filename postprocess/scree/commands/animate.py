@@ -12,11 +12,12 @@ from scree.run import open_run
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
-                        help="a .mp4 (needs ffmpeg) or .gif; default RESULT_DIR/animation.mp4, .gif without ffmpeg")
+                        help="a .mp4 (needs ffmpeg), .webp or .gif; default RESULT_DIR/animation.mp4, .gif without ffmpeg")
     parser.add_argument("--from", type=float, dest="begin", default=-float("inf"), metavar="TIME",
                         help="first snapshot [s]")
     parser.add_argument("--to", type=float, dest="end", default=float("inf"), metavar="TIME", help="last snapshot [s]")
     parser.add_argument("--rate", type=count, default=25, metavar="FRAMES", help="frames per second (default 25)")
+    parser.add_argument("--width", type=count, metavar="PIXELS", help="of the film; default: that of the pictures")
     add_frames(parser)
     add_look(parser)
 
@@ -26,11 +27,12 @@ def run(words: argparse.Namespace) -> int:
 
     The pictures are those of `scree-post draw`.
     """
-    from scree.pictures.render import DrawnRun, chosen_frames, has_ffmpeg, make_picture, save_animation
+    from scree.pictures.render import (FILM_FORMATS, DrawnRun, chosen_frames, has_ffmpeg, make_picture,
+                                               save_animation)
 
     path = words.output or words.folder / ("animation.mp4" if has_ffmpeg() else "animation.gif")
-    if path.suffix not in (".mp4", ".gif"):
-        raise ScreeError(f"{path}: must end in .mp4 or .gif")
+    if path.suffix[1:] not in FILM_FORMATS:
+        raise ScreeError(f"{path}: must end in .{', .'.join(FILM_FORMATS[:-1])} or .{FILM_FORMATS[-1]}")
     drawn, look = DrawnRun(open_run(words.folder)), chosen_look(words)
     within = [k for k, time in enumerate(drawn.particles.times) if words.begin <= time <= words.end]
     if not within:
@@ -38,6 +40,6 @@ def run(words: argparse.Namespace) -> int:
                          f"{drawn.particles.times[0]:g} to {drawn.particles.times[-1]:g} s")
     frames = [within[k] for k in chosen_frames(len(within), words.frames)]
     look.fit(drawn, frames)
-    save_animation(make_picture(drawn, frames, look), frames, path, words.rate)
+    save_animation(make_picture(drawn, frames, look), frames, path, words.rate, words.width)
     print(path)
     return 0

@@ -34,6 +34,7 @@ from scree.run import Run
 from scree.series import POSITION
 
 FRAMES_PER_SECOND = 25
+FILM_FORMATS = ("mp4", "webp", "gif")
 
 
 def vtk_renders() -> bool:
@@ -176,11 +177,11 @@ def save_picture(picture: Picture, snapshot: int, path: pathlib.Path) -> None:
 
 
 def animation_writer(format: str, frames_per_second: int) -> matplotlib.animation.AbstractMovieWriter:
-    """format: "mp4" or "gif"."""
-    if format == "gif":
+    """format: one of FILM_FORMATS."""
+    if format != "mp4":
         return matplotlib.animation.PillowWriter(fps=frames_per_second)
     if not has_ffmpeg():
-        raise ScreeError("an mp4 needs the program ffmpeg; make a gif instead")
+        raise ScreeError("an mp4 needs the program ffmpeg; make a webp or gif instead")
     # Players want even numbers of pixels and this pixel format.
     options = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-crf", "18", "-movflags",
                "+faststart"]
@@ -192,11 +193,12 @@ def has_ffmpeg() -> bool:
 
 
 def save_animation(picture: Picture, snapshots: Sequence[int], path: pathlib.Path,
-                   frames_per_second: int = FRAMES_PER_SECOND) -> None:
-    """The path ends in .mp4 or .gif."""
+                   frames_per_second: int = FRAMES_PER_SECOND, width: int | None = None) -> None:
+    """The path ends in one of FILM_FORMATS. width: of the film [pixels]; None: that of the pictures."""
     writer = animation_writer(path.suffix[1:], frames_per_second)
-    with writer.saving(picture.figure, path, dpi=picture.figure.dpi):
+    figure = picture.figure
+    with writer.saving(figure, path, dpi=width / figure.get_figwidth() if width else figure.dpi):
         for snapshot in snapshots:
             picture.draw(snapshot)
             writer.grab_frame()
-    plt.close(picture.figure)
+    plt.close(figure)
