@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Decks made by chance of all that a run may have, each run in several ways that must give the same bits: on some ranks,
-with lists that reach elsewhere, stopped half-way and restarted on other ranks, and, where --backend says so, on the GPU.
+"""Decks made by chance of all that a run may have, each run in several ways that must give the same bits: on some
+ranks, with lists that reach elsewhere, stopped half-way and restarted on other ranks, with --backend cuda on the GPU.
 
     .venv/bin/python tests/ranks/random_decks.py --scree build/release/scree [--count 50] [--seed 1] [--keep DIR]
 
-A deck is that of --seed and its number: `--only NUMBER --keep DIR` makes one again and leaves it in DIR with its results.
-Printed are a line per deck that differs or fails, and how many decks had what; the exit code is 1 if any differs, or
-if more than half were refused."""
+A deck is that of --seed and its number: `--only NUMBER --keep DIR` makes one again and leaves it in DIR with its
+results. Printed are a line per deck that differs or fails, and how many decks had what; the exit code is 1 if any
+differs, or if more than half were refused."""
 
 import argparse
 import collections
@@ -75,7 +75,8 @@ class DeckMaker:
 
     def space(self):
         space = {"dimension": self.axes, "min": [0.0] * self.axes, "max": list(SIZE[:self.axes]),
-                 "wall_material": self.chance.choice(("rough", "slick")), "leaving": self.chance.choice(("remove", "drift"))}
+                 "wall_material": self.chance.choice(("rough", "slick")),
+                 "leaving": self.chance.choice(("remove", "drift"))}
         for axis in "xyz"[:self.axes]:
             kind = self.chance.choice(("periodic", "walls", "open below", "walls"))
             if kind == "periodic":
@@ -142,8 +143,9 @@ class DeckMaker:
         middle = 0.5 * SIZE[0]
         two = number == 1 or self.chance.random() < 0.5
         (least if number else most)[0] = middle if two else (least if number else most)[0]
-        group = {"name": f"group{number}", "kind": "random", "count": self.chance.randrange(20, 150 if self.spatial else 40),
-                 "min": least, "max": most, "density": DENSITY, "material": self.chance.choice(("rough", "slick")),
+        count = self.chance.randrange(20, 150 if self.spatial else 40)
+        group = {"name": f"group{number}", "kind": "random", "count": count, "min": least, "max": most,
+                 "density": DENSITY, "material": self.chance.choice(("rough", "slick")),
                  "random_velocity": self.chance.uniform(0.1, 1.5), "seed": self.chance.randrange(1000),
                  "radius": self.chance.choice((RADIUS, {"kind": "uniform", "min": 0.6 * RADIUS, "max": RADIUS}))}
         if self.rubs and self.spatial and self.chance.random() < 0.5:
@@ -158,8 +160,8 @@ class DeckMaker:
             self.deck.setdefault("walls", []).append(self.moving_plane())
         if self.spatial and self.choose("mesh on the ground", 0.35):
             self.add_mesh("hill")
-            self.deck.setdefault("walls", []).append({"name": "hill", "mesh": "hill", "material": "rough"} |
-                                                     ({"motions": [self.motion()]} if self.choose("moving mesh", 0.4) else {}))
+            moves = {"motions": [self.motion()]} if self.choose("moving mesh", 0.4) else {}
+            self.deck.setdefault("walls", []).append({"name": "hill", "mesh": "hill", "material": "rough"} | moves)
         bodies = self.chance.choice((0, 0, 1, 2, 3))
         for number in range(bodies):
             self.add_body(f"body{number}")
@@ -207,7 +209,8 @@ class DeckMaker:
         self.deck.setdefault("bodies", []).append(body)
         if self.chance.random() < 0.4:
             self.features.append("joint")
-            joint = {"name": f"pin of {name}", "type": "revolute", "bodies": ["ground", name], "point": body["position"]}
+            joint = {"name": f"pin of {name}", "type": "revolute", "bodies": ["ground", name],
+                     "point": body["position"]}
             if in_space:
                 joint["axis"] = self.direction()
             self.deck.setdefault("joints", []).append(joint)
@@ -227,8 +230,10 @@ class Runner:
         """The state's hash and the history's; the last line printed where the run did not end well."""
         command = [self.arguments.mpiexec, "-n", str(ranks)] if ranks > 1 else []
         command += [self.arguments.scree, "run", self.folder / "deck.toml", "--backend", backend, "--output",
-                    self.folder / name, "--set", "output.history_csv=true", *words, *(["--overwrite"] if overwrite else [])]
-        ended = subprocess.run([str(word) for word in command], env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+                    self.folder / name, "--set", "output.history_csv=true", *words]
+        command += ["--overwrite"] if overwrite else []
+        ended = subprocess.run([str(word) for word in command], env=ENVIRONMENT, capture_output=True, text=True,
+                               timeout=LIMIT)
         if ended.returncode != DONE:
             lines = [line for line in ended.stderr.splitlines() if "scree" in line or "error" in line] or [""]
             return ended.returncode, lines[0]
@@ -313,9 +318,9 @@ def main():
     for what, counts in (("refused", refused), ("ended early", stopped)):
         for message, count in counts.items():
             print(f"{count} {what}: {message}")
-    print(f"{len(numbers)} decks, {sum(refused.values())} refused, {sum(stopped.values())} ended early, {different} differ;",
+    print(f"{len(numbers)} decks, {refused.total()} refused, {stopped.total()} ended early, {different} differ;",
           ", ".join(f"{count} with {feature}" for feature, count in had.most_common()))
-    return 1 if different or 2 * sum(refused.values()) > len(numbers) else 0
+    return 1 if different or 2 * refused.total() > len(numbers) else 0
 
 
 if __name__ == "__main__":

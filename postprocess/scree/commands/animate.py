@@ -12,7 +12,8 @@ from scree.run import open_run
 def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
-                        help="a .mp4 (needs ffmpeg), .webp or .gif; default RESULT_DIR/animation.mp4, .gif without ffmpeg")
+                        help="a .mp4 (needs ffmpeg), .webp or .gif; default RESULT_DIR/animation.mp4, "
+                             ".gif without ffmpeg")
     parser.add_argument("--from", type=float, dest="begin", default=-float("inf"), metavar="TIME",
                         help="first snapshot [s]")
     parser.add_argument("--to", type=float, dest="end", default=float("inf"), metavar="TIME", help="last snapshot [s]")
