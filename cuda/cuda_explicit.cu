@@ -90,8 +90,8 @@ void CudaExplicitRun::finish() {
   if (queue_.in_mixed()) settle();
   ParticleArrays &now = items_.now, &other = items_.other;
   const VerletRequest r = queue_.request();
-  items_.lane.halo.update_motion(items_.device(), control_.open_position(), control_.open_velocity(),
-                                 r.spin[control_.velocity_parity()], items_.owned);
+  items_.update_halo(items_.device(), control_.open_position(), control_.open_velocity(),
+                     r.spin[control_.velocity_parity()]);
   items_.kernels->verlet_finish(items_.device(), r, items_.results.at(&Results::largest));
   items_.history.closed_last(), bodies_.side().close_step();
   if (!std::isfinite(items_.ranks.max(items_.results.fetch(&Results::largest))))

@@ -52,7 +52,12 @@ struct CudaItems {
   void reorder(const Index* order, Index n);
 
   void refresh_ghosts(Device on) {
-    lane.halo.update_motion(on, now.position.data(), now.velocity.data(), now.angular_velocity.data(), owned);
+    update_halo(on, now.position.data(), now.velocity.data(), now.angular_velocity.data());
+  }
+  // spin: is not looked at unless particles rotate.
+  void update_halo(Device on, Vec4* position, Vec4* velocity, Vec4* spin) {
+    lane.halo.update_motion(on, position, velocity, model.rotates() ? std::optional(spin) : std::nullopt,
+                            owned);
   }
   void refresh_ghosts() { refresh_ghosts(device()); }
   // What is queued on the stream of the halo from now on comes after the rows queued so far, and the reverse.

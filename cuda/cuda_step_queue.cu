@@ -221,7 +221,7 @@ void StepQueue::queue_double(Index steps, const Event* loads_found) {
                             {field(0, r.position, 0), field(0, r.position, 1)},
                             {field(1, r.velocity, 0), field(1, r.velocity, 1)},
                             r.control};
-  const bool rotates = r.spin[0] != nullptr;
+  const bool rotates = items_.model.rotates();
   RunSpinGhostItem spins{halo.ghosts(), {}, r.control};
   if (rotates) spins.spin[0] = field(2, r.spin, 0), spins.spin[1] = field(2, r.spin, 1);
   const auto queue_ghosts = [&](Device on, Index k) {

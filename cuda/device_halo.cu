@@ -62,11 +62,12 @@ void DeviceHalo::visit_targets(Device device, const Vec4* position, Index n, Gho
                       static_cast<int>(plan_.targets().size()), counts_.data(), ghosts});
 }
 
-void DeviceHalo::update_motion(Device device, Vec4* position, Vec4* velocity, Vec4* spin, Index first_ghost) {
+void DeviceHalo::update_motion(Device device, Vec4* position, Vec4* velocity, std::optional<Vec4*> spin,
+                               Index first_ghost) {
   const MotionGhostItem item{ghosts(), field(0, position, first_ghost), field(1, velocity, first_ghost)};
   for_each(device, entries(), item);
-  if (spin == nullptr) return exchange(device, item.position, item.velocity);
-  const SpinGhostItem turning{ghosts(), field(2, spin, first_ghost)};
+  if (!spin) return exchange(device, item.position, item.velocity);
+  const SpinGhostItem turning{ghosts(), field(2, *spin, first_ghost)};
   for_each(device, entries(), turning);
   exchange(device, item.position, item.velocity, turning.spin);
 }

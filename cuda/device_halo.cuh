@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "dem/particle_fields.hpp"
@@ -100,8 +101,10 @@ class DeviceHalo {
   void exchange(Device device, const GhostField<T>&... fields) {
     exchange(device, std::array{fields.message()...});
   }
-  // update_halo of positions, velocities, and angular velocities unless that is null.
-  void update_motion(Device device, Vec4* position, Vec4* velocity, Vec4* spin, Index first_ghost);
+  // update_halo of positions, velocities, and angular velocities where particles rotate. All ranks give a
+  // spin or none: that of a rank without items may be null.
+  void update_motion(Device device, Vec4* position, Vec4* velocity, std::optional<Vec4*> spin,
+                     Index first_ghost);
 
   // Maxima over all ranks of n values >= 0 in device memory, queued. Collective.
   void max(Device device, Real* values, Index n) {

@@ -32,7 +32,9 @@ struct CpuItems {
   Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
               const std::vector<Vec4>& spin);
   void refresh_ghosts() {
-    halo.update_motion(store.position, store.velocity, store.angular_velocity, layout.owned);
+    std::optional<std::span<Vec4>> spin;
+    if (store.rotates) spin = store.angular_velocity;
+    halo.update_motion(store.position, store.velocity, spin, layout.owned);
   }
   // Contacts with surfaces on bodies, where all are now: what forces and reports read next. h: of the
   // explicit step that ends now, and will be accepted [s]; 0: at this instant.

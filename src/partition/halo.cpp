@@ -46,21 +46,23 @@ void Halo::find_ghosts(std::span<const Vec4> position) {
   plan_.set_counts(own_.size(), counts);
 }
 
-void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity, std::span<Vec4> spin,
-                         Index first_ghost) const {
+void Halo::update_motion(std::span<Vec4> position, std::span<Vec4> velocity,
+                         std::optional<std::span<Vec4>> spin, Index first_ghost) const {
   const auto n = static_cast<Index>(own_.size());
   for_each(Serial{}, n, HaloPositionItem{own_.data(), position.data(), first_ghost});
   for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), velocity.data(), first_ghost});
-  if (!spin.empty()) for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), spin.data(), first_ghost});
+  if (spin) for_each(Serial{}, n, HaloItem<Vec4>{own_.data(), spin->data(), first_ghost});
   for (std::size_t k = 0; k < sent_.size(); ++k) {
     const auto source = static_cast<std::size_t>(sent_[k].source);
     buffer_[0][k] = moved(sent_[k], position[source]), buffer_[1][k] = velocity[source];
-    if (!spin.empty()) buffer_[2][k] = spin[source];
+    if (spin) buffer_[2][k] = (*spin)[source];
   }
-  const HaloMessage messages[3] = {{buffer_[0].data(), position.data() + first_ghost, sizeof(Vec4)},
-                                   {buffer_[1].data(), velocity.data() + first_ghost, sizeof(Vec4)},
-                                   {buffer_[2].data(), spin.data() + first_ghost, sizeof(Vec4)}};
-  plan_.transfer(std::span(messages).first(spin.empty() ? 2 : 3));
+  const auto message = [&](int buffer, std::span<Vec4> field) {
+    return HaloMessage{buffer_[buffer].data(), field.data() + first_ghost, sizeof(Vec4)};
+  };
+  std::vector<HaloMessage> messages{message(0, position), message(1, velocity)};
+  if (spin) messages.push_back(message(2, *spin));
+  plan_.transfer(messages);
 }
 
 }  // namespace scree

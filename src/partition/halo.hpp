@@ -1,6 +1,7 @@
 // Halo: copies of the particles near a rank's box, from other ranks and from across periodic sides.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -76,8 +77,9 @@ class Halo {
   template <class T>
   void update(std::span<T> field, Index first_ghost) const;
   // The same for positions, which are moved by the ghosts' shifts, velocities, and angular velocities where
-  // there are any, in one exchange.
-  void update_motion(std::span<Vec4> position, std::span<Vec4> velocity, std::span<Vec4> spin,
+  // particles rotate, in one exchange. All ranks give a spin or none: that of a rank without items is an
+  // empty one.
+  void update_motion(std::span<Vec4> position, std::span<Vec4> velocity, std::optional<std::span<Vec4>> spin,
                      Index first_ghost) const;
 
  private:

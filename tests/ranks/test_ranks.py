@@ -4,7 +4,7 @@ Usage: SCREE=path/to/scree MPIEXEC=path/to/mpirun [SCREE_TEST_BACKEND=cuda] pyth
 import math
 import unittest
 
-from mpi_case import DAM, DONE, EXPLICIT, FAILED, HERE, IMPLICIT, INPUT, RanksTest, results
+from mpi_case import DAM, DONE, EXPLICIT, FAILED, HERE, IMPLICIT, INPUT, LONELY, RanksTest, results
 
 GAS = [INPUT / "examples/gas_periodic.toml", "particles.gas.count=1000", "time.end=0.02", "parallel.imbalance=0.0"]
 NET = [INPUT / "paper/net_400.toml", "time.step=5e-4", "parallel.imbalance=0.05",
@@ -95,6 +95,15 @@ class SameBitsTest(RanksTest):
             self.assertGreater(migrated, 0, name)
             if name in MAIN_CASES:
                 self.assertGreater(rebalances, 0, name)
+
+    def test_ranks_without_particles_take_part(self):
+        deck = self.write("lonely.toml", LONELY.replace("stiffness = 1e5", "stiffness = 1e5\nfriction = 0.5"))
+        for steps in (EXPLICIT, IMPLICIT):
+            for ranks in (1, 4):
+                with self.subTest(steps=steps[0], ranks=ranks):
+                    output = f"{steps[0]} {ranks}"
+                    self.run_deck(DONE, ranks, deck, output, [*steps, "time.end=0.02"])
+                    self.assertEqual(self.hash(output), self.hash(f"{steps[0]} 1"))
 
     def test_every_element_in_space_acts_among_the_grains(self):
         deck, *overrides = ELEMENTS
