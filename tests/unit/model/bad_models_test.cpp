@@ -202,6 +202,11 @@ TEST_CASE(
   CHECK(contains(driver("kind = \"step\", end_value = 1, start = 0.5, end = 0.5"),
                  "drivers.d.motion.end = 0.5: must be above start = 0.5"));
   CHECK(contains(driver("kind = \"step\", end_value = 1, start = 0.5"), "drivers.d.motion.end"));
+  CHECK(driver("kind = \"ramp\", rate = 2, end = 0.5").empty());
+  CHECK(contains(driver("kind = \"ramp\", rate = 2, start = 0.5, end = 0.25"),
+                 "drivers.d.motion.end = 0.25: must be above start = 0.5"));
+  CHECK(contains(driver("kind = \"ramp\", rate = 2, start = 0.5"),
+                 "drivers.d.motion.start = 0.5: needs end, the time from which on the slope is rate"));
   CHECK(contains(model_error(kSmallDeck + "velocities = \"found\"\n"), "velocities"));
 }
 
