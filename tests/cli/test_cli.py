@@ -218,7 +218,7 @@ class DeckErrorTest(CommandLineTest):
     def test_errors_name_file_line_key_and_value(self):
         # Replacement in the deck; what the message holds behind file and line.
         cases = (("step = 1e-4", "stp = 1e-4", "time.stp", "did you mean"),
-                 ("step = 1e-4", "step = -1e-4", "time.step = -0.0001", "above 0"),
+                 ("step = 1e-4", "step = -1e-4", "time.step = -1e-4", "above 0"),
                  ("step = 1e-4", 'step = "fast"', 'time.step = "fast"', "number"),
                  ("dimension = 2", "dimension = 5", "space.dimension = 5", "from 2 to 3"),
                  ('leaving = "drift"', 'leaving = "fly"', 'space.leaving = "fly"', "remove"),
