@@ -26,6 +26,8 @@ inline constexpr auto kWordSynonyms = std::to_array<Synonym>({
     {"helical", "screw"},
     {"auger", "screw"},
     {"tube", "pipe"},
+    {"bunker", "hopper"},
+    {"silo", "hopper"},
     {"cuboid", "box"},
     {"stl", "file"},
     {"obj", "file"},
