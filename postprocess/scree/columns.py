@@ -6,7 +6,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scree.history import History
+from scree.errors import ScreeError
+from scree.history import TIME, History
+from scree.quantity import Quantity
 
 # What is measured in a unit.
 MEASURES = {"N": "force", "N m": "torque", "J": "energy", "W": "power", "m": "length", "rad": "angle", "m/s": "speed",
@@ -73,3 +75,14 @@ def panels(history: History, names: Sequence[str]) -> list[tuple[str, str, dict[
         begins_with_name = len(of_names) == 1 and first.owner
         found.append((title if begins_with_name else title[:1].upper() + title[1:], axis(unit), legends))
     return found
+
+
+def x_axis(history: History, name: str) -> tuple[Quantity, str]:
+    """The column along the horizontal axis and its label. name: as it is, or a pattern that one column fits."""
+    fitting = history.names(name)
+    if len(fitting) > 1:
+        raise ScreeError(f"{name} fits {len(fitting)} columns, and the horizontal axis takes one: "
+                         f"{', '.join(fitting)}")
+    column = history[fitting[0]]
+    label = "time" if fitting[0] == TIME else words(fitting[0], column.unit, column.description).legend(True)
+    return column, label if column.unit == "1" else f"{label} [{column.unit}]"

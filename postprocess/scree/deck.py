@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import pathlib
+import re
 import tempfile
 from collections.abc import Iterator, Mapping, MutableMapping
 from subprocess import PIPE
@@ -33,6 +34,12 @@ def place(elements: Any, part: str, path: str) -> int:
     counted = "there is 1 element" if len(elements) == 1 else f"there are {len(elements)} elements"
     raise MissingError(f"{path}: {counted}, counted from 0" if part.isdigit() else
                        f"{path}: no element is named {part}; there are {', '.join(filter(None, names)) or 'none'}")
+
+
+def key_of(message: str) -> str:
+    """That a message is about, with a place in front or without: "fast.toml:3:8: time.end = -1: must be ..."."""
+    found = re.match(r"(?:.*?:\d+:\d+: )?([^\s:]+)(?: = |: )", message)
+    return found[1] if found else ""
 
 
 class Deck(MutableMapping[str, Any]):
@@ -170,14 +177,22 @@ class Deck(MutableMapping[str, Any]):
 
     def check(self, scree: Path | None = None) -> str:
         """Returns what `scree check` says of the deck; nothing where the program is not there. scree: the program, by
-        default $SCREE, the one on the PATH or that of this repository. Throws ScreeError with all `problems`, or with
-        the program's message."""
-        found = self.problems()
-        if found:
-            raise ScreeError("\n".join(f"{self.name}: {problem}" for problem in found))
+        default $SCREE, the one on the PATH or that of this repository. Throws ScreeError with the program's message,
+        which is about the first mistake that it meets, and all `problems` of other keys."""
         where = program.find(scree)
-        if where is None:
-            return ""
+        try:
+            said, refusal = "" if where is None else self._said_by(where), ""
+        except program.RefusedError as error:
+            said, refusal = "", str(error)
+        lines = [refusal] if refusal else []
+        lines += [f"{self.name}: {problem}" for problem in self.problems()
+                  if not refusal or key_of(problem) != key_of(refusal)]
+        if lines:
+            raise ScreeError("\n".join(lines))
+        return said
+
+    def _said_by(self, where: pathlib.Path) -> str:
+        """By `scree check`."""
         with tempfile.TemporaryDirectory(prefix="scree_deck_") as folder:
             path = pathlib.Path(folder).resolve() / "deck.toml"
             self.write(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import fnmatch
 import pathlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -106,7 +107,9 @@ class History(Mapping[str, Quantity]):
         for pattern in patterns:
             fitting = fnmatch.filter(self, pattern)
             if not fitting:
-                raise ScreeError(f"no column {pattern}; there are: {', '.join(self) or 'none'}")
+                near = difflib.get_close_matches(pattern, self, cutoff=0.7)
+                raise ScreeError(f"no column {pattern}; " + (f"did you mean {' or '.join(near)}?" if near else
+                                                             f"there are: {', '.join(self) or 'none'}"))
             found += [name for name in fitting if name not in found]
         return found
 

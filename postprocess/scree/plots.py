@@ -1,4 +1,4 @@
-"""A run's energies and their balance over time, and other columns of its history."""
+"""A run's energies and their balance, and other columns of its history, over time or over another column."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import EngFormatter
 
-from scree.columns import panels
+from scree.columns import panels, x_axis
 from scree.errors import ScreeError
 from scree.history import TIME, History
 
@@ -54,7 +54,7 @@ class Line:
 
 @dataclass
 class Panel:
-    """One plot over time: what it says, its axis, its lines, and its height [inch]."""
+    """One plot: what it says, its vertical axis, its lines, and its height [inch]."""
 
     title: str
     axis: str
@@ -63,8 +63,8 @@ class Panel:
     unit: str = ""  # of ticks with a prefix; none: plain numbers
     notes: list[str] = field(default_factory=list)
 
-    def draw(self, time: np.ndarray, axes: Axes) -> None:
-        """Lines that are zero throughout become a note."""
+    def draw(self, along: np.ndarray, axes: Axes) -> None:
+        """along: the horizontal axis. Lines that are zero throughout become a note."""
         zero = [line.label for line in self.lines if not np.any(line.values)]
         shown = [line for line in self.lines if line.label not in zero]
         notes = self.notes + [f"Zero throughout: {'; '.join(zero)}."] * bool(zero)
@@ -76,7 +76,7 @@ class Panel:
         for line, (dash, color) in zip(shown, styles):
             label = textwrap.fill(line.label, LEGEND)
             dash, color = ("-", line.color) if line.color else (dash, color)
-            axes.plot(time, line.values, dash, color=color, linewidth=1.6, label=label)
+            axes.plot(along, line.values, dash, color=color, linewidth=1.6, label=label)
         if not shown:
             axes.set_yticks([])
         if len(shown) > 1:
@@ -151,9 +151,10 @@ def column_panels(history: History, names: Sequence[str]) -> list[Panel]:
     return found
 
 
-def history_figure(history: History, title: str, columns: Sequence[str] = (), energies: bool = True) -> Figure:
-    """columns: patterns of names, beside the energies or in their place. Throws ScreeError where there is nothing to
-    plot."""
+def history_figure(history: History, title: str, columns: Sequence[str] = (), energies: bool = True,
+                   x: str = TIME) -> Figure:
+    """columns: patterns of names, beside the energies or in their place; x: the column along the horizontal axis.
+    Throws ScreeError where there is nothing to plot."""
     shown = energy_panels(history) if energies else []
     shown += column_panels(history, history.names(*columns))
     if not shown or history.rows == 0:
@@ -164,8 +165,9 @@ def history_figure(history: History, title: str, columns: Sequence[str] = (), en
                                 squeeze=False, layout=ConstrainedLayoutEngine(hspace=0.04), dpi=120)
     if title:
         figure.suptitle(title, fontsize=15, x=0.01, ha="left")
+    along, label = x_axis(history, x)
     for panel, axes in zip(shown, rows[:, 0]):
-        panel.draw(history[TIME].values, axes)
-    rows[-1, 0].set_xlabel("time [s]", fontsize=12)
+        panel.draw(along.values, axes)
+    rows[-1, 0].set_xlabel(label, fontsize=12)
     figure.align_ylabels()
     return figure

@@ -26,6 +26,7 @@ class SeriesFile:
     names: dict[str, list[str]]  # what fields count: bodies or links as "names", "materials", "groups"
     times: np.ndarray  # [snapshots] [s]
     first: np.ndarray  # row in Points at which each snapshot begins
+    field_first: dict[str, np.ndarray]  # likewise per field of points
     points: np.ndarray  # their numbers of points
     triangles: np.ndarray  # [triangles][3], of surfaces: points at the corners, counted from the snapshot's first
     lines: bool  # whether each two points are the ends of one
@@ -40,7 +41,7 @@ class SeriesFile:
             labels = {POSITION: files.label(root["Points"])}
             for group in ("PointData", "CellData"):
                 labels |= {name: files.label(field) for name, field in root.get(group, {}).items()}
-            cells = steps.get("CellDataOffsets", {})
+            points, cells = steps.get("PointDataOffsets", {}), steps.get("CellDataOffsets", {})
             triangles = root["Polygons/Connectivity"][:].reshape(-1, 3) if "Polygons" in root else np.empty((0, 3), int)
             return SeriesFile(
                 path,
@@ -48,6 +49,7 @@ class SeriesFile:
                 {name: files.text(entries[()]).split("\n")[:-1] for name, entries in own.items()},
                 steps["Values"][:],
                 steps["PointOffsets"][:],
+                {name: offsets[:] for name, offsets in points.items()},
                 root["NumberOfPoints"][:][steps["PartOffsets"][:]],
                 triangles,
                 "LineOffsets" in steps,
@@ -68,7 +70,8 @@ class SeriesFile:
             first, where = self.cell_first[name][snapshot], f"CellData/{name}"
             count = self.points[snapshot] // 2 if self.lines else len(self.triangles)
         else:
-            first, count = self.first[snapshot], self.points[snapshot]
+            first = self.field_first.get(name, self.first)[snapshot]
+            count = self.points[snapshot]
             where = "Points" if name == POSITION else f"PointData/{name}"
         found: np.ndarray = files.read(self.path, lambda file: file["VTKHDF"][where][first : first + count])
         if len(found) < count:

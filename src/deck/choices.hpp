@@ -124,7 +124,22 @@ inline constexpr auto kWords<MeshInertia> = std::to_array<Word<MeshInertia>>({{"
                                                                               {"convex", MeshInertia::convex},
                                                                               {"shell", MeshInertia::shell}});
 
-enum class MeshKind { file, box, cylinder, cone, sphere, capsule, plate, pipe, drum, screw, rectangle, line };
+enum class MeshKind {
+  file,
+  box,
+  cylinder,
+  cone,
+  sphere,
+  capsule,
+  plate,
+  pipe,
+  drum,
+  screw,
+  funnel,
+  hopper,
+  rectangle,
+  line
+};
 template <>
 inline constexpr auto kWords<MeshKind> = std::to_array<Word<MeshKind>>({{"file", MeshKind::file},
                                                                         {"box", MeshKind::box},
@@ -136,6 +151,8 @@ inline constexpr auto kWords<MeshKind> = std::to_array<Word<MeshKind>>({{"file",
                                                                         {"pipe", MeshKind::pipe},
                                                                         {"drum", MeshKind::drum},
                                                                         {"screw", MeshKind::screw},
+                                                                        {"funnel", MeshKind::funnel},
+                                                                        {"hopper", MeshKind::hopper},
                                                                         {"rectangle", MeshKind::rectangle},
                                                                         {"line", MeshKind::line}});
 

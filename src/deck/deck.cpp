@@ -54,7 +54,7 @@ Deck parse_deck(const std::string& text, const std::string& path, const std::vec
   try {
     toml::table source = toml::parse(text, std::string_view(path));
     for (const std::string& override_text : overrides) apply_override(source, override_text);
-    return {path, read_deck(source, path)};
+    return {path, read_deck(source, text, path)};
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
     const bool bare = std::ranges::any_of(kBareWords, [&](std::string_view words) {

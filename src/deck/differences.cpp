@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "deck/reader.hpp"
+#include "deck/source_text.hpp"
 
 namespace scree {
 

@@ -340,19 +340,27 @@ const TableKeys& time_function_keys() {
   static const TableKeys keys{
       "A function of time: a number, or a table such as { kind = \"ramp\", rate = 2.0 }.",
       {choice<Kind>("kind").required().about(
-           "Constant: value. Ramp: value + rate t. Sine: value + amplitude sin(2 pi frequency t + "
-           "phase). Step: value up to start, end_value from end on, and between them value + "
-           "(end_value - "
-           "value) (10 s^3 - 15 s^4 + 6 s^5), s = (t - start) / (end - start), of class C2. Table: a "
-           "curve "
+           "Constant: value. Ramp: value + rate t; with end it is at rest up to start, and between start "
+           "and end its slope grows smoothly, as rate s^2 (3 - 2 s), s = (t - start) / (end - start), so "
+           "that it is value + rate (t - (start + end) / 2) from there on, of class C2. Sine: value + "
+           "amplitude sin(2 pi frequency t + phase). Step: value up to start, end_value from end on, and "
+           "between them value + (end_value - value) (10 s^3 - 15 s^4 + 6 s^5), of class C2. Table: a curve "
            "through the points."),
        real("value", kQuantityUnit)
            .only_for(started)
            .otherwise("0.0")
            .about("Constant part; of a step, the value before it."),
        real("end_value", kQuantityUnit).only_for({Kind::step}).required().about("Value after the step."),
-       real("start", "s").only_for({Kind::step}).required().about("When the step begins."),
-       real("end", "s").only_for({Kind::step}).required().about("When it is done, after start."),
+       real("start", "s")
+           .only_for({Kind::ramp, Kind::step})
+           .required_for({Kind::step})
+           .left_out("0 where a ramp has an end")
+           .about("When the step, or a ramp with an end, begins."),
+       real("end", "s")
+           .only_for({Kind::ramp, Kind::step})
+           .required_for({Kind::step})
+           .left_out("a ramp has its slope all the time")
+           .about("When the step is done, or a ramp has its slope, after start."),
        real("rate", kQuantityUnit + "/s").only_for({Kind::ramp}).required().about("Slope."),
        real("amplitude", kQuantityUnit).only_for({Kind::sine}).required().about("Amplitude."),
        real("frequency", "Hz").only_for({Kind::sine}).above(0).required().about("Frequency."),

@@ -6,12 +6,16 @@ namespace scree {
 
 const TableKeys& mesh_keys() {
   using K = MeshKind;
-  static constexpr auto files = {K::file}, boxes = {K::box, K::plate, K::rectangle}, lines = {K::line},
-                        spheres = {K::sphere}, plates = {K::plate}, cones = {K::cone}, pipes = {K::pipe},
-                        drums = {K::drum}, screws = {K::screw};
-  static constexpr auto round = {K::cylinder, K::cone, K::sphere, K::capsule, K::pipe, K::drum, K::screw},
-                        long_ones = {K::cylinder, K::cone, K::capsule, K::pipe, K::drum, K::screw},
-                        curved = {K::cylinder, K::cone, K::capsule, K::plate, K::pipe, K::drum, K::screw};
+  static constexpr auto files = {K::file}, boxes = {K::box, K::plate, K::hopper, K::rectangle},
+                        lines = {K::line}, spheres = {K::sphere}, plates = {K::plate},
+                        cones = {K::cone, K::funnel}, pipes = {K::pipe}, drums = {K::drum},
+                        screws = {K::screw}, hoppers = {K::hopper}, outlets = {K::funnel, K::hopper};
+  static constexpr auto round = {K::cylinder, K::cone, K::sphere, K::capsule,
+                                 K::pipe,     K::drum, K::screw,  K::funnel},
+                        long_ones = {K::cylinder, K::cone,  K::capsule, K::pipe,
+                                     K::drum,     K::screw, K::funnel,  K::hopper},
+                        curved = {K::cylinder, K::cone, K::capsule, K::plate,
+                                  K::pipe,     K::drum, K::screw,   K::funnel};
   static const TableKeys keys = [] {
     TableKeys mesh{
         "Surfaces of triangles that walls and bodies refer to. Particles touch them; meshes do not touch "
@@ -19,10 +23,11 @@ const TableKeys& mesh_keys() {
         "other, nor the shapes of bodies. In 2D: lines.",
         {name_key().required().about("Name for references and messages."),
          choice<MeshKind>("kind").required().about(
-             "File: STL, OBJ or PLY. Rectangle: a sheet in the plane z = 0. Line: in 2D, a sheet through "
-             "points. All others are closed solids about their axis z: plate, a box with a round hole along "
-             "z; "
-             "pipe, a tube; drum, a pipe with bars along its inside; screw, a core with a helical flight."),
+             "File: STL, OBJ or PLY. Rectangle: a sheet in the plane z = 0. Funnel, hopper: a sheet open at "
+             "both ends, round or with four flat sides, from the outlet at z = 0 up to the top. Line: in 2D, "
+             "a sheet through points. All others are closed solids about their axis z: plate, a box with a "
+             "round hole along z; pipe, a tube; drum, a pipe with bars along its inside; screw, a core with "
+             "a helical flight."),
          file("file").only_for(files).required().about("File, relative to the deck's folder."),
          real("scale", "")
              .only_for(files)
@@ -38,25 +43,39 @@ const TableKeys& mesh_keys() {
              .only_for(boxes)
              .above(0)
              .required()
-             .about("Edges along x, y and z; of a rectangle along x and y."),
+             .about("Edges along x, y and z; of a rectangle along x and y, of a hopper those of its outlet."),
+         reals("top_size", "m")
+             .only_for(hoppers)
+             .above(0)
+             .entries(2)
+             .required()
+             .about("Edges along x and y at z = length."),
          real("radius", "m")
              .only_for(round)
              .above(0)
              .required()
-             .about("Radius: of a cone at z = 0, of a pipe outside, of a drum inside, of a screw of its "
+             .about("Radius: of a cone at z = 0, of a funnel of its outlet, of a pipe outside, of a drum "
+                    "inside, of a screw of its "
                     "flight."),
          real("top_radius", "m")
              .only_for(cones)
              .at_least(0)
+             .required_for({K::funnel})
              .otherwise("0.0")
-             .about("Radius at z = length; 0: a tip."),
+             .about("Radius at z = length; of a cone, 0: a tip."),
          real("inner_radius", "m").only_for(pipes).above(0).required().about("Inside."),
          real("hole_radius", "m").only_for(plates).above(0).required().about("Of the hole."),
          real("length", "m")
              .only_for(long_ones)
              .above(0)
              .required()
-             .about("Along z, about z = 0; of a cone from z = 0; of a capsule without its half spheres."),
+             .about("Along z, about z = 0; of a cone, funnel or hopper from z = 0; of a capsule without its "
+                    "half spheres."),
+         real("outlet_length", "m")
+             .only_for(outlets)
+             .at_least(0)
+             .otherwise("0.0")
+             .about("Of the straight tube below the outlet; 0: none."),
          integer("segments")
              .only_for(curved)
              .within(3, 10000)

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/printable.hpp"
+#include "deck/source_text.hpp"
 #include "deck/suggestion.hpp"
 
 namespace scree {
@@ -20,8 +21,8 @@ namespace {
 
 class Reader {
  public:
-  Reader(const toml::table& deck, std::string deck_path, int dimension)
-      : deck_(deck), deck_path_(std::move(deck_path)), dimension_(dimension) {}
+  Reader(const toml::table& deck, const SourceText& source, std::string deck_path, int dimension)
+      : deck_(deck), source_(source), deck_path_(std::move(deck_path)), dimension_(dimension) {}
 
   // quantity_unit: where the table stands for a quantity.
   DeckTable read_table(const toml::table& source, const TableKeys& keys, const std::string& path,
@@ -61,6 +62,7 @@ class Reader {
                          const std::string& detail = "") const;
 
   const toml::table& deck_;
+  const SourceText& source_;
   std::string deck_path_;
   int dimension_;
 };
@@ -105,12 +107,12 @@ void Reader::check_key(const toml::key& name, const toml::node& node, const Tabl
   if (found == keys.keys.end()) {
     std::vector<std::string> names;
     for (const Key& key : keys.keys) names.push_back(key.name);
-    throw InputError(
-        fmt::format("{}: {} = {}: unknown key{}", at, path, shown(node), suggestion(key_name, names)));
+    throw InputError(fmt::format("{}: {} = {}: unknown key{}", at, path, shown(node, source_),
+                                 key_suggestion(key_name, names)));
   }
   if (found->kinds.empty() || is_of(table, found->kinds)) return;
   throw InputError(fmt::format("{}: {} = {}: not used with {} = \"{}\", only with \"{}\"", at, path,
-                               shown(node), keys.selector, table.text(keys.selector),
+                               shown(node, source_), keys.selector, table.text(keys.selector),
                                fmt::join(found->kinds, "\", \"")));
 }
 
@@ -169,7 +171,7 @@ void Reader::fill_default(const Context& context, DeckTable& table) const {
 }
 
 DeckValue Reader::read_value(const toml::node& node, const Context& context) const {
-  DeckValue value{false, context.place, shown(node)};
+  DeckValue value{false, context.place, shown(node, source_)};
   switch (context.key.type) {
     case ValueType::boolean:
       if (!node.is_boolean()) fail(node, context);
@@ -271,7 +273,7 @@ std::string Reader::text(const toml::node& node, const Context& context) const {
   const std::string value = node.as_string()->get();
   const std::vector<std::string>& words = context.key.words;
   if (context.key.type == ValueType::choice && std::find(words.begin(), words.end(), value) == words.end())
-    fail(node, context);
+    fail(node, context, word_suggestion(value, words));
   if (value.find('\0') != std::string::npos) fail(node, context, " without the character \\u0000");
   if (context.key.type == ValueType::name && !is_name(value)) fail(node, context);
   return context.key.type == ValueType::file ? file(value, node, context) : value;
@@ -325,48 +327,23 @@ void Reader::fail(const toml::node& node, const Context& context, const std::str
   if (context.place.starts_with("--set "))
     throw InputError(
         fmt::format("{}: {} must be {}{}", context.place, context.path, allowed(context), detail));
-  throw InputError(fmt::format("{}: {} = {}: must be {}{}", context.place, context.path, shown(node),
+  throw InputError(fmt::format("{}: {} = {}: must be {}{}", context.place, context.path, shown(node, source_),
                                allowed(context), detail));
 }
 
 }  // namespace
 
-DeckTable read_deck(const toml::table& source, const std::string& path) {
+DeckTable read_deck(const toml::table& source, const std::string& text, const std::string& path) {
   const auto dimension = source["space"]["dimension"].value<std::int64_t>();
   const int known = dimension && *dimension == 2 ? 2 : 3;
-  return Reader(source, path, known).read_table(source, deck_keys(), "", path);
+  const SourceText written(text, path);
+  return Reader(source, written, path, known).read_table(source, deck_keys(), "", path);
 }
 
 std::string place_of(const toml::source_region& source, const std::string& otherwise) {
   if (!source.path) return otherwise;
   if (source.path->starts_with("--set ")) return *source.path;
   return fmt::format("{}:{}:{}", *source.path, source.begin.line, source.begin.column);
-}
-
-std::string shown(const toml::node& node) {
-  constexpr std::size_t kLongest = 70;
-  std::string text;
-  if (const auto* array = node.as_array()) {
-    for (const toml::node& entry : *array) {
-      if (text.size() > kLongest) break;
-      text += (text.empty() ? "" : ", ") + shown(entry);
-    }
-    text = "[" + text + "]";
-  } else if (const auto* table = node.as_table()) {
-    for (const auto& [key, value] : *table) {
-      if (text.size() > kLongest) break;
-      text += (text.empty() ? " " : ", ") + std::string(key.str()) + " = " + shown(value);
-    }
-    text = "{" + text + " }";
-  } else if (const auto* number = node.as_floating_point()) {
-    text = fmt::format("{}", number->get());
-  } else if (const auto* string = node.as_string()) {
-    text = "\"" + string->get() + "\"";
-  } else {
-    text = fmt::format("{}", node.is_boolean() ? (node.as_boolean()->get() ? "true" : "false")
-                                               : std::to_string(node.value_or(std::int64_t{0})));
-  }
-  return text.size() > kLongest + 3 ? text.substr(0, kLongest) + "..." : text;
 }
 
 }  // namespace scree

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "deck/deck.hpp"
+#include "deck/source_text.hpp"
 
 namespace scree {
 
@@ -49,12 +50,6 @@ std::string quoted(const std::string& text) {
     }
   }
   return result + "\"";
-}
-
-// The shortest text that reads back to the same number.
-std::string number_text(Real x) {
-  const std::string text = fmt::format("{}", x);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
 template <class T, class ToText>

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
+#include <string_view>
+
+#include "deck/synonyms.hpp"
 
 namespace scree {
 
@@ -45,18 +49,56 @@ bool is_close(const std::string& a, const std::string& b) {
   return is_singular_of(a, b) || (edits < letters && edits <= std::max<std::size_t>(1, letters / 4));
 }
 
+std::string did_you_mean(std::string_view name) { return fmt::format("; did you mean \"{}\"?", name); }
+
+// Empty where none is close.
+std::string nearest(const std::string& misspelt, const std::vector<std::string>& names) {
+  const auto found = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(misspelt, a) < edit_distance(misspelt, b);
+  });
+  return found != names.end() && is_close(misspelt, *found) ? *found : "";
+}
+
+// That one of the names which others call so; empty where there is none.
+std::string synonym(const std::string& said, const std::vector<std::string>& names,
+                    std::span<const Synonym> synonyms) {
+  for (const Synonym& each : synonyms) {
+    const std::string name(each.meant.substr(each.meant.rfind('.') + 1));
+    if (each.said == lower(said) && std::find(names.begin(), names.end(), name) != names.end()) return name;
+  }
+  return "";
+}
+
+// A key of another table; a single letter may mean too much.
+std::string_view path_of_synonym(const std::string& said) {
+  for (const Synonym& each : kKeySynonyms)
+    if (said.size() > 1 && each.said == lower(said)) return each.meant;
+  return "";
+}
+
 }  // namespace
 
 std::string suggestion(const std::string& misspelt, const std::vector<std::string>& names) {
   if (names.empty()) return "";
-  const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(misspelt, a) < edit_distance(misspelt, b);
-  });
-  if (is_close(misspelt, *nearest)) return fmt::format("; did you mean \"{}\"?", *nearest);
+  const std::string near = nearest(misspelt, names);
+  if (!near.empty()) return did_you_mean(near);
   constexpr std::size_t kMost = 30;
   const auto last = names.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, names.size()));
   return fmt::format("; known: {}{}", fmt::join(names.begin(), last, ", "),
                      names.size() > kMost ? ", ..." : "");
+}
+
+std::string key_suggestion(const std::string& misspelt, const std::vector<std::string>& names) {
+  const std::string here = synonym(misspelt, names, kKeySynonyms);
+  if (!here.empty()) return did_you_mean(here);
+  const std::string_view elsewhere = nearest(misspelt, names).empty() ? path_of_synonym(misspelt) : "";
+  return elsewhere.empty() ? suggestion(misspelt, names) : did_you_mean(elsewhere);
+}
+
+std::string word_suggestion(const std::string& misspelt, const std::vector<std::string>& words) {
+  const std::string meant = synonym(misspelt, words, kWordSynonyms);
+  const std::string near = meant.empty() ? nearest(misspelt, words) : meant;
+  return near.empty() ? "" : did_you_mean(near);
 }
 
 }  // namespace scree

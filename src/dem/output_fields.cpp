@@ -17,6 +17,19 @@ const OutputField* find_field(std::string_view name) {
   return found == output_fields().end() ? nullptr : &*found;
 }
 
+// Whether the table of particle_fields.hpp says that it never changes.
+bool is_constant(std::string_view field) {
+#define SCREE_FIELD(name, type, unit, sentence, parts) \
+  if (field == #name) return ((parts)&kConstant) != 0;
+#define SCREE_PACKED(name, unit, sentence, parts, scalar, ...) \
+  SCREE_FIELD(name, Vec3, unit, sentence, parts)               \
+  SCREE_FIELD(scalar, Real, __VA_ARGS__)
+  SCREE_PARTICLE_FIELDS(SCREE_FIELD, SCREE_PACKED)
+#undef SCREE_FIELD
+#undef SCREE_PACKED
+  return false;
+}
+
 }  // namespace
 
 const std::vector<OutputField>& output_fields() {
@@ -24,10 +37,10 @@ const std::vector<OutputField>& output_fields() {
     std::vector<OutputField> all;
     for_each_output_field([&]<class Of>(const OutputHead& head, Of) {
       using Value = typename Of::Value;
-      all.push_back({head, sizeof(Value), kReadsContacts<Of>, false,
+      all.push_back({head, sizeof(Value), kReadsContacts<Of>, false, is_constant(head.name),
                      [](std::size_t n) -> OutputValues { return std::vector<Value>(n); }});
     });
-    all.push_back({kGroupOutput, sizeof(int), false, true,
+    all.push_back({kGroupOutput, sizeof(int), false, true, true,
                    [](std::size_t n) -> OutputValues { return std::vector<int>(n); }});
     return all;
   }();

@@ -202,6 +202,7 @@ struct OutputField {
   std::size_t bytes;  // of a value
   bool reads_contacts;
   bool of_id;                             // kGroupOutput
+  bool is_constant;                       // of a particle it never changes
   OutputValues (*values)(std::size_t n);  // n zeros
 };
 

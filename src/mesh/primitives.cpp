@@ -173,6 +173,25 @@ TriangleMesh plate_mesh(const PlateShape& shape) {
   return builder.take();
 }
 
+TriangleMesh funnel_mesh(const FunnelShape& shape) {
+  std::vector<ProfilePoint> profile{{shape.radius, 0}, {shape.top_radius, shape.length}};
+  if (shape.outlet_length > 0) profile.insert(profile.begin(), {shape.radius, -shape.outlet_length});
+  return revolved(profile, false, shape.segments);
+}
+
+TriangleMesh hopper_mesh(const HopperShape& shape) {
+  const auto corners = [](Vec3 size) {
+    const Real x = size.x / 2, y = size.y / 2;
+    return std::vector<Vec3>{{-x, -y, 0}, {x, -y, 0}, {x, y, 0}, {-x, y, 0}};
+  };
+  MeshBuilder builder;
+  const Ring outlet = builder.ring(corners(shape.size), 0);
+  if (shape.outlet_length > 0)
+    builder.strip(builder.ring(corners(shape.size), -shape.outlet_length), outlet, true);
+  builder.strip(outlet, builder.ring(corners(shape.top_size), shape.length), true);
+  return builder.take();
+}
+
 TriangleMesh rectangle_mesh(Real width, Real depth) {
   const Real x = width / 2, y = depth / 2;
   return {{{-x, -y, 0}, {x, -y, 0}, {x, y, 0}, {-x, y, 0}}, {{0, 1, 2}, {0, 2, 3}}};

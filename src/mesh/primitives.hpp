@@ -66,6 +66,17 @@ struct ScrewShape {
   Real core_radius, flight_radius, pitch, thickness, length, core_length;
   Index segments;
 };
+// A sheet: the side of a cone from `radius` at z = 0 to `top_radius` at z = length, below which a tube of
+// `radius` goes on by `outlet_length`; 0: none.
+struct FunnelShape {
+  Real radius, top_radius, length, outlet_length;
+  Index segments;
+};
+// The same with rectangles in place of circles, their edges along x and y (z is left out).
+struct HopperShape {
+  Vec3 size, top_size;
+  Real length, outlet_length;
+};
 
 // What the numbers of a shape, all finite, must not be, or "".
 std::string shape_trouble(const BoxShape& shape);
@@ -77,6 +88,8 @@ std::string shape_trouble(const PlateShape& shape);
 std::string shape_trouble(const PipeShape& shape);
 std::string shape_trouble(const DrumShape& shape);
 std::string shape_trouble(const ScrewShape& shape);
+std::string shape_trouble(const FunnelShape& shape);
+std::string shape_trouble(const HopperShape& shape);
 
 // Of shapes without trouble.
 TriangleMesh box_mesh(const BoxShape& shape);
@@ -88,6 +101,8 @@ TriangleMesh plate_mesh(const PlateShape& shape);
 TriangleMesh pipe_mesh(const PipeShape& shape);
 TriangleMesh drum_mesh(const DrumShape& shape);
 TriangleMesh screw_mesh(const ScrewShape& shape);
+TriangleMesh funnel_mesh(const FunnelShape& shape);
+TriangleMesh hopper_mesh(const HopperShape& shape);
 
 // A sheet: the rectangle of this size about the origin in the plane z = 0, seen from +z.
 TriangleMesh rectangle_mesh(Real width, Real depth);

@@ -49,6 +49,9 @@ Demand all_positive(Vec3 size) {
   return {size.x > 0 && size.y > 0 && size.z > 0,
           fmt::format("size = [{}, {}, {}]: must be positive", size.x, size.y, size.z)};
 }
+Demand both_positive(const char* key, Vec3 size) {
+  return {size.x > 0 && size.y > 0, fmt::format("{} = [{}, {}]: must be positive", key, size.x, size.y)};
+}
 
 }  // namespace
 
@@ -132,6 +135,17 @@ std::string shape_trouble(const ScrewShape& shape) {
        segments_from(8, shape.segments),
        {2 * shape.length / lead * shape.segments * shape.segments <= kMostTriangles,
         fmt::format("segments = {}: would make more than {} triangles", shape.segments, kMostTriangles)}});
+}
+
+std::string shape_trouble(const FunnelShape& shape) {
+  return first_unmet({positive("radius", shape.radius), positive("top_radius", shape.top_radius),
+                      positive("length", shape.length), not_negative("outlet_length", shape.outlet_length),
+                      segments_from(3, shape.segments)});
+}
+
+std::string shape_trouble(const HopperShape& shape) {
+  return first_unmet({both_positive("size", shape.size), both_positive("top_size", shape.top_size),
+                      positive("length", shape.length), not_negative("outlet_length", shape.outlet_length)});
 }
 
 }  // namespace scree

@@ -87,12 +87,12 @@ struct TimeFunction {
   using Kind = TimeFunctionKind;
   Kind kind = Kind::constant;
   Real value = 0;                   // constant, and the start of ramp, sine and step
-  Real rate = 0;                    // ramp: value + rate t [1/s]
+  Real rate = 0;                    // ramp: its slope [1/s]
   Real amplitude = 0;               // sine: value + amplitude sin(2 pi frequency t + phase)
   Real frequency = 0;               // [Hz]
   Real phase = 0;                   // [rad]
   Real end_value = 0;               // step: value up to start, end_value from end on
-  Real start = 0, end = 0;          // step [s]
+  Real start = 0, end = 0;          // step; ramp: at rest up to start, of its slope from end > start on [s]
   std::vector<Real> times, values;  // table
   Interpolation interpolation = Interpolation::natural;
   std::array<Real, 2> end_rates{};  // clamped [1/s]

@@ -31,12 +31,24 @@ void build_table(const DeckTable& table, Interpolation otherwise, TimeFunction& 
   for (std::size_t i = 0; i < 2; ++i) function.end_rates[i] = table.reals("end_rates")[i];
 }
 
-void build_step(const DeckTable& table, TimeFunction& function) {
-  function.end_value = table.real("end_value");
-  function.start = table.real("start");
+void read_start_and_end(const DeckTable& table, TimeFunction& function) {
+  function.start = table.has("start") ? table.real("start") : 0;
   function.end = table.real("end");
   if (!(function.end > function.start))
     table.fail("end", fmt::format("must be above start = {}", function.start));
+}
+
+void build_step(const DeckTable& table, TimeFunction& function) {
+  function.end_value = table.real("end_value");
+  read_start_and_end(table, function);
+}
+
+void build_ramp(const DeckTable& table, TimeFunction& function) {
+  function.rate = table.real("rate");
+  if (table.has("end")) return read_start_and_end(table, function);
+  if (table.has("start"))
+    table.fail("start",
+               "needs end, the time from which on the slope is rate: between the two it grows from 0");
 }
 
 // otherwise: how a table is read that does not say it.
@@ -48,7 +60,7 @@ TimeFunction build_function(const DeckTable& table, Interpolation otherwise) {
     case TimeFunctionKind::constant:
       break;
     case TimeFunctionKind::ramp:
-      function.rate = table.real("rate");
+      build_ramp(table, function);
       break;
     case TimeFunctionKind::sine:
       function.amplitude = table.real("amplitude");

@@ -146,6 +146,16 @@ TriangleMesh made(const DeckTable& table, Real half_depth) {
       return sound(table, drum_of(table), drum_mesh);
     case MeshKind::screw:
       return sound(table, screw_of(table), screw_mesh);
+    case MeshKind::funnel:
+      return sound(table,
+                   FunnelShape{radius(), table.real("top_radius"), length(), table.real("outlet_length"),
+                               segments_of(table)},
+                   funnel_mesh);
+    case MeshKind::hopper: {
+      const std::vector<Real>& top = table.reals("top_size");
+      const HopperShape shape{size_of(table, 2), {top[0], top[1], 0}, length(), table.real("outlet_length")};
+      return sound(table, shape, hopper_mesh);
+    }
     case MeshKind::rectangle: {
       const Vec3 size = size_of(table, 2);
       return rectangle_mesh(size.x, size.y);
@@ -164,6 +174,8 @@ bool is_sheet(const DeckTable& table) {
       return table.boolean("sheet");
     case MeshKind::line:
       return !table.boolean("closed");
+    case MeshKind::funnel:
+    case MeshKind::hopper:
     case MeshKind::rectangle:
       return true;
     default:

@@ -20,12 +20,20 @@ constexpr Real kToBuildBody = 600, kToBuildShape = 300, kToBuildUnknowns = 1400,
 // A particle and its entry in the search for overlaps; a place of a random group, with what it keeps clear
 // of.
 constexpr Real kToBuildParticle = 150, kToPlace = 130;
+// Of what a run takes, what is there once the model is built: of a triangle all but what shows it.
+constexpr Real kOfModelShape = 170, kOfModelDrawnShape = 140;
 // Where particles rotate, and where something resists rolling: the fields of rotation, and what contacts
 // remember in the copies that a checkpoint is made of, of a dense packing
 // (tests/performance/bytes_per_item.py) [B].
 constexpr Real kOfRotation = 400, kOfRolling = 280;
 
 Real gigabytes(Real bytes) { return bytes / 1e9; }
+
+Real triangles_of(const Model& model) {
+  Real triangles = 0;
+  for (const ModelMesh& mesh : model.meshes) triangles += static_cast<Real>(mesh.surface->triangles.size());
+  return triangles;
+}
 
 }  // namespace
 
@@ -34,6 +42,7 @@ Real bytes_per_particle(const Model& model) {
   Real bytes = implicit ? kBytesPerImplicitParticle : kBytesPerExplicitParticle;
   if (model.rotates()) bytes += kOfRotation;
   if (model.rolls()) bytes += kOfRolling;
+  if (model.output.contacts) bytes += kLinesPerParticle * kBytesPerLine;
   return bytes;
 }
 
@@ -41,10 +50,39 @@ Real bytes_per_triangle(const Model& model) {
   return kBytesPerTriangle + (model.output.adds_up_works() ? kBytesPerWorks : 0);
 }
 
-Real bytes_of_meshes(const Model& model) {
-  Real triangles = 0;
-  for (const ModelMesh& mesh : model.meshes) triangles += static_cast<Real>(mesh.surface->triangles.size());
-  return bytes_per_triangle(model) * triangles;
+Real bytes_of_meshes(const Model& model, bool is_root) {
+  const Real triangles = triangles_of(model), shown = is_root ? shown_meshes(model).triangles : 0;
+  return std::max(kBytesPerTriangle * triangles,
+                  kBytesPerKeptTriangle * triangles + kBytesPerShownTriangle * shown) +
+         (bytes_per_triangle(model) - kBytesPerTriangle) * triangles;
+}
+
+ShownMeshes shown_meshes(const Model& model) {
+  ShownMeshes shown;
+  const auto show = [&](int mesh) {
+    const SurfaceMesh& surface = *model.meshes[static_cast<std::size_t>(mesh)].surface;
+    shown.points += static_cast<Real>(surface.vertices.size());
+    shown.triangles += static_cast<Real>(surface.triangles.size());
+  };
+  for (const Wall& wall : model.walls)
+    if (wall.mesh >= 0) show(wall.mesh);
+  for (const Body& body : model.bodies) {
+    for (const MeshShape& of : body.meshes) show(of.mesh);
+    for (const MeshShape& of : body.drawn_meshes) show(of.mesh);
+  }
+  return shown;
+}
+
+Real bytes_of_shapes(const ModelSize& size) {
+  return kBytesPerShape * static_cast<Real>(size.shapes) +
+         kBytesPerDrawnShape * static_cast<Real>(size.drawn_shapes);
+}
+
+Real bytes_of_model(const Model& model) {
+  const ModelSize size = size_of(model);
+  return kToBuildParticle * static_cast<Real>(model.particles.size()) +
+         kOfModelShape * static_cast<Real>(size.shapes) +
+         kOfModelDrawnShape * static_cast<Real>(size.drawn_shapes) + kBytesPerTriangle * triangles_of(model);
 }
 
 std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
@@ -60,7 +98,8 @@ ModelSize bodies_and_links(const DeckTable& deck) {
     rows[table.text("name")] = count;
     size.bodies += count;
     for (const DeckTable& shape : table.tables("shapes"))
-      size.shapes += count * ShapePlaces(shape, dimension).count();
+      (table.boolean("collides") && shape.boolean("collides") ? size.shapes : size.drawn_shapes) +=
+          count * ShapePlaces(shape, dimension).count();
   }
   std::map<std::string, std::int64_t> joints;
   for (const char* key : {"joints", "spring_dampers", "torsional_spring_dampers", "bushings"}) {
@@ -80,19 +119,20 @@ ModelSize bodies_and_links(const DeckTable& deck) {
 }
 
 ModelSize size_of(const Model& model) {
-  std::int64_t shapes = 0;
-  for (const Body& body : model.bodies) shapes += std::ssize(body.shapes) + std::ssize(body.drawn_shapes);
+  std::int64_t shapes = 0, drawn_shapes = 0;
+  for (const Body& body : model.bodies)
+    shapes += std::ssize(body.shapes), drawn_shapes += std::ssize(body.drawn_shapes);
   return {model.particles.totals.count, std::ssize(model.bodies),
           std::ssize(model.joints) + std::ssize(model.drivers) + std::ssize(model.spring_dampers) +
               std::ssize(model.torsional_spring_dampers) + std::ssize(model.bushings) +
               std::ssize(model.applied_forces) + std::ssize(model.motors) + std::ssize(model.joint_springs) +
               std::ssize(model.joint_limits) + std::ssize(model.joint_frictions) + std::ssize(model.couplers),
-          shapes};
+          shapes, drawn_shapes};
 }
 
 Real bytes_to_build_bodies(const ModelSize& size, int rank) {
   const auto bodies = static_cast<Real>(size.bodies), links = static_cast<Real>(size.links);
-  return kToBuildBody * bodies + kToBuildShape * static_cast<Real>(size.shapes) +
+  return kToBuildBody * bodies + kToBuildShape * static_cast<Real>(size.shapes + size.drawn_shapes) +
          (rank == 0 ? kToBuildUnknowns * bodies + kToBuildLink * links : 0);
 }
 
@@ -118,8 +158,8 @@ void check_memory(const ModelSize& size, Real bytes, const std::string& task, co
 std::string memory_trouble(const ModelSize& size, int ranks, const std::string& finding) {
   const Real particles = kBytesPerExplicitParticle * static_cast<Real>(size.particles);
   // A body has three coordinates, a link two constraints at the most but for fixed joints.
-  const Real unknowns = kBytesPerUnknown * static_cast<Real>(3 * size.bodies + 2 * size.links) +
-                        kBytesPerShape * static_cast<Real>(size.shapes);
+  const Real unknowns =
+      kBytesPerUnknown * static_cast<Real>(3 * size.bodies + 2 * size.links) + bytes_of_shapes(size);
   std::string of = counted(size.particles, "particle", "particles");
   if (size.bodies > 0) {
     const std::string bodies = counted(size.bodies, "body", "bodies");

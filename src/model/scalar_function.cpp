@@ -202,7 +202,9 @@ TimeValue ScalarFunction::table_value(Real t) const {
 TimeValue ScalarFunction::moving_value(Real t) const {
   switch (function_.kind) {
     case TimeFunction::Kind::ramp:
-      return ramp_function(function_.value, function_.rate, t);
+      return function_.end > function_.start
+                 ? eased_ramp_function(function_.value, function_.rate, function_.start, function_.end, t)
+                 : ramp_function(function_.value, function_.rate, t);
     case TimeFunction::Kind::sine:
       return sine_function(function_.value, function_.amplitude, function_.frequency, function_.phase, t);
     case TimeFunction::Kind::step:

@@ -75,13 +75,14 @@ PointSnapshot line_points(Real time, const LineSnapshot& lines, const Ranks& ran
 
 SeriesOptions with_global_id(SeriesOptions options) {
   if (options.fields) options.fields->emplace_back(kGlobalId);
+  options.constant.emplace_back(kGlobalId);
   std::erase_if(options.names, [](const SeriesNames& of) { return of.name == kBodyNames; });
   options.triangles.reset();
   return options;
 }
 
 SeriesOptions of_contacts(SeriesOptions options, const WantedLines& lines) {
-  options.fields.reset(), options.triangles.reset();
+  options.fields.reset(), options.triangles.reset(), options.constant.clear();
   std::erase_if(options.names, [](const SeriesNames& of) { return of.name != kBodyNames; });
   if (lines.contacts) options.fields = lines.contact_fields;
   options.lines = true, options.likely_points = 2 * lines.likely_contacts;
@@ -89,7 +90,7 @@ SeriesOptions of_contacts(SeriesOptions options, const WantedLines& lines) {
 }
 
 SeriesOptions of_links(SeriesOptions options, const WantedLines& lines) {
-  options.names = {{kBodyNames, lines.links}}, options.lines = true;
+  options.names = {{kBodyNames, lines.links}}, options.lines = true, options.constant.clear();
   return options;
 }
 
@@ -123,11 +124,12 @@ SnapshotWriter::SnapshotWriter(const std::string& directory, const SeriesOptions
       snapshots_(options.keep) {
   ranks_.on_root([&] {
     SeriesOptions alone = options;
-    alone.ranks = {}, alone.fields = {};
+    alone.ranks = {}, alone.fields = {}, alone.constant = {};
     std::erase_if(alone.names, [](const SeriesNames& of) { return of.name == kGroupNames; });
     alone.triangles = options.triangles.value_or(SeriesTriangles{});
     surfaces_.emplace(directory, "surfaces", alone);
     alone.triangles.reset();
+    alone.constant = {"body", "kind", "radius"};
     bodies_.emplace(directory, "bodies", alone);
     links_.emplace(directory, "links", of_links(alone, lines));
   });

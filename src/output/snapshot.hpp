@@ -78,9 +78,10 @@ class SnapshotWriter {
  public:
   // options.keep: number of snapshots to keep when a restarted run continues existing files (later ones are
   // cut off); 0 starts new files and removes old ones. options.fields: those of the particles beside
-  // the global id. options.names: lists of the names above. options.triangles: of the meshes, on rank 0,
-  // where there are some. Throws IoError where the files hold fewer snapshots, other fields or other
-  // triangles, or where there are lines that are not wanted, or none that are.
+  // the global id; options.constant: which of them never change. options.names: lists of the names above.
+  // options.triangles: of the meshes, on rank 0, where there are some. Throws IoError where the files hold
+  // fewer snapshots, other fields or other triangles, or where there are lines that are not wanted, or none
+  // that are.
   SnapshotWriter(const std::string& directory, const SeriesOptions& options, const WantedLines& lines = {});
   // Both throw IoError.
   void append(Real time, const ParticleSnapshot& particles, const BodySnapshot& bodies,

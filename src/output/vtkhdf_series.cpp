@@ -21,6 +21,7 @@ const std::string kPointData = "/VTKHDF/PointData/";
 const std::string kCellData = "/VTKHDF/CellData/";
 const std::string kPointDataOffsets = "/VTKHDF/Steps/PointDataOffsets/";
 const std::string kCellDataOffsets = "/VTKHDF/Steps/CellDataOffsets/";
+const std::string kConstantOffsets = kSteps + "ConstantOffsets";
 constexpr std::int64_t kStepsPerChunk = 128;
 constexpr std::size_t kXdmfGrowth = 5;  // the .xdmf is written when it has grown by one in so many
 
@@ -99,6 +100,7 @@ void VtkHdfSeries::read_places() {
   const auto first_point = file.read_array<std::int64_t>(kSteps + "PointOffsets");
   const auto first_cell = file.read_array<std::int64_t>(kSteps + "CellOffsets");
   const auto points = file.read_array<std::int64_t>(kRoot + "NumberOfPoints");
+  require_constant_offsets(file);
   if (part.size() != time.size() || first_point.size() != time.size() ||
       first_cell.size() != 4 * time.size()) {
     throw IoError(fmt::format("{}: the datasets in {} differ in length", path(), kSteps));
@@ -116,6 +118,13 @@ void VtkHdfSeries::read_places() {
                   first_cell[4 * s + static_cast<std::size_t>(cells().column)],
                   static_cast<std::int64_t>(s)};
   }
+}
+
+// An earlier version wrote every field at every snapshot.
+void VtkHdfSeries::require_constant_offsets(const Hdf5File& file) const {
+  const std::vector<std::string> steps = file.dataset_names(kSteps);
+  if (options_.constant.empty() || std::ranges::find(steps, "ConstantOffsets") != steps.end()) return;
+  throw IoError(path() + ": was written by an earlier version of the program; choose another folder");
 }
 
 void VtkHdfSeries::require_fields() const {
@@ -151,6 +160,7 @@ void VtkHdfSeries::cut(std::size_t keep) {
       file.resize_rows(kSteps + name, steps);
     }
     if (has_cell_fields()) file.resize_rows(field_offsets(), steps);
+    if (!options_.constant.empty()) file.resize_rows(kConstantOffsets, steps);
     cut_names(file, steps);
     file.resize_rows(kRoot + "Points", last.first_point + last.points);
     if (options_.triangles)
@@ -167,9 +177,10 @@ void VtkHdfSeries::cut_points(Hdf5File& file) const {
   file.resize_rows(kRoot + "NumberOfPoints", last.part + 1);
   cut_cells(file, cells(), {last.part, last.first_cell}, last.points);
   if (options_.lines) file.resize_rows(kSteps + "ConnectivityIdOffsets", last.number + 1);
-  const RowPart rows = field_rows(last, {0, last.points});
-  for (const std::string& name : file.dataset_names(field_group()))
+  for (const std::string& name : file.dataset_names(field_group())) {
+    const RowPart rows = field_rows(last, {0, last.points}, name);
     file.resize_rows(field_group() + name, rows.first + rows.count);
+  }
 }
 
 void VtkHdfSeries::lay_out(Hdf5File& file, const PointSnapshot& first) const {
@@ -200,9 +211,14 @@ void VtkHdfSeries::lay_out_fields(Hdf5File& file, const PointSnapshot& first, Ro
   if (has_cell_fields())
     file.create_rows<std::int64_t>(field_offsets(), {1, kStepsPerChunk},
                                    {"1", "first row of each snapshot in the fields of its cells"});
+  if (!options_.constant.empty())
+    file.create_rows<std::int64_t>(
+        kConstantOffsets, {1, kStepsPerChunk},
+        {"1", "first row of each snapshot in the fields that never change of a point"});
   for (const PointField& field : first.fields) {
     create_field(file, field_group() + field.name, field, storage);
-    file.link(field_offsets(), (has_cell_fields() ? kCellDataOffsets : kPointDataOffsets) + field.name);
+    file.link(is_constant(field.name) ? kConstantOffsets : field_offsets(),
+              (has_cell_fields() ? kCellDataOffsets : kPointDataOffsets) + field.name);
   }
 }
 
@@ -223,13 +239,22 @@ bool VtkHdfSeries::starts_part(const SnapshotPlace& place) const {
 
 const std::string& VtkHdfSeries::field_group() const { return has_cell_fields() ? kCellData : kPointData; }
 
-// The fields of points have as many rows as Points, so they begin where these begin.
+// The fields of points that change have as many rows as Points, so they begin where these begin.
 std::string VtkHdfSeries::field_offsets() const {
   return kSteps + (options_.triangles ? "TriangleOffsets" : options_.lines ? "LineOffsets" : "PointOffsets");
 }
 
-RowPart VtkHdfSeries::field_rows(const SnapshotPlace& place, RowPart own) const {
+bool VtkHdfSeries::is_constant(const std::string& field) const {
+  return std::ranges::find(options_.constant, field) != options_.constant.end();
+}
+
+bool VtkHdfSeries::adds_rows(const SnapshotPlace& place, const std::string& field) const {
+  return !is_constant(field) || starts_part(place);
+}
+
+RowPart VtkHdfSeries::field_rows(const SnapshotPlace& place, RowPart own, const std::string& field) const {
   if (options_.triangles) return {place.number * options_.triangles->count(), options_.triangles->count()};
+  if (is_constant(field)) return {place.first_cell + own.first, own.count};  // as the vertices
   return {(place.first_point + own.first) / cells().points, own.count / cells().points};
 }
 
@@ -251,13 +276,15 @@ void VtkHdfSeries::make_room(Hdf5File& file, const PointSnapshot& snapshot,
     if (!options_.triangles) add_cells(file, cells(), snapshot.points);
   }
   file.add_rows(kRoot + "Points", snapshot.points);
-  const RowPart rows = field_rows(place, {0, snapshot.points});
-  for (const PointField& field : snapshot.fields) file.add_rows(field_group() + field.name, rows.count);
+  for (const PointField& field : snapshot.fields)
+    if (adds_rows(place, field.name))
+      file.add_rows(field_group() + field.name, field_rows(place, {0, snapshot.points}, field.name).count);
   file.append_row(kSteps + "Values", snapshot.time);
   file.append_row(kSteps + "PartOffsets", place.part);
   file.append_row(kSteps + "NumberOfParts", std::int64_t{1});
   file.append_row(kSteps + "PointOffsets", place.first_point);
-  if (has_cell_fields()) file.append_row(field_offsets(), rows.first);
+  if (has_cell_fields()) file.append_row(field_offsets(), field_rows(place, {0, snapshot.points}, "").first);
+  if (!options_.constant.empty()) file.append_row(kConstantOffsets, place.first_cell);
   append_cell_offsets(file, place.first_cell);
   file.write_integer_attribute(kSteps, "NSteps", {static_cast<std::int64_t>(places_.size()) + 1});
 }
@@ -270,7 +297,8 @@ void VtkHdfSeries::write_rows(SharedRows& file, const PointSnapshot& snapshot,
                 options_.ranks.rank() == options_.ranks.size() - 1);
   file.write(kRoot + "Points", 3, {place.first_point + own.first, own.count}, snapshot.position);
   for (const PointField& field : snapshot.fields)
-    write_field(file, field_group() + field.name, field, field_rows(place, own));
+    if (adds_rows(place, field.name))
+      write_field(file, field_group() + field.name, field, field_rows(place, own, field.name));
 }
 
 TwinFile::Change VtkHdfSeries::change(const PointSnapshot& snapshot) const {
@@ -296,8 +324,12 @@ void VtkHdfSeries::remove_xdmf() const {
 }
 
 void VtkHdfSeries::add_xdmf(const PointSnapshot& snapshot) {
-  const XdmfSeries series{name_, name_ + ".vtkhdf", &snapshot.fields,
-                          options_.triangles ? &*options_.triangles : nullptr, options_.lines};
+  const XdmfSeries series{name_,
+                          name_ + ".vtkhdf",
+                          &snapshot.fields,
+                          options_.triangles ? &*options_.triangles : nullptr,
+                          options_.lines,
+                          options_.constant};
   for (; xdmf_snapshots_ < places_.size(); ++xdmf_snapshots_) {
     xdmf_grids_ += xdmf_grid(series, places_[xdmf_snapshots_]);
   }

@@ -4,7 +4,8 @@
 // VTKHDF 2.0, type PolyData: docs.vtk.org, "VTKHDF format specification". All snapshots' rows follow each
 // other in each dataset; the group Steps says where those of one snapshot begin. Vertices, one cell per
 // point, or lines, one per two points, of a snapshot are one part; it is shared by the snapshots that follow
-// with the same number of points. Triangles between points that move are one part for all snapshots.
+// with the same number of points, and so are the fields that never change of a point, as points only ever
+// leave. Triangles between points that move are one part for all snapshots.
 //
 // The .xdmf names every snapshot in one text, which ends in closing tags: it is complete only as a whole. It
 // is written beside and renamed, not at each snapshot, but when there are a fifth more than it knows (and at
@@ -80,6 +81,7 @@ struct SeriesOptions {
   std::optional<SeriesTriangles> triangles = {};  // of a series of triangles, which one rank writes
   bool lines = false;                             // between each two points; every rank has whole ones
   std::int64_t likely_points = 0;                 // of a snapshot, where the first one may have few
+  std::vector<std::string> constant = {};         // fields of points that never change of a point
 };
 
 class VtkHdfSeries {
@@ -101,13 +103,17 @@ class VtkHdfSeries {
 
  private:
   void read_places();
+  void require_constant_offsets(const Hdf5File& file) const;
   void require_fields() const;
   bool has_cell_fields() const { return options_.triangles || options_.lines; }
   const SeriesCells& cells() const { return options_.lines ? kLines : kVertices; }  // without triangles
   void require_fields_of(const Hdf5File& file, const PointSnapshot& snapshot) const;
   const std::string& field_group() const;
   std::string field_offsets() const;
-  RowPart field_rows(const SnapshotPlace& place, RowPart own) const;  // own: points
+  // Of a field; own: points.
+  RowPart field_rows(const SnapshotPlace& place, RowPart own, const std::string& field) const;
+  bool is_constant(const std::string& field) const;
+  bool adds_rows(const SnapshotPlace& place, const std::string& field) const;
   void cut(std::size_t keep);
   void lay_out(Hdf5File& file, const PointSnapshot& first) const;
   void lay_out_fields(Hdf5File& file, const PointSnapshot& first, RowStorage storage) const;

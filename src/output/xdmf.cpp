@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace scree {
 
 namespace {
@@ -109,9 +111,11 @@ std::string xdmf_grid(const XdmfSeries& series, const SnapshotPlace& place) {
   const std::int64_t points = series.lines ? 2 : 1;  // of a field's row
   const std::int64_t count = series.triangles ? series.triangles->count() : place.points / points;
   const std::int64_t first = series.triangles ? place.number * count : place.first_point / points;
-  for (const PointField& field : *series.fields)
+  for (const PointField& field : *series.fields) {
+    const bool constant = std::ranges::find(series.constant, field.name) != series.constant.end();
     text += attribute(series, field.name, field_array(of_cells(series) ? "CellData/" : "PointData/", field),
-                      first, count);
+                      constant ? place.first_cell : first, count);
+  }
   if (series.triangles)
     for (const TriangleNumbers& numbers : series.triangles->numbers)
       text += attribute(series, numbers.name, {"CellData/" + numbers.name, 1, "Int", 4}, 0, count);

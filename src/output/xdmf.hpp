@@ -2,6 +2,7 @@
 // datasets.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct XdmfSeries {
   const std::vector<PointField>* fields = nullptr;
   const SeriesTriangles* triangles = nullptr;  // of a series of triangles: the fields are theirs
   bool lines = false;                          // of a series of lines, likewise
+  std::span<const std::string> constant = {};  // fields of points that have the rows of the vertices
 };
 
 // One snapshot's <Grid>; empty for a snapshot without points, which these readers cannot open.

@@ -17,6 +17,18 @@ struct TimeValue {
 // f = value + rate t; t [s].
 SCREE_HD TimeValue ramp_function(Real value, Real rate, Real t) { return {value + rate * t, rate, 0}; }
 
+// f = value before t0, and a straight line of slope `rate` after t1; between them, with T = t1 - t0 and
+// s = (t - t0)/T,
+//   f = value + rate T s^3 (1 - s/2),  f' = rate s^2 (3 - 2 s),  f'' = 6 rate/T s (1 - s):
+// twice continuously differentiable. t0 < t1 [s].
+SCREE_HD TimeValue eased_ramp_function(Real value, Real rate, Real t0, Real t1, Real t) {
+  if (t <= t0) return {value, 0, 0};
+  const Real duration = t1 - t0, s = (t - t0) / duration;
+  if (t >= t1) return {value + rate * ((t - t1) + duration / 2), rate, 0};
+  return {value + rate * duration * (s * s * s * (1 - s / 2)), rate * (s * s * (3 - 2 * s)),
+          6 * (rate / duration) * (s * ((t1 - t) / duration))};
+}
+
 // f = value + amplitude sin(2 pi frequency t + phase); frequency [Hz], phase [rad].
 SCREE_HD TimeValue sine_function(Real value, Real amplitude, Real frequency, Real phase, Real t) {
   const Real omega = 2 * std::numbers::pi_v<Real> * frequency;

@@ -27,10 +27,13 @@ namespace scree {
 
 namespace {
 
-// In files without compression, of a particle (in a snapshot without its fields), of a shape or centre, of a
-// contact, of a link, of a body [B]; tests/performance/bytes_per_item.py.
-constexpr Real kSnapshotPoint = 42, kSnapshotShape = 150, kSnapshotContact = 147, kSnapshotLink = 150,
-               kCheckpointParticle = 186, kCheckpointBody = 170;
+// In files without compression, of a particle (in a snapshot without its fields; in all of them together, but
+// for its fields that never change), of a shape or centre, of a contact, of a link, of a body [B];
+// tests/performance/bytes_per_item.py.
+constexpr Real kSnapshotPoint = 25, kPointOnce = 25, kSnapshotShape = 150, kSnapshotContact = 147,
+               kSnapshotLink = 150, kCheckpointParticle = 186, kCheckpointBody = 170;
+// Of a triangle in all snapshots together: its corners, mesh, body, wall, material and number.
+constexpr Real kTriangleNumbers = 4 * sizeof(std::int64_t) + 5 * sizeof(int);
 // Of one that rotates, and more where contacts resist rolling; of a contact that remembers, but for its
 // numbers, and of the row of a particle's.
 constexpr Real kCheckpointRotation = 96, kCheckpointRolling = 16, kCheckpointContact = 16, kCheckpointRow = 8;
@@ -217,17 +220,28 @@ Real checkpoint_particle(const Model& model) {
   return bytes;
 }
 
+Real snapshot_surfaces(const Model& model) {
+  Real of_triangle = 0;
+  for (const SurfaceField field : model.output.surface_fields)
+    of_triangle += field == SurfaceField::shear ? sizeof(Vec3) : sizeof(Real);
+  const ShownMeshes shown = shown_meshes(model);
+  return sizeof(Vec3) * shown.points + of_triangle * shown.triangles;
+}
+
 std::string output_lines(const Model& model) {
   const auto particles = static_cast<Real>(model.particles.totals.count);
-  Real points = static_cast<Real>(model.bodies.size()), snapshot_particle = kSnapshotPoint;
+  Real points = static_cast<Real>(model.bodies.size()), snapshot_particle = kSnapshotPoint,
+       particle_once = kPointOnce;
   for (const OutputField& field : wanted_fields(model.output))
-    snapshot_particle += static_cast<Real>(field.bytes);
-  if (model.output.contacts) snapshot_particle += kTouching / 2 * kSnapshotContact;
+    (field.is_constant ? particle_once : snapshot_particle) += static_cast<Real>(field.bytes);
+  if (model.output.contacts) snapshot_particle += kLinesPerParticle * kSnapshotContact;
   for (const Body& body : model.bodies)
     points += static_cast<Real>(body.shapes.size() + body.drawn_shapes.size());
   const Real links = model.output.links ? static_cast<Real>(LinkLines(model).names().size()) : 0;
   const Real snapshots = outputs(model.time.end, model.output.snapshot_interval),
-             size = snapshot_particle * particles + kSnapshotShape * points + kSnapshotLink * links,
+             size = snapshot_particle * particles + kSnapshotShape * points + kSnapshotLink * links +
+                    snapshot_surfaces(model),
+             once = particle_once * particles + kTriangleNumbers * shown_meshes(model).triangles,
              state = checkpoint_particle(model) * particles +
                      kCheckpointBody * static_cast<Real>(model.bodies.size());
   const Real interval = model.output.checkpoint_interval;
@@ -236,7 +250,7 @@ std::string output_lines(const Model& model) {
                                       : fmt::format("{:.0f} on the way and one at the end",
                                                     std::ceil(model.time.end / interval * (1 - 1e-9)) - 1);
   return fmt::format("snapshots      {:.0f} of about {}, {} together{}\n", snapshots, megabytes(size),
-                     megabytes(snapshots * size),
+                     megabytes(snapshots * size + once),
                      model.output.compression > 0 ? ", before compression" : "") +
          fmt::format("checkpoints    {}, about {} each\n", checkpoints, megabytes(state)) +
          history_limit_lines(model);
@@ -248,12 +262,12 @@ std::string memory_line(const Model& model, int ranks) {
   const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
       kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));
-  const std::int64_t shapes = size_of(model).shapes;
-  const Real meshes = bytes_of_meshes(model),
-             surfaces = meshes + kBytesPerShape * static_cast<Real>(shapes);  // on every rank
+  const ModelSize size = size_of(model);
+  const Real meshes = bytes_of_meshes(model, false), surfaces = meshes + bytes_of_shapes(size),
+             of_root = unknowns + bytes_of_meshes(model, true) - meshes;  // beside what every rank has
   const std::string most = ranks == 1 ? ""
                                       : fmt::format(" on all ranks together, {} on rank 0",
-                                                    megabytes(particles / ranks + unknowns + surfaces));
+                                                    megabytes(particles / ranks + of_root + surfaces));
   const FreeMemory free = free_memory();
   const MemoryBound& bound = free.process.bytes < free.host.bytes ? free.process : free.host;
   return fmt::format(
@@ -261,8 +275,8 @@ std::string memory_line(const Model& model, int ranks) {
       "{} "
       "are free here "
       "({})\n",
-      megabytes(particles + unknowns + ranks * surfaces), most, per_particle, kBytesPerUnknown,
-      shapes == 0 ? "" : fmt::format(", {} B per shape on every rank", kBytesPerShape),
+      megabytes(particles + of_root + ranks * surfaces), most, per_particle, kBytesPerUnknown,
+      size.shapes == 0 ? "" : fmt::format(", {} B per shape on every rank", kBytesPerShape),
       meshes == 0 ? "" : fmt::format(", {} B per triangle on every rank", bytes_per_triangle(model)),
       megabytes(bound.bytes), bound.set_by);
 }

@@ -25,10 +25,9 @@ std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const 
   const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
   const Real per_particle = bytes_per_particle(model) + bytes_remembered(history_of(model.contact));
   const ModelSize size = size_of(model);
-  check_memory(size,
-               per_particle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns +
-                   kBytesPerShape * static_cast<Real>(size.shapes) + bytes_of_meshes(model),
-               "running it on the CPU", RanksShare(ranks));
+  const Real all = per_particle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns +
+                   bytes_of_shapes(size) + bytes_of_meshes(model, ranks.is_root());
+  check_memory(size, all - bytes_of_model(model), "running it on the CPU", RanksShare(ranks));
   if (model.integrator.precision == Precision::mixed)
     log.info("integrator.precision = \"mixed\" is for a GPU: the CPU computes in double");
   if (model.parallel.transport != Transport::automatic)

@@ -119,6 +119,8 @@ Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, c
                         link.ranks(),
                         model.output.fields,
                         names_of(model)};
+  for (const OutputField& field : wanted_fields(model.output))
+    if (field.is_constant) options.constant.emplace_back(field.head.name);
   if (surfaces_) options.triangles = surfaces_->triangles();
   snapshots_.emplace(directory, options, wanted_lines());
   if (writes_late()) backend.set_idle_work([this] { write_pending(); });

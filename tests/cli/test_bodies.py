@@ -1,6 +1,7 @@
 """Bodies as the command line shows them: velocities at t = 0, motions, reactions that oscillate.
 Usage: SCREE=path/to/scree python3 test_bodies.py"""
 
+import csv
 import json
 import math
 import re
@@ -110,6 +111,19 @@ class MotionTest(BodiesTest):
         self.run_deck(DONE, "table")
         self.use(end=0.3, motion='kind = "step", end_value = 0.1, start = 0.1, end = 0.2')
         self.run_deck(DONE, "out")
+
+    def test_a_ramp_with_a_start_begins_at_rest(self):
+        """What turns without one must turn at t = 0."""
+        self.use(end=0.3, motion='kind = "ramp", rate = 4.0')
+        self.assertIn("bodies.crank.angular_velocity = 4", self.expect(BAD_INPUT, "check", self.deck).stderr)
+        self.use(end=0.3, motion='kind = "ramp", rate = 4.0, start = 0.1, end = 0.2')
+        self.run_deck(DONE, "out", "--set", "output.history_bodies=['crank']", "--set", "output.history_csv=true",
+                      "--set", "output.history_interval=0.05")
+        rows = list(csv.DictReader((self.folder / "out/history.csv").read_text().splitlines()))
+        angles = [float(row["bodies/crank/angle [rad]"]) for row in rows]
+        self.assertEqual(len(angles), 7)
+        for angle, turned in zip(angles, (0, 0, 0, 4 * 0.1 * 3 / 32, 0.2, 0.4, 0.6)):
+            self.assertAlmostEqual(angle, turned, delta=1e-9)
 
     def test_a_motion_of_straight_lines_is_refused(self):
         self.use(motion=self.TABLE + ', interpolation = "linear"')

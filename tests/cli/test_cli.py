@@ -193,7 +193,8 @@ class UsageTest(CommandLineTest):
     def test_check_reports_and_runs_nothing(self):
         text = self.expect(DONE, "check", self.deck).stdout
         for word in ("gravity        9.8 m/s^2 along -y\n", "x_min periodic, x_max periodic, y_min open, y_max open; "
-                     'a particle that leaves: "drift"', "snapshots      2 of about 1.1 kB", "particles      6",
+                     'a particle that leaves: "drift"', "snapshots      2 of about 0.9 kB, 2.1 kB together",
+                     "particles      6",
                      "checkpoints    one at the end, about 1.3 kB", "degrees of freedom", "contact", "memory", "petsc",
                      "bodies         1 with 1 shape, 0 joints, 0 drivers, 1 force element\n",
                      "in steps of 0.0001 s with 0.9792", "fixed step 0.0001 s (4000 steps)"):
@@ -218,7 +219,7 @@ class DeckErrorTest(CommandLineTest):
     def test_errors_name_file_line_key_and_value(self):
         # Replacement in the deck; what the message holds behind file and line.
         cases = (("step = 1e-4", "stp = 1e-4", "time.stp", "did you mean"),
-                 ("step = 1e-4", "step = -1e-4", "time.step = -0.0001", "above 0"),
+                 ("step = 1e-4", "step = -1e-4", "time.step = -1e-4", "above 0"),
                  ("step = 1e-4", 'step = "fast"', 'time.step = "fast"', "number"),
                  ("dimension = 2", "dimension = 5", "space.dimension = 5", "from 2 to 3"),
                  ('leaving = "drift"', 'leaving = "fly"', 'space.leaving = "fly"', "remove"),

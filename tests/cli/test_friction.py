@@ -86,7 +86,7 @@ class FrictionTest(CommandLineTest):
              "contact.pairs.0.tangential_stiffness", "left out for Hertz's law: Mindlin's follows from the moduli"),
             (RUBBING.replace('"velocity-verlet"', '"hht"').replace(friction, friction + "rolling_friction = 0.1\n"),
              "rolling_friction", "contact.pairs.0.rolling_friction", "implicit steps have friction alone"),
-            (RUBBING + BALL.replace("0.005", "1e-7"), "step", "time.step = 0.0001",
+            (RUBBING + BALL.replace("0.005", "1e-7"), "step", "time.step = 1e-4",
              "a body on a contact oscillates with"),
             (RUBBING.replace(friction, ""), "angular_velocity", "particles.grains.angular_velocity",
              "no particle rotates: no pair in contact.pairs has friction"),

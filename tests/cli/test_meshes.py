@@ -212,6 +212,16 @@ class ReportTest(MeshTest):
                       '(0, 0, 0) to (0.1, 0.1, 0.1) m, area 0.06 m^2, volume 0.001 m^3, as a solid 1 kg', report)
         self.assertNotIn("warning", warnings)
 
+    def test_snapshots_are_as_large_as_check_says(self):
+        ball = 'meshes=[{name="rock",kind="sphere",radius=0.1,levels=5}]'
+        twice = 'bodies.shell.meshes=[{mesh="rock"}]'
+        for settings in ((ball,), (ball, twice)):
+            said = re.search(r"snapshots      2 of about \S+ MB, (\S+) MB together", self.report(*settings)[0])[1]
+            self.expect(DONE, "run", self.deck, "--output", self.folder / "out", "--overwrite",
+                        *(word for setting in settings for word in ("--set", setting)))
+            size = (self.folder / "out/surfaces.vtkhdf").stat().st_size / 1e6
+            self.assertAlmostEqual(float(said) / size, 1, delta=0.1)
+
     def test_a_file_made_coarser(self):
         self.write("rock.stl", ball(0.2))
         report, _ = self.report("meshes.rock.coarsen=0.005")

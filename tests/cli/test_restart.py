@@ -184,7 +184,7 @@ class RestartTest(CommandLineTest):
             self.assertIn("time.end", message)
             name, value = key.split("=")
             key = re.escape(name).replace("0", "[a-z0-9]+")
-            self.assertRegex(message, rf"{key}(\.value)?: \S+ -> {float(value):g}(;|\n)")
+            self.assertRegex(message, rf"{key}(\.value)?: \S+ -> {float(value)!r}(;|\n)")
         self.run_deck(DONE, "out", *restart, "--set", "title=corrected")
         self.run_deck(DONE, "out", *restart, "--set", "time.end=0.02")
         self.run_deck(DONE, "whole", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")

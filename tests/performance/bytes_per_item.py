@@ -53,6 +53,42 @@ type = "revolute"
 chain = "row"
 local_points = [[1.0, 0.0], [-1.0, 0.0]]
 """
+SHAPES = """
+[space]
+dimension = 2
+min = [0.0, 0.0]
+max = [600001.0, 10.0]
+[[bodies]]
+name = "rod"
+position = [1.0, 5.0]
+mass = 1.0
+inertia = 0.1
+shapes = [{{ radius = 0.5, count = {count}, spacing = [2.0, 0.0], collides = {collides} }}]
+"""
+BALL = """
+[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [31.0, 4.0, 4.0]
+[[meshes]]
+name = "ball"
+kind = "sphere"
+radius = 1.0
+levels = {levels}
+"""
+CARRIER = """
+[[bodies]]
+name = "carrier{number}"
+kind = "spatial"
+position = [{place}, 2.0, 2.0]
+mass = 1.0
+inertia_tensor = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
+meshes = [{{ mesh = "ball" }}]
+"""
+
+
+def balls(levels, bodies):
+    return BALL.format(levels=levels) + "".join(CARRIER.format(number=i, place=3.0 * i + 2.0) for i in range(bodies))
 
 
 def run(scree, folder, deck, *words):
@@ -91,10 +127,20 @@ def main():
             most = run(scree, folder, keys + PARTICLES, "--set", f"integrator.particles={integrator}")
             print(f"{what}: {(most - empty) / 1e6:.0f} B of memory per particle")
             print_files(folder, "particles.vtkhdf", f"particle, {what}", 1e6)
-        run(scree, folder, RUBS + PARTICLES, "--set", "integrator.particles=velocity-verlet", "--set",
-            "output.contacts=true")
-        contacts = (folder / "out/contacts.vtkhdf").stat().st_size / 2 / (3 * 99 * 100 * 100)
-        print(f"contact, rubbing: {contacts:.0f} B in a snapshot")
+        contacts = 3 * 99 * 100 * 100
+        for what, keys in (("smooth", ""), ("rubbing", RUBS)):
+            words = ("--set", "integrator.particles=velocity-verlet", "--set", "output.contacts=true")
+            without, most = (run(scree, folder, keys + PARTICLES, *few) for few in (words[:2], words))
+            size = (folder / "out/contacts.vtkhdf").stat().st_size
+            print(f"contact, {what}: {size / 2 / contacts:.0f} B in a snapshot, "
+                  f"{(most - without) / contacts:.0f} B of memory on the way there")
+        for what, collides in (("shape", "true"), ("shape for pictures alone", "false")):
+            few, many = (run(scree, folder, SHAPES.format(count=count, collides=collides)) for count in (10, 300000))
+            print(f"{what}: {(many - few) / 3e5:.0f} B of memory")
+        none, one, four = (run(scree, folder, balls(levels, bodies)) for levels, bodies in ((0, 1), (7, 1), (7, 4)))
+        triangles = 20 * 4**7
+        print(f"triangle: {(one - none) / triangles:.0f} B of memory, {(four - one) / 3 / triangles:.0f} B each time "
+              "that it is shown")
 
 
 if __name__ == "__main__":

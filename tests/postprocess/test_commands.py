@@ -28,7 +28,7 @@ import pandas
 import pyvista
 import scree
 from scree.cli import main
-from scree.columns import axis, panels, words
+from scree.columns import axis, panels, words, x_axis
 from scree.differences import apart, differences, matched, over
 from scree.pictures.render import DrawnRun, Look, make_picture
 from scree.plots import balance_panel, energy_panels, history_figure
@@ -86,6 +86,24 @@ class PlotTest(CommandTest):
         self.assertEqual(texts, ["Zero throughout: net, z."])
         self.assertEqual(axes.get_ylabel(), "force [N]")
         self.assertEqual(axes.get_title("left"), "Contact force on the row's bodies")
+
+    def test_over_a_column(self):
+        history = scree.open(NET).history
+        figure = history_figure(history, "net", ["contacts/net/f[xy]"], energies=False, x="contacts/net/contacts")
+        (axes,) = figure.axes
+        self.assertEqual(axes.get_xlabel(), "net, contacts of the row's bodies with particles")
+        for line, name in zip(axes.lines, ("x", "y")):
+            np.testing.assert_array_equal(line.get_xdata(), history["contacts/net/contacts"])
+            np.testing.assert_array_equal(line.get_ydata(), history[f"contacts/net/f{name}"])
+        self.assertEqual(x_axis(history, "step/time")[1], "time [s]")
+        self.assertEqual(x_axis(history, "contacts/net/fy")[1], "net, contact force on the row's bodies, y [N]")
+        path = self.folder / "over.png"
+        self.command(DONE, "plot", NET, "--x", "energy/kinetic", "--columns", "step/contacts", "-o", path)
+        self.assertGreater(path.stat().st_size, 20000)
+        self.assertIn("error: no column contact/net/fy; did you mean contacts/net/fy",
+                      self.command(WRONG, "plot", NET, "--x", "contact/net/fy"))
+        self.assertIn("energy/elastic_* fits 2 columns, and the horizontal axis takes one: energy/elastic_contacts",
+                      self.command(WRONG, "plot", NET, "--x", "energy/elastic_*"))
 
     def test_files_and_what_is_refused(self):
         for suffix in ("png", "svg"):

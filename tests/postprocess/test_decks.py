@@ -164,6 +164,16 @@ class CheckTest(FolderTest):
         with self.assertRaisesRegex(scree.ScreeError, r"box.toml: bodies.lid.mass = -1: must be a number above 0 \["):
             deck.check(PROGRAM)
 
+    def test_the_program_is_asked_where_the_schema_finds_something_too(self):
+        deck = box()
+        deck.name = "box.toml"
+        deck["time.end"], deck["bodies.lid.mass"] = -1, -2
+        with self.assertRaises(scree.ScreeError) as caught:
+            deck.check(PROGRAM)
+        first, *others = str(caught.exception).splitlines()
+        self.assertRegex(first, r"^box.toml:\d+:\d+: time.end = -1: must be a number above 0 \[s\]$")
+        self.assertEqual(others, ["box.toml: bodies.lid.mass = -2: must be a number above 0 [kg]"])
+
     def test_a_number_where_a_table_may_stand(self):
         deck = scree.Deck.read(DECK)
         deck["particles.block.radius"] = -1

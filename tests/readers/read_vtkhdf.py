@@ -62,8 +62,12 @@ def check_attributes(file, path):
     root.visititems(check)
 
 
+CONSTANT = {"global_id", "radius", "mass", "material", "group", "body", "kind"}  # fields of points that never change
+
+
 def check_offsets(root, path, fields):
-    """The snapshots' rows follow each other without a gap, to the end of every dataset."""
+    """The snapshots' rows follow each other without a gap, to the end of every dataset; those of fields that never
+    change begin anew where the number of points changes."""
     steps = root["Steps"]
     count = root["NumberOfPoints"][:][steps["PartOffsets"][:]]
     first = np.concatenate([[0], np.cumsum(count)])
@@ -74,11 +78,15 @@ def check_offsets(root, path, fields):
     require(
         np.array_equal(steps["PointOffsets"], first[:-1]), f"{path}: PointOffsets do not follow each other"
     )
+    new = np.diff(count, prepend=-1) != 0
+    shared = np.concatenate([[0], np.cumsum(count[new])])
     for name in fields:
+        constant = name in CONSTANT
+        wanted, end = (shared[np.cumsum(new) - 1], shared[-1]) if constant else (first[:-1], first[-1])
         rows = len(root[f"PointData/{name}"])
-        require(rows == first[-1], f"{path}: {rows} rows of {name} for {first[-1]}")
+        require(rows == end, f"{path}: {rows} rows of {name} for {end}")
         offsets = steps[f"PointDataOffsets/{name}"]
-        require(np.array_equal(offsets, first[:-1]), f"{path}: offsets of {name} do not follow each other")
+        require(np.array_equal(offsets, wanted), f"{path}: offsets of {name} do not follow each other")
 
 
 def raw_snapshot(root, step, fields):

@@ -28,9 +28,12 @@ def raw_snapshots(path):
     snapshots = []
     with h5py.File(path, "r") as file:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
-        for time, part, first in zip(steps["Values"][:], steps["PartOffsets"][:], steps["PointOffsets"][:]):
-            rows = slice(first, first + root["NumberOfPoints"][part])
-            data = {name: field[rows] for name, field in root.get("PointData", {}).items()}
+        offsets = {name: rows[:] for name, rows in steps.get("PointDataOffsets", {}).items()}
+        for step, (time, part, first) in enumerate(zip(steps["Values"][:], steps["PartOffsets"][:],
+                                                       steps["PointOffsets"][:])):
+            count = root["NumberOfPoints"][part]
+            rows = slice(first, first + count)
+            data = {name: root["PointData"][name][of[step] : of[step] + count] for name, of in offsets.items()}
             if "LineOffsets" in steps:
                 of_lines = slice(rows.start // 2, rows.stop // 2)
                 data |= {name: field[of_lines] for name, field in root["CellData"].items()}

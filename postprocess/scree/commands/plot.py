@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from scree.cli import add_folder
 from scree.errors import ScreeError
+from scree.history import TIME
 from scree.run import Run, open_run
 
 
@@ -21,6 +22,8 @@ def describe(parser: argparse.ArgumentParser) -> None:
     add_folder(parser)
     add_columns(parser)
     parser.add_argument("--no-energies", action="store_true", help="plot the columns alone")
+    parser.add_argument("--x", default=TIME, metavar="GROUP/NAME",
+                        help="the column along the horizontal axis, as in --x bodies/piston/x; default time")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="a .png, .pdf or .svg; default RESULT_DIR/history.png")
 
@@ -31,12 +34,12 @@ def print_columns(opened: Run) -> int:
     return 0
 
 
-def save(opened: Run, columns: Sequence[str], energies: bool, path: pathlib.Path) -> pathlib.Path:
+def save(opened: Run, columns: Sequence[str], energies: bool, path: pathlib.Path, x: str = TIME) -> pathlib.Path:
     import matplotlib.pyplot as plt
 
     from scree.plots import history_figure
 
-    figure = history_figure(opened.history, opened.title, columns, energies)
+    figure = history_figure(opened.history, opened.title, columns, energies, x)
     try:
         figure.savefig(path)
     except ValueError as error:  # of a suffix that it does not know
@@ -46,9 +49,9 @@ def save(opened: Run, columns: Sequence[str], energies: bool, path: pathlib.Path
 
 
 def run(words: argparse.Namespace) -> int:
-    """Energies, their balance and other columns of the history over time"""
+    """Energies, their balance and other columns of the history, over time or over one of its columns"""
     opened = open_run(words.folder)
     if words.list:
         return print_columns(opened)
-    print(save(opened, words.columns, not words.no_energies, words.output or words.folder / "history.png"))
+    print(save(opened, words.columns, not words.no_energies, words.output or words.folder / "history.png", words.x))
     return 0

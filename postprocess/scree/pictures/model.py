@@ -11,7 +11,7 @@ JOINT_KINDS = ("revolute", "translational", "fixed", "distance", "spherical", "u
                "cylindrical", "screw", "planar", "point-on-line", "point-on-plane")
 SLIDES = ("translational", "cylindrical", "screw", "point-on-line")  # along an axis
 SPRING_TABLES = {"spring_dampers": "spring", "torsional_spring_dampers": "torsional"}
-HOLLOW = ("drum", "pipe", "file")  # meshes that may hold particles
+HOLLOW = ("drum", "pipe", "funnel", "hopper", "file")  # meshes that may hold particles
 UNDRIVEN = (None, 0, {"kind": "constant", "value": 0})  # actuators of springs that are no more than springs
 
 

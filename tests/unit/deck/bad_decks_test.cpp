@@ -47,12 +47,15 @@ TEST_CASE("a repeated key") {
 
 TEST_CASE("unknown keys and tables get a suggestion") {
   CHECK(deck_error(with_line(8, "stp = 1e-3")) ==
-        "deck.toml:8:1: time.stp = 0.001: unknown key; did you mean \"step\"?");
+        "deck.toml:8:1: time.stp = 1e-3: unknown key; did you mean \"step\"?");
   CHECK(contains(deck_error(kSmallDeck + "[contct]\n"),
                  "deck.toml:10:2: contct = { }: unknown key; did you mean \"contact\"?"));
   CHECK(contains(deck_error(kSmallDeck + "[[mesh]]\n"), "did you mean \"meshes\"?"));
   CHECK(contains(deck_error(kSmallDeck + "[joints]\n"), "joints = { }: must be "));
   CHECK(contains(deck_error(kSmallDeck + "[joints]\n"), "; write [[joints]]"));
+  CHECK(
+      contains(deck_error(with_line(8, "dt = 1e-3")), "time.dt = 1e-3: unknown key; did you mean \"step\"?"));
+  CHECK(contains(deck_error("dt = 1e-3\n" + kSmallDeck), "did you mean \"time.step\"?"));
   const std::string far_off = deck_error(with_line(8, "step = 1e-3\nsomething_else = 1"));
   CHECK(contains(far_off, "time.something_else = 1: unknown key; known: end, step, control"));
 }
@@ -61,9 +64,9 @@ TEST_CASE("values of the wrong type") {
   CHECK(deck_error(with_line(8, "step = \"fast\"")) ==
         "deck.toml:8:8: time.step = \"fast\": must be a number above 0 [s]");
   CHECK(deck_error(with_line(3, "dimension = 2.0")) ==
-        "deck.toml:3:13: space.dimension = 2: must be an integer from 2 to 3, without a decimal point");
+        "deck.toml:3:13: space.dimension = 2.0: must be an integer from 2 to 3, without a decimal point");
   CHECK(deck_error(with_line(4, "min = -1.0")) ==
-        "deck.toml:4:7: space.min = -1: must be 2 numbers [m] in brackets");
+        "deck.toml:4:7: space.min = -1.0: must be 2 numbers [m] in brackets");
   CHECK(
       contains(deck_error(with_line(4, "min = [0, 0, 0]")), "space.min = [0, 0, 0]: must be 2 numbers [m]"));
   CHECK(
@@ -76,29 +79,40 @@ TEST_CASE("values of the wrong type") {
   CHECK(contains(deck_error("bodies = 3\n" + kSmallDeck), "bodies = 3: must be a list of tables"));
 }
 
+TEST_CASE("numbers are shown as they are written") {
+  CHECK(contains(deck_error("\xef\xbb\xbftitle = 5.0\n" + kSmallDeck), "title = 5.0: must be a text"));
+  CHECK(contains(deck_error(with_line(8, "\"sch\u00f6n\" = { a = [+1_000.50, 0x1F], b = 1E5 }")),
+                 "= { a = [+1_000.50, 0x1F], b = 1E5 }: unknown key"));
+  CHECK(
+      contains(deck_error(kSmallDeck, {"time.other={ a = 2.0 }"}), "time.other = { a = 2.0 }: unknown key"));
+}
+
 TEST_CASE("numbers out of range, infinite and not a number") {
   CHECK(deck_error(with_line(8, "step = -1e-3")) ==
-        "deck.toml:8:8: time.step = -0.001: must be a number above 0 [s]");
+        "deck.toml:8:8: time.step = -1e-3: must be a number above 0 [s]");
   CHECK(contains(deck_error(with_line(8, "step = 0")), "time.step = 0: must be a number above 0 [s]"));
   CHECK(contains(deck_error(with_line(8, "step = nan")),
                  "time.step = nan: must be a number above 0 [s], finite"));
   CHECK(contains(deck_error(with_line(7, "end = inf")),
                  "time.end = inf: must be a number above 0 [s], finite"));
   CHECK(contains(deck_error(with_line(4, "min = [-inf, 0.0]")),
-                 "space.min = [-inf, 0]: must be 2 numbers [m]"));
+                 "space.min = [-inf, 0.0]: must be 2 numbers [m]"));
   CHECK(contains(deck_error(with_line(3, "dimension = 4")),
                  "space.dimension = 4: must be an integer from 2 to 3"));
   CHECK(contains(deck_error(kSmallDeck + "[integrator]\nhht_alpha = 0.1\n"),
                  "integrator.hht_alpha = 0.1: must be a number from -0.3333333333333333 to 0"));
-  CHECK(contains(deck_error(kSmallDeck + "[[contact.pairs]]\nstiffness = -1.0\n"),
-                 "deck.toml:11:13: contact.pairs.0.stiffness = -1: must be a number of at least 0 [N/m^n]"));
+  CHECK(
+      contains(deck_error(kSmallDeck + "[[contact.pairs]]\nstiffness = -1.0\n"),
+               "deck.toml:11:13: contact.pairs.0.stiffness = -1.0: must be a number of at least 0 [N/m^n]"));
   CHECK(contains(deck_error(kSmallDeck + "[output]\nhistory_particles = [-1]\n"),
                  "must be a list of integers of at least 0"));
 }
 
 TEST_CASE("texts that are no choice") {
-  CHECK(contains(deck_error(with_line(9, "control = \"adaptiv\"")),
-                 "deck.toml:9:11: time.control = \"adaptiv\": must be one of \"fixed\", \"adaptive\""));
+  CHECK(contains(
+      deck_error(with_line(9, "control = \"adaptiv\"")),
+      "deck.toml:9:11: time.control = \"adaptiv\": must be one of \"fixed\", \"adaptive\"; did you mean "
+      "\"adaptive\"?"));
 }
 
 TEST_CASE("missing keys and tables") {

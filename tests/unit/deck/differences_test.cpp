@@ -44,9 +44,9 @@ TEST_CASE("decks differ in the keys with other values, by the names of --set") {
   CHECK(differing({"time.step=2e-3"}) == Texts{"time.step: 0.001 -> 0.002"});
   CHECK(differing({"bodies.a.mass=0.2", "time.control=adaptive"}).front() == "bodies.a.mass: 0.1 -> 0.2");
   CHECK(differing({"drivers.d.motion.values=[0.0, 3.0]"}) ==
-        Texts{"drivers.d.motion.values: [0, 2] -> [0, 3]"});
+        Texts{"drivers.d.motion.values: [0.0, 2.0] -> [0.0, 3.0]"});
   CHECK(differing({"drivers.d.motion=1.0"}).size() == 4);
-  CHECK(differing({"gravity=[-0.0, 0.0]"}) == Texts{"gravity: [0, 0] -> [-0, 0]"});
+  CHECK(differing({"gravity=[-0.0, 0.0]"}) == Texts{"gravity: [0.0, 0.0] -> [-0.0, 0.0]"});
 }
 
 TEST_CASE("lists differ as a whole where they have other entries") {

@@ -1,6 +1,7 @@
 // Surfaces made from numbers: sound, and as heavy as the shapes that they stand for.
 #include "mesh/primitives.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -121,7 +122,27 @@ TEST_CASE("a box and a plate are exact") {
   CHECK(mesh_area(box) == 22);
 }
 
-TEST_CASE("primitives are closed") {
+TEST_CASE("a hopper has the area of its sides, a funnel in the limit, and both are seen from outside") {
+  const auto check_outside = [](const TriangleMesh& mesh) {
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 p = mesh.vertices[a], normal = cross(mesh.vertices[b] - p, mesh.vertices[c] - p);
+      CHECK(normal.x * p.x + normal.y * p.y > 0);
+    }
+  };
+  // Sides that lean out by 3 over a height of 4, and by 0.9 over 4.
+  const TriangleMesh hopper = hopper_mesh({{1, 2, 0}, {7, 3.8, 0}, 4, 0.5});
+  CHECK(hopper.triangles.size() == 16);
+  CHECK(near(mesh_area(hopper), (2 + 3.8) * 5 + (1 + 7) * 4.1 + 0.5 * 6, {.relative = 4 * kUlp}));
+  check_outside(hopper);
+  const TriangleMesh funnel = funnel_mesh({1, 4, 4, 0.5, 2000});
+  CHECK(near(mesh_area(funnel), kPi * (1 + 4) * 5 + 0.5 * 2 * kPi, {.relative = 1e-6}));
+  check_outside(funnel);
+  const auto [low, high] = std::ranges::minmax(funnel.vertices, {}, &Vec3::z);
+  CHECK(low.z == -0.5);
+  CHECK(high.z == 4);
+}
+
+TEST_CASE("primitives are closed, and sheets sound") {
   check_sound(cylinder_mesh({0.5, 2, 3}));
   check_sound(cylinder_mesh({0.5, 2, 24}));
   check_sound(cone_mesh({1, 0, 2, 17}));
@@ -133,6 +154,10 @@ TEST_CASE("primitives are closed") {
   check_sound(plate_mesh({{2, 1, 0.1}, 0.3, 24}));
   check_sound(pipe_mesh({0.8, 1, 3, 12}));
   check_sound(rectangle_mesh(2, 3), true);
+  for (const Real outlet_length : {0., 0.3}) {
+    check_sound(funnel_mesh({0.2, 1, 1.5, outlet_length, 17}), true);
+    check_sound(hopper_mesh({{0.2, 0.4, 0}, {1, 1, 0}, 1.5, outlet_length}), true);
+  }
   for (const Index lifters : {0, 1, 2, 3, 8})
     for (const Real end_wall : {0., 0.1})  // closed, it has a cavity
       check_sound(drum_mesh({1, 0.05, 2, end_wall, lifters, 0.2, 0.1, 36}), false, end_wall > 0 ? 2 : 1);
@@ -223,6 +248,9 @@ TEST_CASE("shapes that cannot be") {
   CHECK(shape_trouble(CapsuleShape{1, 2, 6}) == "segments = 6: must be a multiple of 4, 4 to 10000");
   CHECK(shape_trouble(PlateShape{{1, 2, 0.1}, 0.5, 8}) ==
         "hole_radius = 0.5: must be less than half of the plate, 0.5");
+  CHECK(shape_trouble(FunnelShape{0.1, 0, 1, 0, 8}) == "top_radius = 0: must be positive");
+  CHECK(shape_trouble(HopperShape{{1, 0, 0}, {1, 1, 0}, 1, 0}) == "size = [1, 0]: must be positive");
+  CHECK(shape_trouble(HopperShape{{1, 1, 0}, {1, 1, 0}, 1, -1}) == "outlet_length = -1: must be at least 0");
   CHECK(shape_trouble(PipeShape{1, 1, 1, 8}) == "outer_radius = 1: must be above inner_radius = 1");
   DrumShape drum{1, 0.1, 2, 0, 6, 0.3, 0.1, 36};
   CHECK(shape_trouble(drum) == "");

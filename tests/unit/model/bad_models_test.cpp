@@ -137,7 +137,7 @@ TEST_CASE("joints whose two sides do not meet") {
       kSmallDeck + kBodies +
       joint_with(
           "type = \"revolute\"\nbodies = [\"a\", \"row.0\"]\nlocal_points = [[0.0, 0.0], [0.0, -0.4]]\n"));
-  CHECK(contains(message, "deck.toml:26:16: joints.pin.local_points = [[0, 0], [0, -0.4]]"));
+  CHECK(contains(message, "deck.toml:26:16: joints.pin.local_points = [[0.0, 0.0], [0.0, -0.4]]"));
   CHECK(contains(message, "the two sides of joint \"pin\" do not meet"));
   CHECK(contains(message, "off by 0.1 m"));
   CHECK(
@@ -202,6 +202,11 @@ TEST_CASE(
   CHECK(contains(driver("kind = \"step\", end_value = 1, start = 0.5, end = 0.5"),
                  "drivers.d.motion.end = 0.5: must be above start = 0.5"));
   CHECK(contains(driver("kind = \"step\", end_value = 1, start = 0.5"), "drivers.d.motion.end"));
+  CHECK(driver("kind = \"ramp\", rate = 2, end = 0.5").empty());
+  CHECK(contains(driver("kind = \"ramp\", rate = 2, start = 0.5, end = 0.25"),
+                 "drivers.d.motion.end = 0.25: must be above start = 0.5"));
+  CHECK(contains(driver("kind = \"ramp\", rate = 2, start = 0.5"),
+                 "drivers.d.motion.start = 0.5: needs end, the time from which on the slope is rate"));
   CHECK(contains(model_error(kSmallDeck + "velocities = \"found\"\n"), "velocities"));
 }
 
@@ -226,10 +231,10 @@ TEST_CASE("start positions outside the space") {
   const std::string body =
       "[[bodies]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\nposition = [-2.0, 0.0]\n"
       "shapes = [{ radius = 0.1 }]\n";
-  CHECK(
-      contains(model_error(kSmallDeck + body),
-               "bodies.b.position = [-2, 0]: a shape of body \"b\" starts at (-2, 0), outside the space from "
-               "(-1, -1) to (1, 1), beyond x_min"));
+  CHECK(contains(
+      model_error(kSmallDeck + body),
+      "bodies.b.position = [-2.0, 0.0]: a shape of body \"b\" starts at (-2, 0), outside the space from "
+      "(-1, -1) to (1, 1), beyond x_min"));
 }
 
 TEST_CASE("every pair of materials that can meet needs a law") {

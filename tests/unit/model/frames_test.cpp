@@ -94,7 +94,7 @@ TEST_CASE("two axes make an orientation") {
   CHECK(norm(alone * Vec3{0, 0, 1} - Vec3{0, 0.6, 0.8}) < kRoundOff);
   CHECK(
       contains(model_error(kSpace + body("a", kMass + "x_axis = [1, 0, 2e-6]\nz_axis = [0, 0, 1]\n")),
-               "bodies.a.x_axis = [1, 0, 2e-06]: must be perpendicular to z_axis; the cosine between them is "
+               "bodies.a.x_axis = [1, 0, 2e-6]: must be perpendicular to z_axis; the cosine between them is "
                "2e-06, allowed is 1e-06"));
   CHECK(contains(model_error(kSpace + body("a", kMass + "x_axis = [1, 0, 0]\n")), "needs z_axis too"));
   CHECK(contains(model_error(kSpace + body("a", kMass + "z_axis = [0, 0, 0]\n")), "must not be 0"));
@@ -139,7 +139,8 @@ TEST_CASE("a solid's density may be its material's") {
 
 TEST_CASE("what solids say is not said again, and something must say it") {
   const std::string solids = "solids = [{ kind = \"sphere\", radius = 1.0, density = 1.0 }]\n";
-  CHECK(contains(model_error(kSpace + body("a", solids + "mass = 1.0\n")), "mass = 1: follows from solids"));
+  CHECK(
+      contains(model_error(kSpace + body("a", solids + "mass = 1.0\n")), "mass = 1.0: follows from solids"));
   CHECK(contains(model_error(kSpace + body("a", solids + "center_of_mass = [0, 0, 0]\n")),
                  "center_of_mass = [0, 0, 0]: follows from solids"));
   CHECK(contains(model_error(kSpace + body("a", solids + "inertia_z_axis = [0, 0, 1]\n")),

@@ -115,19 +115,19 @@ TEST_CASE("what is wrong with Hertz's law in a deck is told with its remedy") {
       "deck.toml:25:1: contact.pairs.0.stiffness: missing; give it or, for Hertz's law, young_modulus and "
       "poisson_ratio of both materials: \"clay\" has none"));
   CHECK(contains(model_error(kSmallDeck + "[[contact.pairs]]\n"), "\"default\" has none"));
-  CHECK(
-      contains(error_of(deck + steel_pair("stiffness = 1e6\n")),
-               "contact.pairs.0.stiffness = 1000000: both materials have a young_modulus, too; leave out the "
-               "stiffness for Hertz's law, or the moduli for this one"));
+  CHECK(contains(error_of(deck + steel_pair("stiffness = 1e6\n")),
+                 "contact.pairs.0.stiffness = 1e6: both materials have a young_modulus, too; leave out the "
+                 "stiffness for Hertz's law, or the moduli for this one"));
   CHECK(contains(
       error_of("[[materials]]\nname = \"steel\"\nyoung_modulus = 1e9\n" + kGrains + steel_pair("")),
       "materials.steel.poisson_ratio: missing; Hertz's law takes young_modulus and poisson_ratio together"));
   CHECK(contains(error_of("[[materials]]\nname = \"steel\"\npoisson_ratio = 0.2\n" + kGrains +
                           steel_pair("stiffness = 1e6\n")),
                  "materials.steel.young_modulus: missing"));
-  CHECK(contains(error_of(deck + steel_pair("damping = 3.0\n")),
-                 "contact.pairs.0.damping = 3: must be left out for Hertz's law, whose damping follows from "
-                 "restitution"));
+  CHECK(
+      contains(error_of(deck + steel_pair("damping = 3.0\n")),
+               "contact.pairs.0.damping = 3.0: must be left out for Hertz's law, whose damping follows from "
+               "restitution"));
   CHECK(contains(error_of(deck + steel_pair("exponent = 1.5\n")),
                  "contact.pairs.0.exponent = 1.5: must be left out for Hertz's law"));
   for (const std::string value : {"0.0", "1.01", "-0.5"})
@@ -152,7 +152,7 @@ TEST_CASE("Hertz's law is refused beside pairs with a stiffness") {
   const std::string clay = "[[materials]]\nname = \"clay\"\n";
   CHECK(contains(
       error_of(kSteel + clay + kGrains + steel_pair("") + pair_of("steel", "clay", "stiffness = 1e5\n")),
-      "contact.pairs.1.stiffness = 100000: given, while a pair before has none; a deck follows Hertz's "
+      "contact.pairs.1.stiffness = 1e5: given, while a pair before has none; a deck follows Hertz's "
       "law for all pairs"));
   CHECK(contains(
       error_of(kSteel + clay + kGrains + pair_of("steel", "clay", "stiffness = 1e5\n") + steel_pair("")),

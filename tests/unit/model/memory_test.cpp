@@ -24,7 +24,7 @@ count = 7
 mass = 1.0
 inertia = 1.0
 position = [0.0, 0.0]
-shapes = [{ radius = 0.1 }, { radius = 0.1, offset = [0.1, 0.0], size = [5, 4], spacing = [0.1, 0.1], sides = ["y_min"] }]
+shapes = [{ radius = 0.1 }, { radius = 0.05, collides = false, count = 3, spacing = [0.1, 0.0] }, { radius = 0.1, offset = [0.1, 0.0], size = [5, 4], spacing = [0.1, 0.1], sides = ["y_min"] }]
 [[bodies]]
 name = "bob"
 mass = 1.0
@@ -45,8 +45,44 @@ local_points = [[0.0, 1.0], [0.0, 0.0]]
 stiffness = 1.0
 )";
   const ModelSize size = bodies_and_links(parse_deck(deck, "deck.toml", {}).root);
-  CHECK((size.bodies == 8 && size.shapes == 7 * (1 + 5)));
+  CHECK((size.bodies == 8 && size.shapes == 7 * (1 + 5) && size.drawn_shapes == 7 * 3));
   CHECK(size.links == 1 + 7 + 7);  // a chain of 7 counted as 7
+}
+
+TEST_CASE("what snapshots show takes memory, and what is built already is not counted again") {
+  const std::string deck = R"([space]
+dimension = 3
+min = [-1, -1, -1]
+max = [1, 1, 1]
+[time]
+end = 1.0
+step = 1e-4
+control = "fixed"
+[[contact.pairs]]
+stiffness = 1e4
+[[meshes]]
+name = "ball"
+kind = "sphere"
+radius = 0.1
+[[bodies]]
+name = "carrier"
+kind = "spatial"
+position = [0, 0, 0]
+mass = 1.0
+inertia_tensor = [1, 1, 1, 0, 0, 0]
+meshes = [{ mesh = "ball" }]
+[[walls]]
+name = "fixed"
+mesh = "ball"
+)";
+  const Model model = model_of(deck), with_lines = model_of(deck, {"output.contacts=true"});
+  const Real triangles = 20 * 64;
+  CHECK(shown_meshes(model).triangles == 2 * triangles);
+  CHECK(shown_meshes(model).points == 2 * (triangles / 2 + 2));
+  CHECK(bytes_of_meshes(model, false) == kBytesPerTriangle * triangles);
+  CHECK(bytes_of_meshes(model, true) == (kBytesPerKeptTriangle + 2 * kBytesPerShownTriangle) * triangles);
+  CHECK(bytes_of_model(model) == kBytesPerTriangle * triangles);
+  CHECK(bytes_per_particle(with_lines) - bytes_per_particle(model) == kLinesPerParticle * kBytesPerLine);
 }
 
 TEST_CASE("a model that fits, and one that does not") {

@@ -94,6 +94,15 @@ TEST_CASE("a solid is what its mesh encloses, what the hull of that encloses, or
   CHECK(model_of(pipe).meshes.front().solid_masses.front() == Approx(body(pipe).mass));
   CHECK(body(body_of("kind = \"box\"\nsize = [0.1, 0.2, 0.3]", skin)).mass == Approx(800e-3 * 0.22));
   CHECK(body(body_of(open, skin)).mass == Approx(800e-3 * 0.06));
+  const std::string funnel =
+      "kind = \"funnel\"\nradius = 0.1\ntop_radius = 0.4\nlength = 0.4\nsegments = 1000";
+  CHECK(body(body_of(funnel, skin)).mass == Approx(800e-3 * M_PI * 0.5 * 0.5).epsilon(1e-5));
+  CHECK(
+      body(body_of("kind = \"hopper\"\nsize = [0.2, 0.2]\ntop_size = [0.8, 0.8]\nlength = 0.4", skin)).mass ==
+      Approx(800e-3 * 4 * 0.5 * 0.5));
+  CHECK(contains(model_error(body_of(funnel, kOfMesh)), "is a sheet, which encloses no volume"));
+  CHECK(contains(model_error(body_of("kind = \"funnel\"\nradius = 0.1\nlength = 0.4", kOfMesh)),
+                 "meshes.made.top_radius: missing; with kind = \"funnel\" it must be"));
   CHECK(contains(model_error(body_of(open, kOfMesh)), "is a sheet, which encloses no volume"));
   CHECK(contains(model_error(body_of(open, convex)), "lie in one plane: their convex hull has no volume"));
   CHECK(contains(model_error(body_of(open, of("inertia = \"shell\""))), "thickness: missing"));

@@ -220,11 +220,11 @@ TEST_CASE("pairs that cannot be made are refused") {
           "contact.pairs.1.exponent = 1.5: differs from the 1 of the pair [\"a\", \"a\"]" + end);
   refused(soft, soft + "tension = true\n", "tension = true: differs from the false of the pair");
   refused("stiffness = 0.0\n", soft,
-          "contact.pairs.0.stiffness = 0: is 0, and that of the pair [\"b\", \"b\"] is not" + end);
+          "contact.pairs.0.stiffness = 0.0: is 0, and that of the pair [\"b\", \"b\"] is not" + end);
   refused(soft, soft + "friction = 0.5\n",
           "contact.pairs.1.friction = 0.5: the pair [\"a\", \"a\"] has none" + end);
   refused(soft + "damping = 1.0\n", soft + "restitution = 0.5\n",
-          "contact.pairs.0.damping = 1: the pair [\"b\", \"b\"] has a restitution" + end);
+          "contact.pairs.0.damping = 1.0: the pair [\"b\", \"b\"] has a restitution" + end);
   refused("largest_overlap = 0.01\nimpact_speed = 1.0\n", "largest_overlap = 0.02\nimpact_speed = 1.0\n",
           "contact.pairs.1.largest_overlap = 0.02: differs from the 0.01");
   refused(soft + "friction = 0.5\nrolling_friction = 0.1\n",

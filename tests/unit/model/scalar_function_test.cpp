@@ -72,6 +72,13 @@ TEST_CASE("ramp and sine have the derivatives they state") {
   ramp.rate = -3;
   CHECK(ScalarFunction(ramp, "f", 1)(0.5).value == 0.5);
   check_derivatives(ScalarFunction(ramp, "f", 1), 0.5);
+  ramp.start = 0.25;
+  ramp.end = 0.75;
+  const ScalarFunction eased(ramp, "f", 1);
+  CHECK(eased(0.25).value == 2);
+  CHECK(eased(1).value == 0.5);
+  for (const Real t : {0.1, 0.4, 0.6, 0.9}) check_derivatives(eased, t);
+  check_smooth(eased, {0.5});
   TimeFunction sine;
   sine.kind = TimeFunction::Kind::sine;
   sine.value = 1;

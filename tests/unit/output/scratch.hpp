@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -111,6 +113,21 @@ inline std::vector<int> read_predictable_particles(const std::string& path) {
     counts.push_back(static_cast<int>(n));
   }
   return counts;
+}
+
+inline void write_snapshots(SnapshotWriter& writer, const std::vector<int>& counts, int shapes) {
+  for (const int n : counts) PredictableSnapshot(writer.snapshots(), n, shapes).append_to(writer);
+}
+
+inline std::string file_text(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline int occurrences(const std::string& text, const std::string& word) {
+  int count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
 }
 
 }  // namespace scree

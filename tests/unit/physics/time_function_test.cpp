@@ -48,6 +48,31 @@ TEST_CASE("a step rises smoothly from one value to the other, and is constant be
   }
 }
 
+TEST_CASE("an eased ramp is at rest, speeds up smoothly, and goes on at its rate") {
+  const auto f = [](Real t) { return eased_ramp_function(2, -3, 0.5, 0.75, t); };
+  for (const Real t : {-1.0, 0.0, 0.5}) {
+    CHECK(f(t).value == 2);
+    CHECK(f(t).rate == 0);
+    CHECK(f(t).acceleration == 0);
+  }
+  for (const Real t : {0.75, 1.0, 50.0}) {
+    CHECK(f(t).value == 2 - 3 * (t - 0.625));
+    CHECK(f(t).rate == -3);
+    CHECK(f(t).acceleration == 0);
+  }
+  CHECK(f(0.625).rate == -1.5);
+  CHECK(f(0.625).acceleration == -3 / 0.25 * 1.5);
+  for (int i = 1; i < 25; ++i) check_derivatives(f, 0.5 + 0.01 * i, 3e-8);
+  // Class C2: value and rate are met at both ends, and the acceleration vanishes there as s.
+  for (const Real t : {0.5, 0.75}) {
+    const TimeValue before = f(t - 1e-9), after = f(t + 1e-9);
+    CHECK(near(before.value, after.value, {.absolute = 1e-8}));
+    CHECK(near(before.rate, after.rate, {.absolute = 1e-12}));
+    CHECK(std::abs(before.acceleration) + std::abs(after.acceleration) < 1e-6);
+    CHECK(std::abs(before.acceleration) + std::abs(after.acceleration) > 1e-8);
+  }
+}
+
 TEST_CASE("a step never leaves the range of its two values") {
   Real last = 0.1;
   for (int i = 0; i <= 100000; ++i) {

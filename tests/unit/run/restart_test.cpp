@@ -261,8 +261,8 @@ TEST_CASE("a refused restart names the keys that differ, a corrected title goes 
   Case other({"time.step=5e-4", "contact.pairs.0.damping=2.0", "bodies.arm.mass=1.5"});
   const std::string message = other.run(folder.path(), written().path);
   CHECK(contains(message, "input: --restart " + written().path + ": the checkpoint belongs to another deck"));
-  for (const char* words : {"time.step: 0.001 -> 0.0005", "contact.pairs.0.damping: 1 -> 2",
-                            "bodies.arm.mass: 1 -> 1.5", "--allow-changes"})
+  for (const char* words : {"time.step: 0.001 -> 0.0005", "contact.pairs.0.damping: 1.0 -> 2.0",
+                            "bodies.arm.mass: 1.0 -> 1.5", "--allow-changes"})
     CHECK(contains(message, words));
   Case corrected({"title=corrected", "time.end=0.03", "applied_forces.push.fx.times=[0.0, 0.01, 0.03]"});
   CHECK(contains(corrected.run(folder.path(), written().path), "applied_forces.push.fx.times"));
