@@ -151,13 +151,19 @@ const std::vector<Real>& HhtMethod::constraint_rate(const MultibodyState& state,
   return rate;
 }
 
-bool HhtMethod::change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs) {
-  const SystemInstant at{end_time(), state.position, state.velocity, &state.multipliers};
-  system_.evaluate(at, terms_);
-  if (terms_.applied_force == state.applied) return false;
+const std::vector<Real>& HhtMethod::applied_force(const MultibodyState& state, Real t) {
+  system_.evaluate({t, state.position, state.velocity, &state.multipliers}, terms_);
+  return terms_.applied_force;
+}
+
+bool HhtMethod::change_system(const MultibodyState& state, Real t, std::span<Real> values,
+                              std::span<Real> rhs) {
+  if (applied_force(state, t) == state.applied) return false;
   compliance_.update(terms_.constraint_jacobian);
+  const std::vector<Real> still(state.velocity.size(), 0);  // -Q_lambda does not depend on the displacement
   if (is_loaded())
-    system_.differentiate(at, {displacement_, state.acceleration, state.multipliers}, derivatives_);
+    system_.differentiate({t, state.position, state.velocity, &state.multipliers},
+                          {still, state.acceleration, state.multipliers}, derivatives_);
   kkt_.assemble(terms_, derivatives_, {.reaction = 1}, compliance(), values);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];

@@ -68,13 +68,16 @@ class HhtMethod {
   // evaluation, which was at this state.
   const std::vector<Real>& constraint_rate(const MultibodyState& state, Real t);
 
-  // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
-  // change dQ changes the reactions too, and these the forces that they load,
+  // A state at its time t under other applied forces than its own: their change dQ changes the reactions too,
+  // and these the forces that they load,
   //   [M, Phi_q^T - Q_lambda; Phi_q, -C] (d, d_lambda) = (dQ, 0),  a += (1 + alpha) d,  lambda += d_lambda,
   // one step of Newton's method for Q(lambda). Returns false, with nothing to solve, where the forces are the
   // same.
-  bool change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs);
+  bool change_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
   void apply_change(std::span<const Real> solution, MultibodyState& state) const;
+
+  // Q as the system now has it, at a state and time t.
+  const std::vector<Real>& applied_force(const MultibodyState& state, Real t);
 
   // Whether forces depend on the reactions.
   bool is_loaded() const { return derivatives_.reaction.size() > 0; }

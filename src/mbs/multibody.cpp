@@ -74,6 +74,7 @@ struct Multibody::Impl {
     open_step(state, t, h);
     method.predict(state, t, h);
   }
+  MultibodyState at_instant(const MultibodyState& state, Real t);
   void follow_load();
   void watch_reactions(const MultibodyState& state, Real error);
   std::string oscillation(Real share) const;
@@ -237,10 +238,24 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   const bool efforts_differ = impl.system.joint_forces().end_step();
   if (efforts_differ || !impl.system.has_forces_of(end_wrench)) {
     impl.system.set_forces(end_wrench);
-    impl.newton.change_end_forces(impl.end);
+    impl.newton.change_forces(impl.end, impl.method.end_time());
     impl.follow_load();
   }
   std::swap(state, impl.end);
+}
+
+// An accepted state with the multipliers of its instant, and what is remembered under them.
+MultibodyState Multibody::Impl::at_instant(const MultibodyState& state, Real t) {
+  MultibodyState now = state;
+  if (system.constraints() == 0) return now;
+  open_step(state, t, 0);
+  try {
+    newton.solve_instant(now, t);
+  } catch (const SimulationError&) {
+    return state;
+  }
+  if (system.joint_forces().are_loaded()) now.memory = system.joint_forces().memory();
+  return now;
 }
 
 // The spring of friction that slides holds the limit under the reactions that the step ends with. What it
@@ -305,7 +320,8 @@ MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const
 }
 
 std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) const {
-  const auto groups = impl_->system.reactions({t, state.position, state.velocity}, state.multipliers);
+  const MultibodyState now = impl_->at_instant(state, t);
+  const auto groups = impl_->system.reactions({t, now.position, now.velocity}, now.multipliers);
   std::vector<Reaction> reactions;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque,
@@ -323,8 +339,9 @@ std::vector<JointReading> Multibody::joint_readings(const MultibodyState& state,
 std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& state, Real t) const {
   const JointForces& forces = impl_->system.joint_forces();
   if (forces.empty()) return {};
-  const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
-  const auto samples = forces.samples(impl_->system.poses_at(at), at, state.memory);
+  const MultibodyState now = forces.are_loaded() ? impl_->at_instant(state, t) : state;
+  const SystemInstant at{t, now.position, now.velocity, &now.multipliers};
+  const auto samples = forces.samples(impl_->system.poses_at(at), at, now.memory);
   std::vector<JointEffortSample> out;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const CoordinateInstant& c = samples[i].at;

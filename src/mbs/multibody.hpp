@@ -116,6 +116,9 @@ class Multibody {
   void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
+  // Of an accepted state, not while a step is open: those of the instant, from the acceleration-level system
+  // with the state's positions, velocities and forces. The step's own multipliers are of no instant: where its
+  // length has jumped they alternate for tens of steps. They stand in where the position is singular.
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
   // Coordinates of the joints that Output::history_coordinates counts.
   std::vector<JointReading> joint_readings(const MultibodyState& state, Real t) const;

@@ -144,6 +144,20 @@ void NewtonSolver::solve_velocity(MultibodyState& state, Real t) {
   for (std::size_t i = 0; i < state.velocity.size(); ++i) state.velocity[i] += change[i];
 }
 
+// The velocities of steps are off the constraints by their local error, and that counts beside a singular
+// position: there it asks for accelerations that none but large reactions give.
+void NewtonSolver::solve_instant(MultibodyState& state, Real t) {
+  MultibodyState kept = state;
+  solve_velocity(kept, t);
+  method_.acceleration_system(kept, t, acceleration_matrix_, acceleration_solver_.rhs());
+  std::copy(state.applied.begin(), state.applied.end(), acceleration_solver_.rhs().begin());
+  solve_acceleration_level();
+  if (method_.is_loaded()) state.applied = method_.applied_force(state, t);
+  const std::span<const Real> multipliers = acceleration_solver_.solution().subspan(state.velocity.size());
+  state.multipliers.assign(multipliers.begin(), multipliers.end());
+  if (method_.is_loaded()) change_forces(state, t);
+}
+
 std::vector<Real> NewtonSolver::constrained_part(const MultibodyState& state,
                                                  const std::vector<Real>& motion) {
   method_.constraint_system(state, 0, motion, acceleration_matrix_, acceleration_solver_.rhs());
@@ -154,9 +168,9 @@ std::vector<Real> NewtonSolver::constrained_part(const MultibodyState& state,
 
 // Forces that the reactions load must end the step as the next one begins with them, or the difference's work
 // is nowhere in the books.
-void NewtonSolver::change_end_forces(MultibodyState& state) {
+void NewtonSolver::change_forces(MultibodyState& state, Real t) {
   for (int pass = 0; pass < kLoadPasses; ++pass) {
-    if (!method_.change_system(state, acceleration_matrix_, acceleration_solver_.rhs())) return;
+    if (!method_.change_system(state, t, acceleration_matrix_, acceleration_solver_.rhs())) return;
     if (pass > 0 && scaled_change() <= kLoadRoundOff) return;
     solve_acceleration_level();
     method_.apply_change(acceleration_solver_.solution(), state);
