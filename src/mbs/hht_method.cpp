@@ -158,8 +158,7 @@ bool HhtMethod::change_system(const MultibodyState& state, Real t, std::span<Rea
   if (terms_.applied_force == state.applied) return false;
   compliance_.update(terms_.constraint_jacobian);
   const std::vector<Real> still(state.velocity.size(), 0);  // -Q_lambda does not depend on the displacement
-  if (is_loaded())
-    system_.differentiate(at, {still, state.acceleration, state.multipliers}, derivatives_);
+  if (is_loaded()) system_.differentiate(at, {still, state.acceleration, state.multipliers}, derivatives_);
   kkt_.assemble(terms_, derivatives_, {.reaction = 1}, compliance(), values);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];

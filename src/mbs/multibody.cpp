@@ -275,9 +275,9 @@ std::string Multibody::Impl::oscillation(Real share) const {
   const Real alpha = method.coefficients().hht_alpha;
   const bool none = alpha == 0;  // of either sign
   return fmt::format(
-      "the reactions of joints and drivers change sign at every step and have grown to {:.0f} "
-      "times their mean: an oscillation of the method, which integrator.hht_alpha = {:g} {}; set "
-      "it {}below zero, e.g. {:g}",
+      "within the steps the reactions of joints and drivers, not those recorded, change sign at every step "
+      "and have grown to {:.0f} times their mean: an oscillation of the method, which integrator.hht_alpha = "
+      "{:g} {}; set it {}below zero, e.g. {:g}",
       share, none ? 0 : alpha, none ? "does not damp" : "damps too little", none ? "" : "further ",
       none ? -0.05 : std::max(2 * alpha, kLeastAlpha));
 }

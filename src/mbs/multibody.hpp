@@ -116,9 +116,9 @@ class Multibody {
   void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
-  // An accepted state, while no step is open, with the accelerations and multipliers of its instant t: those of
-  // the acceleration-level system with its positions, velocities and forces; and with what friction under the
-  // new reactions remembers. A step's own stand for no instant, and alternate for tens of steps where its
+  // An accepted state, while no step is open, with the accelerations and multipliers of its instant t: those
+  // of the acceleration-level system with its positions, velocities and forces; and with what friction under
+  // the new reactions remembers. A step's own stand for no instant, and alternate for tens of steps where its
   // length has jumped; they stay where the position is singular.
   MultibodyState at_instant(const MultibodyState& state, Real t) const;
   // Of the instant.

@@ -28,8 +28,8 @@ class NewtonSolver {
 
   // Gives an accepted state the accelerations and multipliers of its instant t: those of the
   // acceleration-level system, with the forces that the state ends its step with, and velocities as by
-  // solve_velocity(). Forces that the multipliers load follow them, where the system has the state's forces as
-  // they are at instants. Throws SimulationError as iterate() does.
+  // solve_velocity(). Forces that the multipliers load follow them, where the system has the state's forces
+  // as they are at instants. Throws SimulationError as iterate() does.
   void solve_instant(MultibodyState& state, Real t);
 
   // The part of a motion that the constraints at the state take away, the least in the norm of M: d of

@@ -176,9 +176,9 @@ void compare_instant(const Model& model, const MultibodyRun& run, const Balance&
   for (std::size_t i = 0; i < 2; ++i) {
     const Real* a = &now.acceleration[6 * i];
     const Mat3 inertia = full(model.bodies[i].inertia_tensor);
-    const Vec3 spin = b.motion[i].spin, torque = transposed(rotation_matrix(b.motion[i].orientation)) *
-                                                     b.wrench[i].torque -
-                                                 cross(spin, inertia * spin);
+    const Vec3 spin = b.motion[i].spin,
+               torque = transposed(rotation_matrix(b.motion[i].orientation)) * b.wrench[i].torque -
+                        cross(spin, inertia * spin);
     gaps.force =
         std::max(gaps.force, norm(model.bodies[i].mass * Vec3{a[0], a[1], a[2]} - b.wrench[i].force));
     gaps.torque = std::max(gaps.torque, norm(inertia * Vec3{a[3], a[4], a[5]} - torque));

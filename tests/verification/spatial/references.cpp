@@ -66,8 +66,7 @@ TopErrors top_errors(bool corrected_start, Real h) {
     const Vec3 exact{row["Fx1 [N]"], row["Fy1 [N]"], row["Fz1 [N]"]};
     const Real* lambda = run.state.multipliers.data();
     const Vec3 reaction = run.multibody.reactions(run.state, run.time)[0].force;
-    largest.multipliers =
-        std::max(largest.multipliers, norm(Vec3{lambda[0], lambda[1], lambda[2]} + exact));
+    largest.multipliers = std::max(largest.multipliers, norm(Vec3{lambda[0], lambda[1], lambda[2]} + exact));
     largest.reactions = std::max(largest.reactions, norm(reaction - exact));
   }
   return largest;
