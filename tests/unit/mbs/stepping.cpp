@@ -178,7 +178,7 @@ TEST_CASE("what is reported of a state depends on the state alone, and leaves no
     const Real effort = asked.multibody.joint_efforts(asked.state, asked.time)[0].effort;
     if (i > 14)  // it slides
       CHECK(near(std::abs(effort), 0.4 * norm(told[1].force), {.relative = 1e-12}));
-    MultibodyRun fresh(model);                                                      // as after a restart
+    MultibodyRun fresh(model);  // as after a restart
     const std::vector<Reaction> again = fresh.multibody.reactions(asked.state, asked.time);
     for (std::size_t k = 0; k < told.size(); ++k) {
       CHECK(same_bits(told[k].force, again[k].force));
