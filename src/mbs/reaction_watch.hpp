@@ -1,5 +1,5 @@
 // Recognises the oscillation of the steps' own reactions that HHT with hht_alpha at or near 0 does not damp.
-// Those of instants, which outputs show, see of it only the velocity gap.
+// Those of instants, which outputs show, do not see it.
 #pragma once
 
 #include <vector>

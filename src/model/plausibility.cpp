@@ -304,8 +304,7 @@ std::string undamped_joints_in_space(const Model& model) {
       model.joints, [&](const Joint& joint) { return between(model, joint.body) == BodyKind::spatial; });
   if (!joints || model.integrator.hht_alpha != 0) return "";
   return "integrator.hht_alpha = 0 does not damp the reactions of joints that turn in space: within the "
-         "steps "
-         "they oscillate, and do not converge with shorter ones; -0.02 already suffices";
+         "steps they oscillate, and do not converge with shorter ones; -0.02 already suffices";
 }
 
 }  // namespace
