@@ -72,9 +72,9 @@ const TableKeys& output_keys() {
        integer("history_reactions")
            .at_least(0)
            .otherwise("100")
-           .about(
-               "Joints, drivers and couplers whose reactions are recorded: the first so many of the deck. A "
-               "coupler's is that on the second body of its first joint."),
+           .about("Joints, drivers and couplers whose reactions are recorded: the first so many of the deck. "
+                  "They follow from places, velocities and forces at the instant, whatever the steps before "
+                  "it were. A coupler's is that on the second body of its first joint."),
        integer("history_efforts")
            .at_least(0)
            .otherwise("100")

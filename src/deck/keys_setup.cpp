@@ -112,8 +112,8 @@ const TableKeys& integrator_keys() {
       {boolean("corrected_start")
            .otherwise("true")
            .about("Of spatial bodies: the first step starts from accelerations and velocities that the "
-                  "method itself "
-                  "would have, so that reactions are of second order from the start."),
+                  "method itself would have, so that the reactions within the steps, which load friction, "
+                  "are of second order from the start."),
        real("hht_alpha", "")
            .within(-1.0 / 3, 0)
            .otherwise("-0.05")

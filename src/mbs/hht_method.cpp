@@ -151,24 +151,25 @@ const std::vector<Real>& HhtMethod::constraint_rate(const MultibodyState& state,
   return rate;
 }
 
-bool HhtMethod::change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs) {
-  const SystemInstant at{end_time(), state.position, state.velocity, &state.multipliers};
+bool HhtMethod::change_system(const MultibodyState& state, Real t, std::span<Real> values,
+                              std::span<Real> rhs) {
+  const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
   system_.evaluate(at, terms_);
   if (terms_.applied_force == state.applied) return false;
   compliance_.update(terms_.constraint_jacobian);
-  if (is_loaded())
-    system_.differentiate(at, {displacement_, state.acceleration, state.multipliers}, derivatives_);
+  const std::vector<Real> still(state.velocity.size(), 0);  // -Q_lambda does not depend on the displacement
+  if (is_loaded()) system_.differentiate(at, {still, state.acceleration, state.multipliers}, derivatives_);
   kkt_.assemble(terms_, derivatives_, {.reaction = 1}, compliance(), values);
   std::fill(rhs.begin(), rhs.end(), 0);
   for (std::size_t i = 0; i < state.applied.size(); ++i) rhs[i] = terms_.applied_force[i] - state.applied[i];
   return true;
 }
 
-void HhtMethod::apply_change(std::span<const Real> solution, MultibodyState& state) const {
+void HhtMethod::apply_change(std::span<const Real> solution, Real share, MultibodyState& state) const {
   const std::size_t n = state.acceleration.size();
   std::vector<Real> change(solution.begin() + static_cast<std::ptrdiff_t>(n), solution.end());
   for (std::size_t i = 0; i < n; ++i) {
-    state.acceleration[i] += (1 + coefficients_.hht_alpha) * solution[i];
+    state.acceleration[i] += share * solution[i];
     state.force[i] += terms_.applied_force[i] - state.applied[i];
   }
   for (std::size_t j = 0; j < change.size(); ++j) state.multipliers[j] += change[j];
@@ -178,12 +179,13 @@ void HhtMethod::apply_change(std::span<const Real> solution, MultibodyState& sta
     derivatives_.reaction.multiply_transposed(-1, change, *force);
 }
 
-void HhtMethod::set_acceleration(std::span<const Real> solution, MultibodyState& state) const {
+void HhtMethod::set_acceleration(std::span<const Real> solution, const std::vector<Real>& applied,
+                                 MultibodyState& state) const {
   const auto multipliers = solution.begin() + system_.coordinates();
   state.acceleration.assign(solution.begin(), multipliers);
   state.multipliers.assign(multipliers, solution.end());
-  state.applied = terms_.applied_force;
-  state.force = terms_.applied_force;
+  state.applied = applied;
+  state.force = applied;
   terms_.constraint_jacobian.multiply_transposed(-1, state.multipliers, state.force);
 }
 

@@ -52,8 +52,9 @@ class HhtMethod {
   // Acceleration-level system at the state's q, v and at time t:
   //   [M, Phi_q^T; Phi_q, -C] (a, lambda) = (Q, acceleration_rhs),  C = 0 unless rows share.
   void acceleration_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
-  // Sets a, lambda from its solution, and the forces that go with them.
-  void set_acceleration(std::span<const Real> solution, MultibodyState& state) const;
+  // Sets a, lambda from its solution with this Q, and the forces that go with them.
+  void set_acceleration(std::span<const Real> solution, const std::vector<Real>& applied,
+                        MultibodyState& state) const;
 
   // Velocity-level system at the state's q, v and at time t:
   //   [M, Phi_q^T; Phi_q, -C] (d, mu) = (0, velocity_rhs - Phi_q v).
@@ -68,13 +69,15 @@ class HhtMethod {
   // evaluation, which was at this state.
   const std::vector<Real>& constraint_rate(const MultibodyState& state, Real t);
 
-  // The end of a step, as closed into `state`, under other applied forces than the step was made with: their
-  // change dQ changes the reactions too, and these the forces that they load,
-  //   [M, Phi_q^T - Q_lambda; Phi_q, -C] (d, d_lambda) = (dQ, 0),  a += (1 + alpha) d,  lambda += d_lambda,
+  // A state at its time t under other applied forces than its own: their change dQ changes the reactions too,
+  // and these the forces that they load,
+  //   [M, Phi_q^T - Q_lambda; Phi_q, -C] (d, d_lambda) = (dQ, 0),  a += share d,  lambda += d_lambda,
   // one step of Newton's method for Q(lambda). Returns false, with nothing to solve, where the forces are the
   // same.
-  bool change_system(const MultibodyState& state, std::span<Real> values, std::span<Real> rhs);
-  void apply_change(std::span<const Real> solution, MultibodyState& state) const;
+  bool change_system(const MultibodyState& state, Real t, std::span<Real> values, std::span<Real> rhs);
+  void apply_change(std::span<const Real> solution, Real share, MultibodyState& state) const;
+  // That share at the end of a step, 1 + alpha; at an instant it is 1.
+  Real end_share() const { return 1 + coefficients_.hht_alpha; }
 
   // Whether forces depend on the reactions.
   bool is_loaded() const { return derivatives_.reaction.size() > 0; }

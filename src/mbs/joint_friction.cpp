@@ -11,6 +11,8 @@ namespace {
 // A spring that slides holds the limit but for round-off; its effort follows the load, and so must the
 // derivative.
 constexpr Real kHeld = 1 - 1e-12;
+// Where the limit falls and rises with the rate, one that slid over a step holds that of the mean rate.
+constexpr Real kSlid = 0.99;
 
 // Remembered: the effort z of the spring, which c stretches. T = -(z + d c'), no larger than
 //   T_max = s(c') (T_0 + lever F),  s(c') = 1 + (ratio - 1) exp(-(c'/v_s)^2).
@@ -45,7 +47,7 @@ class FrictionLaw final : public JointLaw {
   bool resolves_events() const override { return true; }
   bool remembers() const override { return true; }
   Real memory_after(const LawStep& step, const CoordinateInstant& end) const override {
-    return step.h == 0 ? step.memory : spring_over(step, end).spring.x;
+    return step.h == 0 ? memory_under(step, end.load) : spring_over(step, end).spring.x;
   }
   bool is_loaded() const override { return p_.lever > 0; }
   Real energy(Real, Real memory) const override { return memory * memory / (2 * p_.stiffness); }
@@ -59,6 +61,12 @@ class FrictionLaw final : public JointLaw {
   Real level_at(Real rate) const {
     const Real x = rate / p_.stribeck_rate;
     return 1 + (p_.static_ratio - 1) * std::exp(-x * x);
+  }
+  // A spring that slides holds the limit under every load.
+  Real memory_under(const LawStep& at, Real load) const {
+    const Real bound_then = bound(at.start.load), held = level_at(at.start.rate) * bound_then;
+    if (load == at.start.load || held == 0 || std::abs(at.memory) < kSlid * held) return at.memory;
+    return at.memory * (bound(load) / bound_then);
   }
   Real slope_at(Real rate) const {  // of the level
     return -2 * rate / (p_.stribeck_rate * p_.stribeck_rate) * (level_at(rate) - 1);

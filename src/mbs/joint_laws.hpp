@@ -46,7 +46,8 @@ class JointLaw {
   virtual bool resolves_events() const { return false; }
 
   virtual bool remembers() const { return false; }
-  // What is remembered at the end of an accepted step.
+  // What is remembered at the end of an accepted step. Of one of length 0, an instant, under the load of
+  // `end`.
   virtual Real memory_after(const LawStep& step, const CoordinateInstant&) const { return step.memory; }
 
   // Whether the effort depends on the load.

@@ -173,6 +173,7 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   MultibodyState state = impl_->start;
   impl_->system.set_contacts({wrench, {}});
   impl_->solve_acceleration(state, 0);
+  state.wrench = wrench;
   if (impl_->method.shares())
     check_start_accelerations(impl_->system, impl_->newton.misfit(), state.acceleration);
   return state;
@@ -182,6 +183,7 @@ void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vec
   impl_->system.set_contacts({wrench, {}});
   check_joints_hold(impl_->system, state.position, state.velocity, t);
   impl_->solve_acceleration(state, t);
+  state.wrench = wrench;
 }
 
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
@@ -234,10 +236,11 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.end.memory = impl.system.joint_forces().memory();
   impl.system.count_turns(impl.system.poses(), impl.end.position);
   impl.end.counted_angles = state.counted_angles;
+  impl.end.wrench = end_wrench;
   const bool efforts_differ = impl.system.joint_forces().end_step();
   if (efforts_differ || !impl.system.has_forces_of(end_wrench)) {
     impl.system.set_forces(end_wrench);
-    impl.newton.change_end_forces(impl.end);
+    impl.newton.change_forces(impl.end, impl.method.end_time(), impl.method.end_share());
     impl.follow_load();
   }
   std::swap(state, impl.end);
@@ -272,9 +275,9 @@ std::string Multibody::Impl::oscillation(Real share) const {
   const Real alpha = method.coefficients().hht_alpha;
   const bool none = alpha == 0;  // of either sign
   return fmt::format(
-      "the reactions of joints and drivers change sign at every step and have grown to {:.0f} "
-      "times their mean: an oscillation of the method, which integrator.hht_alpha = {:g} {}; set "
-      "it {}below zero, e.g. {:g}",
+      "within the steps the reactions of joints and drivers, not those recorded, change sign at every step "
+      "and have grown to {:.0f} times their mean: an oscillation of the method, which integrator.hht_alpha = "
+      "{:g} {}; set it {}below zero, e.g. {:g}",
       share, none ? 0 : alpha, none ? "does not damp" : "damps too little", none ? "" : "further ",
       none ? -0.05 : std::max(2 * alpha, kLeastAlpha));
 }
@@ -304,8 +307,24 @@ MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const
   return stored_energies(impl_->system, state, t);
 }
 
+MultibodyState Multibody::at_instant(const MultibodyState& state, Real t) const {
+  MultibodyState now = state;
+  const auto wrench = state.wrench.begin();
+  impl_->system.set_forces({wrench, wrench + static_cast<std::ptrdiff_t>(impl_->motion.size())});
+  impl_->open_step(state, t, 0);
+  try {
+    impl_->newton.solve_instant(now, t);
+  } catch (const SimulationError&) {
+    return state;
+  }
+  if (impl_->system.joint_forces().are_loaded()) now.memory = impl_->system.joint_forces().memory();
+  return now;
+}
+
 std::vector<Reaction> Multibody::reactions(const MultibodyState& state, Real t) const {
-  const auto groups = impl_->system.reactions({t, state.position, state.velocity}, state.multipliers);
+  if (impl_->system.constraints() == 0) return {};
+  const MultibodyState now = at_instant(state, t);
+  const auto groups = impl_->system.reactions({t, now.position, now.velocity}, now.multipliers);
   std::vector<Reaction> reactions;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     reactions.push_back({impl_->system.groups()[i].name, groups[i].force, groups[i].torque,
@@ -323,8 +342,9 @@ std::vector<JointReading> Multibody::joint_readings(const MultibodyState& state,
 std::vector<JointEffortSample> Multibody::joint_efforts(const MultibodyState& state, Real t) const {
   const JointForces& forces = impl_->system.joint_forces();
   if (forces.empty()) return {};
-  const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
-  const auto samples = forces.samples(impl_->system.poses_at(at), at, state.memory);
+  const MultibodyState now = forces.are_loaded() ? at_instant(state, t) : state;
+  const SystemInstant at{t, now.position, now.velocity, &now.multipliers};
+  const auto samples = forces.samples(impl_->system.poses_at(at), at, now.memory);
   std::vector<JointEffortSample> out;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const CoordinateInstant& c = samples[i].at;

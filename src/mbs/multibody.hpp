@@ -23,7 +23,7 @@ struct MultibodyState {
   std::vector<Real> force;         // Q - Phi_q^T lambda, contact wrenches included: HHT's force at t_n
   std::vector<Real> applied;       // Q alone, for the energy ledger
   std::vector<BodyWrench>
-      wrench;  // of the contacts at t_n, per body; where walls move or run, then per placed wall
+      wrench;  // of the contacts at t_n, per body; where walls move or run, then per placed wall (BodyLink)
   std::vector<Real> slide_power;  // of the latter, where the surface of one runs along itself [W]
   std::vector<Real> memory;       // of motors and friction on joints, in their order (mbs/joint_forces.hpp)
   Real dissipated = 0;            // in force elements since t = 0 [J]
@@ -116,10 +116,16 @@ class Multibody {
   void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
+  // An accepted state, while no step is open, with the accelerations and multipliers of its instant t: those
+  // of the acceleration-level system with its positions, velocities and forces; and with what friction under
+  // the new reactions remembers. A step's own stand for no instant, and alternate for tens of steps where its
+  // length has jumped; they stay where the position is singular.
+  MultibodyState at_instant(const MultibodyState& state, Real t) const;
+  // Of the instant.
   std::vector<Reaction> reactions(const MultibodyState& state, Real t) const;
   // Coordinates of the joints that Output::history_coordinates counts.
   std::vector<JointReading> joint_readings(const MultibodyState& state, Real t) const;
-  // Of motors, springs, limits and friction on joints, in this order.
+  // Of motors, springs, limits and friction on joints, in this order, loaded by the reactions of the instant.
   std::vector<JointEffortSample> joint_efforts(const MultibodyState& state, Real t) const;
 
   // Tension of the spring-dampers [N], then the torque of the torsional ones on their second bodies [N m].

@@ -134,7 +134,7 @@ void NewtonSolver::solve_sharing(PetscSolver& solver, bool refactor, const std::
 void NewtonSolver::solve_acceleration(MultibodyState& state, Real t) {
   method_.acceleration_system(state, t, acceleration_matrix_, acceleration_solver_.rhs());
   solve_acceleration_level();
-  method_.set_acceleration(acceleration_solver_.solution(), state);
+  method_.set_acceleration(acceleration_solver_.solution(), method_.terms().applied_force, state);
 }
 
 void NewtonSolver::solve_velocity(MultibodyState& state, Real t) {
@@ -142,6 +142,18 @@ void NewtonSolver::solve_velocity(MultibodyState& state, Real t) {
   solve_acceleration_level();
   const std::span<const Real> change = acceleration_solver_.solution();
   for (std::size_t i = 0; i < state.velocity.size(); ++i) state.velocity[i] += change[i];
+}
+
+// The velocities of steps are off the constraints by their local error, and that counts beside a singular
+// position: there it asks for accelerations that none but large reactions give.
+void NewtonSolver::solve_instant(MultibodyState& state, Real t) {
+  MultibodyState kept = state;
+  solve_velocity(kept, t);
+  method_.acceleration_system(kept, t, acceleration_matrix_, acceleration_solver_.rhs());
+  std::copy(state.applied.begin(), state.applied.end(), acceleration_solver_.rhs().begin());
+  solve_acceleration_level();
+  method_.set_acceleration(acceleration_solver_.solution(), state.applied, state);
+  if (method_.is_loaded()) change_forces(state, t, 1);
 }
 
 std::vector<Real> NewtonSolver::constrained_part(const MultibodyState& state,
@@ -154,12 +166,12 @@ std::vector<Real> NewtonSolver::constrained_part(const MultibodyState& state,
 
 // Forces that the reactions load must end the step as the next one begins with them, or the difference's work
 // is nowhere in the books.
-void NewtonSolver::change_end_forces(MultibodyState& state) {
+void NewtonSolver::change_forces(MultibodyState& state, Real t, Real share) {
   for (int pass = 0; pass < kLoadPasses; ++pass) {
-    if (!method_.change_system(state, acceleration_matrix_, acceleration_solver_.rhs())) return;
+    if (!method_.change_system(state, t, acceleration_matrix_, acceleration_solver_.rhs())) return;
     if (pass > 0 && scaled_change() <= kLoadRoundOff) return;
     solve_acceleration_level();
-    method_.apply_change(acceleration_solver_.solution(), state);
+    method_.apply_change(acceleration_solver_.solution(), share, state);
     if (!method_.is_loaded()) return;
   }
 }

@@ -26,14 +26,20 @@ class NewtonSolver {
   // iterate() does.
   void solve_velocity(MultibodyState& state, Real t);
 
+  // Gives an accepted state the accelerations and multipliers of its instant t: those of the
+  // acceleration-level system, with the forces that the state ends its step with, and velocities as by
+  // solve_velocity(). Forces that the multipliers load follow them, where the system has the state's forces
+  // as they are at instants. Throws SimulationError as iterate() does.
+  void solve_instant(MultibodyState& state, Real t);
+
   // The part of a motion that the constraints at the state take away, the least in the norm of M: d of
   // [M, Phi_q^T; Phi_q, -C] (d, mu) = (0, Phi_q motion). At t = 0. Throws SimulationError as
   // iterate() does.
   std::vector<Real> constrained_part(const MultibodyState& state, const std::vector<Real>& motion);
 
-  // Applied forces at the end of a closed step, as the system now has them, where they differ from the
-  // step's. Throws SimulationError as iterate() does.
-  void change_end_forces(MultibodyState& state);
+  // Applied forces of a state at time t, as the system now has them, where they differ from the state's.
+  // share: of HhtMethod::change_system. Throws SimulationError as iterate() does.
+  void change_forces(MultibodyState& state, Real t, Real share);
 
   // A new step was opened.
   void begin_step();

@@ -1,4 +1,5 @@
-// Recognises the oscillation of reactions that HHT with hht_alpha at or near 0 does not damp.
+// Recognises the oscillation of the steps' own reactions that HHT with hht_alpha at or near 0 does not damp.
+// Those of instants, which outputs show, do not see it.
 #pragma once
 
 #include <vector>

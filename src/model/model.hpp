@@ -105,7 +105,7 @@ struct TimeControl {
 
 struct Integrator {
   Real hht_alpha = 0;
-  bool corrected_start = true;  // of spatial bodies, against the first-order disturbance of the reactions
+  bool corrected_start = true;  // of spatial bodies, against the first-order disturbance of the multipliers
   RedundantRows redundant = RedundantRows::error;
   ParticleIntegrator particles = ParticleIntegrator::hht;
   // hht: a contact that opens or closes within a step acts over the part of the step that it is closed; else

@@ -303,9 +303,8 @@ std::string undamped_joints_in_space(const Model& model) {
   const bool joints = std::ranges::any_of(
       model.joints, [&](const Joint& joint) { return between(model, joint.body) == BodyKind::spatial; });
   if (!joints || model.integrator.hht_alpha != 0) return "";
-  return "integrator.hht_alpha = 0 does not damp the reactions of joints that turn in space: they oscillate, "
-         "and do not "
-         "converge with shorter steps; -0.02 already suffices";
+  return "integrator.hht_alpha = 0 does not damp the reactions of joints that turn in space: within the "
+         "steps they oscillate, and do not converge with shorter ones; -0.02 already suffices";
 }
 
 }  // namespace

@@ -64,7 +64,8 @@ std::string outcome(const Model& model, int steps, Real h) {
 TEST_CASE("reactions of a four-bar at alpha = 0: the run ends and says what to set") {
   const std::string text = outcome(four_bar(0), 30000, 1e-3);
   CAPTURE(text);
-  CHECK(text.find("the reactions of joints and drivers change sign at every step") != std::string::npos);
+  CHECK(text.find("the reactions of joints and drivers, not those recorded, change sign") !=
+        std::string::npos);
   CHECK(text.find("integrator.hht_alpha = 0 does not damp; set it below zero, e.g. -0.05") !=
         std::string::npos);
   CHECK(outcome(four_bar(-0.02), 30000, 1e-3) == "done");

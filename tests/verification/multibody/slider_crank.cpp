@@ -99,9 +99,6 @@ Errors largest_errors(Real h) {
     errors.position =
         std::max({errors.position, std::abs(run.x(2) - exact.slider), std::abs(run.angle(1) - exact.rod)});
     errors.velocity = std::max(errors.velocity, std::abs(run.state.velocity[6] - exact.slider_rate));
-    // HHT's accelerations stand for t + alpha h, the start's for t = 0: the multipliers begin with a
-    // disturbance of first order, which the method damps within a hundred steps.
-    if (run.time < 0.2) continue;
     const Real torque = run.multibody.reactions(run.state, run.time).back().torque.z;
     errors.torque = std::max(errors.torque, std::abs(torque - driver_torque(run.time)));
   }
@@ -118,6 +115,6 @@ TEST_CASE("a driven slider-crank follows its kinematics, and its driver's torque
   CHECK(keeps(fine.velocity, {.promise = 1e-4, .measured = 6.5e-6}));
   CHECK(std::log2(coarse.velocity / fine.velocity) > 1.95);
   CHECK(std::log2(coarse.velocity / fine.velocity) < 2.05);
-  CHECK(keeps(fine.torque, {.promise = 2e-3, .measured = 1.7e-5}));
-  CHECK(std::log2(coarse.torque / fine.torque) > 1.9);
+  // The driver's motion is all that the torque depends on, from the first step on.
+  CHECK(keeps(coarse.torque, {.promise = 1e-10, .measured = 3e-13}));
 }

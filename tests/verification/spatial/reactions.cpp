@@ -163,30 +163,25 @@ std::array<Real, 3> components(Vec3 v) { return {v.x, v.y, v.z}; }
 
 // Largest gaps over a run.
 struct Gaps {
-  Real force = 0, torque = 0;   // of the method's balance [N, N m]
+  Real force = 0, torque = 0;   // of the bodies' balance [N, N m]
   Real carried = 0;             // of components that the joint without a driver cannot carry [N, N m]
   Real power = 0;               // of the reaction on the joint's own motion, less the driver's [W]
   Real impulse = 0, swing = 0;  // of momentum and angular momentum [N s, N m s]
   Real most = 0;                // the reaction's size [N, N m]
 };
 
-// M a = (1 + alpha) H_1 - alpha H_0, H what acts at the ends of a step, a torque less w x J w and along the
-// body's axes at its instant.
-void compare_step(const Model& model, const MultibodyState& state, const Balance& before,
-                  const Balance& after, Gaps& gaps) {
-  const auto own = [&](const Balance& b, std::size_t i) {
-    const Mat3 inertia = full(model.bodies[i].inertia_tensor);
-    const Vec3 spin = b.motion[i].spin;
-    return transposed(rotation_matrix(b.motion[i].orientation)) * b.wrench[i].torque -
-           cross(spin, inertia * spin);
-  };
+// M a = H, H what acts at the instant, a torque less w x J w and along the body's axes.
+void compare_instant(const Model& model, const MultibodyRun& run, const Balance& b, Gaps& gaps) {
+  const MultibodyState now = run.multibody.at_instant(run.state, run.time);
   for (std::size_t i = 0; i < 2; ++i) {
-    const Real* a = &state.acceleration[6 * i];
-    const Vec3 force = (1 + kAlpha) * after.wrench[i].force - kAlpha * before.wrench[i].force;
-    const Vec3 torque = (1 + kAlpha) * own(after, i) - kAlpha * own(before, i);
-    gaps.force = std::max(gaps.force, norm(model.bodies[i].mass * Vec3{a[0], a[1], a[2]} - force));
-    const Vec3 turned = full(model.bodies[i].inertia_tensor) * Vec3{a[3], a[4], a[5]};
-    gaps.torque = std::max(gaps.torque, norm(turned - torque));
+    const Real* a = &now.acceleration[6 * i];
+    const Mat3 inertia = full(model.bodies[i].inertia_tensor);
+    const Vec3 spin = b.motion[i].spin,
+               torque = transposed(rotation_matrix(b.motion[i].orientation)) * b.wrench[i].torque -
+                        cross(spin, inertia * spin);
+    gaps.force =
+        std::max(gaps.force, norm(model.bodies[i].mass * Vec3{a[0], a[1], a[2]} - b.wrench[i].force));
+    gaps.torque = std::max(gaps.torque, norm(inertia * Vec3{a[3], a[4], a[5]} - torque));
   }
 }
 
@@ -243,7 +238,7 @@ Gaps gaps_of(const Model& model, Real h) {
   for (int i = 1; i < static_cast<int>(std::lround(kEnd / h)); ++i) {
     run.step(h);
     const Balance after = balance_of(run, model);
-    compare_step(model, run.state, before, after, gaps);
+    compare_instant(model, run, after, gaps);
     for (const Balance* b : std::array<const Balance*, 2>{&before, &after})
       for (std::size_t k = 0; k < 2; ++k) {
         given.linear += (h / 2) * b->wrench[k].force;
