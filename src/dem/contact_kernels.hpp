@@ -37,13 +37,15 @@ class ContactKernels {
   virtual int history() const = 0;  // how many numbers the law remembers of a contact
   virtual void forces(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, Vec3* force,
                       Real* loss_power, Vec3* angular_acceleration) const = 0;
-  // Of all n owned particles; pairs: of the list, where the law moves. The square of the largest
-  // acceleration; a NaN if one is not finite.
-  virtual Real verlet_finish(const ContactViews<PackedRows>& in, const PairList& pairs, Vec3 gravity, Index n,
+  // Of all n owned particles; pairs: of the list, where the law moves, with what they remember. The square of
+  // the largest acceleration; a NaN if one is not finite.
+  virtual Real verlet_finish(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
                              const VerletViews& state, Vec3* force) = 0;
   // The square of the largest displacement.
-  virtual Real verlet_advance(const ContactViews<PackedRows>& in, const PairList& pairs, Vec3 gravity,
-                              Index n, const VerletViews& state) = 0;
+  virtual Real verlet_advance(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
+                              const VerletViews& state) = 0;
+  // Where the law moves: what the pairs keep goes back to the slots.
+  virtual void leave_records(PairList& pairs, const HistoryViews& history) const = 0;
   virtual void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
                       const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const = 0;
   // n entries of particles with surfaces on bodies, at an instant and over an implicit step.

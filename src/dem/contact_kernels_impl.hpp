@@ -25,7 +25,7 @@ class CpuContactKernels : public ContactKernels {
         Serial{}, n,
         ContactForceItem<Laws, PackedRows>{{in, laws_}, gravity, force, loss_power, angular_acceleration});
   }
-  Real verlet_finish(const ContactViews<PackedRows>& in, const PairList& pairs, Vec3 gravity, Index n,
+  Real verlet_finish(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity, Index n,
                      const VerletViews& state, Vec3* force) override {
     return max_over(
         Serial{}, n,
@@ -34,12 +34,15 @@ class CpuContactKernels : public ContactKernels {
                                          state});
   }
   // One function, so that what is summed stays in registers.
-  [[gnu::flatten]] Real verlet_advance(const ContactViews<PackedRows>& in, const PairList& pairs,
-                                       Vec3 gravity, Index n, const VerletViews& state) override {
+  [[gnu::flatten]] Real verlet_advance(const ContactViews<PackedRows>& in, PairList& pairs, Vec3 gravity,
+                                       Index n, const VerletViews& state) override {
     return max_over(Serial{}, n,
                     VerletAdvanceItem<Laws, StepRows>{{explicit_walk(over_step(in, pairs), laws_, state.h),
                                                        gravity, nullptr, nullptr, nullptr},
                                                       state});
+  }
+  void leave_records(PairList& pairs, const HistoryViews& history) const override {
+    if constexpr (kPaired) ::scree::leave_records<LawOf<Laws>>(pairs, history);
   }
   void system(const ContactViews<PackedRows>& in, Vec3 gravity, Index n, NewtonWeights weights,
               const StepStart& start, const StepForces& out, const ContactMatrix& matrix) const override {
@@ -142,7 +145,7 @@ class CpuContactKernels : public ContactKernels {
   static constexpr bool kPaired = LawOf<Laws>::kMoves;
   using StepRows = std::conditional_t<kPaired, PairedRows<Laws>, PackedRows>;
   // Of an explicit step.
-  ContactViews<StepRows> over_step(const ContactViews<PackedRows>& in, const PairList& pairs) {
+  ContactViews<StepRows> over_step(const ContactViews<PackedRows>& in, PairList& pairs) {
     if constexpr (kPaired) {
       sweep_.begin(pairs);
       return paired_views(in, sweep_);

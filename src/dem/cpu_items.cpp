@@ -22,6 +22,12 @@ CpuItems::CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKern
 
 CpuItems::Views CpuItems::views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
                                 const std::vector<Vec4>& spin) {
+  leave_records();
+  return views_of(position, velocity, spin);
+}
+
+CpuItems::Views CpuItems::views_of(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
+                                   const std::vector<Vec4>& spin) {
   Views views =
       surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()}, list.surfaces);
   views.history = history.views(), views.spin = spin.data(), views.reach = model.contact.reach;

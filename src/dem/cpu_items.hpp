@@ -29,6 +29,8 @@ struct CpuItems {
   CpuItems& operator=(const CpuItems&) = delete;
 
   Views views() { return views(store.position, store.velocity, store.angular_velocity); }
+  // For an explicit step, which sees what pairs of particles remember in listed_pairs().
+  Views step_views() { return views_of(store.position, store.velocity, store.angular_velocity); }
   Views views(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
               const std::vector<Vec4>& spin);
   void refresh_ghosts() {
@@ -44,19 +46,31 @@ struct CpuItems {
                         {store.position.data(), store.velocity.data(), store.angular_velocity.data(),
                          h > 0 ? at : at.only_read(), h});
   }
-  // Of the list as it is, where particles rotate; matched when they are first asked for.
-  const PairList& listed_pairs() {
-    if (store.rotates && !pairs.is_current) pairs.match(list, store);
+  // Of the list as it is, where particles rotate, with what their contacts remember, until somebody looks at
+  // the slots. Matched when they are first asked for.
+  PairList& listed_pairs() {
+    if (!store.rotates) return pairs;
+    if (!pairs.is_current) pairs.match(list, store);
+    if (!pairs.keeps_records) pairs.take_records(history.views().neighbors, history.records());
     return pairs;
   }
   // For `history`, while there is a list.
-  CpuHistory::Listed listed() const { return {store, list, side.places(), surfaces.numbers()}; }
+  CpuHistory::Listed listed() {
+    leave_records();
+    return {store, list, side.places(), surfaces.numbers()};
+  }
   void reduce_wrench(std::vector<BodyWrench>& end) const { side.reduce(end); }
   bool any_outside() const;
   // Throws SimulationError naming the first particle, on all ranks, whose force is not finite.
   void report_not_finite(const std::vector<Vec3>& force) const;
   // The same of a particle that only some ranks know of; id: kNone without one.
   void fail_if_any(GlobalId id, const char* before, const char* after) const;
+
+  void leave_records() {
+    if (pairs.keeps_records) kernels->leave_records(pairs, history.views());
+  }
+  Views views_of(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
+                 const std::vector<Vec4>& spin);
 
   const Model& model;
   Ranks ranks;

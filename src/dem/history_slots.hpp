@@ -84,6 +84,13 @@ struct HistoryViews {
     at[0].w = step + 1;
     for (int r = 0; r < kRecords; ++r) records[slot * kRecords + r] = at[r];
   }
+  // What the other side remembers of the contact, of the same step.
+  template <class Law>
+  static void mirror(const Vec4* records, Vec4* of_other) {
+    const auto history = Law::read_history([&](int k) { return number_of(records, k); });
+    Law::write_history(history.mirrored(), [&](int k, Real value) { number_of(of_other, k) = value; });
+    of_other[0].w = records[0].w;
+  }
   // The contact at the slot is open.
   template <class Law>
   SCREE_HD void write_none(Vec4* records, std::int64_t slot) const {
@@ -112,6 +119,13 @@ SCREE_HD std::int64_t without_feature(std::int64_t contact_key) {
 struct PeriodicBox {
   Vec3 min, period;  // [m]
 
+  // Whether no period is to be taken off.
+  SCREE_HD bool holds(Vec3 p) const {
+    const auto along = [](Real x, Real start, Real length) {
+      return length == 0 || (x >= start && x < start + length);
+    };
+    return along(p.x, min.x, period.x) && along(p.y, min.y, period.y) && along(p.z, min.z, period.z);
+  }
   SCREE_HD ImageCount periods_at(Vec3 p) const {
     ImageCount count;
     wrap(min, period, p, count);
@@ -128,6 +142,7 @@ struct PeriodicBox {
   SCREE_HD PeriodicBox without(Vec3 spanned) const { return {min, period - spanned}; }
   // Number of the image of what lies at q and `image` periods on, beside p.
   SCREE_HD std::int8_t image_beside(Vec3 p, Vec3 q, std::int8_t image = kNoShift) const {
+    if (holds(p) && holds(q)) return image;  // as nearly all are
     const ImageCount a = periods_at(p), b = periods_at(q);
     return static_cast<std::int8_t>(image + (b.x - a.x) + 3 * (b.y - a.y) + 9 * (b.z - a.z));
   }

@@ -52,6 +52,11 @@ double bytes_remembered(int numbers, double slots) {
          kTouching * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
 }
 
+double bytes_remembered_with_pairs(int numbers) {
+  constexpr double kPairs = 5;  // two slots each
+  return bytes_remembered(numbers) + kPairs * records_of(numbers) * static_cast<double>(sizeof(Vec4));
+}
+
 KeptContacts KeptContacts::without_surfaces() const {
   KeptContacts out;
   out.numbers = numbers;

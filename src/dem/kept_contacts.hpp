@@ -50,6 +50,8 @@ struct KeptContacts {
 // What the contacts of a particle remember takes in memory [B], estimated: at the slots of its row, of so
 // many neighbours, and by name of those that touch in a dense packing.
 double bytes_remembered(int numbers, double slots = 10);
+// The same in the serial backend, whose explicit steps have it by pairs, too.
+double bytes_remembered_with_pairs(int numbers);
 
 // No particle of so many has a contact.
 KeptContacts no_contacts(int numbers, std::int64_t particles);

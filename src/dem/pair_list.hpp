@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "base/vec3.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/particle_store.hpp"
 
@@ -24,9 +25,16 @@ struct PairList {
   std::vector<Index> offsets;  // [owned + 1], into the pairs
   std::vector<ListedPair> pairs;
   std::size_t slots = 0;  // of the list
+  // What the contacts remember, per pair, while it is kept here and not at the slots (HistoryViews): of the
+  // side of the row. The other side's is its mirror image, but for what stands at the mirror slot of the last
+  // step.
+  std::vector<Vec4> records;
+  bool keeps_records = false;
 
   Index rows() const { return static_cast<Index>(offsets.size()) - 1; }
   void match(const NeighborList& list, const ParticleStore& store);
+  // From the slots; count: of the records of a contact.
+  void take_records(const Vec4* at_slots, Index count);
 };
 
 }  // namespace scree

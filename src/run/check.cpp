@@ -258,7 +258,8 @@ std::string output_lines(const Model& model) {
 
 // Rank 0 has all unknowns, and its share of the particles.
 std::string memory_line(const Model& model, int ranks) {
-  const Real per_particle = bytes_per_particle(model) + bytes_remembered(history_of(model.contact));
+  const Real per_particle =
+      bytes_per_particle(model) + bytes_remembered_with_pairs(history_of(model.contact));
   const Real particles = per_particle * static_cast<Real>(model.particles.totals.count);
   const Real unknowns =
       kBytesPerUnknown * static_cast<Real>(BodyLayout(model.bodies).columns() + constraint_count(model));

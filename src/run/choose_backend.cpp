@@ -23,7 +23,8 @@ std::unique_ptr<Backend> make_gpu(const Model& model, const Ranks& ranks, const 
 std::unique_ptr<Backend> make_cpu(const Model& model, const Ranks& ranks, const std::string& why, Log& log) {
   log.info("backend cpu: " + why);
   const Real unknowns = ranks.is_root() ? 3 * static_cast<Real>(model.bodies.size()) : 0;
-  const Real per_particle = bytes_per_particle(model) + bytes_remembered(history_of(model.contact));
+  const Real per_particle =
+      bytes_per_particle(model) + bytes_remembered_with_pairs(history_of(model.contact));
   const ModelSize size = size_of(model);
   const Real all = per_particle * static_cast<Real>(model.particles.size()) + kBytesPerUnknown * unknowns +
                    bytes_of_shapes(size) + bytes_of_meshes(model, ranks.is_root());

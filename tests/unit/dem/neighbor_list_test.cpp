@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "dem/pair_list.hpp"
+#include "dem/paired_rows.hpp"
 #include "random_box.hpp"
 #include "support/catch.hpp"
 
@@ -153,6 +153,39 @@ TEST_CASE("particles that drift outside the space are in no row") {
       CHECK((j < built.items.layout.active || j >= built.items.layout.owned));
     for (Index i = kParticles - kDrifting; i < kParticles; ++i)
       CHECK(found_row(built.items, built.list, i).empty());
+  }
+}
+
+TEST_CASE("what pairs remember comes back to both slots, and what a slot has of the last step stays") {
+  using Law = ContactLaw<LinearLaw, LinearSlider>;
+  for (const BoxCase& box : kBoxes) {
+    CAPTURE(box.name);
+    const BuiltList built(box, 1);
+    PairList pairs;
+    pairs.match(built.list, built.items.store);
+    std::vector<Vec4> slots(pairs.slots);
+    for (std::size_t s = 0; s < slots.size(); ++s) slots[s] = {static_cast<Real>(s), 1, 2, 3};
+    pairs.take_records(slots.data(), 1);
+    REQUIRE(pairs.records.size() == pairs.pairs.size());
+    for (std::size_t p = 0; p < pairs.pairs.size(); ++p) {
+      CHECK(pairs.records[p].x == static_cast<Real>(pairs.pairs[p].slot));
+      pairs.records[p] = {-static_cast<Real>(p), 0, 7, 4};
+      if (p % 3 == 0 && pairs.pairs[p].has_mirror()) slots[pairs.pairs[p].mirror] = {5, 5, 5, 4};
+    }
+    HistoryViews history;
+    history.neighbors = slots.data(), history.step = 4;
+    leave_records<Law>(pairs, history);
+    CHECK_FALSE(pairs.keeps_records);
+    for (std::size_t p = 0; p < pairs.pairs.size(); ++p) {
+      const ListedPair& pair = pairs.pairs[p];
+      CAPTURE(p, pair.slot, pair.mirror);
+      const auto has = [&](Index slot, Vec3 spring) {
+        return xyz(slots[slot]) == spring && slots[slot].w == 4;
+      };
+      CHECK(has(pair.slot, {-static_cast<Real>(p), 0, 7}));
+      if (pair.has_mirror())
+        CHECK(has(pair.mirror, p % 3 == 0 ? Vec3{5, 5, 5} : Vec3{static_cast<Real>(p), 0, -7}));
+    }
   }
 }
 
