@@ -17,6 +17,8 @@ class CudaParticles : public RankParticles {
   void load_contacts(const KeptContacts& contacts) override { items_.history.load(contacts, items_.owned); }
   KeptContacts contacts() override;
   ShapeLosses shape_losses() const override { return bodies_.side().losses(); }
+  void load_shape_contacts(const ShapeContacts& contacts) override { bodies_.side().load_contacts(contacts); }
+  ShapeContacts shape_contacts() override { return bodies_.side().shape_contacts(); }
   void load_works(const std::vector<std::int64_t>& words) override {
     items_.surfaces.works().load(words, items_.stream);
   }

@@ -35,6 +35,9 @@ class Writer {
   void if_any(const char* name, const std::vector<std::int64_t>& values) {
     if (!values.empty()) out_.integers[name] = values;
   }
+  void if_any(const char* name, const RubbingLosses& losses) {
+    if (losses != RubbingLosses{}) out_.reals[name] = {std::begin(losses.of), std::end(losses.of)};
+  }
   void poses(const std::vector<Real>& position, std::size_t angles) {
     const auto end = position.end() - static_cast<std::ptrdiff_t>(angles);
     out_.reals[kPositions].assign(position.begin(), end);
@@ -62,6 +65,12 @@ class Reader {
   }
   void if_any(const char* name, std::vector<std::int64_t>& values) {
     if (in_.integers.count(name) > 0) values = in_.integer_array(name);
+  }
+  void if_any(const char* name, RubbingLosses& losses) {
+    if (in_.reals.count(name) == 0) return;
+    const std::vector<Real>& values = in_.real_array(name);
+    if (values.size() != kLossKinds) throw IoError(in_.path + ": '" + name + "' has another number of values");
+    std::ranges::copy(values, losses.of);
   }
   void poses(std::vector<Real>& position, std::size_t& angles) {
     position = in_.real_array(kPositions);
@@ -102,6 +111,10 @@ class Hasher {
   void if_any(const char*, const std::vector<std::int64_t>& values) {
     for (const std::int64_t value : values) hash_.add(value);
   }
+  void if_any(const char*, const RubbingLosses& losses) {
+    if (losses != RubbingLosses{})
+      for (const Real value : losses.of) hash_.add(value);
+  }
   // Of the angles the turns, where one has been round: all else of them follows from the bodies' poses.
   void poses(const std::vector<Real>& position, std::size_t angles) {
     const auto turns = [](Real angle) { return std::nearbyint(angle / (2 * M_PI)); };
@@ -130,6 +143,9 @@ class FiniteCheck {
   }
   void if_any(const char* name, const std::vector<Real>& values) { (*this)(name, values); }
   void if_any(const char*, const std::vector<std::int64_t>&) {}
+  void if_any(const char* name, const RubbingLosses& losses) {
+    for (const Real value : losses.of) check(name, value);
+  }
   void poses(const std::vector<Real>& position, std::size_t) { (*this)(kPositions, position); }
   void operator()(const char* name, const std::vector<BodyWrench>& wrenches) {
     for (const BodyWrench& w : wrenches)
@@ -197,6 +213,10 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("shapes/contact_loss", state.shapes.contact_loss);
   visit("shapes/loss_power", state.shapes.loss_power);
   visit("shapes/integrator_loss", state.shapes.integrator_loss);
+  visit.if_any(kShapeRubbing, state.shapes.rubbing);
+  visit.if_any(kShapeContactsOf, state.shape_contacts.shapes);
+  visit.if_any(kShapeContactsWith, state.shape_contacts.keys);
+  visit.if_any(kShapeHistory, state.shape_contacts.values);
   visit.if_any(kWorksName, state.works);
   visit("carried_out/left", state.carried_out.left);
   visit("carried_out/removed", state.carried_out.removed);
@@ -319,12 +339,29 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
   return sum + rest.hash();
 }
 
+namespace {
+
+// How many numbers each remembers follows from how many there are.
+void count_numbers(const std::string& path, ShapeContacts& contacts) {
+  const std::size_t count = contacts.shapes.size(), values = contacts.values.size();
+  if (contacts.keys.size() != count || (count == 0 ? values > 0 : values == 0 || values % count > 0))
+    throw IoError(path + ": the arrays of the shapes' contacts do not fit together");
+  contacts.numbers = count > 0 ? static_cast<int>(values / count) : 0;
+  for (std::size_t k = 1; k < count; ++k)
+    if (std::pair(contacts.shapes[k - 1], contacts.keys[k - 1]) >=
+        std::pair(contacts.shapes[k], contacts.keys[k]))
+      throw IoError(path + ": the contacts of the bodies' shapes are out of order");
+}
+
+}  // namespace
+
 State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
   ranks.together([&] {  // a file may be unreadable where one rank's rows are
     Reader reader(checkpoint);
     state.there = fields_there(checkpoint);
     visit_state(reader, state), visit_output(reader, state);
+    count_numbers(checkpoint.path, state.shape_contacts);
     state.particles = unpack_particles(checkpoint);
   });
   state.contacts = unpack_contacts(checkpoint, ranks);
