@@ -345,7 +345,8 @@ namespace {
 void count_numbers(const std::string& path, ShapeContacts& contacts) {
   const std::size_t count = contacts.shapes.size(), values = contacts.values.size();
   if (contacts.keys.size() != count || (count == 0 ? values > 0 : values == 0 || values % count > 0))
-    throw IoError(path + ": the arrays of the shapes' contacts do not fit together");
+    throw IoError(fmt::format("{}: the arrays {}, {} and {} do not fit together", path, kShapeContactsOf,
+                              kShapeContactsWith, kShapeHistory));
   contacts.numbers = count > 0 ? static_cast<int>(values / count) : 0;
   for (std::size_t k = 1; k < count; ++k)
     if (std::pair(contacts.shapes[k - 1], contacts.keys[k - 1]) >=
