@@ -22,7 +22,11 @@ class CudaParticles : public RankParticles {
   void load_works(const std::vector<std::int64_t>& words) override {
     items_.surfaces.works().load(words, items_.stream);
   }
-  std::vector<std::int64_t> works() override { return items_.surfaces.works().words(items_.stream); }
+  std::vector<std::int64_t> works() override {
+    std::vector<std::int64_t> words = items_.surfaces.works().words(items_.stream);
+    bodies_.side().add_works(words);
+    return words;
+  }
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
   std::vector<Leaver> outside() override;

@@ -14,9 +14,9 @@ const TableKeys& mesh_keys() {
                         curved = {K::cylinder, K::cone, K::capsule, K::plate, K::pipe, K::drum, K::screw};
   static const TableKeys keys = [] {
     TableKeys mesh{
-        "Surfaces of triangles that walls and bodies refer to. Particles touch them; meshes do not touch "
-        "each "
-        "other, nor the shapes of bodies. In 2D: lines.",
+        "Surfaces of triangles that walls and bodies refer to. Particles and the shapes of bodies touch "
+        "them; "
+        "meshes touch neither each other nor planes. In 2D: lines.",
         {name_key().required().about("Name for references and messages."),
          choice<MeshKind>("kind").required().about(
              "File: STL, OBJ or PLY. Rectangle: a sheet in the plane z = 0. Line: in 2D, a sheet through "

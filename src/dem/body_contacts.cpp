@@ -246,9 +246,9 @@ void BodyContacts::find_loads(const SurfacePlaces& places, Real h) {
   if (in_step) found_ = held_, has_step_ = true;
   const HistoryViews history = in_step ? found_.views() : held_.views().only_read();
   place(places.placed, h);
-  entries_.find_loads(places, store_, list_.surfaces,
-                      {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(),
-                       history, h});
+  entries_.find_loads(
+      places, store_, list_.surfaces,
+      {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
   loads_.resize(static_cast<std::size_t>(store_.owned));
   kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
   for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = items_[i].surface;
@@ -304,13 +304,25 @@ BodyStep BodyContacts::step_totals() const {
   return sum;
 }
 
+void BodyContacts::book_loads(const SurfacePlaces& places, Real h) {
+  entries_.book_loads(places, store_, list_.surfaces, h);
+}
+
+void BodyContacts::book_steps(const SurfacePlaces& places) {
+  if (model_.rotates())
+    entries_.book_rubs(places, store_, list_.surfaces);
+  else
+    entries_.book_steps(places, store_, list_.surfaces);
+}
+
 std::vector<TriangleSums> BodyContacts::triangle_sums() const {
   return entries_.triangle_sums(list_.surfaces);
 }
 
 ContactSum BodyContacts::on_wall(int wall) {
   Real sums[kWallTerms];
-  kernels_->wall_sums(views(held_.views().only_read()), store_.owned, {wall, model_.space.min, period_}, Ranks(), sums);
+  kernels_->wall_sums(views(held_.views().only_read()), store_.owned, {wall, model_.space.min, period_},
+                      Ranks(), sums);
   return make_wall_contact(sums);
 }
 

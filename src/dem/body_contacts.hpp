@@ -55,8 +55,8 @@ class BodyContacts {
   // it.
   void build(const SurfacePlaces& places, Real skin);
 
-  // The contacts at an instant (h = 0), over the explicit step of length h that ends now, and over an implicit
-  // one, which began at places.start.
+  // The contacts at an instant (h = 0), over the explicit step of length h that ends now, and over an
+  // implicit one, which began at places.start.
   void find_loads(const SurfacePlaces& places, Real h);
   void find_steps(const SurfacePlaces& places, Real h);
   // Of the last find: what surfaces get that are touched, some twice.
@@ -68,6 +68,12 @@ class BodyContacts {
   // What shapes do to a wall at rest, where they were at the last find at an instant. wall: index into
   // Model::walls.
   ContactSum on_wall(int wall);
+
+  // What was found last at triangles of meshes, over an explicit step of length h and over an implicit one.
+  void book_loads(const SurfacePlaces& places, Real h);
+  void book_steps(const SurfacePlaces& places);
+  std::vector<std::int64_t> works() const { return entries_.works(); }
+  void clear_works() { entries_.load_works({}); }
 
   // The step that was found last, if there is one since, is accepted: contacts remember it; or it is dropped.
   // reopen(): the step that was accepted last will be found anew.

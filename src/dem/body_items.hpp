@@ -15,11 +15,11 @@ namespace scree {
 // booked of them: half with another body's shape.
 struct BodyLoad {
   InstantSums sums;
-  Real loss = 0;             // dissipation [W]
-  Real energy = 0;           // elastic [J]
-  Real pairs = 0;            // number
-  SpringEnergies springs;    // of the energy, where contacts rub
-  RubbingLosses losses{};    // of the dissipation, over the step [J]
+  Real loss = 0;           // dissipation [W]
+  Real energy = 0;         // elastic [J]
+  Real pairs = 0;          // number
+  SpringEnergies springs;  // of the energy, where contacts rub
+  RubbingLosses losses{};  // of the dissipation, over the step [J]
 };
 
 // Over an implicit step.
@@ -43,11 +43,11 @@ struct BodyLoadOf {
   };
   template <class Law>
   SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
-    return {{true, law.load(pair).exchanged(), EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
+    return {{true, law.normal_load(pair).exchanged(), EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
   }
   template <class Law, class Pair, class History>
-  SCREE_HD LoadWithHistory<Found, History> operator()(const Law& law, const Pair& pair,
-                                                      const History& old) const {
+  requires Law::kMoves SCREE_HD LoadWithHistory<Found, History>
+  operator()(const Law& law, const Pair& pair, const History& old) const {
     const auto outcome = law.load(pair, old);
     const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
     return {{{true, outcome.load.exchanged(), EnergyOf{}(law, pair, now), {}, {}, outcome.losses()},

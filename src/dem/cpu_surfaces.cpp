@@ -96,9 +96,8 @@ void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& s
 
 void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
                                   const PlacedSurface* start_placed) {
-  for_each(
-      Serial{}, static_cast<Index>(rows.groups.size()),
-      MeshStepTouchItem{views, start.position, start_placed, touches_.data(), touches_before_.data()});
+  for_each(Serial{}, static_cast<Index>(rows.groups.size()),
+           MeshStepTouchItem{views, start.position, start_placed, touches_.data(), touches_before_.data()});
 }
 
 void CpuSurfaces::make_room(const SurfaceRows& rows) {
@@ -152,7 +151,8 @@ std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) co
 }
 
 template <class Works>
-void CpuSurfaces::book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows, const Works& works) {
+void CpuSurfaces::book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                       const Works& works) {
   if (!works_.exist()) return;
   struct Add {
     static void add(std::int64_t& word, std::int64_t piece) { word += piece; }
@@ -161,19 +161,23 @@ void CpuSurfaces::book(const SurfacePlaces& places, const ParticleStore& store, 
                                 works_.materials()};
   if (!terms_.take(static_cast<std::int64_t>(rows.surfaces.size())))
     for_each(Serial{}, static_cast<Index>(works_.triangles()), NormalizeItem{work_sums_.data()});
-  for_each(Serial{}, static_cast<Index>(rows.groups.size()),
-           TriangleBookItem<Works, Add>{entry_views(places, store, rows, {}), table, works, work_sums_.data()});
+  for_each(
+      Serial{}, static_cast<Index>(rows.groups.size()),
+      TriangleBookItem<Works, Add>{entry_views(places, store, rows, {}), table, works, work_sums_.data()});
 }
 
-void CpuSurfaces::book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows, Real h) {
+void CpuSurfaces::book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                             Real h) {
   book(places, store, rows, ExplicitWorks{loads_.data(), h, moves_});
 }
 
-void CpuSurfaces::book_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows) {
+void CpuSurfaces::book_steps(const SurfacePlaces& places, const ParticleStore& store,
+                             const SurfaceRows& rows) {
   book(places, store, rows, ImplicitWorks{steps_.data()});
 }
 
-void CpuSurfaces::book_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows) {
+void CpuSurfaces::book_rubs(const SurfacePlaces& places, const ParticleStore& store,
+                            const SurfaceRows& rows) {
   book(places, store, rows, ImplicitRubbingWorks{rubs_.data()});
 }
 

@@ -11,10 +11,10 @@ namespace scree {
 
 // The contacts that were closed at the last step, ordered by shape and key.
 struct ShapeContacts {
-  int numbers = 0;                    // per contact; 0: nothing is remembered
-  std::vector<std::int64_t> shapes;   // number of the placed surface (SurfaceSet)
-  std::vector<std::int64_t> keys;     // the partner, a shape or another surface, as in KeptContacts
-  std::vector<Real> values;           // [contacts][numbers]
+  int numbers = 0;                   // per contact; 0: nothing is remembered
+  std::vector<std::int64_t> shapes;  // number of the placed surface (SurfaceSet)
+  std::vector<std::int64_t> keys;    // the partner, a shape or another surface, as in KeptContacts
+  std::vector<Real> values;          // [contacts][numbers]
 
   std::span<const Real> values_of(std::size_t contact) const {
     const auto n = static_cast<std::size_t>(numbers);

@@ -35,7 +35,8 @@ struct SurfaceViews {
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
   Real h = 0;                  // SurfaceLook
   Real reach = 0;              // Contact::reach [m]
-  // Of what carries each placed surface, as damping laws see it; null: nothing that carries one gives way [kg]
+  // Of what carries each placed surface, as damping laws see it; null: nothing that carries one gives way
+  // [kg]
   const Real* masses = nullptr;
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }

@@ -264,6 +264,7 @@ std::vector<TriangleLoad> SurfaceSide::triangle_loads(std::vector<TriangleSums> 
 void SurfaceSide::book_losses(Real h) {
   if (!ranks_.is_root()) return;
   const BodyContactTotals step = bodies_.totals();
+  if (h > 0) bodies_.book_loads(places(), h);
   if (model_.rotates()) {
     losses_.contact_loss += h * step.loss_power;
     if (h > 0) losses_.rubbing.add(step.losses);
@@ -278,7 +279,17 @@ void SurfaceSide::book_step() {
   const BodyStep step = bodies_.step_totals();
   losses_.contact_loss += step.books.dissipated, losses_.integrator_loss += step.books.integrator;
   losses_.rubbing.of[kFrictionLoss] += step.friction;
+  bodies_.book_steps(places());
   bodies_.accept();
+}
+
+void SurfaceSide::load(const ShapeLosses& losses) {
+  losses_ = ranks_.is_root() ? losses : ShapeLosses{};
+  bodies_.load({}), bodies_.clear_works();
+}
+
+void SurfaceSide::add_works(std::vector<std::int64_t>& words) const {
+  if (ranks_.is_root()) scree::add_works(bodies_.works(), words);
 }
 
 ShapeContacts SurfaceSide::shape_contacts() {

@@ -40,8 +40,8 @@ class SurfaceSide {
   Index size() const { return surfaces_.placed(); }
   // Of the carriers: the bodies, then the placed walls.
   void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
-  // When a list is built: brings each surface into the periodic box, where it stays until the next one. Before,
-  // the surfaces are placed where the bodies are.
+  // When a list is built: brings each surface into the periodic box, where it stays until the next one.
+  // Before, the surfaces are placed where the bodies are.
   void bring_into_box();
   // What bodies can touch, until a surface has moved by half the skin.
   void build_list(Real skin);
@@ -83,13 +83,15 @@ class SurfaceSide {
   void reduce(std::vector<BodyWrench>& end) const;
 
   // Of the bodies' shapes. book_losses: of an explicit step of length h from the last loads, like the
-  // particles', by the trapezoidal rule unless contacts rub; book_step: of an implicit step, which is accepted,
-  // from the last take_steps().
+  // particles', by the trapezoidal rule unless contacts rub; book_step: of an implicit step, which is
+  // accepted, from the last take_steps().
   void book_losses(Real h);
   void book_step();
-  ShapeLosses& losses() { return losses_; }
   const ShapeLosses& losses() const { return losses_; }
   BodyContactTotals shape_totals() const { return bodies_.totals(); }  // at the last take_loads()
+  // Of a state, on rank 0: what shapes have lost; of what their contacts remember, and of works, there is
+  // none yet.
+  void load(const ShapeLosses& losses);
   // What shapes' contacts remember, on rank 0; load: before the first list.
   void load_contacts(const ShapeContacts& contacts) { bodies_.load(contacts); }
   ShapeContacts shape_contacts();
@@ -100,6 +102,8 @@ class SurfaceSide {
   ContactSum on_wall(int wall) { return bodies_.on_wall(wall); }
   // Of all ranks' particles, and of shapes, ordered by surface and triangle. Collective; complete on rank 0.
   std::vector<TriangleLoad> triangle_loads(std::vector<TriangleSums> contacts) const;
+  // Adds what shapes have lost at the triangles to the words of TriangleWorks; on rank 0.
+  void add_works(std::vector<std::int64_t>& words) const;
 
  private:
   // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].

@@ -208,8 +208,8 @@ struct MassesOnContact {
   Real pushed = 0, rubbed = 0;
 };
 
-// Of the lightest body of material a on something of material b: a particle or, where contacts rub, another body
-// or a surface, too. What particles give way is left out: they have substeps of their own.
+// Of the lightest body of material a on something of material b: a particle or, where contacts rub, another
+// body or a surface, too. What particles give way is left out: they have substeps of their own.
 MassesOnContact masses_on_contact(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &body = uses[static_cast<std::size_t>(a)], &other = uses[static_cast<std::size_t>(b)];
   const MassesOnContact alone{body.smallest_body_mass, body.smallest_rubbed_mass};
@@ -239,8 +239,8 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
       Real frequency = contact_frequency(typical_stiffness(law, size), masses.pushed);
       if (model.rotates())
         frequency = std::max(
-            frequency, contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size),
-                                         masses.rubbed));
+            frequency,
+            contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size), masses.rubbed));
       if (frequency > fastest) fastest = frequency, is_exact = law.of_size(size).exponent == 1;
     }
   }

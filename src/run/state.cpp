@@ -69,7 +69,8 @@ class Reader {
   void if_any(const char* name, RubbingLosses& losses) {
     if (in_.reals.count(name) == 0) return;
     const std::vector<Real>& values = in_.real_array(name);
-    if (values.size() != kLossKinds) throw IoError(in_.path + ": '" + name + "' has another number of values");
+    if (values.size() != kLossKinds)
+      throw IoError(in_.path + ": '" + name + "' has another number of values");
     std::ranges::copy(values, losses.of);
   }
   void poses(std::vector<Real>& position, std::size_t& angles) {

@@ -30,7 +30,8 @@ struct State {
   FieldsThere there;      // of these
   KeptContacts contacts;  // of these, where the law remembers something
   ShapeLosses shapes;
-  ShapeContacts shape_contacts;  // where the law remembers something; rank 0's, in the backend like the others
+  ShapeContacts
+      shape_contacts;  // where the law remembers something; rank 0's, in the backend like the others
   // Lost at the triangles of meshes (TriangleWorks), where the output asks for it; in a checkpoint those of
   // all ranks. Between checkpoints they live in the backend, too.
   std::vector<std::int64_t> works;

@@ -129,8 +129,7 @@ TEST_CASE("what shapes' contacts remember and have lost is hashed where there is
   CHECK(state_hash(other, true) != state_hash(state, true));
   other.shapes.rubbing = {}, other.shape_contacts = {};
   for (const char* name : {kShapeRubbing, kShapeHistory}) CHECK(!pack(other).reals.contains(name));
-  for (const char* name : {kShapeContactsOf, kShapeContactsWith})
-    CHECK(!pack(other).integers.contains(name));
+  for (const char* name : {kShapeContactsOf, kShapeContactsWith}) CHECK(!pack(other).integers.contains(name));
   CHECK(unpack(pack(other)).shape_contacts == ShapeContacts{});
   other = state, std::swap(other.shape_contacts.shapes[0], other.shape_contacts.shapes[1]);
   CHECK(contains(unpack_error(pack(other)), "out of order"));

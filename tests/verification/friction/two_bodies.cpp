@@ -1,5 +1,5 @@
-// Two bodies that are a disc or a sphere each and meet obliquely, with spins: against two particles of the same
-// masses and moments of inertia.
+// Two bodies that are a disc or a sphere each and meet obliquely, with spins: against two particles of the
+// same masses and moments of inertia.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,14 +59,17 @@ struct TwoMeet {
   std::string body(const char* name, const One& of) const {
     const Real j = inertia(of);
     const std::string turning =
-        dimension == 3 ? fmt::format("kind = \"spatial\"\ninertia_tensor = [{:.17g}, {:.17g}, {:.17g}, 0, 0, "
-                                     "0]\nglobal_angular_velocity = {}\n",
-                                     j, j, j, toml(of.spin))
+        dimension == 3 ? fmt::format(
+                             "kind = \"spatial\"\ninertia_tensor = [{:.17g}, {:.17g}, {:.17g}, 0, 0, "
+                             "0]\nglobal_angular_velocity = {}\n",
+                             j, j, j, toml(of.spin))
                        : fmt::format("inertia = {:.17g}\nangular_velocity = {}\n", j, of.spin.z);
     return fmt::format(
-        "[[bodies]]\nname = \"{}\"\nposition = {}\nvelocity = {}\nmass = {}\nshapes = [{{ radius = {}, offset "
-        "= {} }}]\n",
-        name, vector(of.position - of.offset), vector(of.velocity), of.mass, kSize, vector(of.offset)) +
+               "[[bodies]]\nname = \"{}\"\nposition = {}\nvelocity = {}\nmass = {}\nshapes = [{{ radius = "
+               "{}, offset "
+               "= {} }}]\n",
+               name, vector(of.position - of.offset), vector(of.velocity), of.mass, kSize,
+               vector(of.offset)) +
            turning;
   }
   Model bodies() const { return model_of(setup() + body("one", one) + body("other", other)); }
@@ -163,7 +166,8 @@ TEST_CASE("in implicit steps two spheres of bodies part as two particles do, to 
 }
 
 // Bodies are integrated by HHT, the particles by leapfrog.
-TEST_CASE("in explicit steps two bodies that rub on each other part as two particles do, to the method's order") {
+TEST_CASE(
+    "in explicit steps two bodies that rub on each other part as two particles do, to the method's order") {
   for (const int dimension : {2, 3})
     for (const std::string& law : {kUndamped, kStuck}) {
       CAPTURE(dimension, law);
@@ -189,7 +193,9 @@ TEST_CASE("in explicit steps two bodies that rub on each other part as two parti
     }
 }
 
-TEST_CASE("two bodies that rub on each other keep their momentum, and their angular momentum to the method's order") {
+TEST_CASE(
+    "two bodies that rub on each other keep their momentum, and their angular momentum to the method's "
+    "order") {
   for (const std::string& integrator : {kExplicit, kImplicit})
     for (const int dimension : {2, 3})
       for (const Vec3 offset : {Vec3{}, Vec3{0.03, -0.02, 0}}) {

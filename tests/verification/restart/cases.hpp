@@ -115,8 +115,8 @@ stiffness = 1e5
                                         disc("left", "[0.7, 0.4]", "[-29.0456, 0.41]") +
                                         disc("last", "[0.5, 0.6]", "[21.3, 0.1567]");
 
-// Bodies that roll and slide on a floor, on a plate of triangles and on each other, round the periodic axis: what
-// their contacts remember must survive.
+// Bodies that roll and slide on a floor, on a plate of triangles and on each other, round the periodic axis:
+// what their contacts remember must survive.
 inline const std::string kRubbingShapes = R"(
 gravity = [1.5, -9.8066, 0.3]
 [output]

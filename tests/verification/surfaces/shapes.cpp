@@ -34,8 +34,9 @@ std::string setup(const std::string& law, const std::string& method) {
 std::string sphere(Vec3 position, Vec3 velocity) {
   return "[[bodies]]\nname = \"sphere\"\nkind = \"spatial\"\nposition = " + text(position) +
          "\nvelocity = " + text(velocity) +
-         fmt::format("\nmass = {}\ninertia_tensor = [1e-3, 1e-3, 1e-3, 0, 0, 0]\nshapes = [{{ radius = {} }}]\n",
-                     kSphereMass, kRadius);
+         fmt::format(
+             "\nmass = {}\ninertia_tensor = [1e-3, 1e-3, 1e-3, 0, 0, 0]\nshapes = [{{ radius = {} }}]\n",
+             kSphereMass, kRadius);
 }
 std::string box(Vec3 position, Vec3 velocity) {
   return "[[bodies]]\nname = \"box\"\nkind = \"spatial\"\nposition = " + text(position) +
@@ -65,7 +66,8 @@ TEST_CASE("a body's sphere that falls on a mesh comes off its faces, edges and c
     for (const Vec3 towards : {Vec3{0, 0, 1}, Vec3{0, 1, 1}, Vec3{1, 1, 1}}) {
       CAPTURE(method, towards.x, towards.y);
       const Vec3 normal = (1 / norm(towards)) * towards;
-      const Vec3 place = 0.1 * towards + (kRadius + kGap) * normal + (towards.x > 0 ? Vec3{} : Vec3{0.013, 0, 0});
+      const Vec3 place =
+          0.1 * towards + (kRadius + kGap) * normal + (towards.x > 0 ? Vec3{} : Vec3{0.013, 0, 0});
       const Vec3 velocity = -kSpeed * normal + 0.3 * cross(normal, Vec3{1, 0, 0});
       SimulationRun run(model_of(setup("", method) + "[[walls]]\nname = \"box\"\nmesh = \"box\"\n" +
                                  sphere(place, velocity)));
@@ -84,8 +86,7 @@ TEST_CASE("a body's mesh that falls on another body's sphere: impulse and moment
     CAPTURE(method);
     const Vec3 arm{-0.06, -0.03, -0.1};  // from the box's centre to where the sphere touches
     const Vec3 place = Vec3{0, 0, kRadius + kGap} - arm;
-    SimulationRun run(
-        model_of(setup("", method) + sphere({}, {}) + box(place, {0, 0, -kSpeed})));
+    SimulationRun run(model_of(setup("", method) + sphere({}, {}) + box(place, {0, 0, -kSpeed})));
     const auto motion = [&] { return run.multibody().motion(run.bodies()); };
     const Vec3 before = momentum_of(motion()), turning_before = angular_momentum_of(motion());
     run.run();
@@ -107,8 +108,8 @@ TEST_CASE("a body's mesh that rubs on another body's sphere: momenta are kept, a
     CAPTURE(method);
     const Vec3 arm{-0.06, -0.03, -0.1};
     const Vec3 place = Vec3{0, 0, kRadius + kGap} - arm;
-    SimulationRun run(model_of(setup("friction = 0.4\n", method) + sphere({}, {}) +
-                               box(place, {0.5, -0.2, -kSpeed})));
+    SimulationRun run(
+        model_of(setup("friction = 0.4\n", method) + sphere({}, {}) + box(place, {0.5, -0.2, -kSpeed})));
     const auto motion = [&] { return run.multibody().motion(run.bodies()); };
     const Vec3 before = momentum_of(motion()), turning_before = angular_momentum_of(motion());
     run.run();
