@@ -138,12 +138,12 @@ TEST_CASE("in implicit steps two bodies that rub on each other part as two parti
       REQUIRE(bodies.particle_ledger().contacts == 0);
       const Motion exact = of_particles(particles);
       REQUIRE(kSize * norm(exact.spin[1] - meeting.other.spin) > 0.02);
-      CHECK(keeps(apart(of_bodies(bodies), exact), {.promise = 1e-8, .measured = 1e-11}));
+      CHECK(keeps(apart(of_bodies(bodies), exact), {.promise = 1e-8, .measured = 1e-12}));
       const ParticleLedger of_two = bodies.particle_ledger(), expected = particles.particle_ledger();
       CHECK(near(of_two.contact_loss, expected.contact_loss, {.absolute = 1e-8}));
       CHECK(near(of_two.rotation.losses.of[kFrictionLoss], expected.rotation.losses.of[kFrictionLoss],
                  {.absolute = 1e-8}));
-      CHECK(keeps(bodies.balance_error() / bodies.exchanged(), {.promise = 1e-5, .measured = 1e-7}));
+      CHECK(keeps(bodies.balance_error() / bodies.exchanged(), {.promise = 1e-5, .measured = 1e-12}));
     }
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("in implicit steps two spheres of bodies part as two particles do, to 
       SimulationRun bodies(meeting.bodies()), particles(meeting.particles());
       bodies.run(), particles.run();
       REQUIRE(bodies.particle_ledger().contacts == 0);
-      CHECK(keeps(bodies.balance_error() / bodies.exchanged(), {.promise = 1e-5, .measured = 1e-6}));
+      CHECK(keeps(bodies.balance_error() / bodies.exchanged(), {.promise = 1e-5, .measured = 1e-12}));
       return apart(of_bodies(bodies), of_particles(particles));
     };
     const Real coarse = error_at(20), fine = error_at(80);

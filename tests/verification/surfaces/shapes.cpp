@@ -76,7 +76,7 @@ TEST_CASE("a body's sphere that falls on a mesh comes off its faces, edges and c
       const Vec3 found = run.multibody().motion(run.bodies())[0].velocity;
       const Vec3 expected = velocity + 2 * kSpeed * normal;
       // The normal turns while they touch, by some 1e-4, and the explicit step is of second order.
-      CHECK(keeps(norm(found - expected), {.promise = 1e-2, .measured = 1e-3}));
+      CHECK(keeps(norm(found - expected), {.promise = 1e-2, .measured = 2.1e-3}));
       CHECK(norm(global_spin(run.multibody().motion(run.bodies())[0])) < 1e-12);
     }
 }
@@ -98,8 +98,8 @@ TEST_CASE("a body's mesh that falls on another body's sphere: impulse and moment
     CHECK(near(after[0].velocity, {0, 0, -impulse / kSphereMass}, {.relative = 5e-3}));
     CHECK(near(after[1].velocity, {0, 0, impulse / kBoxMass - kSpeed}, {.absolute = 5e-3 * kSpeed}));
     CHECK(near(global_spin(after[1]), impulse * turned, {.relative = 5e-3}));
-    CHECK(keeps(norm(momentum_of(after) - before), {.promise = 1e-9, .measured = 1e-14}));
-    CHECK(keeps(norm(angular_momentum_of(after) - turning_before), {.promise = 1e-5, .measured = 1e-7}));
+    CHECK(keeps(norm(momentum_of(after) - before), {.promise = 1e-9, .measured = 5e-14}));
+    CHECK(keeps(norm(angular_momentum_of(after) - turning_before), {.promise = 1e-8, .measured = 1.8e-10}));
   }
 }
 
@@ -116,9 +116,10 @@ TEST_CASE("a body's mesh that rubs on another body's sphere: momenta are kept, a
     REQUIRE(run.particle_ledger().contacts == 0);
     CHECK(norm(global_spin(motion()[0])) > 1);
     CHECK(run.particle_ledger().rotation.losses.of[kFrictionLoss] > 1e-3);
-    CHECK(keeps(norm(momentum_of(motion()) - before), {.promise = 1e-9, .measured = 1e-14}));
-    CHECK(keeps(norm(angular_momentum_of(motion()) - turning_before), {.promise = 1e-5, .measured = 1e-7}));
-    CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-2, .measured = 1e-3}));
+    CHECK(keeps(norm(momentum_of(motion()) - before), {.promise = 1e-9, .measured = 5e-14}));
+    CHECK(
+        keeps(norm(angular_momentum_of(motion()) - turning_before), {.promise = 1e-8, .measured = 1.8e-10}));
+    CHECK(keeps(run.balance_error() / run.exchanged(), {.promise = 1e-2, .measured = 4e-4}));
   }
 }
 
