@@ -18,7 +18,7 @@ void CudaBodies::find_loads() {
                              {items_.now.position.data(), items_.now.velocity.data(),
                               items_.now.angular_velocity.data(), items_.history.views().only_read()});
   wait_for(items_.stream);
-  side_.take_loads(items_.surfaces.load_sums());
+  side_.take_loads(items_.surfaces.load_sums(), 0);
 }
 
 const ShownContact* CudaBodies::find_shown() {
@@ -54,9 +54,9 @@ void CudaBodies::queue_loads(const SurfaceLook& look, const Event& ready) {
   loads_found_.record(stream_);
 }
 
-void CudaBodies::take_loads() {
+void CudaBodies::take_loads(Real h) {
   wait_for(stream_);
-  side_.take_loads(items_.surfaces.load_sums());
+  side_.take_loads(items_.surfaces.load_sums(), h);
 }
 
 // The next look of this stream writes where the books are read, and so does the next list, of the particles'
@@ -72,7 +72,7 @@ void CudaBodies::find_loads_beside(const SurfaceLook& look) {
   const Device beside{stream_};
   items_.surfaces.place(beside, side_.places());
   items_.surfaces.find_loads(beside, *items_.kernels, Loads::of_look, look);
-  take_loads();
+  take_loads(look.h);
 }
 
 }  // namespace scree

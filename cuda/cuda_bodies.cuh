@@ -37,7 +37,7 @@ class CudaBodies {
   // their sums.
   void queue_loads(const SurfaceLook& look, const Event& ready);
   const Event& loads_found() const { return loads_found_; }
-  void take_loads();
+  void take_loads(Real h);
   // Where the host knows that this step is closed, and its length h: books what its contacts have lost at
   // triangles.
   void book_loads(Real h);

@@ -21,7 +21,7 @@ bool CudaExplicitRun::step_with_bodies(bool keep_open, StageTimers& timers) {
     items_.results.copy(&Results::control, bodies_.stream());
     if (keep_open) queue_.queue(1, &bodies_.loads_found());
     items_.idle();
-    bodies_.take_loads();
+    bodies_.take_loads(h_);
     const VerletControl& control = control_.seen();
     const VerletControl::Closed& before = control.closed_steps[closed_ % VerletControl::kClosedSteps];
     if (before.expired) {  // what was queued has done nothing

@@ -68,7 +68,7 @@ CudaParticles::CudaParticles(CudaItems& items, CudaBodies& bodies, CudaList& lis
 
 void CudaParticles::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
   const cudaStream_t stream = items_.stream;
-  bodies_.side().losses() = items_.ranks.is_root() ? shapes : ShapeLosses{};
+  bodies_.side().load(shapes);
   items_.owned = count_on_rank(records.size(), items_.model.particles.totals);
   items_.now.grow(records.size(), records.size(), 0, stream);
   const auto at_once = static_cast<Index>(records_.size());

@@ -17,10 +17,16 @@ class CudaParticles : public RankParticles {
   void load_contacts(const KeptContacts& contacts) override { items_.history.load(contacts, items_.owned); }
   KeptContacts contacts() override;
   ShapeLosses shape_losses() const override { return bodies_.side().losses(); }
+  void load_shape_contacts(const ShapeContacts& contacts) override { bodies_.side().load_contacts(contacts); }
+  ShapeContacts shape_contacts() override { return bodies_.side().shape_contacts(); }
   void load_works(const std::vector<std::int64_t>& words) override {
     items_.surfaces.works().load(words, items_.stream);
   }
-  std::vector<std::int64_t> works() override { return items_.surfaces.works().words(items_.stream); }
+  std::vector<std::int64_t> works() override {
+    std::vector<std::int64_t> words = items_.surfaces.works().words(items_.stream);
+    bodies_.side().add_works(words);
+    return words;
+  }
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
   std::vector<Leaver> outside() override;

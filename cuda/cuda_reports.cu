@@ -63,7 +63,8 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   const std::array<Real, kLedgerTerms> sums = results.totals(results.fetch(&Results::ledger));
   ParticleLedger out = make_particle_ledger(sums.data(), bodies_.side());
   if (now.rotates)
-    out.rotation = make_rotation_energies(results.totals(results.fetch(&Results::rotation)).data());
+    out.rotation =
+        make_rotation_energies(results.totals(results.fetch(&Results::rotation)).data(), bodies_.side());
   if (items_.model.attracts()) out.cohesion = results.totals(results.fetch(&Results::cohesion))[0];
   out.drifting = items_.ranks.sum(std::int64_t{results.host().index});
   return out;

@@ -205,7 +205,7 @@ void CoupledStep::freeze(ImplicitStep& step, const Iteration& last) {
   if (model_.time.control == StepControl::adaptive)
     throw SimulationError(trouble_of(step, last, kMostFollowing));
   step.freeze_limits();
-  frozen_ = true;
+  frozen_ = model_.particles.totals.count > 0;
 }
 
 // Whose residual or correction is above the limit: the particles', if both are.

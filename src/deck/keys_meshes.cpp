@@ -18,9 +18,9 @@ const TableKeys& mesh_keys() {
                                   K::pipe,     K::drum, K::screw,   K::funnel};
   static const TableKeys keys = [] {
     TableKeys mesh{
-        "Surfaces of triangles that walls and bodies refer to. Particles touch them; meshes do not touch "
-        "each "
-        "other, nor the shapes of bodies. In 2D: lines.",
+        "Surfaces of triangles that walls and bodies refer to. Particles and the shapes of bodies touch "
+        "them; "
+        "meshes touch neither each other nor planes. In 2D: lines.",
         {name_key().required().about("Name for references and messages."),
          choice<MeshKind>("kind").required().about(
              "File: STL, OBJ or PLY. Rectangle: a sheet in the plane z = 0. Funnel, hopper: a sheet open at "

@@ -192,8 +192,7 @@ const TableKeys& contact_keys() {
            .at_least(0)
            .left_out("contacts do not rub")
            .about("Coulomb's coefficient of friction between particles, and of particles on walls and on "
-                  "bodies. Where a pair has one particles rotate. Bodies slide on each other and on walls "
-                  "without it."),
+                  "bodies, and of these on each other and on walls. Where a pair has one particles rotate."),
        real("tangential_stiffness", "N/m")
            .above(0)
            .left_out("2/7 of a linear stiffness; for Hertz's law Mindlin's, from the shear moduli")
@@ -357,7 +356,7 @@ const TableKeys& wall_keys() {
   static const TableKeys keys{
       "Walls inside the space: planes, solid behind them, or meshes. Nothing that touches a wall moves it; "
       "one "
-      "that is to respond is a body on a joint. The shapes of bodies go through walls that move or run.",
+      "that is to respond is a body on a joint.",
       {name_key().required().about("Name for messages and output.history_contacts."),
        vector("point", "m").left_out("mesh is given").about("Any point of the plane."),
        vector("normal", "")

@@ -16,14 +16,12 @@ constexpr std::size_t kWidth = 110;
 
 // input/limits.md says the same; tests/cli/test_words.py compares them.
 constexpr const char* kLeftOut =
-    "What the model leaves out today. Particles rub and rotate, on each other, on walls and on bodies; "
+    "What the model leaves out today. Particles and bodies rub, on each other and on walls; "
     "rolling and twisting are resisted in explicit steps (velocity-verlet) only. "
-    "Bodies touch each other and walls without friction. "
     "Attraction is explicit, and acts on particles alone: bodies attract neither each other nor walls. "
     "Particles are discs (2D) or spheres (3D): no polygons. "
-    "They touch each other, planes, meshes and the shapes of bodies, which are discs or spheres; "
-    "meshes touch particles alone, not each other, planes or shapes, and so do walls that move. Bodies are "
-    "rigid. "
+    "They touch each other, planes, meshes and the shapes of bodies, which are discs or spheres; so do these "
+    "shapes. Meshes touch neither each other nor planes. Bodies are rigid. "
     "Planar ones move along x and y and turn about z, in 3D too, and forces "
     "along z do nothing to them; those with `kind = \"spatial\"` move freely in space, on spherical, "
     "universal and all the other usual joints (`input/README.md`). Joints have motors, "

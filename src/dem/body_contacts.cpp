@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <utility>
 
 #include "base/countable.hpp"
 #include "dem/wall_items.hpp"
@@ -36,6 +38,16 @@ Contact without_attraction(Contact contact) {
   return contact;
 }
 
+// As the damping of Hertz's law sees them, per placed surface [kg].
+std::vector<Real> masses_of_carriers(const Model& model, const SurfaceSet& surfaces) {
+  std::vector<Real> masses;
+  for (Index s = 0; s < surfaces.placed(); ++s)
+    masses.push_back(surfaces.is_on_body(s)
+                         ? model.bodies[static_cast<std::size_t>(surfaces.at(s).carrier)].mass
+                         : kInfinity);
+  return masses;
+}
+
 }  // namespace
 
 ContactSum make_wall_contact(const Real* sums) {
@@ -46,10 +58,13 @@ ContactSum make_wall_contact(const Real* sums) {
 BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const Subdomain& subdomain)
     : model_(model),
       surfaces_(surfaces),
-      subdomain_(subdomain),
       rule_(model),
+      period_(subdomain.period()),
       kernels_(make_contact_kernels(without_attraction(model.contact))),
-      planes_(wall_planes(model)) {}
+      planes_(wall_planes(model)),
+      entries_(model, subdomain, *kernels_, 0, masses_of_carriers(model, surfaces)),
+      held_(kernels_->history(), {model.space.min, subdomain.period()}),
+      found_(held_) {}
 
 // Per surface, in order.
 std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
@@ -57,7 +72,7 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
   std::vector<std::vector<Item>> partners(placed.size());
   if (!rule_.bodies_may_touch()) return partners;
   const SortedBins bins = bins_of(placed, skin);
-  for_each_shift(subdomain_.period(), [&](Vec3 shift, std::int8_t image) {
+  for_each_shift(period_, [&](Vec3 shift, std::int8_t image) {
     for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
       if (placed[i].kind != SurfaceKind::sphere) continue;
       bins.for_near(placed[i].point - shift, [&](const StartItem& other) {
@@ -73,98 +88,241 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
   return partners;
 }
 
-void BodyContacts::build(std::span<const PlacedSurface> placed, Real skin) {
-  const std::vector<std::vector<Item>> partners = find_partners(placed, skin);
-  items_.clear(), neighbors_.clear(), walls_.clear(), material_.clear();
-  offsets_ = wall_offsets_ = {0};
-  std::map<Item, Index> item_of;
-  for (Index i = 0; i < static_cast<Index>(placed.size()); ++i) {
-    const PlacedSurface& s = placed[i];
-    if (s.kind != SurfaceKind::sphere) continue;  // meshes meet particles alone
-    const auto before = walls_.size();
-    for (Index w = 0; w < static_cast<Index>(planes_.size()); ++w) {
-      if (planes_[w].placed < 0 && wall_pair(vec4(s.point, s.radius), planes_[w]).distance < s.radius + skin)
-        walls_.push_back(w);
-    }
-    if (walls_.size() == before && partners[i].empty()) continue;
-    item_of.emplace(Item{i, kNoShift}, static_cast<Index>(items_.size()));
-    items_.push_back({i, kNoShift});
-    wall_offsets_.push_back(static_cast<Index>(walls_.size()));
+// Rows of these shapes, in this order, with all that is no shape.
+void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
+                                 SurfaceRows& rows) const {
+  std::vector<Vec4> position;
+  Vec3 min, max;
+  Real largest = 0;
+  for (const Index s : shapes) {
+    const PlacedSurface& shape = places.placed[static_cast<std::size_t>(s)];
+    const Vec3 p = shape.point;
+    if (position.empty()) min = max = p;
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+    largest = std::max(largest, shape.radius);
+    position.push_back(vec4(p, shape.radius));
   }
-  originals_ = static_cast<Index>(items_.size());
-  for (Index i = 0; i < originals_; ++i) {
-    for (const Item& partner : partners[items_[i].surface]) {
+  const auto n = static_cast<Index>(position.size());
+  const CellGrid grid = make_cell_grid(min, max, 3, 2 * largest + skin, 4 * n + 64);
+  std::vector<Index> start(static_cast<std::size_t>(grid.count()) + 1), items(position.size());
+  for (const Vec4& p : position) ++start[static_cast<std::size_t>(grid.nearest(xyz(p))) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  for (Index i = 0; i < n; ++i) items[next[grid.nearest(xyz(position[i]))]++] = i;
+  const auto may_touch = [&](Index i, Index s) {
+    return surfaces_.at(s).kind != SurfaceKind::sphere &&
+           rule_.may_touch(surfaces_.at(shapes[i]).carrier, surfaces_.at(s).carrier);
+  };
+  build_rows({grid, start, items, position, n, largest}, n,
+             {surfaces_, planes_, places, period_, skin, may_touch}, rows);
+}
+
+// These shapes, then the copies of partners that they have across periodic sides.
+void BodyContacts::list_items(const std::vector<Index>& shapes,
+                              const std::vector<std::vector<Item>>& partners) {
+  std::map<Item, Index> item_of;
+  items_.clear(), list_.neighbors.clear(), list_.offsets = {0};
+  for (const Index s : shapes) {
+    item_of.emplace(Item{s, kNoShift}, static_cast<Index>(items_.size()));
+    items_.push_back({s, kNoShift});
+  }
+  for (const Index s : shapes) {
+    for (const Item& partner : partners[s]) {
       const auto [found, is_new] = item_of.emplace(partner, static_cast<Index>(items_.size()));
       if (is_new) items_.push_back(partner);
-      neighbors_.push_back(found->second);
+      list_.neighbors.push_back(found->second);
     }
-    offsets_.push_back(countable(neighbors_.size(), "stage neighbors: more neighbours of bodies"));
+    list_.offsets.push_back(countable(list_.neighbors.size(), "stage neighbors: more neighbours of bodies"));
   }
-  for (const Item& item : items_) material_.push_back(surfaces_.at(item.surface).material);
+  store_.owned = store_.active = static_cast<Index>(shapes.size());
+  store_.material.clear(), store_.row_key.clear();
+  for (const Item& item : items_) {
+    store_.material.push_back(surfaces_.at(item.surface).material);
+    store_.row_key.push_back(row_key(item.surface, item.image));
+  }
 }
 
-void BodyContacts::place(std::span<const PlacedSurface> placed, std::vector<Vec4>& position,
-                         std::vector<Vec4>& velocity, std::vector<Vec3>& arm) const {
-  position.clear(), velocity.clear(), arm.clear();
+void BodyContacts::build(const SurfacePlaces& places, Real skin) {
+  const std::vector<std::vector<Item>> partners = find_partners(places.placed, skin);
+  std::vector<Index> all, near;
+  for (Index s = 0; s < static_cast<Index>(places.placed.size()); ++s)
+    if (places.placed[s].kind == SurfaceKind::sphere) all.push_back(s);
+  find_surfaces(places, skin, all, list_.surfaces);
+  const std::vector<Index>& offsets = list_.surfaces.offsets;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (offsets[k + 1] > offsets[k] || !partners[all[k]].empty()) near.push_back(all[k]);
+  if (near.size() < all.size()) find_surfaces(places, skin, near, list_.surfaces);
+  list_items(near, partners);
+  place(places.placed, 0);
+  if (held_.exists()) take_contacts(places);
+  has_list_ = true;
+}
+
+// Of the shapes that the list has: what the others remember is of contacts that have ended.
+void BodyContacts::take_contacts(const SurfacePlaces& places) {
+  KeptContacts rows;
+  rows.numbers = kernels_->history();
+  std::size_t k = 0;
+  for (Index i = 0; i < store_.owned; ++i) {
+    for (; k < kept_.shapes.size() && kept_.shapes[k] <= items_[i].surface; ++k)
+      if (kept_.shapes[k] == items_[i].surface) rows.add(kept_.keys[k], kept_.values_of(k));
+    rows.end_row();
+  }
+  held_.load(rows, store_.owned);
+  held_.take_slots(listed(places));
+}
+
+void BodyContacts::leave_list(const SurfacePlaces& places) {
+  if (!has_list_ || !held_.exists()) return;
+  kept_ = contacts(places);
+  has_list_ = false;
+}
+
+void BodyContacts::load(const ShapeContacts& contacts) {
+  kept_ = contacts.numbers == kernels_->history() ? contacts : ShapeContacts{};
+  kept_.numbers = kernels_->history();
+  has_list_ = false;
+}
+
+ShapeContacts BodyContacts::contacts(const SurfacePlaces& places) {
+  if (!has_list_) return kept_;
+  ShapeContacts out;
+  out.numbers = kernels_->history();
+  if (!held_.exists()) return out;
+  place(places.placed, 0);
+  const KeptContacts rows = held_.contacts(listed(places));
+  for (Index i = 0; i < store_.owned; ++i)
+    out.shapes.insert(out.shapes.end(), static_cast<std::size_t>(rows.contacts(i)), items_[i].surface);
+  out.keys = rows.keys, out.values = rows.values;
+  return out;
+}
+
+void BodyContacts::accept() {
+  if (!has_step_) return;
+  std::swap(held_, found_);
+  has_step_ = false;
+}
+
+void BodyContacts::reopen() { std::swap(held_, found_); }
+
+void BodyContacts::place(std::span<const PlacedSurface> placed, Real h) {
+  store_.position.clear(), store_.velocity.clear(), store_.angular_velocity.clear(), arm_.clear();
   for (const Item& item : items_) {
     const PlacedSurface& s = placed[item.surface];
-    position.push_back(vec4(s.point + image_shift(item.image, subdomain_.period()), s.radius));
     const Body& body = model_.bodies[static_cast<std::size_t>(surfaces_.at(item.surface).carrier)];
-    velocity.push_back(vec4(s.velocity_at({}), body.mass));
-    arm.push_back(s.arm);
+    const bool at_middle = h > 0 && model_.rotates();
+    store_.position.push_back(vec4(s.point + image_shift(item.image, period_), s.radius));
+    store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * s.travel : s.velocity_at({}), body.mass));
+    store_.angular_velocity.push_back(vec4(at_middle ? reciprocal(h) * s.turn : s.spin, body.inertia));
+    arm_.push_back(s.arm);
   }
 }
 
-ContactViews<PackedRows> BodyContacts::views() const {
-  return {position_.data(),
-          velocity_.data(),
-          material_.data(),
-          {offsets_.data(), neighbors_.data()},
-          wall_offsets_.data(),
-          walls_.data(),
-          {planes_.data(), static_cast<Index>(planes_.size())},
-          nullptr,
-          nullptr};
+// Leaves the items at its start.
+void BodyContacts::place_start(const SurfacePlaces& places, Real h) {
+  place(places.placed, h);
+  mean_spin_ = store_.angular_velocity;
+  place(places.start, 0);
+  start_position_ = store_.position, start_velocity_ = store_.velocity;
+  start_spin_ = store_.angular_velocity;
 }
 
-void BodyContacts::find(std::span<const PlacedSurface> placed) {
-  place(placed, position_, velocity_, arm_);
-  loads_.resize(static_cast<std::size_t>(originals_));
-  kernels_->body_loads(views(), originals_, arm_.data(), loads_.data());
-  for (Index i = 0; i < originals_; ++i) loads_[i].sums.surface = items_[i].surface;
+StepStart BodyContacts::step_start(Real h) const {
+  return {start_position_.data(), start_velocity_.data(), h, model_.integrator.resolve_events};
 }
 
-void BodyContacts::find(std::span<const PlacedSurface> placed, std::span<const PlacedSurface> start, Real h) {
-  place(start, start_position_, start_velocity_, arm_);
-  place(placed, position_, velocity_, arm_);
-  steps_.resize(static_cast<std::size_t>(originals_));
-  kernels_->body_steps(views(), originals_,
-                       {start_position_.data(), start_velocity_.data(), h, model_.integrator.resolve_events},
-                       arm_.data(), steps_.data());
-  for (Index i = 0; i < originals_; ++i) steps_[i].sums.surface = items_[i].surface;
+ContactViews<PackedRows> BodyContacts::views(const HistoryViews& history) const {
+  ContactViews<PackedRows> views =
+      entries_.views(store_, store_.position, store_.velocity, {list_.offsets.data(), list_.neighbors.data()},
+                     list_.surfaces);
+  views.history = history, views.spin = store_.angular_velocity.data();
+  return views;
 }
 
-Real BodyContacts::loss_power() const {
-  Real sum = 0;
-  for (const BodyLoad& load : loads_) sum += load.loss;
+void BodyContacts::find_loads(const SurfacePlaces& places, Real h) {
+  const bool in_step = h > 0 && model_.rotates();
+  if (!in_step) h = 0;
+  if (in_step) found_ = held_, has_step_ = true;
+  const HistoryViews history = in_step ? found_.views() : held_.views().only_read();
+  place(places.placed, h);
+  entries_.find_loads(
+      places, store_, list_.surfaces,
+      {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
+  loads_.resize(static_cast<std::size_t>(store_.owned));
+  kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
+  for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = items_[i].surface;
+  if (in_step) found_.accepted();
+}
+
+void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
+  place_start(places, h);
+  place(places.placed, 0);
+  steps_.resize(static_cast<std::size_t>(store_.owned));
+  const StepStart start = step_start(h);
+  if (model_.rotates()) {
+    found_ = held_, has_step_ = true;
+    RubbingStart rubbing{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
+    entries_.find_rubs(places, store_, list_.surfaces, rubbing, found_.views());
+    rubbing.on_bodies = entries_.rubs();
+    kernels_->body_rubs(views(found_.views()), store_.owned, rubbing, arm_.data(), steps_.data());
+    found_.accepted();
+  } else {
+    entries_.find_steps(places, store_, list_.surfaces, start);
+    kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data());
+  }
+  for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = items_[i].surface;
+}
+
+void BodyContacts::add_sums(std::vector<InstantSums>& to) const {
+  for (const BodyLoad& load : loads_)
+    if (load.sums.contacts > 0) to.push_back(load.sums);
+  const std::vector<InstantSums> of_surfaces = entries_.load_sums(list_.surfaces);
+  to.insert(to.end(), of_surfaces.begin(), of_surfaces.end());
+}
+
+void BodyContacts::add_sums(std::vector<StepSums>& to) const {
+  for (const BodyStep& step : steps_)
+    if (step.sums.contacts > 0) to.push_back(step.sums);
+  const std::vector<StepSums> of_surfaces =
+      model_.rotates() ? entries_.rub_sums(list_.surfaces) : entries_.step_sums(list_.surfaces);
+  to.insert(to.end(), of_surfaces.begin(), of_surfaces.end());
+}
+
+BodyContactTotals BodyContacts::totals() const {
+  BodyContactTotals sum;
+  for (const BodyLoad& load : loads_) {
+    sum.loss_power += load.loss, sum.elastic_energy += load.energy, sum.pairs += load.pairs;
+    sum.springs.add(load.springs, 1), sum.losses.add(load.losses);
+  }
   return sum;
 }
 
-Real BodyContacts::elastic_energy() const {
-  Real sum = 0;
-  for (const BodyLoad& load : loads_) sum += load.energy;
+BodyStep BodyContacts::step_totals() const {
+  BodyStep sum;
+  for (const BodyStep& step : steps_) sum.books.add(step.books, 1), sum.friction += step.friction;
   return sum;
 }
 
-Real BodyContacts::pairs() const {
-  Real sum = 0;
-  for (const BodyLoad& load : loads_) sum += load.pairs;
-  return sum;
+void BodyContacts::book_loads(const SurfacePlaces& places, Real h) {
+  entries_.book_loads(places, store_, list_.surfaces, h);
 }
 
-ContactSum BodyContacts::on_wall(int wall) const {
+void BodyContacts::book_steps(const SurfacePlaces& places) {
+  if (model_.rotates())
+    entries_.book_rubs(places, store_, list_.surfaces);
+  else
+    entries_.book_steps(places, store_, list_.surfaces);
+}
+
+std::vector<TriangleSums> BodyContacts::triangle_sums() const {
+  return entries_.triangle_sums(list_.surfaces);
+}
+
+ContactSum BodyContacts::on_wall(int wall) {
   Real sums[kWallTerms];
-  kernels_->body_wall_sums(views(), originals_, {wall, model_.space.min, subdomain_.period()}, sums);
+  kernels_->wall_sums(views(held_.views().only_read()), store_.owned, {wall, model_.space.min, period_},
+                      Ranks(), sums);
   return make_wall_contact(sums);
 }
 

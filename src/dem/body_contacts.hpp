@@ -1,13 +1,19 @@
-// Contacts of bodies with each other and with walls: few, they are all rank 0's, on the host.
+// Contacts of bodies' shapes with each other and with all other surfaces: few, they are all rank 0's, on the
+// host, where shapes are what particles are elsewhere.
 #pragma once
 
 #include <compare>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "dem/body_items.hpp"
 #include "dem/contact_kernels.hpp"
+#include "dem/cpu_history.hpp"
+#include "dem/cpu_surfaces.hpp"
+#include "dem/neighbor_list.hpp"
+#include "dem/shape_contacts.hpp"
 #include "dem/surfaces.hpp"
 #include "model/model.hpp"
 #include "model/touching.hpp"
@@ -30,52 +36,92 @@ struct ContactSum {
 // From the sums of WallContactItem, indexed by WallTerm.
 ContactSum make_wall_contact(const Real* sums);
 
+// Of all contacts of shapes at an instant, or over the explicit step that ended there.
+struct BodyContactTotals {
+  Real loss_power = 0;      // [W]
+  Real elastic_energy = 0;  // [J]
+  SpringEnergies springs;   // of that
+  RubbingLosses losses{};   // over the step [J]
+  Real pairs = 0;           // number
+};
+
 class BodyContacts {
  public:
   BodyContacts(const Model& model, const SurfaceSet& surfaces, const Subdomain& subdomain);
 
+  // Before surfaces are brought into the periodic box for another list: keeps by name what contacts remember.
+  void leave_list(const SurfacePlaces& places);
   // Finds what can touch before one of the surfaces has moved by half the skin [m]. Other ranks than 0 leave
   // it.
-  void build(std::span<const PlacedSurface> placed, Real skin);
-  // The contacts at an instant, and over an implicit step. All spans: of the surfaces on bodies.
-  void find(std::span<const PlacedSurface> placed);
-  void find(std::span<const PlacedSurface> placed, std::span<const PlacedSurface> start, Real h);
-  // Of the last find(): one per surface that can touch something, in order.
-  const std::vector<BodyLoad>& loads() const { return loads_; }
-  const std::vector<BodyStep>& steps() const { return steps_; }
-  // Sums over the former [W], [J], number.
-  Real loss_power() const;
-  Real elastic_energy() const;
-  Real pairs() const;
-  // What the bodies do to a wall, where they were at the last find() at an instant. wall: index into
+  void build(const SurfacePlaces& places, Real skin);
+
+  // The contacts at an instant (h = 0), over the explicit step of length h that ends now, and over an
+  // implicit one, which began at places.start.
+  void find_loads(const SurfacePlaces& places, Real h);
+  void find_steps(const SurfacePlaces& places, Real h);
+  // Of the last find: what surfaces get that are touched, some twice.
+  void add_sums(std::vector<InstantSums>& to) const;
+  void add_sums(std::vector<StepSums>& to) const;
+  BodyContactTotals totals() const;                 // of find_loads
+  BodyStep step_totals() const;                     // of find_steps; without sums
+  std::vector<TriangleSums> triangle_sums() const;  // of find_loads
+  // What shapes do to a wall at rest, where they were at the last find at an instant. wall: index into
   // Model::walls.
-  ContactSum on_wall(int wall) const;
+  ContactSum on_wall(int wall);
+
+  // What was found last at triangles of meshes, over an explicit step of length h and over an implicit one.
+  void book_loads(const SurfacePlaces& places, Real h);
+  void book_steps(const SurfacePlaces& places);
+  std::vector<std::int64_t> works() const { return entries_.works(); }
+  void clear_works() { entries_.load_works({}); }
+
+  // The step that was found last, if there is one since, is accepted: contacts remember it; or it is dropped.
+  // reopen(): the step that was accepted last will be found anew.
+  void accept();
+  void drop() { has_step_ = false; }
+  void reopen();
+  // What contacts remember; what another law has remembered counts for nothing. load: before the first list.
+  void load(const ShapeContacts& contacts);
+  ShapeContacts contacts(const SurfacePlaces& places);
 
  private:
-  // A surface, or its copy across periodic sides.
+  // A shape, or its copy across periodic sides.
   struct Item {
     Index surface;
     std::int8_t image;
     auto operator<=>(const Item&) const = default;
   };
   std::vector<std::vector<Item>> find_partners(std::span<const PlacedSurface> placed, Real skin) const;
-  ContactViews<PackedRows> views() const;
-  void place(std::span<const PlacedSurface> placed, std::vector<Vec4>& position, std::vector<Vec4>& velocity,
-             std::vector<Vec3>& arm) const;
+  void find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
+                     SurfaceRows& rows) const;
+  void take_contacts(const SurfacePlaces& places);
+  void list_items(const std::vector<Index>& shapes, const std::vector<std::vector<Item>>& partners);
+  // h: of the step that ends now, for velocities of its middle; 0: as they are.
+  void place(std::span<const PlacedSurface> placed, Real h);
+  void place_start(const SurfacePlaces& places, Real h);
+  StepStart step_start(Real h) const;
+  CpuHistory::Listed listed(const SurfacePlaces& places) const {
+    return {store_, list_, places, entries_.numbers()};
+  }
+  ContactViews<PackedRows> views(const HistoryViews& history) const;
 
   const Model& model_;
   const SurfaceSet& surfaces_;
-  const Subdomain& subdomain_;
   TouchRule rule_;
+  Vec3 period_;  // of the space [m]
   std::unique_ptr<ContactKernels> kernels_;
   std::vector<WallPlane> planes_;
-  // Those that can touch something, ordered by surface, then copies across periodic sides.
+  CpuSurfaces entries_;  // contacts with placed surfaces
+  // The shapes that can touch something, ordered by surface, then copies across periodic sides.
   std::vector<Item> items_;
-  Index originals_ = 0;
-  std::vector<Index> offsets_, neighbors_, wall_offsets_, walls_;  // rows of the originals
-  std::vector<Vec4> position_, velocity_, start_position_, start_velocity_;
+  ParticleStore store_;
+  NeighborList list_;
   std::vector<Vec3> arm_;
-  std::vector<int> material_;
+  std::vector<Vec4> start_position_, start_velocity_, start_spin_, mean_spin_;
+  // What contacts remember after the last accepted step, and after the one that was found since.
+  CpuHistory held_, found_;
+  ShapeContacts kept_;  // while there is no list
+  bool has_list_ = false, has_step_ = false;
   std::vector<BodyLoad> loads_;
   std::vector<BodyStep> steps_;
 };

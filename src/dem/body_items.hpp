@@ -1,28 +1,41 @@
-// What the surface of a body gets from those of other bodies and from the ground: the small pass of rank 0.
+// What the shape of a body gets from those of other bodies and from surfaces: the small pass of rank 0, in
+// which shapes are what particles are elsewhere.
 #pragma once
 
+#include <type_traits>
+
 #include "dem/contact_items.hpp"
+#include "dem/rubbing_surfaces.hpp"
 #include "dem/surface_sums.hpp"
 #include "dem/system_items.hpp"
 
 namespace scree {
 
-// Contacts of one surface at an instant, and its share of what is booked of them: half with another body's.
+// Contacts of one shape at an instant, or over the explicit step that ends there, and its share of what is
+// booked of them: half with another body's shape.
 struct BodyLoad {
   InstantSums sums;
-  Real loss = 0;    // dissipation [W]
-  Real energy = 0;  // elastic [J]
-  Real pairs = 0;   // number
+  Real loss = 0;           // dissipation [W]
+  Real energy = 0;         // elastic [J]
+  Real pairs = 0;          // number
+  SpringEnergies springs;  // of the energy, where contacts rub
+  RubbingLosses losses{};  // of the dissipation, over the step [J]
 };
 
 // Over an implicit step.
 struct BodyStep {
   StepSums sums;
   ContactBooks books;
+  Real friction = 0;  // of what they dissipate [J]
 };
 
-// From the side of the body, whose surfaces are the items of this walk: the other one is where the particle
-// is in SurfaceLoad.
+// The shapes as they are looked at.
+struct BodyLook {
+  const Vec3* arm;  // of their centres from those of their bodies [m]
+  Real h;           // of the explicit step that ends now, for laws that move [s]; 0: an instant
+};
+
+// From the side of the body: the other one is where the particle is in SurfaceLoad.
 struct BodyLoadOf {
   struct Found {
     SurfaceLoad contact;
@@ -30,34 +43,64 @@ struct BodyLoadOf {
   };
   template <class Law>
   SCREE_HD Found operator()(const Law& law, const PairState& pair) const {
-    auto load = law.normal_load(pair);  // bodies slide on each other without friction
-    load = {-load.force, load.loss, load.torque_j, load.torque_i};
-    return {{true, load, EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
+    return {{true, law.normal_load(pair).exchanged(), EnergyOf{}(law, pair), {}, {}}, pair.geometry.normal()};
   }
+  template <class Law, class Pair, class History>
+  requires Law::kMoves SCREE_HD LoadWithHistory<Found, History>
+  operator()(const Law& law, const Pair& pair, const History& old) const {
+    const auto outcome = law.load(pair, old);
+    const History& now = std::is_same_v<Pair, InstantPair> ? old : outcome.history;
+    return {{{true, outcome.load.exchanged(), EnergyOf{}(law, pair, now), {}, {}, outcome.losses()},
+             pair.geometry.normal()},
+            outcome.history};
+  }
+  // Of a surface that was evaluated before, as it lies to the shape.
   template <class Views>
-  SCREE_HD const Found* stored(const Views&, Index) const {
-    return nullptr;
+  SCREE_HD const SurfaceLoad* stored(const Views& in, Index entry) const {
+    return in.loads[entry].touches ? &in.loads[entry] : nullptr;
   }
 };
 
-template <class Laws, class Rows>
+// Accepts the step, if it is one.
+template <class Laws, class Rows, class Look>
 struct BodyLoadItem {
-  ContactWalk<Laws, Rows, AtInstant> walk;
-  const Vec3* arm;  // of the surfaces' centres from their bodies' [m]
+  ContactWalk<Laws, Rows, Look> walk;
+  const Vec3* arm;
   BodyLoad* out;
+
+  static constexpr bool kAccepts = std::is_same_v<Look, OverMotion>;
 
   SCREE_HD void operator()(Index i) const {
     BodyLoad sum;
     const auto self = walk.self(i);
-    const auto add = [&](const BodyLoadOf::Found& found, Real share) {
-      SurfaceLoad contact = found.contact;
-      contact.arm = arm[i] - self.p.w * found.normal;
-      sum.sums.add_contact(contact);
-      sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
-    };
-    walk.neighbors(self, BodyLoadOf{}, [&](const auto& found, Index) { add(found, kPairShare); });
-    walk.surfaces(self, BodyLoadOf{}, [&](const auto& found, Index) { add(found, 1); });
+    walk.template neighbors<kAccepts>(self, BodyLoadOf{}, [&](const BodyLoadOf::Found& found, Index) {
+      add(found.contact, place_of(i, self.p.w, found.normal), kPairShare, sum);
+    });
+    walk.template surfaces<kAccepts>(self, BodyLoadOf{}, [&](const auto& found, Index) {
+      if constexpr (std::is_same_v<decltype(found), const SurfaceLoad&>)
+        add(turned(found), arm[i], 1, sum);
+      else
+        add(found.contact, place_of(i, self.p.w, found.normal), 1, sum);
+    });
     out[i] = sum;
+  }
+
+ private:
+  // Where the force acts, from the body's centre: that of a law that moves comes with a couple.
+  SCREE_HD Vec3 place_of(Index i, Real radius, Vec3 normal) const {
+    return LawOf<Laws>::kMoves ? arm[i] : arm[i] - radius * normal;
+  }
+  SCREE_HD static SurfaceLoad turned(SurfaceLoad contact) {
+    contact.load = contact.load.exchanged(), contact.slide_power = 0;
+    return contact;
+  }
+  SCREE_HD static void add(SurfaceLoad contact, Vec3 place, Real share, BodyLoad& sum) {
+    contact.arm = place;
+    sum.sums.add_contact(contact);
+    sum.loss += share * contact.load.loss, sum.energy += share * contact.energy.sum, sum.pairs += share;
+    if constexpr (!LawOf<Laws>::kMoves) return;
+    sum.springs.add(contact.energy.springs, share);
+    contact.losses.scale(share), sum.losses.add(contact.losses);
   }
 };
 
@@ -79,6 +122,58 @@ struct BodyStepItem {
     walk.surfaces(self, of, add);
     sum.books = books_of(walk, i, kPairShare);
     out[i] = sum;
+  }
+};
+
+// A contact over an implicit step in which it rubs.
+struct BodyRubOf {
+  RubbingContactOf contact;
+
+  struct Found {
+    RubbingContact contact;
+    RubbingBooks books;
+    bool lasts;
+    ContactHistory history;
+  };
+  template <class Law>
+  SCREE_HD Found operator()(const Law& law, const RubbingPath& path, const ContactHistory& old) const {
+    const RubbingContact found = contact(law, path, old);
+    return {found, rubbing_books(law, path, found, contact.start.step.resolve_events), found.lasts,
+            found.history};
+  }
+  template <class Views>
+  SCREE_HD const SurfaceRub* stored(const Views&, Index entry) const {
+    const SurfaceRub& at = contact.start.on_bodies[entry];
+    return at.touches ? &at : nullptr;
+  }
+};
+
+template <class Laws, class Rows>
+struct BodyRubItem {
+  RubbingWalk<Laws, Rows> walk;
+  const Vec3* arm;  // at the end of the step
+  BodyStep* out;
+
+  SCREE_HD void operator()(Index i) const {
+    BodyStep sum;
+    const auto self = walk.self(i);
+    const BodyRubOf of{{walk.look.start, walk.in.spin}};
+    const auto add = [&](const auto& found, Real share) {
+      if (!found.books.acts) return;
+      sum.sums.add_contact(SurfaceRub{true, turned(found.contact), {}, arm[i], self.p.w, {}, {}});
+      sum.books.add(found.books, share), sum.friction += share * found.books.friction;
+    };
+    walk.template neighbors<true>(self, of, [&](const auto& found, Index) { add(found, kPairShare); });
+    walk.template surfaces<true>(self, of, [&](const auto& found, Index) { add(found, 1); });
+    out[i] = sum;
+  }
+
+ private:
+  // As the surface sees it: what is odd under exchange of the partners.
+  SCREE_HD static RubbingContact turned(RubbingContact c) {
+    c.normal.normal = -c.normal.normal, c.normal0 = -c.normal0;
+    c.rub.start = -c.rub.start, c.rub.step = -c.rub.step, c.rub.end = -c.rub.end;
+    return c;
   }
 };
 

@@ -52,16 +52,17 @@ class ContactKernels {
   virtual void surface_loads(const SurfaceViews& in, Index n, SurfaceLoad* loads) const = 0;
   virtual void surface_steps(const SurfaceViews& in, Index n, const StepStart& start,
                              const PlacedSurface* start_placed, SurfaceStep* steps) const = 0;
-  // The surfaces on bodies as items: what n of them get from each other and from walls.
-  virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const Vec3* arm,
+  // The shapes of bodies as items: what n of them get from each other and from surfaces, at an instant or
+  // over an explicit step, and over an implicit one, without friction and with it. A step is accepted.
+  virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& look,
                           BodyLoad* out) const = 0;
   virtual void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
                           const Vec3* arm, BodyStep* out) const = 0;
+  virtual void body_rubs(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
+                         const Vec3* arm, BodyStep* out) const = 0;
   // Of the first n items of WallContactItem, over all ranks.
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;
-  virtual void body_wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
-                              Real (&sums)[kWallTerms]) const = 0;  // likewise of surfaces on bodies
   virtual void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const = 0;
   // An output field that reads contacts.
   virtual void output(const ContactViews<PackedRows>& in, const OutputRequest& request) const = 0;

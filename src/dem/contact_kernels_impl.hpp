@@ -56,22 +56,28 @@ class CpuContactKernels : public ContactKernels {
                      const PlacedSurface* start_placed, SurfaceStep* steps) const override {
     for_each(Serial{}, n, SurfaceStepItem<Laws>{in, start, start_placed, laws_, steps});
   }
-  void body_loads(const ContactViews<PackedRows>& in, Index n, const Vec3* arm,
+  void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& look,
                   BodyLoad* out) const override {
-    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows>{{in, laws_}, arm, out});
+    if constexpr (LawOf<Laws>::kMoves)
+      if (look.h > 0) {
+        using Item = BodyLoadItem<Laws, PackedRows, OverMotion>;
+        return for_each(Serial{}, n, Item{{in, laws_, {look.h}}, look.arm, out});
+      }
+    for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows, InstantLook<Laws>>{{in, laws_}, look.arm, out});
   }
   void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
                   BodyStep* out) const override {
     for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out});
   }
+  void body_rubs(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start, const Vec3* arm,
+                 BodyStep* out) const override {
+    over_rubbing_step(in, start, [&](const auto& walk) {
+      for_each(Serial{}, n, BodyRubItem<Laws, PackedRows>{walk, arm, out});
+    });
+  }
   void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,
                  Real (&sums)[kWallTerms]) const override {
     reproducible_sums(n, WallContactItem<Laws, PackedRows>{{in, laws_}, choice}, sums, ranks);
-  }
-  void body_wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
-                      Real (&sums)[kWallTerms]) const override {
-    reproducible_sums(n, WallContactItem<Laws, PackedRows, BodyWallLoadOf, AtInstant>{{in, laws_}, choice},
-                      sums, Ranks());
   }
   void energies(const ContactViews<PackedRows>& in, Index n, const EnergyOutputs& out) const override {
     for_each(Serial{}, n, ContactEnergyItem<Laws, PackedRows>{{in, laws_}, out});

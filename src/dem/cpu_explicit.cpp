@@ -64,10 +64,8 @@ StepsTaken CpuExplicitRun::take_steps(Index most, bool keep_open, StageTimers& t
 // contacts remember of the step is that of the bodies' last place, from where the next step begins.
 void CpuExplicitRun::shape_contacts() {
   items_.side.reopen_step();
-  items_.surfaces.find_loads(
-      items_.store, items_.list.surfaces,
-      {(open_ ? items_.spare_position : items_.store.position).data(), items_.spare_velocity.data(),
-       items_.spare_spin.data(), items_.history.views_before(), h_});
+  items_.find_loads(open_ ? items_.spare_position : items_.store.position, items_.spare_velocity,
+                    items_.spare_spin, items_.history.views_before(), h_);
   items_.side.close_step();
 }
 
@@ -75,7 +73,7 @@ void CpuExplicitRun::shape_contacts() {
 void CpuExplicitRun::close_loads() {
   items_.find_loads(h_);
   items_.side.book_losses(h_);
-  items_.surfaces.book_loads(items_.store, items_.list.surfaces, h_);
+  items_.surfaces.book_loads(items_.side.places(), items_.store, items_.list.surfaces, h_);
 }
 
 void CpuExplicitRun::advance() {

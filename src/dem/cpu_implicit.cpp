@@ -104,6 +104,13 @@ StepNorms CpuImplicitStep::largest_norms() {
   return largest;
 }
 
+void CpuImplicitStep::find_steps() {
+  if (items_.side.size() == 0) return;
+  const SurfaceRows& rows = items_.list.surfaces;
+  items_.surfaces.find_steps(items_.side.places(), items_.store, rows, step_start());
+  items_.side.take_steps(items_.surfaces.step_sums(rows), h_);
+}
+
 ParticleNorms CpuImplicitStep::contact_force() {
   const Index n = items_.layout.owned;
   find_steps();
@@ -205,7 +212,7 @@ void CpuImplicitStep::accept() {
                         store.integrator_loss.data());
   items_.history.accepted();
   items_.side.book_step();
-  items_.surfaces.book_steps(store, items_.list.surfaces);
+  items_.surfaces.book_steps(items_.side.places(), store, items_.list.surfaces);
   for_each(Serial{}, items_.layout.owned,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
 }

@@ -56,7 +56,7 @@ class CpuImplicitStep : public ImplicitStep {
   const Real h_;
 
  private:
-  void find_steps() { items_.surfaces.find_steps(items_.store, items_.list.surfaces, step_start()); }
+  void find_steps();
   ContactMatrix matrix();
   CorrectItem correct_item(Real share);
   StepNorms largest_norms();

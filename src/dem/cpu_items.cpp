@@ -14,7 +14,7 @@ CpuItems::CpuItems(const Model& of, const Ranks& on, std::unique_ptr<ContactKern
       subdomain(of.space),
       side(of, subdomain, on),
       kernels(std::move(law)),
-      surfaces(of, subdomain, side, *kernels),
+      surfaces(of, subdomain, *kernels, of.contact.reach),
       history(kernels->history(), {of.space.min, subdomain.period()}),
       hht(hht_coefficients(of.integrator.hht_alpha)) {
   static_cast<FieldsThere&>(store) = fields_there(of);
@@ -32,6 +32,16 @@ CpuItems::Views CpuItems::views_of(const std::vector<Vec4>& position, const std:
       surfaces.views(store, position, velocity, {list.offsets.data(), list.neighbors.data()}, list.surfaces);
   views.history = history.views(), views.spin = spin.data(), views.reach = model.contact.reach;
   return views;
+}
+
+void CpuItems::find_loads(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
+                          const std::vector<Vec4>& spin, const HistoryViews& of, Real h) {
+  if (side.size() == 0) return;
+  surfaces.find_loads(side.places(), store, list.surfaces,
+                      {position.data(), velocity.data(), spin.data(), of, h});
+  const bool in_step = h > 0;
+  if (in_step && side.surfaces().at_rest()) return;  // nothing there follows the sums
+  side.take_loads(surfaces.load_sums(list.surfaces), h);
 }
 
 bool CpuItems::any_outside() const {

@@ -42,10 +42,11 @@ struct CpuItems {
   // explicit step that ends now, and will be accepted [s]; 0: at this instant.
   void find_loads(Real h = 0) {
     const HistoryViews at = history.views();
-    surfaces.find_loads(store, list.surfaces,
-                        {store.position.data(), store.velocity.data(), store.angular_velocity.data(),
-                         h > 0 ? at : at.only_read(), h});
+    find_loads(store.position, store.velocity, store.angular_velocity, h > 0 ? at : at.only_read(), h);
   }
+  // The same of particles there, with what the contacts remember.
+  void find_loads(const std::vector<Vec4>& position, const std::vector<Vec4>& velocity,
+                  const std::vector<Vec4>& spin, const HistoryViews& of, Real h);
   // Of the list as it is, where particles rotate, with what their contacts remember, until somebody looks at
   // the slots. Matched when they are first asked for.
   PairList& listed_pairs() {

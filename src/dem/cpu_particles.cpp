@@ -10,7 +10,7 @@
 namespace scree {
 
 void CpuParticles::load(const std::vector<Particle>& records, const ShapeLosses& shapes) {
-  items_.side.losses() = items_.ranks.is_root() ? shapes : ShapeLosses{};
+  items_.side.load(shapes);
   count_on_rank(records.size(), items_.model.particles.totals);
   items_.store.load(records);
   items_.history.load({}, items_.store.owned);
@@ -32,6 +32,12 @@ KeptContacts CpuParticles::contacts() {
   const std::vector<std::int64_t>& key = items_.store.row_key;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] < key[b]; });
   return items_.history.contacts(items_.listed()).rows(order);
+}
+
+std::vector<std::int64_t> CpuParticles::works() {
+  std::vector<std::int64_t> words = items_.surfaces.works();
+  items_.side.add_works(words);
+  return words;
 }
 
 void CpuParticles::initial_forces() {

@@ -19,8 +19,10 @@ class CpuParticles : public RankParticles {
   }
   KeptContacts contacts() override;
   ShapeLosses shape_losses() const override { return items_.side.losses(); }
+  void load_shape_contacts(const ShapeContacts& contacts) override { items_.side.load_contacts(contacts); }
+  ShapeContacts shape_contacts() override { return items_.side.shape_contacts(); }
   void load_works(const std::vector<std::int64_t>& words) override { items_.surfaces.load_works(words); }
-  std::vector<std::int64_t> works() override { return items_.surfaces.works(); }
+  std::vector<std::int64_t> works() override;
   void initial_forces() override;
   void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
   std::vector<Leaver> outside() override;

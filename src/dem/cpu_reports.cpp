@@ -30,7 +30,7 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   if (store.rotates) {
     Real of_rotation[kRotationTerms];
     reproducible_sums(n, RotationItem{views_of(store), springs.data()}, of_rotation, items_.ranks);
-    out.rotation = make_rotation_energies(of_rotation);
+    out.rotation = make_rotation_energies(of_rotation, items_.side);
   }
   if (attracts) {
     Real sum[1];
@@ -72,7 +72,7 @@ ContactLines CpuReports::contact_lines() {
   const Index n = store.owned;
   need_loads();
   const std::vector<ShownContact> of_surfaces =
-      items_.surfaces.shown(store, items_.list.surfaces, items_.history.views());
+      items_.surfaces.shown(items_.side.places(), store, items_.list.surfaces, items_.history.views());
   std::vector<Index> counts(static_cast<std::size_t>(n)), offsets(counts.size() + 1);
   LineRequest request{store.row_key.data(), of_surfaces.data(), items_.model.space.min,
                       items_.subdomain.period()};

@@ -42,7 +42,11 @@ RubbingStart CpuRubbingStep::rubbing_start() {
 }
 
 void CpuRubbingStep::find_rubs() {
-  items_.surfaces.find_rubs(items_.store, items_.list.surfaces, rubbing_start(), items_.history.views());
+  if (items_.side.size() == 0) return;
+  const SurfaceRows& rows = items_.list.surfaces;
+  items_.surfaces.find_rubs(items_.side.places(), items_.store, rows, rubbing_start(),
+                            items_.history.views());
+  items_.side.take_steps(items_.surfaces.rub_sums(rows), h_);
 }
 
 RubbingMatrix CpuRubbingStep::matrix() {
@@ -238,7 +242,7 @@ void CpuRubbingStep::accept() {
       {store.contact_loss.data(), store.integrator_loss.data(), store.friction_loss.data()});
   items_.history.accepted();
   items_.side.book_step();
-  items_.surfaces.book_rubs(store, items_.list.surfaces);
+  items_.surfaces.book_rubs(items_.side.places(), store, items_.list.surfaces);
   for_each(Serial{}, n,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
   for_each(Serial{}, n,

@@ -1,5 +1,7 @@
 #include "dem/cpu_surfaces.hpp"
 
+#include <utility>
+
 #include "base/for_each.hpp"
 #include "dem/mesh_touches.hpp"
 
@@ -44,20 +46,19 @@ void touch_ahead(const MeshTouchItem<kReaches>& item, Index groups) {
 
 }  // namespace
 
-CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
-                         const ContactKernels& kernels)
-    : side_(side),
-      kernels_(kernels),
+CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels,
+                         Real reach, std::vector<Real> masses)
+    : kernels_(kernels),
+      masses_(std::move(masses)),
       planes_(wall_planes(model)),
-      reach_(model.contact.reach),
+      reach_(reach),
       box_{model.space.min, subdomain.period()},
       works_(model),
       work_sums_(works_.sums({})),
       moves_(model.rotates()) {}
 
-SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceRows& rows,
-                                      const SurfaceLook& look) const {
-  const SurfacePlaces places = side_.places();
+SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& places, const ParticleStore& store,
+                                      const SurfaceRows& rows, const SurfaceLook& look) const {
   return {look.position,
           look.velocity,
           store.material.data(),
@@ -73,33 +74,30 @@ SurfaceViews CpuSurfaces::entry_views(const ParticleStore& store, const SurfaceR
           records_of(kernels_.history()),
           look.spin,
           look.h,
-          reach_};
+          reach_,
+          masses_.empty() ? nullptr : masses_.data()};
 }
 
-void CpuSurfaces::find_loads(const ParticleStore& store, const SurfaceRows& rows, const SurfaceLook& look) {
-  if (side_.size() == 0) return;
+void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                             const SurfaceLook& look) {
   loads_.resize(rows.surfaces.size());
   if (!rows.groups.empty()) {
     touches_.resize(rows.surfaces.size());
-    const SurfaceViews views = entry_views(store, rows, look);
+    const SurfaceViews views = entry_views(places, store, rows, look);
     const auto groups = static_cast<Index>(rows.groups.size());
     if (reach_ > 0)
       touch_ahead(MeshTouchItem<true>{views, touches_.data()}, groups);
     else
       touch_ahead(MeshTouchItem<false>{views, touches_.data()}, groups);
   }
-  kernels_.surface_loads(entry_views(store, rows, look), static_cast<Index>(rows.by_surface.size()),
+  kernels_.surface_loads(entry_views(places, store, rows, look), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());
-  const bool in_step = look.h > 0;
-  if (in_step && side_.surfaces().at_rest()) return;  // nothing there follows the sums
-  side_.take_loads(sums_of<InstantSums>(loads_, rows, numbers()));
 }
 
-void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows,
-                                  const StepStart& start) {
+void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
+                                  const PlacedSurface* start_placed) {
   for_each(Serial{}, static_cast<Index>(rows.groups.size()),
-           MeshStepTouchItem{views, start.position, side_.start().data(), touches_.data(),
-                             touches_before_.data()});
+           MeshStepTouchItem{views, start.position, start_placed, touches_.data(), touches_before_.data()});
 }
 
 void CpuSurfaces::make_room(const SurfaceRows& rows) {
@@ -107,34 +105,43 @@ void CpuSurfaces::make_room(const SurfaceRows& rows) {
     touches_.resize(rows.surfaces.size()), touches_before_.resize(rows.surfaces.size());
 }
 
-void CpuSurfaces::find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start) {
-  if (side_.size() == 0) return;
+void CpuSurfaces::find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                             const StepStart& start) {
   steps_.resize(rows.surfaces.size()), make_room(rows);
   const SurfaceViews views =
-      entry_views(store, rows, {store.position.data(), store.velocity.data(), nullptr, {}});
-  touch_over_step(views, rows, start);
-  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, side_.start().data(),
+      entry_views(places, store, rows, {store.position.data(), store.velocity.data(), nullptr, {}});
+  touch_over_step(views, rows, start, places.start.data());
+  kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, places.start.data(),
                          steps_.data());
-  side_.take_steps(sums_of<StepSums>(steps_, rows, numbers()), start.h);
 }
 
-void CpuSurfaces::find_rubs(const ParticleStore& store, const SurfaceRows& rows, const RubbingStart& start,
-                            const HistoryViews& history) {
-  if (side_.size() == 0) return;
+void CpuSurfaces::find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                            const RubbingStart& start, const HistoryViews& history) {
   rubs_.resize(rows.surfaces.size()), make_room(rows);
-  const SurfaceViews views = entry_views(
-      store, rows, {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
-  touch_over_step(views, rows, start.step);
-  kernels_.surface_rubs(views, static_cast<Index>(rows.by_surface.size()), start, side_.start().data(),
+  const SurfaceViews views =
+      entry_views(places, store, rows,
+                  {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
+  touch_over_step(views, rows, start.step, places.start.data());
+  kernels_.surface_rubs(views, static_cast<Index>(rows.by_surface.size()), start, places.start.data(),
                         rubs_.data());
-  side_.take_steps(sums_of<StepSums>(rubs_, rows, numbers()), start.step.h);
 }
 
-std::vector<ShownContact> CpuSurfaces::shown(const ParticleStore& store, const SurfaceRows& rows,
-                                             const HistoryViews& history) const {
+std::vector<InstantSums> CpuSurfaces::load_sums(const SurfaceRows& rows) const {
+  return sums_of<InstantSums>(loads_, rows, numbers());
+}
+std::vector<StepSums> CpuSurfaces::step_sums(const SurfaceRows& rows) const {
+  return sums_of<StepSums>(steps_, rows, numbers());
+}
+std::vector<StepSums> CpuSurfaces::rub_sums(const SurfaceRows& rows) const {
+  return sums_of<StepSums>(rubs_, rows, numbers());
+}
+
+std::vector<ShownContact> CpuSurfaces::shown(const SurfacePlaces& places, const ParticleStore& store,
+                                             const SurfaceRows& rows, const HistoryViews& history) const {
   std::vector<ShownContact> shown(rows.surfaces.size());
-  const SurfaceViews views = entry_views(
-      store, rows, {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
+  const SurfaceViews views =
+      entry_views(places, store, rows,
+                  {store.position.data(), store.velocity.data(), store.angular_velocity.data(), history});
   kernels_.shown_surfaces(views, static_cast<Index>(rows.by_surface.size()), loads_.data(), shown.data());
   return shown;
 }
@@ -144,7 +151,8 @@ std::vector<TriangleSums> CpuSurfaces::triangle_sums(const SurfaceRows& rows) co
 }
 
 template <class Works>
-void CpuSurfaces::book(const ParticleStore& store, const SurfaceRows& rows, const Works& works) {
+void CpuSurfaces::book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                       const Works& works) {
   if (!works_.exist()) return;
   struct Add {
     static void add(std::int64_t& word, std::int64_t piece) { word += piece; }
@@ -153,20 +161,24 @@ void CpuSurfaces::book(const ParticleStore& store, const SurfaceRows& rows, cons
                                 works_.materials()};
   if (!terms_.take(static_cast<std::int64_t>(rows.surfaces.size())))
     for_each(Serial{}, static_cast<Index>(works_.triangles()), NormalizeItem{work_sums_.data()});
-  for_each(Serial{}, static_cast<Index>(rows.groups.size()),
-           TriangleBookItem<Works, Add>{entry_views(store, rows, {}), table, works, work_sums_.data()});
+  for_each(
+      Serial{}, static_cast<Index>(rows.groups.size()),
+      TriangleBookItem<Works, Add>{entry_views(places, store, rows, {}), table, works, work_sums_.data()});
 }
 
-void CpuSurfaces::book_loads(const ParticleStore& store, const SurfaceRows& rows, Real h) {
-  book(store, rows, ExplicitWorks{loads_.data(), h, moves_});
+void CpuSurfaces::book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                             Real h) {
+  book(places, store, rows, ExplicitWorks{loads_.data(), h, moves_});
 }
 
-void CpuSurfaces::book_steps(const ParticleStore& store, const SurfaceRows& rows) {
-  book(store, rows, ImplicitWorks{steps_.data()});
+void CpuSurfaces::book_steps(const SurfacePlaces& places, const ParticleStore& store,
+                             const SurfaceRows& rows) {
+  book(places, store, rows, ImplicitWorks{steps_.data()});
 }
 
-void CpuSurfaces::book_rubs(const ParticleStore& store, const SurfaceRows& rows) {
-  book(store, rows, ImplicitRubbingWorks{rubs_.data()});
+void CpuSurfaces::book_rubs(const SurfacePlaces& places, const ParticleStore& store,
+                            const SurfaceRows& rows) {
+  book(places, store, rows, ImplicitRubbingWorks{rubs_.data()});
 }
 
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,

@@ -1,4 +1,4 @@
-// Contacts of the serial backend's particles with surfaces on bodies.
+// Contacts with placed surfaces on the host: of the serial backend's particles, and of the shapes of bodies.
 #pragma once
 
 #include <vector>
@@ -6,35 +6,43 @@
 #include "dem/contact_kernels.hpp"
 #include "dem/particle_store.hpp"
 #include "dem/surface_rows.hpp"
-#include "dem/surface_side.hpp"
+#include "dem/triangle_sums.hpp"
 #include "dem/triangle_works.hpp"
+#include "partition/subdomain.hpp"
 
 namespace scree {
 
 class CpuSurfaces {
  public:
-  CpuSurfaces(const Model& model, const Subdomain& subdomain, SurfaceSide& side,
-              const ContactKernels& kernels);
-  SurfaceNumbers numbers() const { return {planes_.data(), side_.surfaces().ground()}; }
+  // reach, masses: SurfaceViews; no masses: null.
+  CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels, Real reach,
+              std::vector<Real> masses = {});
+  SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
 
   // The surfaces as they are placed, with the particles of the store as `look` has them: for the loads in
-  // views(), and for the side's sums.
-  void find_loads(const ParticleStore& store, const SurfaceRows& rows, const SurfaceLook& look);
+  // views().
+  void find_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                  const SurfaceLook& look);
   // The same over an implicit step, with the particles of the store.
-  void find_steps(const ParticleStore& store, const SurfaceRows& rows, const StepStart& start);
+  void find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                  const StepStart& start);
   // And where contacts rub; history: with what they will remember if the step is accepted.
-  void find_rubs(const ParticleStore& store, const SurfaceRows& rows, const RubbingStart& start,
-                 const HistoryViews& history);
+  void find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+                 const RubbingStart& start, const HistoryViews& history);
+  // What these sum to, per surface that something touches.
+  std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
+  std::vector<StepSums> step_sums(const SurfaceRows& rows) const;
+  std::vector<StepSums> rub_sums(const SurfaceRows& rows) const;
   // Of the last find_loads(), which looked at the store's particles at an instant; per entry.
-  std::vector<ShownContact> shown(const ParticleStore& store, const SurfaceRows& rows,
-                                  const HistoryViews& history) const;
+  std::vector<ShownContact> shown(const SurfacePlaces& places, const ParticleStore& store,
+                                  const SurfaceRows& rows, const HistoryViews& history) const;
   // Of the last find_loads().
   std::vector<TriangleSums> triangle_sums(const SurfaceRows& rows) const;
   // Books at the triangles what the contacts found last have lost over a step that is closed: the explicit
   // one of length h, or the implicit one.
-  void book_loads(const ParticleStore& store, const SurfaceRows& rows, Real h);
-  void book_steps(const ParticleStore& store, const SurfaceRows& rows);
-  void book_rubs(const ParticleStore& store, const SurfaceRows& rows);
+  void book_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows, Real h);
+  void book_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
+  void book_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows);
   std::vector<std::int64_t> works() const {
     return works_.exist() ? works_.words(work_sums_) : std::vector<std::int64_t>{};
   }
@@ -47,18 +55,20 @@ class CpuSurfaces {
                                  const SurfaceRows& rows) const;
 
  private:
-  SurfaceViews entry_views(const ParticleStore& store, const SurfaceRows& rows,
+  SurfaceViews entry_views(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
                            const SurfaceLook& look) const;
   template <class Works>
-  void book(const ParticleStore& store, const SurfaceRows& rows, const Works& works);
+  void book(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+            const Works& works);
   void make_room(const SurfaceRows& rows);  // for the contacts with meshes
-  // These, at both ends of a step.
-  void touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start);
+  // These, at both ends of a step that began with the surfaces there.
+  void touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
+                       const PlacedSurface* start_placed);
 
-  SurfaceSide& side_;
   const ContactKernels& kernels_;
+  std::vector<Real> masses_;
   std::vector<WallPlane> planes_;
-  Real reach_;  // Contact::reach [m]
+  Real reach_;  // [m]
   PeriodicBox box_;
   std::vector<MeshTouch> touches_;  // per entry; empty without meshes
   std::vector<MeshTouchBefore> touches_before_;

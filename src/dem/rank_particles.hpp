@@ -12,7 +12,7 @@
 
 namespace scree {
 
-// All functions but load_contacts(), records(), contacts(), shape_losses() and those of works are collective
+// All functions but load_contacts(), records(), contacts(), those of shapes and those of works are collective
 // (see Backend).
 class RankParticles {
  public:
@@ -28,6 +28,9 @@ class RankParticles {
   virtual void load_contacts(const KeptContacts& contacts) = 0;
   virtual KeptContacts contacts() = 0;
   virtual ShapeLosses shape_losses() const = 0;
+  // The same of the contacts of bodies' shapes, which are rank 0's.
+  virtual void load_shape_contacts(const ShapeContacts& contacts) = 0;
+  virtual ShapeContacts shape_contacts() = 0;
   // What contacts of this rank's particles have lost at the triangles of meshes: words of TriangleWorks, none
   // where the output asks for none. Those of all ranks add up; a state's are loaded on rank 0, after load().
   virtual void load_works(const std::vector<std::int64_t>& words) = 0;

@@ -38,7 +38,7 @@ struct ParticleLedger {
 // other.
 ParticleLedger make_particle_ledger(const Real* sums, const SurfaceSide& bodies);
 // The same of RotationItem, indexed by RotationTerm.
-RotationEnergies make_rotation_energies(const Real* sums);
+RotationEnergies make_rotation_energies(const Real* sums, const SurfaceSide& bodies);
 
 // One entry per particle of this rank, any order.
 struct ParticleOutput {

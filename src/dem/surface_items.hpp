@@ -35,6 +35,9 @@ struct SurfaceViews {
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; these two for laws that move
   Real h = 0;                  // SurfaceLook
   Real reach = 0;              // Contact::reach [m]
+  // Of what carries each placed surface, as damping laws see it; null: nothing that carries one gives way
+  // [kg]
+  const Real* masses = nullptr;
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
   SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
@@ -74,9 +77,11 @@ SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface&
   const SurfacePair pair = surface_pair(surface, is_sphere ? in.shift_of(entry) : in.box.beyond(xyz(p)), p);
   return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
 }
-// Walls, edges and corners have no curvature that Hertz's law knows.
-SCREE_HD PairSize surface_size(const PlacedSurface& surface, Real radius, Real mass) {
-  return {radius, surface.kind == SurfaceKind::sphere ? surface.radius : kInfinity, mass, kInfinity};
+// Walls, edges and corners have no curvature that Hertz's law knows. p, u: of the particle.
+SCREE_HD PairSize surface_size(const SurfaceViews& in, Index surface, Vec4 p, Vec4 u) {
+  const PlacedSurface& placed = in.placed[surface];
+  return {p.w, placed.kind == SurfaceKind::sphere ? placed.radius : kInfinity, u.w,
+          in.masses != nullptr ? in.masses[surface] : kInfinity};
 }
 
 // Contacts at one instant or, of laws that move, over the explicit step that ends there; for the k-th of the
@@ -98,7 +103,7 @@ struct SurfaceLoadItem {
     out.touches = touch.touches;
     if (!out.touches) return in.template remember_none<Law>(entry);
     const PairState state{touch.pair.geometry, xyz(u) - surface.velocity_at(touch.pair.contact),
-                          surface_size(surface, p.w, u.w)};
+                          surface_size(in, in.surface_of(entry), p, u)};
     const Law& law = laws.get(in.material[i], surface.material);
     if constexpr (Law::kMoves)
       find_moving(law, state, touch, surface, entry);
@@ -247,7 +252,7 @@ struct SurfaceStepItem {
     const ContactPath over =
         OverStep{start}.path(pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
                              xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.travel,
-                             surface_size(surface, p.w, u.w));
+                             surface_size(in, in.surface_of(entry), p, u));
     const auto& law = laws.get(in.material[i], surface.material);
     const StepContactOf of{start.resolve_events};
     out.contact = of(law, over);

@@ -60,19 +60,21 @@ class EntryFinder {
     const Real reach = surface.radius + sorted_.largest_radius + search_.skin;
     for_each_in(sorted_, cells_near(sorted_.grid, surface.point + shift, reach), [&](Index i) {
       const SurfacePair pair = surface_pair(surface, shift, position(i));
-      if (pair.geometry.overlap > -search_.skin) add(entry, i, 1);
+      if (pair.geometry.overlap > -search_.skin && may_touch(i, s)) add(entry, i, 1);
     });
   }
   // A plane has no images: it cannot be periodic along its normal.
   void add_near_plane(Index s, Vec3 shift, Entry entry) {
     if (entry.image != kNoShift) return;
     for (Index i = 0; i < sorted_.active; ++i)
-      if (surface_pair(placed(s), shift, position(i)).geometry.overlap > -search_.skin) add(entry, i, 1);
+      if (surface_pair(placed(s), shift, position(i)).geometry.overlap > -search_.skin && may_touch(i, s))
+        add(entry, i, 1);
   }
   void add_near_mesh(Index s, Vec3 shift, Entry entry) {
     const Real skin = search_.surfaces.skin_of(s, search_.skin);
     const Box box = box_near(search_.places, s, shift, sorted_.largest_radius, skin);
     for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
+      if (!may_touch(i, s)) return;
       triangles_.clear();
       const MeshView& mesh = triangles_near(search_.places, s, position(i), shift, skin, triangles_);
       if (!triangles_.empty())
@@ -82,6 +84,9 @@ class EntryFinder {
   void add(Entry entry, Index particle, int times) {
     entry.particle = particle;
     entries_.insert(entries_.end(), static_cast<std::size_t>(times), entry);
+  }
+  bool may_touch(Index particle, Index s) const {
+    return !search_.may_touch || search_.may_touch(particle, s);
   }
   const PlacedSurface& placed(Index s) const { return search_.places.placed[static_cast<std::size_t>(s)]; }
   Vec4 position(Index i) const { return sorted_.position[static_cast<std::size_t>(i)]; }

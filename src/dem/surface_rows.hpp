@@ -1,6 +1,7 @@
 // Which surfaces each particle of a rank is near: for surfaces what the neighbour list is for particles.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,8 @@ struct SurfaceSearch {
   SurfacePlaces places;
   Vec3 period;  // [m]
   Real skin;    // how far past touch surfaces are looked for [m]
+  // Whether a particle may touch a placed surface; none: it may touch all.
+  std::function<bool(Index particle, Index placed)> may_touch{};
 };
 
 // Adds the triangles of the mesh of the placed surface s, moved by the shift, that come within skin of the

@@ -61,6 +61,7 @@ void SurfaceSide::span(const Surface& surface, SurfaceFrame& frame) const {
 }
 
 void SurfaceSide::bring_into_box() {
+  if (ranks_.is_root()) place(), bodies_.leave_list(places());
   for (Index s = 0; s < size(); ++s) {
     const Surface& surface = surfaces_.at(s);
     image_[s] = {};
@@ -72,12 +73,13 @@ void SurfaceSide::bring_into_box() {
 
 void SurfaceSide::build_list(Real skin) {
   listed_ = placed_, listed_axes_ = axes();
-  if (ranks_.is_root()) bodies_.build(placed_, skin);
+  if (ranks_.is_root()) bodies_.build(places(), skin);
 }
 
 void SurfaceSide::keep_start() {
   start_ = placed_, start_axes_ = axes();
-  close_step();
+  bodies_.drop();
+  begin_step();
 }
 
 std::vector<Mat3> SurfaceSide::axes() const {
@@ -150,6 +152,11 @@ Vec3 SurfaceSide::point_with(const std::vector<BodyMotion>& motion, Index s) con
 }
 
 void SurfaceSide::close_step() {
+  bodies_.accept();
+  begin_step();
+}
+
+void SurfaceSide::begin_step() {
   if (!keeps_travel()) return;
   start_before_ = step_start_, step_start_ = motion_;
   for (PlacedSurface& surface : placed_) surface.travel = surface.turn = {};
@@ -159,6 +166,7 @@ void SurfaceSide::close_step() {
 void SurfaceSide::reopen_step() {
   if (!keeps_travel()) return;
   step_start_ = start_before_;
+  bodies_.reopen();
   place();
 }
 
@@ -187,20 +195,18 @@ Real SurfaceSide::displacement_since(const std::vector<PlacedSurface>& then, con
   return largest_displacement(moved, axes, of_mesh);
 }
 
-void SurfaceSide::take_loads(std::span<const InstantSums> of_particles) {
+void SurfaceSide::take_loads(std::span<const InstantSums> of_particles, Real h) {
   loads_.assign(of_particles.begin(), of_particles.end());
   if (!ranks_.is_root()) return;
-  bodies_.find(placed_);
-  for (const BodyLoad& load : bodies_.loads())
-    if (load.sums.contacts > 0) loads_.push_back(load.sums);
+  bodies_.find_loads(places(), h);
+  bodies_.add_sums(loads_);
 }
 
 void SurfaceSide::take_steps(std::span<const StepSums> of_particles, Real h) {
   steps_.assign(of_particles.begin(), of_particles.end());
   if (!ranks_.is_root()) return;
-  bodies_.find(placed_, start_, h);
-  for (const BodyStep& step : bodies_.steps())
-    if (step.sums.contacts > 0) steps_.push_back(step.sums);
+  bodies_.find_steps(places(), h);
+  bodies_.add_sums(steps_);
 }
 
 // Of all ranks, on rank 0.
@@ -243,9 +249,11 @@ std::vector<ContactSum> SurfaceSide::carrier_contacts() const {
   return of_carrier;
 }
 
-std::vector<TriangleLoad> SurfaceSide::triangle_loads(std::vector<TriangleSums> of_particles) const {
+std::vector<TriangleLoad> SurfaceSide::triangle_loads(std::vector<TriangleSums> contacts) const {
   std::vector<TriangleLoad> loads;
-  for (const TriangleSums& sums : merged(std::move(of_particles))) {
+  const std::vector<TriangleSums> of_shapes = bodies_.triangle_sums();  // of rank 0
+  contacts.insert(contacts.end(), of_shapes.begin(), of_shapes.end());
+  for (const TriangleSums& sums : merged(std::move(contacts))) {
     const ExactSum* const t = sums.tangential;
     loads.push_back(
         {sums.surface, sums.triangle, sums.normal.value(), {t[0].value(), t[1].value(), t[2].value()}});
@@ -255,16 +263,39 @@ std::vector<TriangleLoad> SurfaceSide::triangle_loads(std::vector<TriangleSums> 
 
 void SurfaceSide::book_losses(Real h) {
   if (!ranks_.is_root()) return;
-  const Real power = bodies_.loss_power();
-  losses_.contact_loss += h / 2 * (losses_.loss_power + power);
-  losses_.loss_power = power;
+  const BodyContactTotals step = bodies_.totals();
+  if (h > 0) bodies_.book_loads(places(), h);
+  if (model_.rotates()) {
+    losses_.contact_loss += h * step.loss_power;
+    if (h > 0) losses_.rubbing.add(step.losses);
+    return;
+  }
+  losses_.contact_loss += h / 2 * (losses_.loss_power + step.loss_power);
+  losses_.loss_power = step.loss_power;
 }
 
 void SurfaceSide::book_step() {
   if (!ranks_.is_root()) return;
-  ContactBooks sum;
-  for (const BodyStep& step : bodies_.steps()) sum.add(step.books, 1);
-  losses_.contact_loss += sum.dissipated, losses_.integrator_loss += sum.integrator;
+  const BodyStep step = bodies_.step_totals();
+  losses_.contact_loss += step.books.dissipated, losses_.integrator_loss += step.books.integrator;
+  losses_.rubbing.of[kFrictionLoss] += step.friction;
+  bodies_.book_steps(places());
+  bodies_.accept();
+}
+
+void SurfaceSide::load(const ShapeLosses& losses) {
+  losses_ = ranks_.is_root() ? losses : ShapeLosses{};
+  bodies_.load({}), bodies_.clear_works();
+}
+
+void SurfaceSide::add_works(std::vector<std::int64_t>& words) const {
+  if (ranks_.is_root()) scree::add_works(bodies_.works(), words);
+}
+
+ShapeContacts SurfaceSide::shape_contacts() {
+  if (!ranks_.is_root()) return {};
+  place();
+  return bodies_.contacts(places());
 }
 
 ShapePack SurfaceSide::pack() const {

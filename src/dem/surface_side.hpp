@@ -16,11 +16,12 @@
 
 namespace scree {
 
-// Of the contacts of bodies with each other and with walls.
+// Of the contacts of bodies with each other and with surfaces.
 struct ShapeLosses {
   Real contact_loss = 0;     // dissipated since t = 0 [J]
-  Real loss_power = 0;       // the same at t_n, with velocity-Verlet [W]
+  Real loss_power = 0;       // the same at t_n, with velocity-Verlet where nothing rubs [W]
   Real integrator_loss = 0;  // taken out by HHT since t = 0 [J]
+  RubbingLosses rubbing{};   // of contact_loss
 };
 
 // Of the shapes of all bodies.
@@ -40,6 +41,7 @@ class SurfaceSide {
   // Of the carriers: the bodies, then the placed walls.
   void set_motion(std::span<const BodyMotion> motion) { motion_.assign(motion.begin(), motion.end()); }
   // When a list is built: brings each surface into the periodic box, where it stays until the next one.
+  // Before, the surfaces are placed where the bodies are.
   void bring_into_box();
   // What bodies can touch, until a surface has moved by half the skin.
   void build_list(Real skin);
@@ -49,7 +51,7 @@ class SurfaceSide {
   // One entry per placed surface.
   const std::vector<PlacedSurface>& placed() const { return placed_; }
   const std::vector<SurfaceFrame>& frames() const { return frames_; }
-  SurfacePlaces places() const { return {placed_, frames_, meshes_}; }
+  SurfacePlaces places() const { return {placed_, frames_, meshes_, start_}; }
   // By the last place(): displacements, and turns: of spheres, for laws that move, times the radii [m], of
   // others as they are [rad].
   const std::vector<Vec3>& step() const { return step_; }
@@ -63,16 +65,15 @@ class SurfaceSide {
 
   // Start of an implicit step, to look back at.
   void keep_start();
-  const std::vector<PlacedSurface>& start() const { return start_; }
   // Of any place on a surface since then [m].
   Real step_displacement() const { return displacement_since(start_, start_axes_, 1); }
   // Since the list was built, as place() counts [m].
   Real list_displacement() const { return displacement_since(listed_, listed_axes_, kMeshWear); }
 
-  // What touches the surfaces at an instant, and over an implicit step: the backend hands over what its
-  // particles do, in any order and a surface in any number of parts; rank 0 adds what the bodies do to each
-  // other.
-  void take_loads(std::span<const InstantSums> of_particles);
+  // What touches the surfaces at an instant (h = 0) or over the explicit step that ends now, and over an
+  // implicit step: the backend hands over what its particles do, in any order and a surface in any number of
+  // parts; rank 0 adds what the bodies' shapes do.
+  void take_loads(std::span<const InstantSums> of_particles, Real h);
   void take_steps(std::span<const StepSums> of_particles, Real h);
 
   // reduce_wrench: brings the sums of all ranks to rank 0, one message per rank, and adds them up to the
@@ -81,21 +82,28 @@ class SurfaceSide {
   void reduce(ContactWrenches& step, std::vector<BodyWrench>& end) const;
   void reduce(std::vector<BodyWrench>& end) const;
 
-  // Of the bodies among each other. book_losses: of an explicit step of length h from the last loads,
-  // trapezoidal like the particles'; book_step: of an accepted implicit step from the last take_steps().
+  // Of the bodies' shapes. book_losses: of an explicit step of length h from the last loads, like the
+  // particles', by the trapezoidal rule unless contacts rub; book_step: of an implicit step, which is
+  // accepted, from the last take_steps().
   void book_losses(Real h);
   void book_step();
-  ShapeLosses& losses() { return losses_; }
   const ShapeLosses& losses() const { return losses_; }
-  Real elastic_energy() const { return bodies_.elastic_energy(); }  // at the last take_loads() [J]
-  Real pairs() const { return bodies_.pairs(); }
+  BodyContactTotals shape_totals() const { return bodies_.totals(); }  // at the last take_loads()
+  // Of a state, on rank 0: what shapes have lost; of what their contacts remember, and of works, there is
+  // none yet.
+  void load(const ShapeLosses& losses);
+  // What shapes' contacts remember, on rank 0; load: before the first list.
+  void load_contacts(const ShapeContacts& contacts) { bodies_.load(contacts); }
+  ShapeContacts shape_contacts();
 
   // From the last take_loads(). Collective; complete on rank 0.
   std::vector<ContactSum> carrier_contacts() const;  // bodies, then placed walls
   ShapePack pack() const;                            // of the spheres
-  ContactSum on_wall(int wall) const { return bodies_.on_wall(wall); }
-  // Of all ranks' particles, ordered by surface and triangle. Collective; complete on rank 0.
-  std::vector<TriangleLoad> triangle_loads(std::vector<TriangleSums> of_particles) const;
+  ContactSum on_wall(int wall) { return bodies_.on_wall(wall); }
+  // Of all ranks' particles, and of shapes, ordered by surface and triangle. Collective; complete on rank 0.
+  std::vector<TriangleLoad> triangle_loads(std::vector<TriangleSums> contacts) const;
+  // Adds what shapes have lost at the triangles to the words of TriangleWorks; on rank 0.
+  void add_works(std::vector<std::int64_t>& words) const;
 
  private:
   // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].
@@ -107,6 +115,7 @@ class SurfaceSide {
                           Real of_mesh) const;
   Real displacement_of(const PlacedSurface& surface, Vec3 moved, const Mat3& from) const;
   std::vector<Mat3> axes() const;  // of the frames
+  void begin_step();
   void turn_frames();
   void span(const Surface& surface, SurfaceFrame& frame) const;
   // Whether something asks how far the surfaces have come since a step began.

@@ -156,6 +156,7 @@ struct SurfacePlaces {
   std::span<const PlacedSurface> placed;
   std::span<const SurfaceFrame> frames;
   std::span<const MeshView> meshes;
+  std::span<const PlacedSurface> start{};  // where an implicit step began
 };
 
 // A sphere at p (x, y, z, radius) as it lies to a plane or sphere that is moved by `shift`.

@@ -63,17 +63,27 @@ FixedSum sum_at(const std::vector<std::int64_t>& words, std::size_t first) {
   return sum;
 }
 
-}  // namespace
-
-std::vector<std::int64_t> all_works(std::vector<std::int64_t> words, const Ranks& ranks) {
-  if (ranks.alone()) return words;
-  ranks.sum(words);
+// Of words that were added up one by one.
+void normalize(std::vector<std::int64_t>& words) {
   for (std::size_t at = 0; at < words.size(); at += FixedSum::kWords) {
     FixedSum sum = sum_at(words, at);
     sum.normalize();
     std::ranges::copy(sum.word, words.begin() + static_cast<std::ptrdiff_t>(at));
   }
+}
+
+}  // namespace
+
+std::vector<std::int64_t> all_works(std::vector<std::int64_t> words, const Ranks& ranks) {
+  if (ranks.alone()) return words;
+  ranks.sum(words);
+  normalize(words);
   return words;
+}
+
+void add_works(const std::vector<std::int64_t>& more, std::vector<std::int64_t>& words) {
+  for (std::size_t k = 0; k < more.size(); ++k) words[k] += more[k];
+  normalize(words);
 }
 
 std::vector<TriangleWorkValues> work_values(const std::vector<std::int64_t>& words) {

@@ -157,6 +157,8 @@ class TriangleWorks {
 inline constexpr std::size_t kWordsPerTriangle = std::size_t{kTriangleWorks} * FixedSum::kWords;
 // The ranks' words added up. Collective.
 std::vector<std::int64_t> all_works(std::vector<std::int64_t> words, const Ranks& ranks);
+// Adds the words of other contacts at the same triangles.
+void add_works(const std::vector<std::int64_t>& more, std::vector<std::int64_t>& words);
 // What their sums are, each rounded once.
 struct TriangleWorkValues {
   Real impact, sliding;  // [J]

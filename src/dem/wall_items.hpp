@@ -47,27 +47,15 @@ struct WallLoadOf {
   }
 };
 
-// Of a body's surface, which slides on walls without friction.
-struct BodyWallLoadOf {
-  template <class Law>
-  SCREE_HD WallLoad operator()(const Law& law, const PairState& pair) const {
-    return {law.normal_load(pair).force, -pair.geometry.distance * pair.geometry.direction};
-  }
-  template <class Views>
-  SCREE_HD const WallLoad* stored(const Views&, Index) const {
-    return nullptr;
-  }
-};
-
-template <class Laws, class Rows, class Of = WallLoadOf, class Look = InstantLook<Laws>>
+template <class Laws, class Rows>
 struct WallContactItem {
-  ContactWalk<Laws, Rows, Look> walk;
+  ContactWalk<Laws, Rows> walk;
   WallChoice choice;
 
   SCREE_HD WallTerms operator()(Index i) const {
     const auto self = walk.self(i);
     WallTerms sum{};
-    walk.surfaces(self, Of{}, [&](const WallLoad& load, Index wall) {
+    walk.surfaces(self, WallLoadOf{}, [&](const WallLoad& load, Index wall) {
       if (wall == choice.wall) sum = terms(self.p, load);
     });
     return sum;

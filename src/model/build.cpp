@@ -99,7 +99,6 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
     check_start_positions(root, model, share, log);
     check_steps(root, model, log);
     for (const std::string& finding : implausible(root, model)) log.warning(finding);
-    warn_of_missed_walls(model, log);
   });
   return model;
 }

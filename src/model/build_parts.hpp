@@ -56,8 +56,6 @@ void check_bodies_inside(const DeckTable& deck, const Space& space);
 // Whether particles lie in the space, and nothing overlaps more than the deck's limit: an error. A warning
 // for smaller overlaps.
 void check_start_positions(const DeckTable& deck, const Model& model, const Share& share, Log& log);
-// Where the shapes of bodies go through walls that particles touch.
-void warn_of_missed_walls(const Model& model, Log& log);
 // Warns of steps in which particles go farther than their radius; refuses explicit steps past the stability
 // limit.
 void check_steps(const DeckTable& deck, const Model& model, Log& log);

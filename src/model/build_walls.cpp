@@ -1,8 +1,4 @@
 // Walls inside the space, and how they move.
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "model/build_parts.hpp"
 
 namespace scree {
@@ -52,15 +48,6 @@ Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension) 
     if (!table.has(key)) table.fail(key, "missing; without mesh it must be given");
   wall.point = table.vector("point"), wall.normal = unit_vector(table, "normal");
   return wall;
-}
-
-void warn_of_missed_walls(const Model& model, Log& log) {
-  const bool shapes =
-      std::ranges::any_of(model.bodies, [](const Body& body) { return !body.shapes.empty(); });
-  for (const Wall& wall : model.walls)
-    if (shapes && wall.mesh < 0 && wall.is_placed())
-      log.warning(fmt::format("wall \"{}\" moves: particles touch it, the shapes of bodies go through it",
-                              wall.name));
 }
 
 }  // namespace scree

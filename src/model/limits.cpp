@@ -58,6 +58,33 @@ Real explicit_step(const Model& model, const MaterialUse& use, bool dense, const
   return verlet_step_limit(frequency, pair.stiffness, pair.law.normal_damping);
 }
 
+template <class Parts>
+bool has_material(const Parts& parts, int material) {
+  return std::ranges::any_of(parts, [&](const auto& part) { return part.material == material; });
+}
+
+// Whether a body with a shape of material a may touch another with a mesh of material b.
+bool shapes_meet_meshes(const Model& model, int a, int b) {
+  const TouchRule rule(model);
+  const int bodies = static_cast<int>(model.bodies.size());
+  const auto body = [&](int number) -> const Body& { return model.bodies[static_cast<std::size_t>(number)]; };
+  std::vector<int> with_mesh;
+  for (int j = 0; j < bodies; ++j)
+    if (has_material(body(j).meshes, b)) with_mesh.push_back(j);
+  for (int i = 0; i < bodies && !with_mesh.empty(); ++i)
+    if (has_material(body(i).shapes, a) &&
+        std::ranges::any_of(with_mesh, [&](int j) { return rule.may_touch(i, j); }))
+      return true;
+  return false;
+}
+
+// The same of what has shapes, and walls that are meshes of a material.
+bool shapes_meet_walls(const Model& model, const MaterialUse& use, int material) {
+  return use.shapes > 0 && std::ranges::any_of(model.walls, [&](const Wall& wall) {
+           return wall.mesh >= 0 && wall.material == material;
+         });
+}
+
 }  // namespace
 
 Real farthest(const ModelMesh& mesh, Vec3 offset, int dimension) {
@@ -114,7 +141,15 @@ bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, i
   if (first.particles > 0 && second.shapes + second.meshes > 0) return true;
   if (second.particles > 0 && first.shapes + first.meshes > 0) return true;
   if (a == b ? first.particles > 1 : first.particles > 0 && second.particles > 0) return true;
-  return first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch();
+  return bodies_can_meet(model, uses, a, b) || shapes_meet_walls(model, first, b) ||
+         shapes_meet_walls(model, second, a);
+}
+
+bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
+  const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
+  if (first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch()) return true;
+  return (first.shapes > 0 && second.meshes > 0 && shapes_meet_meshes(model, a, b)) ||
+         (second.shapes > 0 && first.meshes > 0 && shapes_meet_meshes(model, b, a));
 }
 
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b) {

@@ -30,6 +30,8 @@ std::vector<MaterialUse> material_uses(const Model& model);
 // Whether something of material a can touch something of material b; shapes of bodies that are all connected
 // with each other cannot.
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
+// Whether bodies can that have something of a and of b.
+bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // The smallest and the lightest of each material; infinite where it has walls alone.
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 

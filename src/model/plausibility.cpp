@@ -59,7 +59,8 @@ std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
   if (model.bodies.empty())
     return "the deck has no particles and no bodies: nothing will move; was the file cut off?";
   std::string only;
-  if (model.integrator.particles == ParticleIntegrator::velocity_verlet)
+  const bool needed = model.rolls();  // implicit steps resist no rolling
+  if (model.integrator.particles == ParticleIntegrator::velocity_verlet && !needed)
     only = "integrator.particles = \"velocity-verlet\"";
   const std::vector<MaterialUse> uses = material_uses(model);
   for (int a = 0; a < model.contact.materials(); ++a)

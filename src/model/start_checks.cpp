@@ -171,15 +171,15 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
   }
 }
 
-// Of particles: shapes do not touch meshes.
 void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items, WorstOverlap& worst) {
   const ItemNames names(model);
   const StartMeshes meshes(model);
+  const TouchRule rule(model);
   std::int64_t of_bodies = names.first_mesh();
   for (const StartMesh& mesh : meshes.all()) {
     const std::int64_t number = mesh.wall < 0 ? of_bodies++ : names.first_wall() + mesh.wall;
     for (const StartItem& item : items)
-      if (item.number < model.particles.totals.count)
+      if (rule.may_touch(names.body(item.number), mesh.body))
         worst.meet(mesh.overlap(item.position, item.radius) / item.radius, item.number, number);
   }
 }
@@ -203,28 +203,44 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
   log.warning("time.step: " + problem + " (estimated for an overlap of 1 % of the radius)");
 }
 
+// Masses of a body on a contact [kg]: pushed along the normal, and rubbed across it; 0: there is none.
+struct MassesOnContact {
+  Real pushed = 0, rubbed = 0;
+};
+
+// Of the lightest body of material a on something of material b: a particle or, where contacts rub, another
+// body or a surface, too. What particles give way is left out: they have substeps of their own.
+MassesOnContact masses_on_contact(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
+  const MaterialUse &body = uses[static_cast<std::size_t>(a)], &other = uses[static_cast<std::size_t>(b)];
+  const MassesOnContact alone{body.smallest_body_mass, body.smallest_rubbed_mass};
+  if (alone.pushed == 0 || !can_meet(model, uses, a, b)) return {};
+  if (!model.rotates()) return other.particles > 0 ? alone : MassesOnContact{};
+  if (!bodies_can_meet(model, uses, a, b))
+    return other.particles > 0 || (body.shapes > 0 && other.is_of_surfaces()) ? alone : MassesOnContact{};
+  return {reduced_mass(body.smallest_body_mass, other.smallest_body_mass),
+          reduced_mass(body.smallest_rubbed_mass, other.smallest_rubbed_mass)};
+}
+
 // The bodies see the contact force at the end of their step, while the particles take substeps: staggered,
 // and stable only while the step is short against the oscillation of a body on its contacts. As above, it is
 // an estimate for exponents other than 1.
 void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
-  if (model.integrator.particles != ParticleIntegrator::velocity_verlet || model.particles.totals.count == 0)
-    return;
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
   const std::vector<MaterialUse> uses = material_uses(model);
   Real fastest = 0;
   bool is_exact = true;
   for (int a = 0; a < model.contact.materials(); ++a) {
     for (int b = 0; b < model.contact.materials(); ++b) {
-      const MaterialUse &of_body = uses[static_cast<std::size_t>(a)],
-                        &of_particles = uses[static_cast<std::size_t>(b)];
-      const Real mass = of_body.smallest_body_mass;
-      if (mass == 0 || of_particles.particles == 0) continue;
-      const PairSize size = smallest_partners(of_body, of_particles);
+      const MassesOnContact masses = masses_on_contact(model, uses, a, b);
+      if (masses.pushed == 0) continue;
+      const PairSize size =
+          smallest_partners(uses[static_cast<std::size_t>(a)], uses[static_cast<std::size_t>(b)]);
       const KelvinVoigt& law = model.contact.law(a, b);
-      Real frequency = contact_frequency(typical_stiffness(law, size), mass);
+      Real frequency = contact_frequency(typical_stiffness(law, size), masses.pushed);
       if (model.rotates())
-        frequency = std::max(frequency,
-                             contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size),
-                                               of_body.smallest_rubbed_mass));
+        frequency = std::max(
+            frequency,
+            contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size), masses.rubbed));
       if (frequency > fastest) fastest = frequency, is_exact = law.of_size(size).exponent == 1;
     }
   }

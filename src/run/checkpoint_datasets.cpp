@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <type_traits>
+#include <utility>
 
 #include "base/error.hpp"
 #include "dem/surfaces.hpp"
@@ -78,6 +79,12 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
   if (checkpoint.integers.count(kWorksName) > 0)
     sizes.works.resize(model.output.adds_up_works() ? kWordsPerTriangle * TriangleWorks(model).triangles()
                                                     : checkpoint.integer_array(kWorksName).size());
+  if (checkpoint.reals.count(kShapeRubbing) > 0) sizes.shapes.rubbing.of[kFrictionLoss] = 1;
+  for (auto [name, values] : {std::pair(kShapeContactsOf, &sizes.shape_contacts.shapes),
+                              std::pair(kShapeContactsWith, &sizes.shape_contacts.keys)})
+    if (checkpoint.integers.count(name) > 0) values->resize(checkpoint.integer_array(name).size());
+  if (checkpoint.reals.count(kShapeHistory) > 0)
+    sizes.shape_contacts.values.resize(checkpoint.real_array(kShapeHistory).size());
   // What contacts remember may be there or not, and so may rotation: no history is none.
   sizes.contacts.numbers = numbers_in(checkpoint), sizes.there = fields_there(checkpoint);
   Checkpoint expected = pack(sizes);

@@ -140,6 +140,7 @@ void Simulation::load_state() {
   if (restart_.changed) take_constants(model_.particles, state_.particles);
   backend_->particles().load(state_.particles, state_.shapes);
   backend_->particles().load_contacts(state_.contacts);
+  backend_->particles().load_shape_contacts(state_.shape_contacts);
   if (ranks_.is_root()) backend_->particles().load_works(state_.works);
   state_.particles = {}, state_.contacts = {}, state_.works = {};
 }

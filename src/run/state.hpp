@@ -30,6 +30,8 @@ struct State {
   FieldsThere there;      // of these
   KeptContacts contacts;  // of these, where the law remembers something
   ShapeLosses shapes;
+  ShapeContacts
+      shape_contacts;  // where the law remembers something; rank 0's, in the backend like the others
   // Lost at the triangles of meshes (TriangleWorks), where the output asks for it; in a checkpoint those of
   // all ranks. Between checkpoints they live in the backend, too.
   std::vector<std::int64_t> works;
@@ -41,6 +43,11 @@ struct State {
 
 // The dataset of State::works.
 inline constexpr const char* kWorksName = "surfaces/works";
+// The datasets of State::shape_contacts, and of what ShapeLosses has lost by rubbing.
+inline constexpr const char *kShapeContactsOf = "shapes/contact_shape",
+                            *kShapeContactsWith = "shapes/contact_partner",
+                            *kShapeHistory = "shapes/contact_history",
+                            *kShapeRubbing = "shapes/rubbing_losses";
 // Which fields the checkpoint's particles have.
 FieldsThere fields_there(const Checkpoint& in);
 // With this rank's particles; to be used as long as the state is there, and the same.

@@ -164,6 +164,7 @@ State& StepLoop::complete_state() {
   state_.there = fields_there(parts_.model);
   state_.contacts = parts_.backend.particles().contacts();
   state_.shapes = parts_.backend.particles().shape_losses();
+  state_.shape_contacts = parts_.backend.particles().shape_contacts();
   state_.works = parts_.backend.particles().works();
   return state_;
 }

@@ -51,6 +51,7 @@ class SimulationRun {
     state_ = state;
     backend_->particles().load(std::exchange(state_.particles, {}), state_.shapes);
     backend_->particles().load_contacts(state_.contacts);
+    backend_->particles().load_shape_contacts(state_.shape_contacts);
     backend_->particles().load_works(state_.works);
     step_.counts() = state_.counts;
     step_.resume(state_.bodies, state_.clock.time);

@@ -11,8 +11,9 @@
 namespace scree {
 
 inline auto fields(const ShapeLosses& l) {
-  const auto& [contact_loss, loss_power, integrator_loss] = l;
-  return std::tie(contact_loss, loss_power, integrator_loss);
+  const auto& [contact_loss, loss_power, integrator_loss, rubbing] = l;
+  const auto& [friction, rolling, twisting] = rubbing.of;
+  return std::tie(contact_loss, loss_power, integrator_loss, friction, rolling, twisting);
 }
 inline auto fields(const BodyWrench& w) {
   const auto& [force, torque, slide_power] = w;

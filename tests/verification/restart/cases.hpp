@@ -115,6 +115,62 @@ stiffness = 1e5
                                         disc("left", "[0.7, 0.4]", "[-29.0456, 0.41]") +
                                         disc("last", "[0.5, 0.6]", "[21.3, 0.1567]");
 
+// Bodies that roll and slide on a floor, on a plate of triangles and on each other, round the periodic axis:
+// what their contacts remember must survive.
+inline const std::string kRubbingShapes = R"(
+gravity = [1.5, -9.8066, 0.3]
+[output]
+history_interval = 0.01
+[space]
+dimension = 3
+min = [0.17, 0.0, 0.0]
+max = [1.0, 1.0, 0.3]
+x_min = "periodic"
+x_max = "periodic"
+y_min = "wall"
+z_max = "wall"
+[time]
+end = 0.3
+step = 2e-4
+control = "fixed"
+[contact]
+skin = 0.02
+[[contact.pairs]]
+stiffness = 2e4
+restitution = 0.4
+friction = 0.4
+tangential_damping_ratio = 0.1
+[[meshes]]
+name = "plate"
+kind = "box"
+size = [0.3, 0.02, 0.3]
+refine = 0.08
+offset = [0.65, 0.01, 0.15]
+[[walls]]
+name = "step"
+mesh = "plate"
+[[bodies]]
+name = "ball"
+count = 3
+kind = "spatial"
+position = [0.25, 0.0501, 0.24]
+spacing = [0.105, 0.0, -0.01]
+velocity = [4.0, -0.1, 0.0]
+mass = 0.5
+inertia_tensor = [5e-4, 5e-4, 5e-4, 0.0, 0.0, 0.0]
+shapes = [{ radius = 0.05 }]
+[[bodies]]
+name = "block"
+kind = "spatial"
+position = [0.65, 0.0595, 0.15]
+velocity = [-1.0, 0.0, 0.0]
+mass = 1.0
+inertia_tensor = [2e-3, 2e-3, 2e-3, 0.0, 0.0, 0.0]
+shapes = [{ radius = 0.02, offset = [0.04, -0.02, 0.04] }, { radius = 0.02, offset = [-0.04, -0.02, 0.04] },
+          { radius = 0.02, offset = [0.04, -0.02, -0.04] }, { radius = 0.02, offset = [-0.04, -0.02, -0.04] },
+          { radius = 0.03, offset = [0.0, 0.03, 0.06] }]
+)";
+
 // Each case with each integrator and step control that it can have.
 inline std::vector<RestartCase> restart_cases() {
   const std::vector<std::vector<std::string>> ways = {
@@ -135,6 +191,7 @@ inline std::vector<RestartCase> restart_cases() {
                      input_model("paper/valley.toml", with({"time.end=0.68", "time.control=fixed"})), false});
     for (const std::string policy : {"remove", "drift"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
+    cases.push_back({"rubbing shapes" + how, model_of(kRubbingShapes, with({})), false});
     // Long runs, and so fast that the list limits adaptive steps.
     if (way == ways.front() || way == ways.back()) {
       cases.push_back({"far drifters" + how, model_of(kFarDrifters, with({})), true});

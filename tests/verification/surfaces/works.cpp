@@ -76,6 +76,34 @@ TEST_CASE("the works of all triangles are what a grain that bounces, slides and 
   }
 }
 
+// In two parts, between which the run is continued from its state.
+TEST_CASE("the works of all triangles are what a body's sphere that bounces, slides and rolls loses") {
+  for (const Method& method : kMethods) {
+    CAPTURE(method.name);
+    const Real inertia = 0.4 * mass() * kRadius * kRadius;
+    const std::string ball = fmt::format(
+        "[[bodies]]\nname = \"ball\"\nkind = \"spatial\"\nposition = [0.013, 0, 0.05]\nvelocity = [0.9, 0.3, "
+        "-0.5]\nmass = {:.17g}\ninertia_tensor = [{:.17g}, {:.17g}, {:.17g}, 0, 0, 0]\nshapes = [{{ radius = "
+        "{} }}]\n",
+        mass(), inertia, inertia, inertia, kRadius);
+    std::string deck = thrown_grain(0.05, "[0.9, 0.3, -0.5]");
+    const std::size_t grain = deck.find("[[particles]]");
+    deck.replace(grain, deck.find("[output]") - grain, ball);
+    const Model model = model_of(deck, with(method.settings, {kWears}));
+    SimulationRun run(model);
+    run.run_until(0.11);
+    SimulationRun onward(model, run.complete_state());
+    onward.run_until(0.8);
+    const State& state = onward.complete_state();
+    const TriangleWorkValues sum = sums_of(state);
+    CHECK(sum.impact > 0.01 * mass());
+    CHECK(sum.sliding > 0.01 * mass());
+    CHECK(near(sum.impact + sum.sliding, state.shapes.contact_loss, {.relative = kBooks}));
+    CHECK(near(sum.sliding, state.shapes.rubbing.of[kFrictionLoss], {.relative = kBooks}));
+    CHECK(near(sum.worn, kWear / kFriction * sum.sliding, {.relative = kBooks}));
+  }
+}
+
 // Books of particles that do not turn are trapezoidal: they have half of the last step's end yet to come.
 TEST_CASE("without friction the works of an impact are the grain's books and half a step's end") {
   for (const std::string method : {"velocity-verlet", "hht"}) {

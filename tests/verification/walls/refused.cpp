@@ -68,17 +68,4 @@ TEST_CASE("in 2D walls turn about z, and an axis is refused") {
   CHECK(model_error(deck("axis = [0, 1], ")).find("about z") != std::string::npos);
 }
 
-TEST_CASE("a deck whose bodies go through a wall that moves is warned of") {
-  WallDeck deck;
-  deck.wall = kFloor + "surface_velocity = [1, 0, 0]\n", deck.contact = "stiffness = 1e4\n";
-  deck.grain = "positions = [[0, 0, 1]]\n";
-  CHECK(model_warnings(deck.text()).empty());
-  deck.rest =
-      "[[bodies]]\nname = \"block\"\nposition = [1, 1, 1]\nmass = 1\ninertia = 1\nshapes = [{ radius = "
-      "0.1 }]\n";
-  const std::vector<std::string> warnings = model_warnings(deck.text());
-  REQUIRE(!warnings.empty());
-  CHECK(warnings.back().find("\"plate\" moves") != std::string::npos);
-}
-
 }  // namespace scree

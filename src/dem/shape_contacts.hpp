@@ -1,0 +1,26 @@
+// What contacts of bodies' shapes remember while there is no list: for the next list, or a file. Rank 0's.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace scree {
+
+// The contacts that were closed at the last step, ordered by shape and key.
+struct ShapeContacts {
+  int numbers = 0;                   // per contact; 0: nothing is remembered
+  std::vector<std::int64_t> shapes;  // number of the placed surface (SurfaceSet)
+  std::vector<std::int64_t> keys;    // the partner, a shape or another surface, as in KeptContacts
+  std::vector<Real> values;          // [contacts][numbers]
+
+  std::span<const Real> values_of(std::size_t contact) const {
+    const auto n = static_cast<std::size_t>(numbers);
+    return {values.data() + contact * n, n};
+  }
+  friend bool operator==(const ShapeContacts&, const ShapeContacts&) = default;
+};
+
+}  // namespace scree
