@@ -361,7 +361,7 @@ const TableKeys& wall_keys() {
        vector("point", "m").left_out("mesh is given").about("Any point of the plane."),
        vector("normal", "")
            .left_out("mesh is given")
-           .about("Direction into the free side, of any length but 0."),
+           .about("Direction into the free side, of any length but 0, across no periodic axis."),
        text("mesh")
            .left_out("point and normal are given")
            .about("Name of one of the meshes, in place of a plane; its frame is the global one at t = 0."),

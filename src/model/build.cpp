@@ -120,7 +120,7 @@ void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
     if (side != kSideNames.end() &&
         space.boundary[static_cast<std::size_t>(side - kSideNames.begin())] == Boundary::wall)
       entry.fail("name", "is the name of a side of the space that is a wall; choose another one");
-    model.walls.push_back(build_wall(entry, names, space.dimension));
+    model.walls.push_back(build_wall(entry, names, space));
   }
   const bool walled = std::count(space.boundary.begin(), space.boundary.end(), Boundary::wall) > 0;
   if (walled || table.has("wall_material"))

@@ -16,7 +16,7 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names);
 void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
 // dimension: of the space.
-Wall build_wall(const DeckTable& table, const ModelNames& names, int dimension);
+Wall build_wall(const DeckTable& table, const ModelNames& names, const Space& space);
 void build_time(const DeckTable& deck, Model& model);  // control and end; also the integrator
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);

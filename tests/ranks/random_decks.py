@@ -63,9 +63,10 @@ class DeckMaker:
             self.features.append(feature)
         return has
 
-    def direction(self):
+    def direction(self, axes=(True, True, True)):
+        """A unit vector along these axes."""
         while True:
-            way = [self.chance.uniform(-1, 1) for _ in range(self.axes)]
+            way = [self.chance.uniform(-1, 1) if axes[k] else 0.0 for k in range(self.axes)]
             size = math.hypot(*way)
             if 0.2 < size < 1:
                 return [x / size for x in way]
@@ -152,8 +153,10 @@ class DeckMaker:
         return [self.chance.uniform(0.2, 0.8) * size for size in SIZE[:self.axes]]
 
     def add_surfaces(self):
-        if self.choose("moving plane", 0.3):
-            self.deck.setdefault("walls", []).append(self.moving_plane())
+        plane = self.moving_plane() if self.chance.random() < 0.3 else None
+        if plane:
+            self.features.append("moving plane")
+            self.deck.setdefault("walls", []).append(plane)
         if self.spatial and self.choose("mesh on the ground", 0.35):
             self.add_mesh("hill")
             moves = {"motions": [self.motion()]} if self.choose("moving mesh", 0.4) else {}
@@ -167,7 +170,10 @@ class DeckMaker:
                 "displacement": {"kind": "sine", "amplitude": 0.5 * RADIUS, "frequency": self.chance.uniform(5, 40)}}
 
     def moving_plane(self):
-        normal = self.direction()
+        closed = [self.deck["space"].get(f"{axis}_min") != "periodic" for axis in "xyz"[:self.axes]]
+        if not any(closed):
+            return None
+        normal = self.direction(closed)
         plane = {"name": "plane", "point": [x - 0.3 * n for x, n in zip((0.25, 0.2, 0.15), normal)], "normal": normal,
                  "material": "rough", "motions": [self.motion()]}
         if self.chance.random() < 0.5:
@@ -185,7 +191,9 @@ class DeckMaker:
         self.deck.setdefault("meshes", []).append({"name": name} | kind | turned | offset)
 
     def add_body(self, name):
-        body = {"name": name, "position": self.place(), "mass": 0.5,
+        place = self.place()
+        place[0] = (0.2 + 0.3 * len(self.deck.get("bodies", []))) * SIZE[0]  # beside the others
+        body = {"name": name, "position": place, "mass": 0.5,
                 "velocity": [self.chance.uniform(-1, 1) for _ in range(self.axes)]}
         in_space = self.spatial and self.spatial_bodies()
         if in_space:

@@ -80,6 +80,22 @@ TEST_CASE("names of what a history records the contacts of") {
                  "\"a\" is the name of 2 bodies, rows and walls; it must be that of one"));
 }
 
+TEST_CASE("planes do not stand across periodic axes, nor turn there") {
+  const std::vector<std::string> periodic{"space.x_min=periodic", "space.x_max=periodic"};
+  const auto deck = [](const std::string& normal, const std::string& motions) {
+    return kSmallDeck + "[[walls]]\nname = \"floor\"\npoint = [0, 0]\nnormal = " + normal + "\n" + motions +
+           kPair;
+  };
+  const std::string slope = "[0.1, 1]",
+                    turns = "motions = [{ type = \"rotation\", point = [0, 0], angle = 1.0 }]\n";
+  CHECK(contains(model_error(deck(slope, ""), periodic),
+                 "walls.floor.normal = [0.1, 1]: has a part along x, which is periodic"));
+  CHECK(
+      contains(model_error(deck("[0, 1]", turns), periodic), "turns the plane across x, which is periodic"));
+  CHECK(model_of(deck("[0, 1]", ""), periodic).walls.size() == 1);
+  CHECK(model_of(deck(slope, turns)).walls.size() == 1);
+}
+
 TEST_CASE("a row's bodies are told where one is not there") {
   const auto error = [](const std::string& body) {
     return model_error(kSmallDeck + kBodies +
