@@ -65,7 +65,6 @@ template <>
 inline constexpr auto kWords<Precision> = std::to_array<Word<Precision>>({{"double", Precision::full},
                                                                           {"mixed", Precision::mixed}});
 
-// The bodies' velocities at t = 0.
 // Of surfaces with a work of adhesion.
 enum class Adhesion {
   jkr,  // a neck that holds beyond touch: Johnson, Kendall, Roberts
@@ -75,6 +74,7 @@ template <>
 inline constexpr auto kWords<Adhesion> = std::to_array<Word<Adhesion>>({{"jkr", Adhesion::jkr},
                                                                         {"dmt", Adhesion::dmt}});
 
+// The bodies' velocities at t = 0.
 enum class StartVelocities {
   given,      // the run is refused where they contradict joints and drivers
   consistent  // changed to agree with them
