@@ -236,14 +236,17 @@ class Runner:
         command += [self.arguments.scree, "run", self.folder / "deck.toml", "--backend", backend, "--output",
                     self.folder / name, "--set", "output.history_csv=true", *words]
         command += ["--overwrite"] if overwrite else []
+        process = subprocess.Popen([str(word) for word in command], env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
         try:
-            ended = subprocess.run([str(word) for word in command], env=ENVIRONMENT, capture_output=True, text=True,
-                                   timeout=LIMIT)
+            errors = process.communicate(timeout=LIMIT)[1]
         except subprocess.TimeoutExpired:
+            process.terminate()  # mpirun takes its ranks along, which a kill would leave behind
+            process.communicate()
             return HANGS, f"not ended after {LIMIT} s"
-        if ended.returncode != DONE:
-            lines = [line for line in ended.stderr.splitlines() if "scree" in line or "error" in line] or [""]
-            return ended.returncode, lines[0]
+        if process.returncode != DONE:
+            lines = [line for line in errors.splitlines() if "scree" in line or "error" in line] or [""]
+            return process.returncode, lines[0]
         record = json.loads((self.folder / name / "run_record.json").read_text())
         history = (self.folder / name / "history.csv").read_bytes()
         return DONE, (record["run"]["state_hash"], hashlib.sha256(history).hexdigest()[:16])
