@@ -38,8 +38,9 @@ struct RememberingBox {
 
   // state: of this rank's share of the ids.
   void start(const State& state) {
-    backend->particles().load(state.particles, {});
+    backend->particles().load(state.particles, state.shapes);
     backend->particles().load_contacts(state.contacts);
+    backend->particles().load_shape_contacts(state.shape_contacts);
     backend->list().place_bodies(motion);
     backend->list().build(model.contact.skin, timers);
   }
@@ -77,6 +78,8 @@ struct RememberingBox {
     State state;
     state.particles = backend->particles().records();
     state.contacts = backend->particles().contacts();
+    state.shapes = backend->particles().shape_losses();
+    state.shape_contacts = backend->particles().shape_contacts();
     return state;
   }
   State in_id_order() const {
