@@ -110,7 +110,9 @@ TEST_CASE(
       const Model model = kind.of(moving_rubbing_box(c, Leaving::drift));
       RememberingBox run(model, {}, make_test_backend), box(model, {}, make_test_backend);
       run.start(), run.take_steps(60);
-      box.motion = run.motion, box.start(run.state());
+      State state = run.state();
+      state.shape_contacts = {};  // those of bodies among each other have no lines
+      box.motion = run.motion, box.start(state);
       box.backend->particles().initial_forces();
       const std::string before = box.hash();
       const ContactLines lines = check_lines(model, *box.backend);
