@@ -177,6 +177,7 @@ class DeviceArray {
     size_ = size;
   }
   std::size_t size() const { return size_; }
+  std::size_t capacity() const { return capacity_; }
   T* data() { return data_; }
   const T* data() const { return data_; }
   void swap(DeviceArray& other) noexcept {

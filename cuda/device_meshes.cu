@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "base/countable.hpp"
 #include "dem/mesh_touches.hpp"
 #include "device_meshes.cuh"
@@ -23,50 +25,64 @@ __device__ void visit_near(const MeshSearch& in, const MeshView& mesh, const Cel
   });
 }
 
-// Counts the particles near a mesh and the triangles that they are near.
-struct CountNearItem {
-  MeshSearch in;
-  const MeshView* meshes;
-  CellsNear cells;
-  Index* cursors;
+// The cells near meshes, one after the other: those of cells[k] are first[k] ... first[k + 1] - 1.
+struct SearchedCells {
+  const CellsNear* cells;
+  const std::int64_t* first;
+  Index count;  // of cells[]
 
-  __device__ void operator()(Index c) const {
-    const MeshView& mesh = meshes[in.frames[in.placed[cells.placed].frame].mesh];
-    cells.for_each_particle(in, c, [&](Index i) {
-      Index triangles = 0;
-      visit_near(in, mesh, cells, in.position[i], [&](Index) { ++triangles; });
-      if (triangles > 0) atomicAdd(&cursors[kGroups], 1), atomicAdd(&cursors[kTriangles], triangles);
-    });
+  // To which of cells[] a cell belongs.
+  __device__ Index owner(std::int64_t c) const {
+    Index low = 0, high = count;
+    while (high - low > 1) {
+      const Index middle = low + (high - low) / 2;
+      (first[middle] <= c ? low : high) = middle;
+    }
+    return low;
   }
 };
 
-// Makes the groups, in any order, with their triangles and the number of entries that they need.
+// Makes the groups, in any order, with their triangles and the number of entries that they need; those for
+// which there is no room are only counted.
 struct FindNearItem {
   MeshSearch in;
   const MeshView* meshes;
-  CellsNear cells;
+  SearchedCells searched;
+  std::int64_t first_cell;
   Index* cursors;
   NearMesh* near;
   MeshGroup* groups;
   Index* triangles;
-  Index* counts;  // of entries per particle
+  std::size_t room[kCursors];
 
-  __device__ void operator()(Index c) const {
+  __device__ void operator()(Index k) const {
+    const std::int64_t c = first_cell + k;
+    const Index owner = searched.owner(c);
+    const CellsNear& cells = searched.cells[owner];
     const MeshView& mesh = meshes[in.frames[in.placed[cells.placed].frame].mesh];
-    cells.for_each_particle(in, c, [&](Index i) {
+    cells.for_each_particle(in, static_cast<Index>(c - searched.first[owner]), [&](Index i) {
       const Vec4 p = in.position[i];
       Index found = 0;
       visit_near(in, mesh, cells, p, [&](Index) { ++found; });
       if (found == 0) return;
       const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
+      if (g < 0 || static_cast<std::size_t>(g) >= room[kGroups]) return;
+      if (first < 0 || static_cast<std::size_t>(first) + static_cast<std::size_t>(found) > room[kTriangles])
+        return;
       Index* to = triangles + first;
       visit_near(in, mesh, cells, p, [&](Index t) { *to++ = t; });
-      const Index entries = slots_needed(mesh, triangles + first, found);
       near[g] = {i, cells.number, cells.image};
-      groups[g] = {0, entries, first, found};
-      atomicAdd(&counts[i], entries);
+      groups[g] = {0, slots_needed(mesh, triangles + first, found), first, found};
     });
   }
+};
+
+struct CountItem {
+  const NearMesh* near;
+  const MeshGroup* groups;
+  Index* counts;  // of entries per particle
+
+  __device__ void operator()(Index g) const { atomicAdd(&counts[near[g].particle], groups[g].entries); }
 };
 
 struct FillItem {
@@ -171,22 +187,40 @@ void DeviceMeshes::find(Device device, const MeshSearch& search, const SurfacePl
   count_ = 0;
   if (instances_.empty()) return;
   const std::vector<CellsNear> near = cells_near_meshes(search, places, largest_radius);
+  if (!find_groups(device, search, near)) find_groups(device, search, near);
+  for_each(device, count_, CountItem{near_.data(), groups_.data(), counts});
+}
+
+// False: there was not room enough, and is now.
+bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const std::vector<CellsNear>& near) {
+  std::vector<std::int64_t> first{0};
+  for (const CellsNear& cells : near) first.push_back(first.back() + cells.count());
+  const SearchedCells searched{uploaded(cells_, near, device.stream),
+                               uploaded(first_cell_, first, device.stream), static_cast<Index>(near.size())};
   cursors_.zero(device.stream);
-  for (const CellsNear& cells : near)
-    for_each(device, cells.count(), CountNearItem{search, views_.data(), cells, cursors_.data()});
+  const std::size_t room = std::min(near_.capacity(), groups_.capacity());
+  constexpr std::int64_t kAtOnce = 1 << 30;
+  for (std::int64_t c = 0; c < first.back(); c += kAtOnce)
+    for_each(device, static_cast<Index>(std::min(kAtOnce, first.back() - c)),
+             FindNearItem{search,
+                          views_.data(),
+                          searched,
+                          c,
+                          cursors_.data(),
+                          near_.data(),
+                          groups_.data(),
+                          triangles_.data(),
+                          {room, triangles_.capacity()}});
   copy_async(h_counts_.data(), cursors_.data(), kCursors, device.stream);
   wait_for(device.stream);
   if (h_counts_[kTriangles] < 0)
     countable(std::size_t{1} << 32, "stage neighbors: more triangles near particles");
   count_ = h_counts_[kGroups];
-  near_.resize_with_spare(static_cast<std::size_t>(count_));
-  groups_.resize_with_spare(static_cast<std::size_t>(count_));
-  triangles_.resize_with_spare(static_cast<std::size_t>(h_counts_[kTriangles]));
-  cursors_.zero(device.stream);
-  for (const CellsNear& cells : near)
-    for_each(device, cells.count(),
-             FindNearItem{search, views_.data(), cells, cursors_.data(), near_.data(), groups_.data(),
-                          triangles_.data(), counts});
+  const auto groups = static_cast<std::size_t>(count_),
+             triangles = static_cast<std::size_t>(h_counts_[kTriangles]);
+  const bool complete = groups <= room && triangles <= triangles_.capacity();
+  near_.resize_with_spare(groups), groups_.resize_with_spare(groups), triangles_.resize_with_spare(triangles);
+  return complete;
 }
 
 void DeviceMeshes::fill(Device device, Index* next, Index* surfaces, std::int8_t* images) {

@@ -101,12 +101,15 @@ class DeviceMeshes {
 
   std::vector<CellsNear> cells_near_meshes(const MeshSearch& search, const SurfacePlaces& places,
                                            Real largest_radius) const;
+  bool find_groups(Device device, const MeshSearch& search, const std::vector<CellsNear>& near);
 
   std::vector<Arrays> meshes_;
   DeviceArray<MeshView> views_;
   SurfaceSet surfaces_;
   std::vector<Index> instances_;  // placed surfaces that are meshes
   Index count_ = 0;               // of groups
+  DeviceArray<CellsNear> cells_;
+  DeviceArray<std::int64_t> first_cell_;
   DeviceArray<NearMesh> near_;
   DeviceArray<MeshGroup> groups_;
   DeviceArray<Index> triangles_, cursors_;
