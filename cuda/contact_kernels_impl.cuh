@@ -114,18 +114,32 @@ __global__ void __launch_bounds__(kSurfaceThreads)
   out.sum[term] = sum;
 }
 
-template <class Laws>
-struct LoadInRunItem {
-  SurfaceViews in;
-  OpenStepLook look;
-  Laws laws;
-  SurfaceLoad* loads;
+inline constexpr int kLoadThreads = 128;
+// Registers for so many blocks: the step goes on beside them.
+inline constexpr int kLoadBlocks = 6;
+using LoadRecords = WarpRecords<SurfaceLoad, kLoadThreads>;
 
-  __device__ void operator()(Index k) const {
-    SurfaceViews now = in;
-    if (look.open(now)) SurfaceLoadItem<Laws>{now, laws, loads}(k);
+// Contacts with placed surfaces of whatever explicit step is open; the k-th by_surface.
+template <class Laws>
+__global__ void __launch_bounds__(kLoadThreads, kLoadBlocks)
+    load_in_run_kernel(Index n, const __grid_constant__ SurfaceViews in, const OpenStepLook look,
+                       const Laws laws, SurfaceLoad* loads) {
+  __shared__ LoadRecords::Shared shared;
+  SurfaceViews now = in;
+  if (!look.open(now)) return;
+  const LoadRecords records(shared);
+  const Index k = thread_index();
+  Index touching = -1;
+  if (k < n) {
+    const Index entry = now.entries.by_surface[k];
+    SurfaceLoadItem<Laws>{now, laws, only(records.own(), entry)}(k);
+    if (records.own().touches)
+      touching = entry;
+    else
+      loads[entry].touches = false;
   }
-};
+  records.store(loads, touching);
+}
 
 // From the particle `first` on.
 template <class Item>
@@ -171,7 +185,10 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void surface_loads_in_run(Device device, const SurfaceViews& in, const OpenStepLook& look, Index n,
                             SurfaceLoad* loads) const override {
-    for_each(device, n, LoadInRunItem<Laws>{in, look, laws_, loads});
+    if (n == 0) return;
+    load_in_run_kernel<<<blocks_for(n, kLoadThreads), kLoadThreads, 0, device.stream>>>(n, in, look, laws_,
+                                                                                        loads);
+    require_cuda(cudaGetLastError(), "contacts with surfaces");
   }
   void surface_steps(Device device, const SurfaceViews& in, const SurfaceChunks& chunks,
                      const SurfaceStart& start, SurfaceStep* steps, StepSums* sums) const override {

@@ -5,6 +5,7 @@
 #include "device_meshes.cuh"
 #include "for_each.cuh"
 #include "mesh/mesh_tree.hpp"
+#include "staging.cuh"
 
 namespace scree {
 namespace {
@@ -112,17 +113,49 @@ struct GroupItem {
   }
 };
 
-template <bool kReaches>
-struct TouchInRunItem {
-  SurfaceViews in;
-  OpenStepLook look;
-  MeshTouch* touches;
+constexpr int kTouchThreads = 128;
+// Registers for so many blocks: what a particle touches takes long, and the step goes on beside it.
+constexpr int kTouchBlocks = 8;
+using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
-  __device__ void operator()(Index g) const {
-    SurfaceViews now = in;
-    if (look.open(now)) MeshTouchItem<kReaches>{now, touches}(g);
-  }
+// The contacts now.
+struct StateLook {
+  __device__ bool open(SurfaceViews&) const { return true; }
 };
+
+// Most groups have one entry.
+template <bool kReaches, class Look>
+__global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
+    touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
+                 MeshTouch* touches) {
+  __shared__ TouchRecords::Shared shared;
+  SurfaceViews now = views;
+  if (!look.open(now)) return;
+  const TouchRecords records(shared);
+  const Index g = thread_index();
+  Index only_entry = -1;
+  if (g < groups) {
+    const MeshGroup group = now.meshes.groups[g];
+    if (group.entries == 1) {
+      only_entry = group.entry;
+      records.own().triangle = touches[only_entry].triangle;
+    }
+    MeshTouchItem<kReaches>{now, only_entry < 0 ? touches : only(records.own(), only_entry)}(g);
+  }
+  records.store(touches, only_entry);
+}
+
+template <class Look>
+void queue_touches(Device device, Index groups, const SurfaceViews& views, const Look& look,
+                   MeshTouch* touches) {
+  if (groups == 0) return;
+  const unsigned blocks = blocks_for(groups, kTouchThreads);
+  if (views.reach > 0)
+    touch_kernel<true><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
+  else
+    touch_kernel<false><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
+  require_cuda(cudaGetLastError(), "contacts with meshes");
+}
 
 // Whether a cell of the grid reaches into the box.
 bool meets(const CellGrid& grid, const Box& box) {
@@ -241,17 +274,11 @@ void DeviceMeshes::make_room_over_step(Index entries) {
 }
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
-  if (views.reach > 0)
-    for_each(device, count_, MeshTouchItem<true>{views, touches_.data()});
-  else
-    for_each(device, count_, MeshTouchItem<false>{views, touches_.data()});
+  queue_touches(device, count_, views, StateLook{}, touches_.data());
 }
 
 void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look) {
-  if (views.reach > 0)
-    for_each(device, count_, TouchInRunItem<true>{views, look, touches_.data()});
-  else
-    for_each(device, count_, TouchInRunItem<false>{views, look, touches_.data()});
+  queue_touches(device, count_, views, look, touches_.data());
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

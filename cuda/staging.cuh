@@ -70,6 +70,37 @@ class WarpStage {
   Index first_, n_;
 };
 
+// A record per lane, for items that write theirs anywhere in an array: the warp copies each out side by side.
+template <class T, int kThreads>
+class WarpRecords {
+ public:
+  struct Shared {
+    alignas(16) unsigned char bytes[kThreads * sizeof(T)];
+  };
+  __device__ explicit WarpRecords(Shared& shared)
+      : records_(reinterpret_cast<T*>(shared.bytes) + threadIdx.x / warpSize * warpSize) {}
+
+  __device__ T& own() const { return records_[lane()]; }
+  // All lanes of a warp call this: the lane's record becomes to[at]; at -1: it has none.
+  __device__ void store(T* to, Index at) const {
+    static_assert(sizeof(T) % sizeof(double) == 0);
+    constexpr Index kUnits = sizeof(T) / sizeof(double), kLanes = kUnits <= 8 ? 8 : kUnits <= 16 ? 16 : 32;
+    __syncwarp();
+    for (Index first = 0; first < warpSize; first += warpSize / kLanes) {
+      const Index owner = first + lane() / kLanes, place = __shfl_sync(~0u, at, owner);
+      if (place < 0) continue;
+      const auto* from = reinterpret_cast<const double*>(records_ + owner);
+      auto* out = reinterpret_cast<double*>(to + place);
+      for (Index unit = lane() % kLanes; unit < kUnits; unit += kLanes) out[unit] = from[unit];
+    }
+    __syncwarp();
+  }
+
+ private:
+  __device__ static Index lane() { return static_cast<Index>(threadIdx.x % warpSize); }
+  T* records_;
+};
+
 // An array of which an item reads and writes only its own element i: that element alone.
 template <class T>
 __device__ T* only(T& element, Index i) {
