@@ -115,8 +115,7 @@ __global__ void __launch_bounds__(kSurfaceThreads)
 }
 
 inline constexpr int kLoadThreads = 128;
-// Registers for so many blocks: the step goes on beside them.
-inline constexpr int kLoadBlocks = 6;
+inline constexpr int kLoadBlocks = 4;  // on a multiprocessor: with more, registers spill
 using LoadRecords = WarpRecords<SurfaceLoad, kLoadThreads>;
 
 // Contacts with placed surfaces of whatever explicit step is open; the k-th by_surface.

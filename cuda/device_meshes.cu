@@ -114,8 +114,7 @@ struct GroupItem {
 };
 
 constexpr int kTouchThreads = 128;
-// Registers for so many blocks: what a particle touches takes long, and the step goes on beside it.
-constexpr int kTouchBlocks = 8;
+constexpr int kTouchBlocks = 4;  // on a multiprocessor: with more, registers spill
 using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
 // The contacts now.
