@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """A bed of spheres on an analytic plane, and on the same plane cut into triangles: time per step, and whether the
 states have the same bits.
-Usage: mesh_bed.py SCREE [--backend cuda] [--side 100] [--layers 100] [--steps 1000] [--edge 0.0107]
-One layer: every sphere touches the floor, and no other."""
+Usage: mesh_bed.py SCREE [--backend cuda] [--side 100] [--layers 100] [--steps 1000] [--edge 0.0107] [--ranks 1]
+One layer: every sphere touches the floor, and no other. --ranks 1 2: the bed on one rank, and one twice as long on
+two, each with a GPU of its own (weak scaling)."""
 
 import argparse
 import json
@@ -19,7 +20,7 @@ DECK = """gravity = [0.0, 0.0, -9.81]
 [space]
 dimension = 3
 min = [0.0, 0.0, -0.1]
-max = [{width}, {width}, {height}]
+max = [{length}, {width}, {height}]
 x_min = "periodic"
 x_max = "periodic"
 y_min = "periodic"
@@ -42,7 +43,7 @@ name = "bed"
 kind = "lattice"
 origin = [0.0105, 0.0105, 0.00999]
 spacing = [{spacing}, {spacing}, {layer}]
-size = [{side}, {side}, {layers}]
+size = [{along}, {side}, {layers}]
 radius = 0.01
 random_velocity = 0.05
 material = "grain"
@@ -50,14 +51,21 @@ material = "grain"
 history_interval = 0.01
 """
 PLANE = '[[walls]]\nname = "floor"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n'
-MESH = ('[[meshes]]\nname = "floor"\nkind = "rectangle"\nsize = [{size}, {size}]\noffset = [{middle}, {middle}, 0.0]\n'
+MESH = ('[[meshes]]\nname = "floor"\nkind = "rectangle"\nsize = [{length}, {width}]\n'
+        'offset = [{along}, {across}, 0.0]\n'
         'refine = {edge}\n[[walls]]\nname = "floor"\nmesh = "floor"\n')
 
 
-def deck(side, layers, steps):
+def deck(side, layers, steps, ranks=1):
     """The bed without a floor."""
-    return DECK.format(width=SPACING * side, height=0.5 + 1.2 * LAYER * layers, end=2e-5 * steps, side=side,
-                       layers=layers, spacing=SPACING, layer=LAYER)
+    return DECK.format(length=SPACING * side * ranks, width=SPACING * side, height=0.5 + 1.2 * LAYER * layers,
+                       end=2e-5 * steps, along=side * ranks, side=side, layers=layers, spacing=SPACING, layer=LAYER)
+
+
+def mesh(side, edge, ranks=1):
+    """The floor, which goes on past the bed's sides."""
+    length, width = SPACING * side * ranks, SPACING * side
+    return MESH.format(length=length + 0.3, width=width + 0.3, along=length / 2, across=width / 2, edge=edge)
 
 
 def milliseconds(record, steps):
@@ -65,21 +73,28 @@ def milliseconds(record, steps):
     return f"{1e3 * sum(s['seconds'] for s in record['stages'] if s['stage'] != 'output') / steps:8.4f}"
 
 
-def run(scree, backend, text):
+def run(scree, backend, text, ranks=1):
     with tempfile.TemporaryDirectory(prefix="scree_mesh_bed_") as folder:
         path = pathlib.Path(folder) / "deck.toml"
         path.write_text(text)
-        subprocess.run([scree, "run", path, "--backend", backend, "--output", folder, "--overwrite"], check=True,
-                       stdout=subprocess.DEVNULL)
+        command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+        subprocess.run([*command, scree, "run", path, "--backend", backend, "--output", folder, "--overwrite"],
+                       check=True, stdout=subprocess.DEVNULL)
         return json.loads((pathlib.Path(folder) / "run_record.json").read_text())
 
 
-def note(arguments, layers, name, record):
+def note(arguments, ranks, name, record):
+    layers = arguments.layers or arguments.side
     seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"]}
     size = f"{arguments.backend}, {arguments.side} x {arguments.side} x {layers}, edge {arguments.edge}"
-    measured.note(f"mesh_bed/{size}/{name} step", 1e3 * seconds["contact_force"] / arguments.steps, "ms", record=record)
-    measured.note(f"mesh_bed/{size}/{name} list", 1e3 * seconds["neighbors"] / max(record["counts"]["list_builds"], 1),
-                  "ms", record=record)
+    if ranks > 1:
+        size += f", each of {ranks} ranks"
+    step = 1e3 * seconds["contact_force"] / arguments.steps
+    lists = record["counts"]["list_builds"]
+    measured.note(f"mesh_bed/{size}/{name} step", step, "ms", record=record)
+    measured.note(f"mesh_bed/{size}/{name} list", 1e3 * seconds["neighbors"] / max(lists, 1), "ms", record=record)
+    print(f"{ranks} {name:6} {step:8.4f} ms a step, lists {1e3 * seconds['neighbors']:8.2f} ms in all, {lists} of them",
+          flush=True)
 
 
 def main():
@@ -90,18 +105,16 @@ def main():
     parser.add_argument("--layers", type=int)
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--edge", type=float, default=0.0107)
+    parser.add_argument("--ranks", type=int, nargs="+", default=[1])
     arguments = parser.parse_args()
-    width, layers = SPACING * arguments.side, arguments.layers or arguments.side
-    bed = deck(arguments.side, layers, arguments.steps)
-    hashes = set()
-    for name, wall in ("plane", PLANE), ("mesh", MESH.format(size=width + 0.3, middle=width / 2, edge=arguments.edge)):
-        record = run(arguments.scree, arguments.backend, bed + wall)
-        note(arguments, layers, name, record)
-        seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"]}
-        hashes.add(record["run"]["state_hash"])
-        print(f"{name:6} {1e3 * seconds['contact_force'] / arguments.steps:8.4f} ms a step, lists "
-              f"{1e3 * seconds['neighbors']:8.2f} ms in all, {record['counts']['list_builds']} of them")
-    print("the same state hash" if len(hashes) == 1 else "different state hashes")
+    for ranks in arguments.ranks:
+        bed = deck(arguments.side, arguments.layers or arguments.side, arguments.steps, ranks)
+        hashes = set()
+        for name, wall in ("plane", PLANE), ("mesh", mesh(arguments.side, arguments.edge, ranks)):
+            record = run(arguments.scree, arguments.backend, bed + wall, ranks)
+            note(arguments, ranks, name, record)
+            hashes.add(record["run"]["state_hash"])
+        print("the same state hash" if len(hashes) == 1 else "different state hashes")
 
 
 if __name__ == "__main__":

@@ -36,9 +36,8 @@ def main():
     parser.add_argument("--layers", type=int, default=5)
     parser.add_argument("--edge", type=float, default=0.0107)
     arguments = parser.parse_args()
-    width = mesh_bed.SPACING * arguments.side
     bed = mesh_bed.deck(arguments.side, arguments.layers, arguments.steps)
-    mesh = mesh_bed.MESH.format(size=width + 0.3, middle=width / 2, edge=arguments.edge)
+    mesh = mesh_bed.mesh(arguments.side, arguments.edge)
     hashes = set()
     for floor, wall in ("plane", mesh_bed.PLANE), ("mesh", mesh):
         for ranks in arguments.ranks:
