@@ -79,6 +79,26 @@ __global__ void __launch_bounds__(kSystemThreads)
   if (!idle) item.finish(self, total);
 }
 
+// Books of the particles, and what their contacts remember.
+template <class Laws>
+__global__ void __launch_bounds__(kSystemThreads)
+    rubbing_books_kernel(Index n, const __grid_constant__ DeviceViews in,
+                         const __grid_constant__ RubbingStart start, const RubbingBooksTo to,
+                         const Laws laws) {
+  constexpr int kWords = sizeof(RubbingBookSums) / sizeof(double);
+  __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];
+  const Index i = thread_index();
+  if (i - static_cast<Index>(threadIdx.x) % warpSize >= n) return;
+  const bool idle = i >= n;
+  const auto views = warp_views(in, &contacts[threadIdx.x / kSlice], idle);
+  const RubbingBooksItem<Laws, WarpRows<double, kWords>> item{{views, laws, {start}}, to};
+  auto self = item.walk.self(idle ? n - 1 : i);
+  RubbingBookSums sum;
+  self.i = i;
+  item.add_neighbors(self, sum);
+  if (!idle) item.finish(self, sum);
+}
+
 inline constexpr int kSurfaceThreads = 64;
 
 // Contacts of a chunk, one per thread and turn, and then their sums: each thread adds one term of the
@@ -239,10 +259,14 @@ class ContactKernelsOf : public DeviceContactKernels {
   }
   void rubbing_books(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
                      const RubbingBooksTo& to) const override {
-    if constexpr (kFrictionAlone<LawOf<Laws>>)
-      for_each(device, n, RubbingBooksItem<Laws, SlicedRows>{{in, laws_, {start}}, to});
-    else
+    if constexpr (kFrictionAlone<LawOf<Laws>>) {
+      if (n == 0) return;
+      rubbing_books_kernel<Laws>
+          <<<blocks_for(n, kSystemThreads), kSystemThreads, 0, device.stream>>>(n, in, start, to, laws_);
+      require_cuda(cudaGetLastError(), "rubbing books");
+    } else {
       refuse_rubbing();
+    }
   }
   void freeze(Device device, const DeviceViews& in, Index n, const RubbingStart& start,
               const FrozenLimits& to) const override {

@@ -150,24 +150,69 @@ struct RubbingBooksTo {
   Real *contact, *integrator, *friction;
 };
 
+// What contacts add to them, for a particle's share of each.
+struct RubbingBookSums {
+  Real dissipated = 0, integrator = 0, friction = 0;  // [J]
+
+  SCREE_HD static RubbingBookSums of(const RubbingBooks& one, Real share) {
+    return {share * one.dissipated, share * one.integrator, share * one.friction};
+  }
+  // Of no contact: adding it changes no bit, that of a zero's sign included.
+  SCREE_HD static RubbingBookSums nothing() { return {-0.0, -0.0, -0.0}; }
+  SCREE_HD RubbingBookSums& operator+=(const RubbingBookSums& part) {
+    dissipated += part.dissipated, integrator += part.integrator, friction += part.friction;
+    return *this;
+  }
+};
+
 // Books particle i's share of its contacts over an accepted step, and stores what they remember.
 template <class Laws, class Rows>
 struct RubbingBooksItem {
   RubbingWalk<Laws, Rows> walk;
   RubbingBooksTo to;
 
+  using Self = typename RubbingWalk<Laws, Rows>::Self;
+
   SCREE_HD void operator()(Index i) const {
-    ContactBooks sum;
-    Real friction = 0;
-    const auto self = walk.self(i);
-    const RubbingBooksOf of{{walk.look.start, walk.in.spin}};
-    walk.template neighbors<true>(self, of, [&](const RubbingBooks& one, Index) {
-      if (one.acts) sum.add(one, kPairShare), friction += kPairShare * one.friction;
-    });
-    walk.template surfaces<true>(
-        self, of, [&](const RubbingBooks& one, Index) { sum.add(one, 1), friction += one.friction; });
-    to.contact[i] += sum.dissipated, to.integrator[i] += sum.integrator, to.friction[i] += friction;
+    const Self self = walk.self(i);
+    RubbingBookSums sum;
+    add_neighbors(self, sum);
+    finish(self, sum);
   }
+
+  // Its parts, in this order.
+  SCREE_HD_CALLER
+  SCREE_HD void add_neighbors(const Self& self, RubbingBookSums& sum) const {
+    if constexpr (kShared<Rows>) {
+      walk.in.rows.sum_contacts(self.i, walk.look.test(walk.in, self), SharedBooks{*this}, sum);
+    } else {
+      walk.template neighbors<true>(self, books_of(), [&](const RubbingBooks& one, Index) {
+        if (one.acts) sum += RubbingBookSums::of(one, kPairShare);
+      });
+    }
+  }
+  SCREE_HD void finish(const Self& self, RubbingBookSums& sum) const {
+    walk.template surfaces<true>(self, books_of(),
+                                 [&](const RubbingBooks& one, Index) { sum += RubbingBookSums::of(one, 1); });
+    to.contact[self.i] += sum.dissipated, to.integrator[self.i] += sum.integrator;
+    to.friction[self.i] += sum.friction;
+  }
+
+ private:
+  // Books contacts of any row.
+  struct SharedBooks {
+    const RubbingBooksItem& item;
+
+    SCREE_HD RubbingBookSums operator()(Index i, Index j, std::int64_t slot) const {
+      const RubbingBooks one = item.walk.contact_at(item.books_of(), i, j, slot);
+      const auto& history = item.walk.in.history;
+      if (one.lasts) history.template write<LawOf<Laws>>(history.neighbors, slot, one.history);
+      return one.acts ? RubbingBookSums::of(one, kPairShare) : RubbingBookSums::nothing();
+    }
+    SCREE_HD void prepare(std::int64_t slot) const { item.walk.prepare(slot); }
+  };
+
+  SCREE_HD RubbingBooksOf books_of() const { return {{walk.look.start, walk.in.spin}}; }
 };
 
 // Keeps the limits of particle i's contacts at the iterate, those that are frozen already included.
