@@ -28,32 +28,33 @@ struct CountItem {
 
 }  // namespace
 
+void CellSort::work_in(Index* room, std::size_t n) {
+  for (std::size_t k = 0; k < 2; ++k)
+    keys_[k].borrow(reinterpret_cast<unsigned*>(room + k * n), n), order_[k].borrow(room + (2 + k) * n, n);
+}
+
 unsigned* CellSort::keys(std::size_t n) {
-  keys_.resize(n);
-  return keys_.data();
+  for (int k = 0; k < 2; ++k) keys_[k].resize(n), order_[k].resize(n);
+  return keys_[0].data();
 }
 
 void CellSort::sort(Device device, Index n, unsigned last_key) {
-  const auto size = static_cast<std::size_t>(n);
-  if (iota_.size() < size) {
-    iota_.resize(size);
-    for_each(device, n, IotaItem{iota_.data()});
-  }
   const std::size_t starts = static_cast<std::size_t>(last_key) + 2;
-  sorted_keys_.resize(size), order_.resize(size), counts_.resize(starts), starts_.resize(starts);
-  counts_.zero(device.stream);
+  starts_.resize(starts);
+  starts_.zero(device.stream);
+  for_each(device, n, IotaItem{order_[0].data()});
+  cub::DoubleBuffer<unsigned> keys(keys_[0].data(), keys_[1].data());
+  cub::DoubleBuffer<Index> order(order_[0].data(), order_[1].data());
   const int key_bits = std::max(1, static_cast<int>(std::bit_width(last_key)));
   const auto sort = [&](void* at, std::size_t& bytes) {
-    require_cuda(cub::DeviceRadixSort::SortPairs(at, bytes, keys_.data(), sorted_keys_.data(), iota_.data(),
-                                                 order_.data(), n, 0, key_bits, device.stream),
+    require_cuda(cub::DeviceRadixSort::SortPairs(at, bytes, keys, order, n, 0, key_bits, device.stream),
                  "sort");
   };
   if (n > 0) with_space(space_, sort);
-  for_each(device, n, CountItem{sorted_keys_.data(), counts_.data(), n});
+  sorted_ = order.Current();
+  for_each(device, n, CountItem{keys.Current(), starts_.data(), n});
   with_space(space_, [&](void* at, std::size_t& bytes) {
-    require_cuda(
-        cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), starts_.data(), starts, device.stream),
-        "scan");
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, starts_.data(), starts, device.stream), "scan");
   });
 }
 

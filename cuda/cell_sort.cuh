@@ -10,18 +10,23 @@ namespace scree {
 // Sorts n items by keys 0 ... last_key. Workspace that keeps its memory from one sort to the next.
 class CellSort {
  public:
+  // Numbers per item that a sort works with.
+  static constexpr std::size_t kNumbers = 4;
+  // From now on it works in this room, for so many items, as long as keys and order are needed.
+  void work_in(Index* room, std::size_t n);
   // Keys of the items to sort; written by the caller before sort().
   unsigned* keys(std::size_t n);
   // Afterwards order()[k] is the item at place k, items of one key in the order that they had; those of a key
   // stand from starts()[key] to starts()[key + 1], for keys up to last_key.
   void sort(Device device, Index n, unsigned last_key);
-  const Index* order() const { return order_.data(); }
+  const Index* order() const { return sorted_; }
   const Index* starts() const { return starts_.data(); }
 
  private:
-  DeviceArray<unsigned> keys_, sorted_keys_;
-  DeviceArray<Index> iota_, order_;
-  DeviceArray<Index> counts_, starts_;
+  DeviceArray<unsigned> keys_[2];  // the sort goes from one to the other and back
+  DeviceArray<Index> order_[2];
+  const Index* sorted_ = nullptr;
+  DeviceArray<Index> starts_;
   DeviceArray<unsigned char> space_;
 };
 

@@ -29,9 +29,11 @@ class RunControl {
   // Which arrays hold the open step's position and velocity: 0 the state's, 1 the others.
   int position_parity() const { return parity_[0]; }
   int velocity_parity() const { return parity_[1]; }
-  Vec4* open_position() { return (parity_[0] == 0 ? items_.now : items_.other).position.data(); }
-  Vec4* open_velocity() { return (parity_[1] == 0 ? items_.now : items_.other).velocity.data(); }
-  Vec4* open_spin() { return (parity_[1] == 0 ? items_.now : items_.other).angular_velocity.data(); }
+  Vec4* open_position() { return (parity_[0] == 0 ? items_.now.position : items_.other.position).data(); }
+  Vec4* open_velocity() { return (parity_[1] == 0 ? items_.now.velocity : items_.other.velocity).data(); }
+  Vec4* open_spin() {
+    return (parity_[1] == 0 ? items_.now.angular_velocity : items_.other.angular_velocity).data();
+  }
   void turn() { parity_[0] ^= 1, parity_[1] ^= 1; }  // one step further, before the host has looked
   void at_home() { parity_[0] = parity_[1] = 0; }    // they have been brought into the state's
 

@@ -23,7 +23,7 @@ CudaExplicitRun::CudaExplicitRun(CudaItems& items, CudaBodies& bodies, CudaList&
       control_(items, list),
       queue_(items, list, control_, workspace, h),
       h_(h) {
-  items.other.grow(items.now.position.size(), static_cast<std::size_t>(items.owned), 0, items.stream);
+  items.other.grow(items.now.position.size(), static_cast<std::size_t>(items.owned));
   bodies_.side().close_step();
   control_.start(queue_.request());
   items.open_run = this;
@@ -88,7 +88,8 @@ void CudaExplicitRun::settle() {
 // open step is.
 void CudaExplicitRun::finish() {
   if (queue_.in_mixed()) settle();
-  ParticleArrays &now = items_.now, &other = items_.other;
+  ParticleArrays& now = items_.now;
+  SecondArrays& other = items_.other;
   const VerletRequest r = queue_.request();
   items_.update_halo(items_.device(), control_.open_position(), control_.open_velocity(),
                      r.spin[control_.velocity_parity()]);

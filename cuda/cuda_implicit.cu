@@ -67,7 +67,8 @@ CudaImplicitStep::CudaImplicitStep(CudaItems& items, CudaBodies& bodies, CudaImp
 }
 
 StepViews CudaImplicitStep::step_views() {
-  ParticleArrays &now = items_.now, &start = items_.other;
+  ParticleArrays& now = items_.now;
+  SecondArrays& start = items_.other;
   return {now.position.data(),
           now.velocity.data(),
           now.acceleration.data(),
@@ -99,7 +100,8 @@ ContactMatrix CudaImplicitStep::matrix() {
 
 void CudaImplicitStep::predict() {
   const auto n = static_cast<std::size_t>(items_.owned);
-  ParticleArrays &now = items_.now, &start = items_.other;
+  ParticleArrays& now = items_.now;
+  SecondArrays& start = items_.other;
   copy_async(start.acceleration.data(), now.acceleration.data(), n, items_.stream);
   bodies_.side().keep_start(), items_.surfaces.keep_start(items_.device());
   for_each(items_.device(), items_.owned, NewmarkItem{step_views()});
@@ -107,7 +109,8 @@ void CudaImplicitStep::predict() {
 }
 
 void CudaImplicitStep::undo() {
-  ParticleArrays &now = items_.now, &start = items_.other;
+  ParticleArrays& now = items_.now;
+  SecondArrays& start = items_.other;
   std::swap(now.position, start.position), std::swap(now.velocity, start.velocity);
   copy_async(now.acceleration.data(), start.acceleration.data(), static_cast<std::size_t>(items_.owned),
              items_.stream);

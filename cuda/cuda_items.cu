@@ -1,4 +1,5 @@
 #include "cuda_items.cuh"
+#include "dem/device.hpp"
 
 namespace scree {
 namespace {
@@ -20,10 +21,11 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       kernels(std::move(law)),
       surfaces(of, subdomain.period(), stream),
       lane(on, of.parallel.transport),
-      list(kernels->history() > 0),
-      history(kernels->history(), {of.space.min, subdomain.period()}, stream),
+      list(kernels->history() > 0, slots_per_particle(of)),
+      history(kernels->history(), {of.space.min, subdomain.period()}, stream, room),
       results(on, stream) {
-  static_cast<FieldsThere&>(now) = static_cast<FieldsThere&>(other) = fields_there(of);
+  static_cast<FieldsThere&>(now) = fields_there(of);
+  other.rotates = now.rotates, other.implicit = of.integrator.particles == ParticleIntegrator::hht;
 }
 
 DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity, const Vec4* spin) {
@@ -33,11 +35,9 @@ DeviceViews CudaItems::views(const Vec4* position, const Vec4* velocity, const V
 }
 
 void CudaItems::reorder(const Index* order, Index n) {
-  const auto size = static_cast<std::size_t>(n);
-  other.grow(std::max(size, now.position.size()), size, 0, stream);
-  for_each(device(), n, ReorderItem{views_of(now), views_of(other), order});
-  history.reorder(order, n);
-  std::swap(now, other);
+  other.grow(now.position.size(), static_cast<std::size_t>(n));
+  history.reorder(order, n, numbers_while_listing());
+  scree::reorder(device(), now, other, order, n);
   owned = n;
 }
 

@@ -9,6 +9,7 @@
 #include "device_halo.cuh"
 #include "device_history.cuh"
 #include "device_list.cuh"
+#include "device_room.cuh"
 #include "device_surfaces.cuh"
 #include "for_each.cuh"
 #include "model/model.hpp"
@@ -50,6 +51,8 @@ struct CudaItems {
   }
   // Particle i becomes the one that was order[i]; n of them stay.
   void reorder(const Index* order, Index n);
+  // Room for a number per particle while a list is built.
+  Index* numbers_while_listing() { return reinterpret_cast<Index*>(other.position.data()); }
 
   void refresh_ghosts(Device on) {
     update_halo(on, now.position.data(), now.velocity.data(), now.angular_velocity.data());
@@ -90,15 +93,17 @@ struct CudaItems {
   std::unique_ptr<DeviceContactKernels> kernels;
   DeviceSurfaces surfaces;
 
-  // `now` holds the state. `other` is what sorting writes, the start of an open implicit step, or what the
-  // open explicit step reads or writes.
-  ParticleArrays now, other;
+  // `now` holds the state.
+  ParticleArrays now;
+  SecondArrays other;
   Index owned = 0;
   ItemLayout layout;   // without its list of ghosts
   Index interior = 0;  // the first so many particles, whole blocks of them, meet no ghosts and are none
   StepParts parts;     // of explicit steps
   HaloLane lane;
   DeviceList list;
+  // Of explicit steps: what they know of their list, or what contacts remember from one list to the next.
+  DeviceRoom room;
   DeviceHistory history;
   LoadBalance balance;
   DeviceResults results;

@@ -109,9 +109,11 @@ void CudaList::sort_cells(Real skin, std::int64_t particles) {
                                                owners_.decomposition().box(ranks.rank(), items_.subdomain),
                                                items_.owned));
   const auto outside = static_cast<unsigned>(grid_.count());
+  const auto owned = static_cast<std::size_t>(items_.owned);
+  particle_sort_.work_in(items_.list.take_room(CellSort::kNumbers * owned), owned);
   for_each(items_.device(), items_.owned,
            CellKeyItem{items_.now.position.data(), items_.now.drifting.data(), grid_, outside,
-                       particle_sort_.keys(static_cast<std::size_t>(items_.owned))});
+                       particle_sort_.keys(owned)});
   particle_sort_.sort(items_.device(), items_.owned, outside + 1);
   Results& found = items_.results.host();
   const Index* starts = particle_sort_.starts();
@@ -129,7 +131,7 @@ void CudaList::sort_cells(Real skin, std::int64_t particles) {
 void CudaList::find_ghosts(Real width) {
   ItemLayout& layout = items_.layout;
   DeviceHalo& halo = items_.lane.halo;
-  ParticleArrays &now = items_.now, &other = items_.other;
+  ParticleArrays& now = items_.now;
   halo.count(items_.device(), HaloPlan(items_.ranks, owners_.decomposition(), items_.subdomain, width),
              now.position.data(), layout.active);
   items_.ranks.together([&] {
@@ -137,7 +139,7 @@ void CudaList::find_ghosts(Real width) {
     layout.items = countable(owned + static_cast<std::size_t>(halo.size()), kTooManyItems);
     halo.list(items_.device(), now.position.data(), layout.active);
     const auto items = static_cast<std::size_t>(layout.items);
-    now.grow(items, owned, owned, items_.stream), other.grow(items, owned, 0, items_.stream);
+    now.grow(items, owned, owned, items_.stream), items_.other.grow(items, owned);
   });
   name_ghosts();
 }
@@ -189,9 +191,14 @@ void CudaList::search(Real skin) {
   in.active = items_.layout.active, in.owned = items_.owned;
   in.skin = builder_.past_touch(skin);
   items_.list.build(items_.device(), in);
-  const DeviceSurfaces::Particles particles{
-      now.position.data(),     now.material.data(),      items_.owned, items_.layout.active, &grid_,
-      particle_sort_.starts(), builder_.largest_radius()};
+  const DeviceSurfaces::Particles particles{now.position.data(),
+                                            now.material.data(),
+                                            items_.owned,
+                                            items_.layout.active,
+                                            &grid_,
+                                            particle_sort_.starts(),
+                                            builder_.largest_radius(),
+                                            items_.numbers_while_listing()};
   items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
 }
 
@@ -199,25 +206,31 @@ void CudaList::search(Real skin) {
 void CudaList::find_rows(Real skin) {
   index_ghosts();
   search(skin);
-  const auto items = static_cast<std::size_t>(items_.layout.items);
-  built_at_.resize(items);
-  copy_async(built_at_.data(), items_.now.position.data(), items, items_.stream);
   owners_.note_rows();
   items_.history.take_slots(items_.listed());
+  make_room_for_steps();
+  const auto active = static_cast<std::size_t>(items_.layout.active);
+  copy_async(built_at_.data(), items_.now.position.data(), active, items_.stream);
+}
+
+void CudaList::make_room_for_steps() {
+  const auto active = static_cast<std::size_t>(items_.layout.active);
   if (items_.model.integrator.particles == ParticleIntegrator::hht) {
+    built_at_.resize(active);
     step_arrays_.resize(items_);
-  } else {
-    items_.list.pruned_rows();  // makes room for them
-    items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
+    return;
   }
+  DeviceList& list = items_.list;
+  items_.room.lay_out(RoomFor{built_at_, active}, list.room_for_pruned(), list.room_for_places());
+  items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
 }
 
 // Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:
 // all ranks then fail, and can write their last good state.
 void CudaList::build(Real skin, StageTimers& timers) {
   settle();
-  leave_slots();
   current_ = false;
+  leave_slots();
   std::int64_t particles = 0;
   {
     const auto scope = timers.time(Stage::migrate);

@@ -49,6 +49,7 @@ class CudaList : public RankList {
   void find_rows(Real skin);
   void index_ghosts();
   void search(Real skin);
+  void make_room_for_steps();
 
   CudaItems& items_;
   CudaBodies& bodies_;
@@ -58,7 +59,7 @@ class CudaList : public RankList {
   CellSort particle_sort_, ghost_sort_;
   BrickGrid grid_;
   DeviceArray<Index> ghost_items_;
-  DeviceArray<Vec4> built_at_;  // positions of all items when the list was built
+  DeviceArray<Vec4> built_at_;  // positions of the particles in the search when the list was built
   bool current_ = false;
   Real skin_ = 0, bound_ = 0;
   std::int64_t builds_ = 0;

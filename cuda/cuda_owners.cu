@@ -52,8 +52,8 @@ void CudaOwners::decompose() {
 // In parts of bounded size; all ranks take as many.
 void CudaOwners::migrate() {
   if (!decomposition_.exists() || items_.balance.imbalance > items_.model.parallel.imbalance) decompose();
-  items_.other.grow(items_.now.position.size(), static_cast<std::size_t>(items_.owned), 0, items_.stream);
-  Index* leaving = items_.other.material.data();  // free until the sort
+  items_.other.grow(items_.now.position.size(), static_cast<std::size_t>(items_.owned));
+  Index* leaving = items_.numbers_while_listing();  // until the sort
   const LeavesItem leaves{decomposition_.grid(), cuts_.data(), items_.now.position.data(),
                           items_.ranks.rank()};
   with_space(items_.space, [&](void* at, std::size_t& bytes) {

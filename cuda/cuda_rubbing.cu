@@ -101,7 +101,8 @@ CudaRubbingStep::CudaRubbingStep(CudaItems& items, CudaBodies& bodies, CudaImpli
 }
 
 TurningViews CudaRubbingStep::turning_views() {
-  ParticleArrays &now = items_.now, &start = items_.other;
+  ParticleArrays& now = items_.now;
+  SecondArrays& start = items_.other;
   return {now.angular_velocity.data(), rubbing_.mean_spin.data(), now.angular_acceleration.data(),
           start.angular_velocity.data(), start.angular_acceleration.data()};
 }
@@ -137,7 +138,8 @@ void CudaRubbingStep::predict() {
 }
 
 void CudaRubbingStep::undo() {
-  ParticleArrays &now = items_.now, &start = items_.other;
+  ParticleArrays& now = items_.now;
+  SecondArrays& start = items_.other;
   std::swap(now.angular_velocity, start.angular_velocity);
   copy_async(now.angular_acceleration.data(), start.angular_acceleration.data(),
              static_cast<std::size_t>(items_.owned), items_.stream);

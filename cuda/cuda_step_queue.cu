@@ -62,21 +62,22 @@ void hold_until(const Event* event, Device on) {
 
 }  // namespace
 
-void MixedArrays::resize(std::size_t items, std::size_t owned, bool rotates) {
-  for (int k = 0; k < 2; ++k) place[k].resize(items), motion[k].resize(items);
+void MixedArrays::resize(std::size_t owned, bool rotates) {
   fraction.resize(owned), rest.resize(owned);
-  if (!rotates) return;
-  for (int k = 0; k < 2; ++k) spin[k].resize(items);
-  spin_rest.resize(owned);
+  if (rotates) spin_rest.resize(owned);
 }
 
-MixedViews MixedArrays::views() {
-  return {{place[0].data(), place[1].data()},
-          {motion[0].data(), motion[1].data()},
-          fraction.data(),
-          rest.data(),
-          {spin[0].data(), spin[1].data()},
-          spin_rest.data()};
+MixedViews MixedArrays::views(SecondArrays& room) {
+  MixedViews views{};
+  const auto halve = [](DeviceArray<Vec4>& whole, auto*(&halves)[2]) {
+    static_assert(2 * sizeof(*halves[0]) == sizeof(Vec4));
+    halves[0] = reinterpret_cast<std::remove_reference_t<decltype(halves[0])>>(whole.data());
+    halves[1] = halves[0] + whole.size();
+  };
+  halve(room.position, views.place), halve(room.velocity, views.motion);
+  halve(room.angular_velocity, views.spin);
+  views.fraction = fraction.data(), views.rest = rest.data(), views.spin_rest = spin_rest.data();
+  return views;
 }
 
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
@@ -87,7 +88,8 @@ PrunedViews StepQueue::pruned_views(const Vec4* position) {
 }
 
 VerletRequest StepQueue::request() {
-  ParticleArrays &now = items_.now, &other = items_.other;
+  ParticleArrays& now = items_.now;
+  SecondArrays& other = items_.other;
   VerletRequest r{};
   r.in = pruned_views(nullptr);
   r.rows = items_.parts.whole(), r.active = items_.layout.active, r.gravity = items_.model.gravity;
@@ -129,23 +131,21 @@ Vec4* StepQueue::spins() const {
 
 void StepQueue::convert_to_mixed() {
   ParticleArrays& now = items_.now;
-  workspace_.arrays.resize(static_cast<std::size_t>(items_.layout.items),
-                           static_cast<std::size_t>(items_.owned), items_.model.rotates());
+  workspace_.arrays.resize(static_cast<std::size_t>(items_.owned), items_.model.rotates());
   mixed_ = {make_quantum_grid(list_.cutoff()), control_.seen().closed};
   // Ghosts come with the first step's halo.
-  for_each(
-      items_.device(), items_.owned,
-      ToMixedItem{now.position.data(), now.velocity.data(), spins(), now.acceleration.data(),
-                  workspace_.arrays.views(), mixed_->quanta, items_.subdomain.box(), h_, list_.skin() / 2});
+  for_each(items_.device(), items_.owned,
+           ToMixedItem{now.position.data(), now.velocity.data(), spins(), now.acceleration.data(),
+                       mixed_views(), mixed_->quanta, items_.subdomain.box(), h_, list_.skin() / 2});
 }
 
 void StepQueue::convert_from_mixed() {
   ParticleArrays& now = items_.now;
   for_each(items_.device(), items_.owned,
-           FromMixedItem{workspace_.arrays.views(), control_.position_parity(), mixed_->quanta,
-                         now.position.data(), now.velocity.data(), spins(), now.acceleration.data(),
-                         now.contact_loss.data(), now.friction_loss.data(), now.drifting.data(),
-                         items_.model.gravity, h_, control_.seen().closed - mixed_->start});
+           FromMixedItem{mixed_views(), control_.position_parity(), mixed_->quanta, now.position.data(),
+                         now.velocity.data(), spins(), now.acceleration.data(), now.contact_loss.data(),
+                         now.friction_loss.data(), now.drifting.data(), items_.model.gravity, h_,
+                         control_.seen().closed - mixed_->start});
   mixed_.reset();
 }
 
@@ -257,7 +257,7 @@ void StepQueue::queue_mixed(Index steps, const Event* loads_found) {
   r.in = pruned_views(items_.now.position.data()), r.rows = items_.parts.whole();
   r.active = items_.layout.active;
   r.gravity = items_.model.gravity;
-  r.state = workspace_.arrays.views(), r.grid = mixed_->quanta, r.h = h_;
+  r.state = mixed_views(), r.grid = mixed_->quanta, r.h = h_;
   r.orientation = items_.now.orientation.data();
   r.box = items_.subdomain.box(), r.drifting = items_.now.drifting.data(), r.control = control_.on_device();
   r.first_step = items_.history.first_step();

@@ -10,17 +10,16 @@
 
 namespace scree {
 
-// The items in mixed precision.
+// The items in mixed precision: what steps read of one array and write to the other stands in the room of the
+// second arrays of the state, which are not needed meanwhile.
 struct MixedArrays {
-  DeviceArray<MixedPlace> place[2];
-  DeviceArray<MixedMotion> motion[2];
   DeviceArray<MixedFraction> fraction;
   DeviceArray<MixedRest> rest;
-  DeviceArray<MixedSpin> spin[2];
   DeviceArray<MixedSpinRest> spin_rest;
 
-  void resize(std::size_t items, std::size_t owned, bool rotates);
-  MixedViews views();
+  void resize(std::size_t owned, bool rotates);
+  MixedViews views(SecondArrays& room);
+  std::size_t bytes() const { return fraction.bytes() + rest.bytes() + spin_rest.bytes(); }
 };
 
 // Kept from one run to the next.
@@ -67,6 +66,7 @@ class StepQueue {
                         const QueueEarly& queue_early, const QueueLate& queue_late);
   OpenStepLook surface_look(const VerletRequest& step);
   Vec4* spins() const;
+  MixedViews mixed_views() { return workspace_.arrays.views(items_.other); }
   void convert_to_mixed();
   void convert_from_mixed();
 

@@ -176,12 +176,28 @@ class DeviceArray {
     }
     size_ = size;
   }
+  // So many values stand at `data` from now on, in memory that another holds. Where the array has to grow it
+  // takes memory of its own.
+  void borrow(T* data, std::size_t size) {
+    release();
+    data_ = data, size_ = capacity_ = size, borrowed_ = true;
+  }
+  // It is empty afterwards.
+  void release() {
+    if (data_ != nullptr && !borrowed_) {
+      cudaFree(data_);
+      device_bytes_in_use() -= capacity_ * sizeof(T);
+    }
+    data_ = nullptr, size_ = capacity_ = 0, borrowed_ = false;
+  }
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
+  std::size_t bytes() const { return borrowed_ ? 0 : capacity_ * sizeof(T); }  // that it holds
   T* data() { return data_; }
   const T* data() const { return data_; }
   void swap(DeviceArray& other) noexcept {
     std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(capacity_, other.capacity_);
+    std::swap(borrowed_, other.borrowed_);
   }
   void zero(cudaStream_t stream) {
     if (size_ > 0) require_cuda(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "cudaMemsetAsync");
@@ -204,15 +220,10 @@ class DeviceArray {
     require_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), kind, stream), "cudaMemcpyAsync");
     wait_for(stream);
   }
-  void release() {
-    if (data_ == nullptr) return;
-    cudaFree(data_);
-    device_bytes_in_use() -= capacity_ * sizeof(T);
-    data_ = nullptr, size_ = capacity_ = 0;
-  }
 
   T* data_ = nullptr;
   std::size_t size_ = 0, capacity_ = 0;
+  bool borrowed_ = false;
 };
 
 // A library call that needs space on the device: call(nullptr, bytes) asks for how much, call(at, bytes) does

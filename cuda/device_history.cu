@@ -1,6 +1,7 @@
 #include <cub/device/device_scan.cuh>
 
 #include "base/countable.hpp"
+#include "dem/device.hpp"
 #include "dem/particle_fields.hpp"
 #include "device_history.cuh"
 #include "for_each.cuh"
@@ -63,31 +64,33 @@ struct NamedRows {
   }
 };
 
+// Of the rows from the first on.
 struct CountClosedItem {
   NamedRows names;
+  Index first;
   Index* counts;
-  __device__ void operator()(Index i) const {
+  __device__ void operator()(Index k) const {
     Index count = 0;
-    names.visit(i, [&](const Vec4* record, const auto&) { count += record->w == names.history.step; });
-    counts[i] = count;
+    names.visit(first + k,
+                [&](const Vec4* record, const auto&) { count += record->w == names.history.step; });
+    counts[k] = count;
   }
 };
 
 struct KeepItem {
   NamedRows names;
+  Index first;
   KeptViews kept;
-  Index* row_of;
-  __device__ void operator()(Index i) const {
-    Index at = kept.offsets[i];
-    names.visit(i, [&](const Vec4* record, const auto& key) {
+  __device__ void operator()(Index k) const {
+    Index at = kept.offsets[k];
+    names.visit(first + k, [&](const Vec4* record, const auto& key) {
       if (record->w != names.history.step) return;
       kept.keys[at] = key();
       Real* const to = kept.values + std::int64_t{at} * names.numbers;
-      for (int k = 0; k < names.numbers; ++k) to[k] = number_of(record, k);
+      for (int n = 0; n < names.numbers; ++n) to[n] = number_of(record, n);
       ++at;
     });
-    row_of[i] = i;
-    order(kept.offsets[i], at);
+    order(kept.offsets[k], at);
   }
 
  private:
@@ -186,6 +189,9 @@ struct CountUpItem {
   SCREE_HD void operator()(Index i) const { out[i] = first + i; }
 };
 
+// Room over what was needed where an array had to grow: one in so many.
+constexpr std::size_t kKeptSpare = 32, kSlotsSpare = 32;
+
 template <class Rows>
 KeptViews kept_views(Rows& rows) {
   return {rows.offsets.data(), rows.keys.data(), rows.values.data()};
@@ -199,8 +205,8 @@ NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box, cons
 
 }  // namespace
 
-DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream)
-    : numbers_(numbers), box_(box), stream_(stream) {
+DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, DeviceRoom& room)
+    : numbers_(numbers), box_(box), stream_(stream), room_(room) {
   if (exists()) first_step_.resize(1), h_first_step_.resize(1);
 }
 
@@ -238,42 +244,52 @@ void DeviceHistory::begin_run() {
   copy_async(first_step_.data(), h_first_step_.data(), 1, stream_);
 }
 
-void DeviceHistory::lay_out(Rows& rows, Index count) {
-  // The count past the end is read, though no sum depends on it.
-  require_cuda(cudaMemsetAsync(counts_.data() + count, 0, sizeof(Index), stream_), "cudaMemsetAsync");
-  rows.offsets.resize(static_cast<std::size_t>(count) + 1);
+std::size_t DeviceHistory::add_up(Rows& rows, Index count) {
+  // The length past the end is read, though no sum depends on it.
+  require_cuda(cudaMemsetAsync(rows.offsets.data() + count, 0, sizeof(Index), stream_), "cudaMemsetAsync");
   with_space(space_, [&](void* at, std::size_t& bytes) {
-    require_cuda(
-        cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), rows.offsets.data(), count + 1, stream_),
-        "scan");
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, rows.offsets.data(), count + 1, stream_), "scan");
   });
   copy_async(h_count_.data(), rows.offsets.data() + count, 1, stream_);
   wait_for(stream_);
-  const auto contacts = static_cast<std::size_t>(h_count_[0]);
+  return static_cast<std::size_t>(h_count_[0]);
+}
+
+void DeviceHistory::make_room(Rows& rows, std::size_t contacts) const {
   rows.keys.resize_with_spare(contacts);
   rows.values.resize_with_spare(contacts * static_cast<std::size_t>(numbers_));
 }
 
-void DeviceHistory::keep(const Listed& at) {
-  const auto owned = static_cast<std::size_t>(at.owned);
+std::size_t DeviceHistory::count_rows(Rows& rows, const Listed& at, Index first, Index count) {
   countable(static_cast<std::size_t>(at.list.entries()), "stage migrate: more contacts");
-  counts_.resize(owned + 1), row_of_.resize(owned);
-  const NamedRows names = names_of(at, box_, views(), numbers_);
-  for_each({stream_}, at.owned, CountClosedItem{names, counts_.data()});
-  lay_out(kept_, at.owned);
-  for_each({stream_}, at.owned, KeepItem{names, kept_views(kept_), row_of_.data()});
+  rows.offsets.resize(static_cast<std::size_t>(count) + 1);
+  for_each({stream_}, count,
+           CountClosedItem{names_of(at, box_, views(), numbers_), first, rows.offsets.data()});
+  return add_up(rows, count);
+}
+
+void DeviceHistory::fill_rows(Rows& rows, const Listed& at, Index first, Index count) {
+  for_each({stream_}, count, KeepItem{names_of(at, box_, views(), numbers_), first, kept_views(rows)});
 }
 
 void DeviceHistory::leave_slots(const Listed& at) {
   if (!at_slots_) return;
-  keep(at);
+  row_of_.resize(static_cast<std::size_t>(at.owned));
+  const std::size_t contacts = count_rows(kept_, at, 0, at.owned),
+                    numbers = static_cast<std::size_t>(numbers_),
+                    room = contacts + contacts / kKeptSpare;  // for those that come with particles
+  room_.lay_out(RoomFor{kept_.keys, room}, RoomFor{kept_.values, room * numbers});
+  kept_.keys.resize(contacts), kept_.values.resize(contacts * numbers);
+  fill_rows(kept_, at, 0, at.owned);
+  for_each({stream_}, at.owned, CountUpItem{row_of_.data(), 0});
   at_slots_ = false;
 }
 
 void DeviceHistory::take_slots(const Listed& at) {
   if (!exists()) return;
   const auto records = static_cast<std::size_t>(records_of(numbers_));
-  neighbors_.resize_with_spare(static_cast<std::size_t>(at.list.used()) * records);
+  if (const auto needed = static_cast<std::size_t>(at.list.used()) * records; needed > neighbors_.size())
+    neighbors_.resize(needed + needed / kSlotsSpare);
   for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
   for (DeviceArray<Index>* of_meshes : {&features_, &features_ahead_})
@@ -281,6 +297,7 @@ void DeviceHistory::take_slots(const Listed& at) {
   features_.zero(stream_), ahead_.zero(stream_);
   for_each({stream_}, at.owned,
            TakeItem{names_of(at, box_, views(), numbers_), kept_views(kept_), row_of_.data()});
+  kept_.keys.release(), kept_.values.release();
   at_slots_ = true;
 }
 
@@ -292,11 +309,11 @@ void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
   append(contacts.numbers == numbers_ ? contacts : no_contacts(numbers_, owned), 0);
 }
 
-void DeviceHistory::reorder(const Index* order, Index n) {
+void DeviceHistory::reorder(const Index* order, Index n, Index* numbers) {
   if (!exists()) return;
-  spare_row_of_.resize(static_cast<std::size_t>(n));
-  for_each({stream_}, n, RowOfItem{row_of_.data(), order, spare_row_of_.data()});
-  row_of_.swap(spare_row_of_);
+  for_each({stream_}, n, RowOfItem{row_of_.data(), order, numbers});
+  row_of_.resize(static_cast<std::size_t>(n));
+  copy_async(row_of_.data(), numbers, row_of_.size(), stream_);
 }
 
 void DeviceHistory::append(const KeptContacts& arriving, Index owned) {
@@ -331,9 +348,10 @@ KeptContacts DeviceHistory::download(const Rows& rows) const {
 KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
   if (!exists()) return {};
   if (n == 0) return no_contacts(numbers_, 0);
-  counts_.resize(static_cast<std::size_t>(n) + 1);
-  for_each({stream_}, n, RowLengthItem{kept_.offsets.data(), row_of_.data(), particles, counts_.data()});
-  lay_out(packed_, n);
+  packed_.offsets.resize(static_cast<std::size_t>(n) + 1);
+  for_each({stream_}, n,
+           RowLengthItem{kept_.offsets.data(), row_of_.data(), particles, packed_.offsets.data()});
+  make_room(packed_, add_up(packed_, n));
   for_each({stream_}, n,
            CopyRowItem{kept_views(kept_), row_of_.data(), particles, numbers_, kept_views(packed_)});
   return download(packed_);
@@ -341,8 +359,16 @@ KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
 
 KeptContacts DeviceHistory::contacts(const Listed& at) {
   if (!exists()) return {};
-  if (at_slots_) keep(at);
-  return download(kept_).rows(row_of_.download(stream_));
+  if (!at_slots_) return download(kept_).rows(row_of_.download(stream_));
+  // Some rows after the other: steps need the room of what is kept.
+  KeptContacts out = no_contacts(numbers_, 0);
+  for (Index first = 0; first < at.owned; first += kRowsAtOnce) {
+    const Index count = std::min(kRowsAtOnce, at.owned - first);
+    make_room(packed_, count_rows(packed_, at, first, count));
+    fill_rows(packed_, at, first, count);
+    out.append(download(packed_));
+  }
+  return out;
 }
 
 }  // namespace scree

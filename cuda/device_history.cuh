@@ -14,7 +14,8 @@ namespace scree {
 class DeviceHistory {
  public:
   // numbers: per contact; 0: nothing below does anything. What is queued without a device goes to the stream.
-  DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream);
+  // room: what is kept from one list to the next stands there.
+  DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, DeviceRoom& room);
 
   bool exists() const { return numbers_ > 0; }
   bool at_slots() const { return at_slots_; }
@@ -48,15 +49,21 @@ class DeviceHistory {
   // Before a list goes, for which it waits, and after another was built.
   void leave_slots(const Listed& at);
   void take_slots(const Listed& at);
-  // In between, like the particles: new ones, another order of them, some more behind.
+  // In between, like the particles: new ones, another order of them, some more behind. numbers: room for one
+  // per particle.
   void load(const KeptContacts& contacts, Index owned);
-  void reorder(const Index* order, Index n);
+  void reorder(const Index* order, Index n, Index* numbers);
   void append(const KeptContacts& arriving, Index owned);
 
   // Of these particles, in this order, on the host; not at the slots. Waits.
   KeptContacts rows(const Index* particles, Index n);
   // Of all, in the order of the particles.
   KeptContacts contacts(const Listed& at);
+
+  // Of the records at the slots.
+  std::size_t bytes() const {
+    return neighbors_.bytes() + ground_.bytes() + bodies_.bytes() + ahead_.bytes();
+  }
 
  private:
   // Rows of contacts on the device, as KeptContacts has them.
@@ -65,14 +72,18 @@ class DeviceHistory {
     DeviceArray<std::int64_t> keys;
     DeviceArray<Real> values;
   };
-  void keep(const Listed& at);
-  // From counts_ [rows]: offsets, and room for the contacts.
-  void lay_out(Rows& rows, Index count);
+  // What rows of so many particles from the first on hold: the offsets; with room for them, the contacts.
+  std::size_t count_rows(Rows& rows, const Listed& at, Index first, Index count);
+  void fill_rows(Rows& rows, const Listed& at, Index first, Index count);
+  // Lengths of rows become their offsets; returns how many contacts there are. Waits.
+  std::size_t add_up(Rows& rows, Index count);
+  void make_room(Rows& rows, std::size_t contacts) const;
   KeptContacts download(const Rows& rows) const;
 
   const int numbers_;
   const PeriodicBox box_;
   const cudaStream_t stream_;
+  DeviceRoom& room_;
   bool at_slots_ = false;
   DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews
   DeviceArray<Index> features_, features_ahead_;
@@ -81,9 +92,8 @@ class DeviceHistory {
   PinnedArray<Real> h_first_step_;
   // Unless at the slots: what is kept, and which row of it is that of each particle.
   Rows kept_;
-  DeviceArray<Index> row_of_, spare_row_of_;
-  Rows packed_;
-  DeviceArray<Index> counts_;
+  DeviceArray<Index> row_of_;
+  Rows packed_;                       // on its way to the host
   DeviceArray<unsigned char> space_;  // of library calls
   PinnedArray<Index> h_count_{1};
 };

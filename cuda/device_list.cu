@@ -143,13 +143,18 @@ constexpr int kShortRow = 16, kLongRow = 48;
 
 }  // namespace
 
-DeviceList::DeviceList(bool remembers) : remembers_(remembers), totals_(1), h_totals_(1) {
+DeviceList::DeviceList(bool remembers, double slots)
+    : remembers_(remembers), slots_at_start_(slots), totals_(1), h_totals_(1) {
   h_totals_[0] = {};
 }
 
+Index* DeviceList::take_room(std::size_t n) {
+  neighbors_.resize(std::max(neighbors_.size(), n));
+  return neighbors_.data();
+}
+
 PrunedRows<0> DeviceList::pruned_rows() {
-  pruned_counts_.resize(counts_.size()), pruned_.resize(neighbors_.size());
-  if (remembers_) places_.resize(neighbors_.size());
+  pruned_counts_.resize(counts_.size());
   return {rows(), pruned_counts_.data(), pruned_.data(), RowUse::all, 0, places_.data()};
 }
 
@@ -168,8 +173,9 @@ void DeviceList::search(Device device, const ListInput& in) {
 
 void DeviceList::build(Device device, const ListInput& in) {
   const auto owned = static_cast<std::size_t>(in.owned);
+  const bool first = slice_start_.size() == 0;
   slice_start_.resize(owned / kSlice + 1), counts_.resize(owned);
-  if (neighbors_.size() == 0) neighbors_.resize(kSlotsPerItem * owned + kSlice);
+  if (first) take_room(static_cast<std::size_t>(slots_at_start_ * static_cast<double>(owned)) + kSlice);
   h_totals_[0].entries = h_totals_[0].used = 0;
   if (in.owned == 0) return;
   search(device, in);

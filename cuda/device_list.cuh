@@ -4,7 +4,7 @@
 
 #include "brick_grid.cuh"
 #include "dem/contact_walk.hpp"
-#include "device.cuh"
+#include "device_room.cuh"
 
 namespace scree {
 
@@ -147,18 +147,25 @@ struct ListInput {
 
 class DeviceList {
  public:
-  // remembers: whether contacts do.
-  explicit DeviceList(bool remembers);
+  // remembers: whether contacts do. slots: per particle, of which there is room from the start.
+  DeviceList(bool remembers, double slots);
 
   // Fills the list. Waits for the device once, to know whether the memory sufficed, and repeats with more if
   // not. Throws DeviceError where there is none, and SimulationError where a row is too long for RowPlace.
   void build(Device device, const ListInput& in);
 
   SlicedRows rows() const { return {slice_start_.data(), counts_.data(), neighbors_.data()}; }
-  // Room for the pruned rows is made here. After a build they hold nothing of use until a step with
+  // Where the list is not needed any more: room for n values.
+  Index* take_room(std::size_t n);
+  // What the pruned rows need beside the list. After a build they hold nothing of use until a step with
   // RowUse::prune.
+  RoomFor<Index> room_for_pruned() { return {pruned_, neighbors_.size()}; }
+  RoomFor<RowPlace> room_for_places() { return {places_, remembers_ ? neighbors_.size() : 0}; }
   PrunedRows<0> pruned_rows();
   std::int64_t slots() const { return static_cast<std::int64_t>(neighbors_.size()); }
+  std::size_t bytes() const {
+    return slice_start_.bytes() + counts_.bytes() + neighbors_.bytes() + pruned_counts_.bytes();
+  }
   std::int64_t entries() const { return h_totals_[0].entries; }
   // Slots from the first to the last that is filled.
   std::int64_t used() const { return static_cast<std::int64_t>(h_totals_[0].used); }
@@ -171,9 +178,10 @@ class DeviceList {
   };
   void search(Device device, const ListInput& in);
 
+  const bool remembers_;
+  const double slots_at_start_;  // per particle
   DeviceArray<std::int64_t> slice_start_;
   DeviceArray<Index> counts_, neighbors_, pruned_counts_, pruned_;
-  const bool remembers_;
   DeviceArray<RowPlace> places_;
   DeviceArray<Totals> totals_;
   PinnedArray<Totals> h_totals_;

@@ -186,23 +186,23 @@ void DeviceSurfaces::build(Device device, const Particles& particles, const Surf
 
 void DeviceSurfaces::find_entries(Device device, const Particles& p, const SurfacePlaces& places, Real skin) {
   const auto owned = static_cast<std::size_t>(p.owned);
-  counts_.resize(owned + 1), offsets_.resize(owned + 1), next_.resize(owned);
+  offsets_.resize(owned + 1);
+  Index *const counts = offsets_.data(), *const next = p.numbers;  // the counts become the offsets in place
   const EntrySearch in{p.position, p.active,  *p.grid,        p.starts,   p.largest_radius + skin,
                        skin,       numbers(), places_.data(), box_.period};
   const auto blocks = static_cast<unsigned>(placed_count_);
   // The entry past the end is read, though no sum depends on it.
-  require_cuda(cudaMemsetAsync(counts_.data() + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
-  for_each(device, p.owned, GroundCountItem{in, counts_.data()});
+  require_cuda(cudaMemsetAsync(counts + owned, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
+  for_each(device, p.owned, GroundCountItem{in, counts});
   if (any_placed() && p.active > 0)
-    count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts_.data());
+    count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts);
   require_cuda(cudaGetLastError(), "surfaces near particles");
-  for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts_.data()});
+  for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts});
   meshes_.find(device, {p.position, *p.grid, p.starts, skin, box_.period, places_.data(), frames_.data()},
-               places, p.largest_radius, counts_.data());
+               places, p.largest_radius, counts);
   with_space(space_, [&](void* at, std::size_t& bytes) {
-    require_cuda(
-        cub::DeviceScan::ExclusiveSum(at, bytes, counts_.data(), offsets_.data(), p.owned + 1, device.stream),
-        "scan");
+    require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, offsets_.data(), p.owned + 1, device.stream),
+                 "scan");
   });
   copy_async(h_index_.data(), offsets_.data() + owned, 1, device.stream);
   wait_for(device.stream);
@@ -212,14 +212,14 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
   meshes_.make_room(entries_);
   if (entries_ == 0) return;
   const EntryOutputs out{surfaces_.data(), particles_.data(), images_.data()};
-  for_each(device, p.owned, GroundFillItem{in, offsets_.data(), next_.data(), out});
+  for_each(device, p.owned, GroundFillItem{in, offsets_.data(), next, out});
   if (any_placed() && p.active > 0) {
-    fill_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, next_.data(), out);
+    fill_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, next, out);
     require_cuda(cudaGetLastError(), "surfaces near particles");
     for (std::size_t k = 0; k < placed_planes_.size(); ++k)
       for_each(device, p.active,
-               PlaneFillItem{{in, placed_planes_[k], nullptr}, plane_numbers_[k], next_.data(), out});
-    meshes_.fill(device, next_.data(), out.surfaces, out.images);
+               PlaneFillItem{{in, placed_planes_[k], nullptr}, plane_numbers_[k], next, out});
+    meshes_.fill(device, next, out.surfaces, out.images);
   }
   for_each(device, p.owned, OrderItem{offsets_.data(), out});
   meshes_.group(device, offsets_.data(), surfaces_.data(), images_.data());

@@ -37,6 +37,7 @@ class DeviceSurfaces {
     const BrickGrid* grid;
     const Index* starts;  // [cells + 1] into the active ones
     Real largest_radius;  // [m]
+    Index* numbers;       // room for one per owned particle
   };
 
   // period: of the space [m].
@@ -113,7 +114,7 @@ class DeviceSurfaces {
   DeviceTriangleWorks works_;
   bool moves_;  // whether particles rotate
   Index entries_ = 0, placed_entries_ = 0;
-  DeviceArray<Index> counts_, offsets_, next_, surfaces_, particles_;
+  DeviceArray<Index> offsets_, surfaces_, particles_;
   DeviceArray<std::int8_t> images_;
   DeviceArray<unsigned char> space_;  // of library calls
   CellSort by_surface_;

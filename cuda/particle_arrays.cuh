@@ -1,5 +1,4 @@
-// Particles on the device: the arrays of ParticleStore, twice, so that sorting, explicit and implicit steps
-// can read one and write the other.
+// Particles on the device: the arrays of ParticleStore, and second ones of what steps read and write.
 #pragma once
 
 #include "dem/particle_fields.hpp"
@@ -16,21 +15,53 @@ struct ParticleArrays : FieldArrays<DeviceArray>, FieldsThere {
     for_each_array<kOwnedArrays>(
         FieldsThere(*this), [&](auto& array) { array.grow(owned, keep, stream); }, *this);
   }
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for_each_array<kAllArrays | kOptionalArrays>([&](const auto& array) { sum += array.bytes(); }, *this);
+    return sum;
+  }
 };
 
-// to[i] = from[order[i]].
+// An explicit step reads one array and writes the other, an implicit one keeps its start here. While a list
+// is built nobody reads them, and their room is free.
+struct SecondArrays {
+  bool rotates = false, implicit = false;
+  DeviceArray<Vec4> position, velocity, angular_velocity;  // all items
+  DeviceArray<Vec3> acceleration, angular_acceleration;    // particles, of implicit steps
+
+  // Room for so many; what is there may be lost.
+  void grow(std::size_t items, std::size_t owned) {
+    position.resize(whole(items)), velocity.resize(whole(items));
+    if (rotates) angular_velocity.resize(whole(items));
+    if (!implicit) return;
+    acceleration.resize(owned);
+    if (rotates) angular_acceleration.resize(owned);
+  }
+  std::size_t bytes() const {
+    return position.bytes() + velocity.bytes() + angular_velocity.bytes() + acceleration.bytes() +
+           angular_acceleration.bytes();
+  }
+  // A warp's values of any type then begin and end with whole sectors, and so do halves of an array.
+  static constexpr std::size_t whole(std::size_t n) { return (n + 31) / 32 * 32; }
+};
+
+// to[i] = from[order[i]] of the arrays that both have; without an order to[i] = from[i].
 struct ReorderItem {
   ParticleViews from, to;
   const Index* order;
 
   SCREE_HD void operator()(Index i) const {
-    const Index k = order[i];
-    const auto copy = [&](auto* new_values, const auto* values) { new_values[i] = values[k]; };
-    for_each_array<kAllArrays>(copy, to, from);
-    if (from.angular_velocity != nullptr) for_each_array<kRotationArrays>(copy, to, from);
-    if (from.rolling_loss != nullptr) for_each_array<kOwnedRolling>(copy, to, from);
+    const Index k = order != nullptr ? order[i] : i;
+    const auto copy = [&](auto* new_values, const auto* values) {
+      if (new_values != nullptr && values != nullptr) new_values[i] = values[k];
+    };
+    for_each_array<kAllArrays | kOptionalArrays>(copy, to, from);
   }
 };
+
+// Particle i becomes the one that was order[i]; n of them stay. now: its motion changes places with `second`,
+// and what has no second array goes there and back, as much at a time as there is room for.
+void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n);
 
 // Records of the particles from `first` on: position inside the periodic box, but for those that drift.
 struct RecordItem {

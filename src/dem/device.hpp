@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "dem/backend.hpp"
@@ -35,16 +36,24 @@ std::size_t free_device_memory();
 // Device memory that the program holds now [B].
 std::size_t device_memory_in_use();
 
-// Room of a neighbour list on the device: slots per item at the start, and over what was needed where that is
-// more.
-inline constexpr std::size_t kSlotsPerItem = 16;
-inline constexpr double kListSlack = 1.15;
+// What groups of arrays of this rank's backend hold of it [B]; empty for the CPU's.
+struct DeviceShare {
+  const char* of;
+  std::size_t bytes;
+};
+std::vector<DeviceShare> device_shares(const Backend& backend);
+
+// Room of a neighbour list on the device: slots per particle at the start, as many as a bed of equal
+// particles needs, and over what was needed where that is more.
+double slots_per_particle(const Model& model);
+inline constexpr double kListSlack = 1.05;
 
 // Particles whose records leave the device at a time. Room for them is there all the time: a run that finds
 // no more memory writes its last good state through it.
 inline constexpr std::size_t kRecordsAtOnce = std::size_t{1} << 16;
-// Lines of a snapshot's contacts likewise.
+// Lines of a snapshot's contacts likewise, and rows of what contacts remember.
 inline constexpr std::size_t kLinesAtOnce = std::size_t{1} << 18;
+inline constexpr Index kRowsAtOnce = Index{1} << 18;
 
 // Device memory that the backend takes for this rank's part of the model [B]: what `scree check` prints. An
 // estimate from the model alone, the same on machines without a GPU.

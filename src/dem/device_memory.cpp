@@ -20,21 +20,20 @@ namespace scree {
 namespace {
 
 // Bytes per particle or item, by the array groups of cuda/cuda_*.cuh.
-constexpr double kItemFields = 2 * bytes_in_arrays<kItemArrays>();
-constexpr double kOwnedFields = 2 * bytes_in_arrays<kOwnedArrays>();
-constexpr double kSpinFields = 2 * bytes_in_arrays<kSpins>();  // where particles rotate
-constexpr double kOwnedSpinFields = 2 * bytes_in_arrays<kOwnedSpins>();
-constexpr double kRollingFields = 2 * bytes_in_arrays<kOwnedRolling>();  // where contacts resist rolling
-constexpr double kSortArrays =
-    4 * sizeof(Index) + 2 * sizeof(Index);        // keys and order twice, the library's buffers
-constexpr double kRowArrays = 4 * sizeof(Index);  // lengths of rows, and three for those of the surfaces
-constexpr double kGhostArrays = sizeof(Ghost) + kSortArrays + sizeof(Index);
+constexpr double kItemFields = bytes_in_arrays<kItemArrays>();
+constexpr double kSecondMotion = bytes_in_arrays<kMotion>();
+constexpr double kOwnedFields = bytes_in_arrays<kOwnedArrays>();
+constexpr double kSpinFields = bytes_in_arrays<kSpins>();  // where particles rotate, and as much again
+constexpr double kOwnedSpinFields = bytes_in_arrays<kOwnedSpins>();
+constexpr double kRollingFields = bytes_in_arrays<kOwnedRolling>();  // where contacts resist rolling
+constexpr double kStartAcceleration = sizeof(Vec3);                  // of implicit steps, of each kind
+constexpr double kRowArrays = 2 * sizeof(Index);  // lengths of rows, and the surfaces' rows
+constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index);  // sorted, and their order
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
 // The same where contacts rub: CudaRubbingArrays in place of the matrix and the solve.
 constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + 5 * sizeof(Vec4) +
                                   sizeof(ScaledMass) + sizeof(Block6f) + 2 * sizeof(Twist);
-constexpr double kMixedItemArrays = 2 * (sizeof(MixedPlace) + sizeof(MixedMotion));
 constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry::Normal) + sizeof(RubbingEntry::Slide) +
@@ -44,7 +43,7 @@ constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * size
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);
 constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts attract
-constexpr double kCellBytes = 2 * sizeof(Index);
+constexpr double kCellBytes = sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
 // Of a snapshot.
@@ -97,7 +96,7 @@ Sizes sizes_of(const Model& model) {
         static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
   sizes.items = sizes.particles + sizes.ghosts;
   sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, particles).count());
-  sizes.slots = kSlotsPerItem * sizes.particles;
+  sizes.slots = slots_per_particle(model) * sizes.particles;
   if (equal) return sizes;
   ItemLayout layout;
   layout.owned = layout.active = layout.items = store.owned;
@@ -105,37 +104,53 @@ Sizes sizes_of(const Model& model) {
   return sizes;
 }
 
-// What contacts remember, with the places of pruned rows and the order of the particles.
-double history_bytes(int numbers, const Sizes& n) {
-  if (numbers == 0 || n.particles == 0) return 0;
-  return n.particles * (bytes_remembered(numbers, n.slots / n.particles) + 4 * sizeof(Index)) +
-         n.slots * sizeof(std::uint16_t);
+// The list, what contacts remember at its slots, and the room that explicit steps share with what is kept
+// from one list to the next.
+double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
+  const int numbers = history_of(model.contact);
+  double bytes = n.particles * kRowArrays + n.slots * sizeof(Index) +
+                 n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
+  const double kept = n.particles * bytes_remembered(numbers, 0), places = n.particles * sizeof(Vec4);
+  if (numbers > 0) bytes += n.slots * records_of(numbers) * sizeof(Vec4) + 2 * n.particles * sizeof(Index);
+  if (!explicit_steps) return bytes + kept + places;
+  const double pruned = n.slots * (sizeof(Index) + (numbers > 0 ? sizeof(std::uint16_t) : 0));
+  return bytes + n.particles * sizeof(Index) + std::max(kept, places + pruned);
+}
+
+double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
+  const double spare = n.ghosts > 0 ? 1.125 : 1;  // arrays that grow when ghosts are found
+  double bytes = n.items * (kItemFields * spare + kSecondMotion) + n.particles * kOwnedFields;
+  if (model.rotates())
+    bytes += n.items * kSpinFields * (spare + 1) + n.particles * (kOwnedSpinFields + kSpinReportArrays);
+  if (model.rolls()) bytes += n.particles * kRollingFields;
+  if (model.attracts()) bytes += n.particles * kCohesionReportArrays;
+  if (!explicit_steps) bytes += n.particles * kStartAcceleration * (model.rotates() ? 2 : 1);
+  return bytes;
 }
 
 }  // namespace
 
+// Slots of a settled bed of equal particles, of which most rows of 32 hold one that has more neighbours than
+// the mean.
+double slots_per_particle(const Model& model) {
+  constexpr double kDiscs = 8, kSpheres = 9.5, kPerDiameter = 15, kMost = 16;
+  if (model.space.dimension == 2) return kDiscs;
+  const Real seen = model.contact.skin + model.contact.reach,
+             diameter = 2 * model.particles.totals.largest_radius;
+  return diameter > 0 ? std::min(kMost, kSpheres + kPerDiameter * seen / diameter) : kSpheres;
+}
+
 std::size_t device_memory(const Model& model) {
   const Sizes n = sizes_of(model);
-  const bool periodic = n.ghosts > 0;
-  const double spare = periodic ? 1.125 : 1;  // arrays that grow when ghosts are found
-  double bytes = n.items * kItemFields * spare + n.particles * kOwnedFields;
-  if (model.rotates())
-    bytes += n.items * kSpinFields * spare + n.particles * (kOwnedSpinFields + kSpinReportArrays);
-  if (model.rolls()) bytes += n.particles * kRollingFields;
-  if (model.attracts()) bytes += n.particles * kCohesionReportArrays;
-  bytes += n.particles * kSortArrays + (periodic ? n.ghosts * kGhostArrays : 0);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
-  bytes +=
-      n.particles * kRowArrays + n.items * sizeof(Vec4) + n.slots * sizeof(Index);  // places at the build
-  if (explicit_steps) bytes += (n.particles + n.slots) * sizeof(Index);             // pruned rows
-  bytes += history_bytes(history_of(model.contact), n);
-  bytes += n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
+  double bytes =
+      field_bytes(model, n, explicit_steps) + n.ghosts * kGhostArrays + list_bytes(model, n, explicit_steps);
   if (!explicit_steps)
     bytes += model.rotates() ? n.items * kRubbingArrays + n.slots * kRubbingArraysPerSlot
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
   if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
-    bytes += n.items * kMixedItemArrays + n.particles * kMixedParticleArrays;
-    if (model.rotates()) bytes += n.items * 2 * sizeof(MixedSpin) + n.particles * sizeof(MixedSpinRest);
+    bytes += n.particles * kMixedParticleArrays;
+    if (model.rotates()) bytes += n.particles * sizeof(MixedSpinRest);
   }
   bytes += static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +

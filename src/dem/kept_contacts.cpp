@@ -25,6 +25,14 @@ void KeptContacts::order_from(std::size_t contact) {
     }
 }
 
+void KeptContacts::append(const KeptContacts& of_others) {
+  const std::int64_t before = std::ssize(keys);
+  for (std::int64_t i = 1; i <= of_others.particles(); ++i)
+    offsets.push_back(before + of_others.offsets[static_cast<std::size_t>(i)]);
+  keys.insert(keys.end(), of_others.keys.begin(), of_others.keys.end());
+  values.insert(values.end(), of_others.values.begin(), of_others.values.end());
+}
+
 KeptContacts KeptContacts::rows(std::span<const Index> particles) const {
   KeptContacts out;
   out.numbers = numbers;

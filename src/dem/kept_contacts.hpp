@@ -39,6 +39,8 @@ struct KeptContacts {
   void order_from(std::size_t contact);
   // Adds the row of a particle of another set.
   void add_row(const KeptContacts& from, std::int64_t particle);
+  // Adds the rows of other particles, which remember as much.
+  void append(const KeptContacts& of_others);
   // The rows of these particles, in this order.
   KeptContacts rows(std::span<const Index> particles) const;
   // Of contacts between particles alone.

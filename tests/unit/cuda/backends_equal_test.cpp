@@ -281,33 +281,4 @@ TEST_CASE("the state moves between the backends without a trace") {
   CHECK(difference(pair.cuda->particles().records(), records) == 0);
 }
 
-TEST_CASE("what is said about device memory before a run is what the run takes") {
-  for (const BoxCase& c : {kBoxes[0], kBoxes[4], kBoxes[6]})
-    for (const auto& [integrator, precision] : {std::pair{ParticleIntegrator::hht, Precision::full},
-                                                {ParticleIntegrator::velocity_verlet, Precision::full},
-                                                {ParticleIntegrator::velocity_verlet, Precision::mixed}}) {
-      CAPTURE(c.name, static_cast<int>(integrator), static_cast<int>(precision));
-      Model model = random_box(c, 300000, 5);
-      const Real scale = c.dimension == 2 ? 60 : 14;
-      for (Vec3* corner : {&model.space.min, &model.space.max}) *corner = scale * *corner;
-      for (Vec3& position : model.particles.position) position = scale * position;
-      model.integrator.particles = integrator, model.integrator.precision = precision;
-      model.contact.skin = 0.02;
-      const std::size_t before = device_memory_in_use();
-      const std::unique_ptr<Backend> backend = make_cuda_backend(model);
-      StageTimers timers;
-      backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
-      backend->list().build(model.contact.skin, timers);
-      backend->particles().initial_forces();
-      if (integrator == ParticleIntegrator::velocity_verlet) {
-        backend->start_run(1e-7)->take_steps(4, false, timers);
-      }
-      backend->reports().ledger(0);
-      backend->reports().start_output();
-      backend->reports().output();
-      const auto taken = static_cast<double>(device_memory_in_use() - before);
-      CHECK(near(static_cast<double>(device_memory(model)), taken, {.relative = 0.1}));
-    }
-}
-
 }  // namespace scree

@@ -1,5 +1,6 @@
 // What contacts remember on the GPU against the CPU: bit for bit, with rows pruned or not and either form of
 // the step's kernel, and from one backend to the other.
+#include "dem/device.hpp"
 #include "launches.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
@@ -58,6 +59,15 @@ TEST_CASE("contacts of many particles remember the same on both backends") {
       check_equal(cpu, cuda);
     }
   launches() = before;
+}
+
+TEST_CASE("contacts of more particles than leave the device at a time are the same on both backends") {
+  Model model = dense_box(kBoxes[6], ParticleIntegrator::velocity_verlet, kRowsAtOnce + 20000);
+  model.contact.skin = 0.02;
+  RememberingBox cpu(model, {}, make_remembering_cpu_backend<kRemembered>),
+      cuda(model, {}, make_remembering_cuda_backend<kRemembered>);
+  for (RememberingBox* box : {&cpu, &cuda}) box->start(), box->take_steps(3, 1e-5);
+  check_equal(cpu, cuda);
 }
 
 TEST_CASE("contacts remember in mixed precision") {

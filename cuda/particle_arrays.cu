@@ -1,0 +1,76 @@
+#include <type_traits>
+
+#include "for_each.cuh"
+#include "particle_arrays.cuh"
+
+namespace scree {
+namespace {
+
+// Where arrays wait on their way into another order: the room of the second ones.
+class WaitingRoom {
+ public:
+  WaitingRoom(SecondArrays& second, std::size_t n) : second_(second), n_(n) { clear(); }
+
+  void clear() {
+    for (std::size_t k = 0; k < 3; ++k) {
+      DeviceArray<Vec4>& array = k == 0   ? second_.position
+                                 : k == 1 ? second_.velocity
+                                          : second_.angular_velocity;
+      free_[k] = {reinterpret_cast<std::byte*>(array.data()), array.size() * sizeof(Vec4)};
+    }
+  }
+  // For an array of that type; null where there is none left. One has room where none is taken.
+  template <class T>
+  T* take() {
+    static_assert(sizeof(T) <= sizeof(Vec4));
+    for (Free& room : free_) {
+      if (room.bytes < n_ * sizeof(T)) continue;
+      auto* const at = reinterpret_cast<T*>(room.at);
+      const std::size_t taken =
+          std::min(room.bytes, SecondArrays::whole(n_ * sizeof(T)));  // the next is aligned
+      room.at += taken, room.bytes -= taken;
+      return at;
+    }
+    return nullptr;
+  }
+
+ private:
+  struct Free {
+    std::byte* at;
+    std::size_t bytes;
+  };
+  SecondArrays& second_;
+  const std::size_t n_;
+  Free free_[3];
+};
+
+}  // namespace
+
+void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n) {
+  if (n == 0) return;
+  ParticleViews motion;
+  motion.position = second.position.data(), motion.velocity = second.velocity.data();
+  motion.angular_velocity = second.angular_velocity.data();
+  for_each(device, n, ReorderItem{views_of(now), motion, order});
+  now.position.swap(second.position), now.velocity.swap(second.velocity);
+  now.angular_velocity.swap(second.angular_velocity);
+
+  const ParticleViews state = views_of(now);
+  WaitingRoom room(second, static_cast<std::size_t>(n));
+  ParticleViews waiting;
+  const auto bring_back = [&] {
+    for_each(device, n, ReorderItem{state, waiting, order});
+    for_each(device, n, ReorderItem{waiting, state, nullptr});
+    waiting = {}, room.clear();
+  };
+  for_each_array<kNames | kGhostCopies | kOwnedArrays>(
+      FieldsThere(now),
+      [&](auto*& waits) {
+        using T = std::remove_reference_t<decltype(*waits)>;
+        if ((waits = room.take<T>()) == nullptr) bring_back(), waits = room.take<T>();
+      },
+      waiting);
+  bring_back();
+}
+
+}  // namespace scree

@@ -1,0 +1,86 @@
+// What is said about device memory before a run against what the run takes.
+#include "dem/device.hpp"
+#include "model/particle_file.hpp"
+#include "support/catch.hpp"
+#include "support/near.hpp"
+#include "unit/dem/random_box.hpp"
+
+namespace scree {
+namespace {
+
+// Of what the model's run takes at the start, with reports; explicit ones with steps and a list behind them.
+double taken(const Model& model) {
+  const std::size_t before = device_memory_in_use();
+  const std::unique_ptr<Backend> backend = make_cuda_backend(model);
+  StageTimers timers;
+  backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
+  backend->list().build(model.contact.skin, timers);
+  backend->particles().initial_forces();
+  if (model.integrator.particles == ParticleIntegrator::velocity_verlet) {
+    backend->start_run(1e-7)->take_steps(4, false, timers);
+    backend->list().build(model.contact.skin, timers);
+  }
+  backend->reports().ledger(0);
+  backend->reports().start_output();
+  backend->reports().output();
+  return static_cast<double>(device_memory_in_use() - before);
+}
+
+void check_estimate(const Model& model) {
+  const double bytes = taken(model);
+  CHECK(near(static_cast<double>(device_memory(model)), bytes, {.relative = 0.1}));
+}
+
+// Settled spheres that rub: tiles of a bed, beside each other.
+Model rubbing_bed() {
+  constexpr int kTiles = 30;
+  constexpr Real kWidth = 25, kRadius = 0.5, kStiffness = 2e5;
+  const ParticleColumns tile = read_particle_file(SCREE_SOURCE_DIR "/tests/reference/bed_tile.h5", 3);
+  Model model;
+  model.space.dimension = model.particles.dimension = 3;
+  model.space.min = {-kRadius, -kRadius, 0};
+  model.space.max = {kTiles * kWidth + kRadius, kWidth + kRadius, 20};
+  model.contact.material_names = {"sphere"};
+  model.contact.laws = {{kStiffness, 25, 1, false}};
+  model.contact.friction = {{0.5, Real(2) / 7 * kStiffness, 0, 0}};
+  model.contact.skin = 0.1;
+  model.integrator.particles = ParticleIntegrator::velocity_verlet;
+  const std::vector<Real>&x = tile.at("x"), &y = tile.at("y"), &z = tile.at("z");
+  ParticleSet& set = model.particles;
+  for (int t = 0; t < kTiles; ++t)
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      set.position.push_back({x[i] + t * kWidth, y[i], z[i]}), set.velocity.push_back({});
+      set.radius.push_back(kRadius), set.mass.push_back(1), set.material.push_back(0);
+    }
+  count_particles(set, model.contact.materials());
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("what is said about device memory before a run is what the run takes") {
+  for (const BoxCase& c : {kBoxes[0], kBoxes[4], kBoxes[6]})
+    for (const auto& [integrator, precision] : {std::pair{ParticleIntegrator::hht, Precision::full},
+                                                {ParticleIntegrator::velocity_verlet, Precision::full},
+                                                {ParticleIntegrator::velocity_verlet, Precision::mixed}}) {
+      CAPTURE(c.name, static_cast<int>(integrator), static_cast<int>(precision));
+      Model model = random_box(c, 300000, 5);
+      const Real scale = c.dimension == 2 ? 60 : 14;
+      for (Vec3* corner : {&model.space.min, &model.space.max}) *corner = scale * *corner;
+      for (Vec3& position : model.particles.position) position = scale * position;
+      model.integrator.particles = integrator, model.integrator.precision = precision;
+      model.contact.skin = 0.02;
+      check_estimate(model);
+    }
+}
+
+TEST_CASE("the same of settled spheres that rub") {
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    CAPTURE(static_cast<int>(precision));
+    Model model = rubbing_bed();
+    model.integrator.precision = precision;
+    check_estimate(model);
+  }
+}
+
+}  // namespace scree
