@@ -37,6 +37,24 @@ std::unique_ptr<ExplicitRun> CudaBackend::start_run(Real h) {
   return std::make_unique<CudaExplicitRun>(items_, bodies_, list_, run_workspace_, h);
 }
 
+std::vector<DeviceShare> CudaBackend::device_shares() const {
+  std::vector<DeviceShare> shares{{"state", items_.now.bytes()},
+                                  {"second arrays", items_.other.bytes()},
+                                  {"list", items_.list.bytes()},
+                                  {"records of contacts", items_.history.bytes()},
+                                  {"steps or kept contacts", items_.room.bytes()},
+                                  {"mixed precision", run_workspace_.arrays.bytes()}};
+  std::size_t rest = device_bytes_in_use();
+  for (const DeviceShare& share : shares) rest -= share.bytes;
+  shares.push_back({"all else", rest});
+  return shares;
+}
+
+std::vector<DeviceShare> device_shares(const Backend& backend) {
+  const auto* on_device = dynamic_cast<const CudaBackend*>(&backend);
+  return on_device != nullptr ? on_device->device_shares() : std::vector<DeviceShare>{};
+}
+
 DeviceClaim claim_device(const Model& model) {
   return {device_uuid(), device_memory(model), free_device_memory()};
 }

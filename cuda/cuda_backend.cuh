@@ -29,6 +29,8 @@ class CudaBackend : public Backend {
   bool computes_asynchronously() const override { return true; }
   bool is_mixed() const override { return run_workspace_.mixed; }
 
+  std::vector<DeviceShare> device_shares() const;
+
  private:
   std::string double_reason() const;
 

@@ -61,6 +61,7 @@ void measure_explicit(Model bed, Real h, const Options& options, BedReport& repo
   fmt::print("{:10d} {}, {} x {} steps, {} list builds, {:.2f} listed per particle\n",
              run.model.particles.totals.count, speed_text(samples, run.model.particles.totals.count),
              options.repeats, samples.steps, builds, run.listed());
+  print_device_memory(backend);
   report.add(measured(samples, run.model, builds), timers, run.timers, backend);
 }
 

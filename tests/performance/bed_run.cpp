@@ -91,6 +91,15 @@ std::string speed_text(const Samples& samples, std::int64_t particles) {
                      n / samples.seconds.back(), n / samples.seconds.front(), 1e6 * samples.median());
 }
 
+void print_device_memory(Backend& backend) {
+  const auto particles = static_cast<double>(backend.list().balance().halo.owned);
+  std::string text;
+  for (const DeviceShare& share : device_shares(backend))
+    text += fmt::format("{}{} {:.0f} B", text.empty() ? "" : ", ", share.of,
+                        static_cast<double>(share.bytes) / particles);
+  if (!text.empty()) fmt::print("{:10} device memory per particle: {}\n", "", text);
+}
+
 void print_stages(const StageTimers& before, const StageTimers& after, double steps) {
   double all = 0;
   const auto seconds = [&](int s) {

@@ -60,6 +60,8 @@ struct Run {
 
 // "2.51e+07 (2.44e+07 to 2.53e+07) particle-steps/s, 398 us per step"
 std::string speed_text(const Samples& samples, std::int64_t particles);
+// What the arrays of this rank's backend hold of its GPU, per particle of the rank.
+void print_device_memory(Backend& backend);
 // Each stage's share of what all took between the two, and its time over the steps.
 void print_stages(const StageTimers& before, const StageTimers& after, double steps);
 

@@ -16,6 +16,8 @@ std::size_t free_device_memory() { return 0; }
 
 std::size_t device_memory_in_use() { return 0; }
 
+std::vector<DeviceShare> device_shares(const Backend&) { return {}; }
+
 DeviceClaim claim_device(const Model&) { throw InputError(device_trouble()); }
 
 std::unique_ptr<Backend> make_cuda_backend(const Model&, const Ranks&) { throw InputError(device_trouble()); }
