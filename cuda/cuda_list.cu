@@ -207,22 +207,17 @@ void CudaList::find_rows(Real skin) {
   index_ghosts();
   search(skin);
   owners_.note_rows();
-  items_.history.take_slots(items_.listed());
-  make_room_for_steps();
   const auto active = static_cast<std::size_t>(items_.layout.active);
-  copy_async(built_at_.data(), items_.now.position.data(), active, items_.stream);
-}
-
-void CudaList::make_room_for_steps() {
-  const auto active = static_cast<std::size_t>(items_.layout.active);
-  if (items_.model.integrator.particles == ParticleIntegrator::hht) {
-    built_at_.resize(active);
-    step_arrays_.resize(items_);
-    return;
-  }
   DeviceList& list = items_.list;
-  items_.room.lay_out(RoomFor{built_at_, active}, list.room_for_pruned(), list.room_for_places());
-  items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
+  if (items_.model.integrator.particles == ParticleIntegrator::hht) {
+    built_at_.resize(active), step_arrays_.resize(items_);
+    items_.history.take_slots(items_.listed());
+  } else {
+    items_.history.take_slots(items_.listed());  // what was kept leaves the room
+    items_.room.lay_out(RoomFor{built_at_, active}, list.room_for_pruned(), list.room_for_places());
+    items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
+  }
+  copy_async(built_at_.data(), items_.now.position.data(), active, items_.stream);
 }
 
 // Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:

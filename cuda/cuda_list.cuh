@@ -49,7 +49,6 @@ class CudaList : public RankList {
   void find_rows(Real skin);
   void index_ghosts();
   void search(Real skin);
-  void make_room_for_steps();
 
   CudaItems& items_;
   CudaBodies& bodies_;

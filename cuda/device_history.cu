@@ -306,6 +306,8 @@ void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
   at_slots_ = false;
   kept_.offsets.resize(1), kept_.offsets.zero(stream_), kept_.keys.resize(0), kept_.values.resize(0);
   row_of_.resize(0);
+  const auto at_once = static_cast<std::size_t>(std::min(owned, kRowsAtOnce));
+  packed_.offsets.resize(at_once + 1), make_room(packed_, at_once * kRoomInRows);
   append(contacts.numbers == numbers_ ? contacts : no_contacts(numbers_, owned), 0);
 }
 

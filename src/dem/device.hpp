@@ -51,9 +51,11 @@ inline constexpr double kListSlack = 1.05;
 // Particles whose records leave the device at a time. Room for them is there all the time: a run that finds
 // no more memory writes its last good state through it.
 inline constexpr std::size_t kRecordsAtOnce = std::size_t{1} << 16;
-// Lines of a snapshot's contacts likewise, and rows of what contacts remember.
+// Rows of what contacts remember likewise, with room for so many contacts in each, more than packings have.
+inline constexpr Index kRowsAtOnce = Index{1} << 16;
+inline constexpr std::size_t kRoomInRows = 8;
+// Lines of a snapshot's contacts likewise; room for them is there once they are asked for.
 inline constexpr std::size_t kLinesAtOnce = std::size_t{1} << 18;
-inline constexpr Index kRowsAtOnce = Index{1} << 18;
 
 // Device memory that the backend takes for this rank's part of the model [B]: what `scree check` prints. An
 // estimate from the model alone, the same on machines without a GPU.

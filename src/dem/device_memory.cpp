@@ -111,7 +111,11 @@ double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
   double bytes = n.particles * kRowArrays + n.slots * sizeof(Index) +
                  n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
   const double kept = n.particles * bytes_remembered(numbers, 0), places = n.particles * sizeof(Vec4);
-  if (numbers > 0) bytes += n.slots * records_of(numbers) * sizeof(Vec4) + 2 * n.particles * sizeof(Index);
+  if (numbers > 0) {
+    const double at_once = std::min<double>(n.particles, kRowsAtOnce) * kRoomInRows;
+    bytes += n.slots * records_of(numbers) * sizeof(Vec4) + 2 * n.particles * sizeof(Index) +
+             at_once * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
+  }
   if (!explicit_steps) return bytes + kept + places;
   const double pruned = n.slots * (sizeof(Index) + (numbers > 0 ? sizeof(std::uint16_t) : 0));
   return bytes + n.particles * sizeof(Index) + std::max(kept, places + pruned);
