@@ -8,8 +8,9 @@ CudaBackend::CudaBackend(const Model& model, const Ranks& ranks, std::unique_ptr
       bodies_(items_),
       list_(items_, bodies_, implicit_arrays_),
       particles_(items_, bodies_, list_),
-      reports_(items_, bodies_),
-      run_workspace_(model.integrator.precision == Precision::mixed && double_reason().empty()) {}
+      reports_(items_, bodies_) {
+  items_.in_mixed = model.integrator.precision == Precision::mixed && double_reason().empty();
+}
 
 // Why a run is in double whatever the deck says.
 std::string CudaBackend::double_reason() const {
@@ -42,8 +43,7 @@ std::vector<DeviceShare> CudaBackend::device_shares() const {
                                   {"second arrays", items_.other.bytes()},
                                   {"list", items_.list.bytes()},
                                   {"records of contacts", items_.history.bytes()},
-                                  {"steps or kept contacts", items_.room.bytes()},
-                                  {"mixed precision", run_workspace_.arrays.bytes()}};
+                                  {"steps or kept contacts", items_.room.bytes()}};
   std::size_t rest = device_bytes_in_use();
   for (const DeviceShare& share : shares) rest -= share.bytes;
   shares.push_back({"all else", rest});

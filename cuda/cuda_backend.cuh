@@ -27,7 +27,7 @@ class CudaBackend : public Backend {
   std::unique_ptr<ImplicitStep> open_step(Real h) override;
   std::unique_ptr<ExplicitRun> start_run(Real h) override;
   bool computes_asynchronously() const override { return true; }
-  bool is_mixed() const override { return run_workspace_.mixed; }
+  bool is_mixed() const override { return items_.in_mixed; }
 
   std::vector<DeviceShare> device_shares() const;
 

@@ -96,6 +96,8 @@ struct CudaItems {
   // `now` holds the state.
   ParticleArrays now;
   SecondArrays other;
+  bool in_mixed = false;  // whether explicit runs are in mixed precision
+  MixedArrays mixed;
   Index owned = 0;
   ItemLayout layout;   // without its list of ghosts
   Index interior = 0;  // the first so many particles, whole blocks of them, meet no ghosts and are none

@@ -214,7 +214,11 @@ void CudaList::find_rows(Real skin) {
     items_.history.take_slots(items_.listed());
   } else {
     items_.history.take_slots(items_.listed());  // what was kept leaves the room
-    items_.room.lay_out(RoomFor{built_at_, active}, list.room_for_pruned(), list.room_for_places());
+    MixedArrays& mixed = items_.mixed;
+    const auto in_mixed = static_cast<std::size_t>(items_.in_mixed ? items_.owned : 0);
+    items_.room.lay_out(RoomFor{built_at_, active}, list.room_for_pruned(), list.room_for_places(),
+                        RoomFor{mixed.fraction, in_mixed}, RoomFor{mixed.rest, in_mixed},
+                        RoomFor{mixed.spin_rest, items_.model.rotates() ? in_mixed : 0});
     items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
   }
   copy_async(built_at_.data(), items_.now.position.data(), active, items_.stream);

@@ -62,24 +62,6 @@ void hold_until(const Event* event, Device on) {
 
 }  // namespace
 
-void MixedArrays::resize(std::size_t owned, bool rotates) {
-  fraction.resize(owned), rest.resize(owned);
-  if (rotates) spin_rest.resize(owned);
-}
-
-MixedViews MixedArrays::views(SecondArrays& room) {
-  MixedViews views{};
-  const auto halve = [](DeviceArray<Vec4>& whole, auto*(&halves)[2]) {
-    static_assert(2 * sizeof(*halves[0]) == sizeof(Vec4));
-    halves[0] = reinterpret_cast<std::remove_reference_t<decltype(halves[0])>>(whole.data());
-    halves[1] = halves[0] + whole.size();
-  };
-  halve(room.position, views.place), halve(room.velocity, views.motion);
-  halve(room.angular_velocity, views.spin);
-  views.fraction = fraction.data(), views.rest = rest.data(), views.spin_rest = spin_rest.data();
-  return views;
-}
-
 PrunedViews StepQueue::pruned_views(const Vec4* position) {
   PrunedViews views =
       items_.surfaces.views(position, nullptr, items_.now.material.data(), items_.list.pruned_rows());
@@ -131,7 +113,6 @@ Vec4* StepQueue::spins() const {
 
 void StepQueue::convert_to_mixed() {
   ParticleArrays& now = items_.now;
-  workspace_.arrays.resize(static_cast<std::size_t>(items_.owned), items_.model.rotates());
   mixed_ = {make_quantum_grid(list_.cutoff()), control_.seen().closed};
   // Ghosts come with the first step's halo.
   for_each(items_.device(), items_.owned,

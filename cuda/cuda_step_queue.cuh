@@ -10,25 +10,9 @@
 
 namespace scree {
 
-// The items in mixed precision: what steps read of one array and write to the other stands in the room of the
-// second arrays of the state, which are not needed meanwhile.
-struct MixedArrays {
-  DeviceArray<MixedFraction> fraction;
-  DeviceArray<MixedRest> rest;
-  DeviceArray<MixedSpinRest> spin_rest;
-
-  void resize(std::size_t owned, bool rotates);
-  MixedViews views(SecondArrays& room);
-  std::size_t bytes() const { return fraction.bytes() + rest.bytes() + spin_rest.bytes(); }
-};
-
 // Kept from one run to the next.
 struct RunWorkspace {
-  explicit RunWorkspace(bool in_mixed) : mixed(in_mixed) {}
-
-  const bool mixed;  // whether runs are in mixed precision
   StepGraph graph;
-  MixedArrays arrays;
   Event step_queued;
 };
 
@@ -41,7 +25,7 @@ class StepQueue {
   // stop do nothing. loads_found: of surfaces that move, when their contacts with the particles are there;
   // null for surfaces at rest, whose contacts are queued with each step.
   void queue(Index steps, const Event* loads_found = nullptr) {
-    workspace_.mixed ? queue_mixed(steps, loads_found) : queue_double(steps, loads_found);
+    items_.in_mixed ? queue_mixed(steps, loads_found) : queue_double(steps, loads_found);
   }
   // A step in double.
   VerletRequest request();
@@ -66,7 +50,7 @@ class StepQueue {
                         const QueueEarly& queue_early, const QueueLate& queue_late);
   OpenStepLook surface_look(const VerletRequest& step);
   Vec4* spins() const;
-  MixedViews mixed_views() { return workspace_.arrays.views(items_.other); }
+  MixedViews mixed_views() { return items_.mixed.views(items_.other); }
   void convert_to_mixed();
   void convert_from_mixed();
 

@@ -46,6 +46,19 @@ class WaitingRoom {
 
 }  // namespace
 
+MixedViews MixedArrays::views(SecondArrays& room) {
+  MixedViews views{};
+  const auto halve = [](DeviceArray<Vec4>& whole, auto*(&halves)[2]) {
+    static_assert(2 * sizeof(*halves[0]) == sizeof(Vec4));
+    halves[0] = reinterpret_cast<std::remove_reference_t<decltype(halves[0])>>(whole.data());
+    halves[1] = halves[0] + whole.size();
+  };
+  halve(room.position, views.place), halve(room.velocity, views.motion);
+  halve(room.angular_velocity, views.spin);
+  views.fraction = fraction.data(), views.rest = rest.data(), views.spin_rest = spin_rest.data();
+  return views;
+}
+
 void reorder(Device device, ParticleArrays& now, SecondArrays& second, const Index* order, Index n) {
   if (n == 0) return;
   ParticleViews motion;

@@ -1,8 +1,9 @@
 // Particles on the device: the arrays of ParticleStore, and second ones of what steps read and write.
 #pragma once
 
+#include "dem/mixed_items.hpp"
 #include "dem/particle_fields.hpp"
-#include "device.cuh"
+#include "device_room.cuh"
 
 namespace scree {
 
@@ -43,6 +44,16 @@ struct SecondArrays {
   }
   // A warp's values of any type then begin and end with whole sectors, and so do halves of an array.
   static constexpr std::size_t whole(std::size_t n) { return (n + 31) / 32 * 32; }
+};
+
+// Particles in mixed precision, between two lists: what they alone read. What steps read of one array and
+// write to another stands in the room of the second arrays of the state, which are not needed meanwhile.
+struct MixedArrays {
+  DeviceArray<MixedFraction> fraction;
+  DeviceArray<MixedRest> rest;
+  DeviceArray<MixedSpinRest> spin_rest;
+
+  MixedViews views(SecondArrays& room);
 };
 
 // to[i] = from[order[i]] of the arrays that both have; without an order to[i] = from[i].

@@ -34,7 +34,7 @@ constexpr double kStepArrays =
 // The same where contacts rub: CudaRubbingArrays in place of the matrix and the solve.
 constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + 5 * sizeof(Vec4) +
                                   sizeof(ScaledMass) + sizeof(Block6f) + 2 * sizeof(Twist);
-constexpr double kMixedParticleArrays = sizeof(MixedFraction) + sizeof(MixedRest);
+constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry::Normal) + sizeof(RubbingEntry::Slide) +
                                          sizeof(RubbingEntry::Shear) +
@@ -117,8 +117,12 @@ double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
              at_once * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
   }
   if (!explicit_steps) return bytes + kept + places;
-  const double pruned = n.slots * (sizeof(Index) + (numbers > 0 ? sizeof(std::uint16_t) : 0));
-  return bytes + n.particles * sizeof(Index) + std::max(kept, places + pruned);
+  double of_steps = places + n.slots * (sizeof(Index) + (numbers > 0 ? sizeof(std::uint16_t) : 0));
+  if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
+    of_steps += n.particles * kMixedArrays;
+    if (model.rotates()) of_steps += n.particles * sizeof(MixedSpinRest);
+  }
+  return bytes + n.particles * sizeof(Index) + std::max(kept, of_steps);
 }
 
 double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
@@ -152,10 +156,6 @@ std::size_t device_memory(const Model& model) {
   if (!explicit_steps)
     bytes += model.rotates() ? n.items * kRubbingArrays + n.slots * kRubbingArraysPerSlot
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
-  if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
-    bytes += n.particles * kMixedParticleArrays;
-    if (model.rotates()) bytes += n.particles * sizeof(MixedSpinRest);
-  }
   bytes += static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
            static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
