@@ -70,6 +70,7 @@ class Simulation {
  private:
   ExitCode run_to_the_end();
   void start_or_resume();
+  void check_end() const;
   void load_state();
   std::string start_change() const;
   bool continues_files() const;
@@ -121,17 +122,24 @@ void Simulation::start_or_resume() {
   } else {
     load_state();
     step_.counts() = state_.counts;
-    if (state_.clock.time > model_.time.end)
-      throw InputError(fmt::format("--restart {}: the checkpoint is at t = {:.9g} s, past time.end = {:g} s",
-                                   options_.restart, state_.clock.time, model_.time.end));
-    if (state_.clock.time == model_.time.end)
-      log_.info(fmt::format(
-          "--restart {}: nothing left to do: time.end = {:g} s is reached; --set time.end=... goes on",
-          options_.restart, model_.time.end));
+    check_end();
     if (!continues_files()) state_.history_rows = state_.snapshots = 0;
     step_.resume(state_.bodies, state_.clock.time);
     if (restart_.forces_changed) step_.renew_forces(state_.bodies, state_.clock.time);
   }
+}
+
+// A checkpoint at the end may be past it by round-off, where the end is a multiple of an interval.
+void Simulation::check_end() const {
+  const StepClock clock(model_, state_.clock);
+  if (clock.time() > clock.end())
+    throw InputError(fmt::format("--restart {}: the checkpoint is at t = {} s, past time.end = {} s",
+                                 options_.restart, clock.time(), model_.time.end));
+  if (clock.done())
+    log_.info(fmt::format(
+        "--restart {}: nothing left to do: time.end = {} s is reached, the run is finished; a later one, "
+        "--set time.end=..., goes on from here",
+        options_.restart, model_.time.end));
 }
 
 // The checkpoint's particles are complete; another deck's constants hold from now on.

@@ -45,6 +45,8 @@ StepClock::StepClock(const Model& model, const ClockState& state) : StepClock(mo
   recount(state_.histories, output_.history_interval);
   recount(state_.snapshots, output_.snapshot_interval);
   recount(state_.checkpoints, output_.checkpoint_interval);
+  // Of a run with other intervals, at its end but for round-off: no step is as short as what is left.
+  if (std::abs(state_.time - time_.end) <= same_time_margin()) time_.end = state_.time;
   if (state_.time < state_.end && state_.end != next_output()) open_segment();
 }
 

@@ -34,6 +34,8 @@ class StepClock {
 
   const ClockState& state() const { return state_; }
   Real time() const { return state_.time; }
+  // The deck's end, or the output time or the time gone on from that it is but for round-off [s].
+  Real end() const { return time_.end; }
   bool done() const { return state_.time >= time_.end; }
 
   // Opens the next step, or the same one again after a rejection, and returns its length [s].

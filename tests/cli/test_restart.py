@@ -219,6 +219,23 @@ class RestartTest(CommandLineTest):
         result = self.run_deck(DONE, "again", "--restart", self.folder / "out/checkpoint_end.h5")
         self.assertIn("nothing left to do: time.end = 0.4 s is reached", result.stdout)
 
+    def test_a_checkpoint_past_the_end_by_round_off_is_of_a_finished_run(self):
+        end, periodic = ("--set", "time.end=0.009"), ("--set", "output.checkpoint_interval=0.001")
+        self.assertGreater(9 * 0.001, 0.009)
+        self.run_deck(DONE, "out", *end, *periodic)
+        for words in (*end, *periodic), end:  # as a job of a chain does, and with other intervals
+            with self.subTest(words=words):
+                result = self.run_deck(DONE, "out", *words, "--restart", self.folder / "out/checkpoint.h5")
+                self.assertIn("nothing left to do: time.end = 0.009 s is reached", result.stdout)
+                self.assertIn("t = 0.009 s after 90 steps", result.stdout)
+                shutil.copy(self.folder / "out/checkpoint_end.h5", self.folder / "out/checkpoint.h5")
+        self.run_deck(DONE, "out", "--set", "time.end=0.02", *periodic, "--restart",
+                      self.folder / "out/checkpoint.h5")
+        self.run_deck(DONE, "whole", "--set", "time.end=0.02", *periodic)
+        self.assert_same_history("out", "whole")
+        message = self.run_deck(BAD_INPUT, "out", *end, "--restart", self.folder / "out/checkpoint_end.h5").stderr
+        self.assertIn("the checkpoint is at t = 0.02 s, past time.end = 0.009 s", message)
+
     def test_checkpoints_that_cannot_be_read(self):
         self.run_deck(DONE, "out", "--set", "time.end=0.02", "--set", "output.checkpoint_interval=0.01")
         whole = (self.folder / "out" / "checkpoint.h5").read_bytes()
