@@ -186,6 +186,7 @@ ContactLines CudaReports::contact_lines() {
     out.global_id.push_back(id_of(row_key[i]));
     out.counts.push_back(offsets[i + 1] - offsets[i]);
   }
+  out.of_bodies = bodies_.side().contact_lines();
   return out;
 }
 

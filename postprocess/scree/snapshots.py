@@ -161,8 +161,9 @@ class Snapshot:
 
     @property
     def contacts(self) -> Points:
-        """The contacts of particles as lines, those that the deck's output.contacts asked for; `.count` of them. The
-        fields "wall" and "body" count the run's wall_names and body_names. Throws ScreeError where it did not."""
+        """The contacts of particles and of bodies' discs and spheres as lines, where the deck's output.contacts asked
+        for them; `.count` of them. The fields "wall", "body" and "first_body" count the run's wall_names and body_names.
+        Throws ScreeError where it did not."""
         return self._points("contacts")
 
     @property

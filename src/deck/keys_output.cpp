@@ -31,9 +31,8 @@ const TableKeys& output_keys() {
                "that Archard's law wears off (wear_coefficient of the pairs) over the area."),
        boolean("contacts")
            .otherwise("false")
-           .about("Whether snapshots hold the contacts of particles, a line for each (contacts.vtkhdf), with "
-                  "its "
-                  "forces, overlap and partners."),
+           .about("Whether snapshots hold the contacts of particles and of bodies' discs and spheres, a line "
+                  "for each (contacts.vtkhdf), with its forces, overlap and partners."),
        boolean("links").otherwise("true").about(
            "Whether snapshots hold the joints, spring-dampers and bushings, a line for each "
            "(links.vtkhdf), with its force and torque."),

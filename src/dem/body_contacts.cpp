@@ -326,4 +326,22 @@ ContactSum BodyContacts::on_wall(int wall) {
   return make_wall_contact(sums);
 }
 
+std::vector<ContactLine> BodyContacts::lines(const SurfacePlaces& places) {
+  const HistoryViews history = held_.views().only_read();
+  const std::vector<ShownContact> of_surfaces = entries_.shown(places, store_, list_.surfaces, history);
+  std::vector<Index> counts(static_cast<std::size_t>(store_.owned));
+  std::vector<ContactLine> lines =
+      contact_lines(*kernels_, views(history),
+                    {store_.row_key.data(), of_surfaces.data(), model_.space.min, period_}, counts);
+  // Items are called by their numbers among the placed surfaces.
+  const auto id_of_shape = [&](GlobalId item) {
+    return surface_id(surfaces_.number_of(static_cast<Index>(item)));
+  };
+  for (ContactLine& line : lines) {
+    line.first = id_of_shape(line.first);
+    if (line.second < kFirstSurfaceId) line.second = id_of_shape(line.second);
+  }
+  return lines;
+}
+
 }  // namespace scree

@@ -68,6 +68,8 @@ class BodyContacts {
   // What shapes do to a wall at rest, where they were at the last find at an instant. wall: index into
   // Model::walls.
   ContactSum on_wall(int wall);
+  // Of find_loads at an instant: each contact once.
+  std::vector<ContactLine> lines(const SurfacePlaces& places);
 
   // What was found last at triangles of meshes, over an explicit step of length h and over an implicit one.
   void book_loads(const SurfacePlaces& places, Real h);

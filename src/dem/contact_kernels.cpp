@@ -1,3 +1,5 @@
+#include <numeric>
+
 #include "dem/choose_law.hpp"
 #include "dem/contact_kernels_impl.hpp"
 
@@ -10,6 +12,19 @@ std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact) {
                                return std::make_unique<CpuContactKernels<OneLaw<Law>>>(OneLaw<Law>{laws[0]});
                              return std::make_unique<CpuTableKernels<Law>>(laws, contact.materials());
                            });
+}
+
+std::vector<ContactLine> contact_lines(const ContactKernels& kernels, const ContactViews<PackedRows>& in,
+                                       LineRequest to, std::vector<Index>& counts) {
+  const auto n = static_cast<Index>(counts.size());
+  std::vector<Index> offsets(counts.size() + 1);
+  to.counts = counts.data();
+  kernels.contact_lines(in, n, to);
+  std::inclusive_scan(counts.begin(), counts.end(), offsets.begin() + 1);
+  std::vector<ContactLine> lines(static_cast<std::size_t>(offsets.back()));
+  to.lines = lines.data(), to.offsets = offsets.data();
+  kernels.contact_lines(in, n, to);
+  return lines;
 }
 
 }  // namespace scree

@@ -94,4 +94,9 @@ class ContactKernels {
 
 std::unique_ptr<ContactKernels> make_contact_kernels(const Contact& contact);
 
+// The lines of the first items, one item after the other: as many as counts has places, whose lines it
+// counts. to: without where lines go.
+std::vector<ContactLine> contact_lines(const ContactKernels& kernels, const ContactViews<PackedRows>& in,
+                                       LineRequest to, std::vector<Index>& counts);
+
 }  // namespace scree

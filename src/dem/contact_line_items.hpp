@@ -22,9 +22,10 @@ struct ShownContact {
   Real slip;              // how far the spring of friction is stretched [m]
 };
 
-// A contact with the particle whose line it is, of two particles that with the lower id.
+// A contact with the particle whose line it is, of two particles that with the lower id; or with the shape of
+// a body, of two shapes that with the lower number.
 struct ContactLine {
-  GlobalId first;
+  GlobalId first;   // a particle, or of a shape its surface_id()
   GlobalId second;  // the other particle, or a surface_id()
   Vec3 start;       // the first one's centre, inside the periodic box [m]
   ShownContact contact;

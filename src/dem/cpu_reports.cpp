@@ -1,7 +1,6 @@
 #include "dem/cpu_reports.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/for_each.hpp"
 #include "base/reproducible_sum.hpp"
@@ -73,18 +72,14 @@ ContactLines CpuReports::contact_lines() {
   need_loads();
   const std::vector<ShownContact> of_surfaces =
       items_.surfaces.shown(items_.side.places(), store, items_.list.surfaces, items_.history.views());
-  std::vector<Index> counts(static_cast<std::size_t>(n)), offsets(counts.size() + 1);
-  LineRequest request{store.row_key.data(), of_surfaces.data(), items_.model.space.min,
-                      items_.subdomain.period()};
-  request.counts = counts.data();
-  items_.kernels->contact_lines(items_.views(), n, request);
-  std::inclusive_scan(counts.begin(), counts.end(), offsets.begin() + 1);
+  std::vector<Index> counts(static_cast<std::size_t>(n));
   ContactLines out;
+  out.lines = scree::contact_lines(
+      *items_.kernels, items_.views(),
+      {store.row_key.data(), of_surfaces.data(), items_.model.space.min, items_.subdomain.period()}, counts);
   for (Index i = 0; i < n; ++i) out.global_id.push_back(id_of(store.row_key[i]));
   out.counts.assign(counts.begin(), counts.end());
-  out.lines.resize(static_cast<std::size_t>(offsets.back()));
-  request.lines = out.lines.data(), request.offsets = offsets.data();
-  items_.kernels->contact_lines(items_.views(), n, request);
+  out.of_bodies = items_.side.contact_lines();
   return out;
 }
 

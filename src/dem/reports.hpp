@@ -52,6 +52,9 @@ struct ContactLines {
   std::vector<GlobalId> global_id;   // of the particles, any order
   std::vector<std::int64_t> counts;  // lines of each
   std::vector<ContactLine> lines;    // in that order; those of a particle in the order of its row
+  // Of bodies' shapes with each other and with surfaces, in the order of the first ones' numbers; first is a
+  // surface_id(). On rank 0.
+  std::vector<ContactLine> of_bodies;
 };
 
 // A particle whose motion is recorded.

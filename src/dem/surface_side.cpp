@@ -298,6 +298,9 @@ ShapeContacts SurfaceSide::shape_contacts() {
   return bodies_.contacts(places());
 }
 
+std::vector<ContactLine> SurfaceSide::contact_lines() {
+  return ranks_.is_root() ? bodies_.lines(places()) : std::vector<ContactLine>{};
+}
 ShapePack SurfaceSide::pack() const {
   ShapePack pack;
   std::vector<std::size_t> row(placed_.size(), placed_.size());  // of the shapes

@@ -100,6 +100,8 @@ class SurfaceSide {
   std::vector<ContactSum> carrier_contacts() const;  // bodies, then placed walls
   ShapePack pack() const;                            // of the spheres
   ContactSum on_wall(int wall) { return bodies_.on_wall(wall); }
+  // Of the bodies' shapes, on rank 0.
+  std::vector<ContactLine> contact_lines();
   // Of all ranks' particles, and of shapes, ordered by surface and triangle. Collective; complete on rank 0.
   std::vector<TriangleLoad> triangle_loads(std::vector<TriangleSums> contacts) const;
   // Adds what shapes have lost at the triangles to the words of TriangleWorks; on rank 0.

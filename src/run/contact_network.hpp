@@ -1,4 +1,4 @@
-// The contacts of particles as snapshots show them: columns of lines.
+// The contacts of particles and of bodies' shapes as snapshots show them: columns of lines.
 #pragma once
 
 #include <string>
@@ -11,10 +11,11 @@
 
 namespace scree {
 
-// What a contact's particle touches, as files have it.
+// What is touched at the end of a line, as files have it.
 enum class ContactKind : int { particle, wall, body };
 
-// This rank's part of the lines of all ranks: in the order of the first particles' ids.
+// This rank's part of the lines of all ranks: those of bodies' shapes, which are rank 0's, then those of
+// particles in the order of the first particles' ids.
 class ContactNetwork {
  public:
   ContactNetwork() = default;
@@ -32,7 +33,7 @@ class ContactNetwork {
   std::vector<Vec3> ends_, force_;
   std::vector<Real> normal_force_, tangential_force_, overlap_, slip_;
   std::vector<GlobalId> first_, second_;
-  std::vector<int> kind_, wall_, body_;
+  std::vector<int> kind_, wall_, body_, first_body_;
 };
 
 }  // namespace scree

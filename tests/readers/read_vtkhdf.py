@@ -303,7 +303,9 @@ def check_contacts(directory, steps):
             between = second >= 0
             require((np.diff(first) >= 0).all(), f"{where}: contacts not in the order of the ids")
             require((second[between] > first[between]).all(), f"{where}: a contact's first id is not the lower one")
-            for of, sign, rows in ((first, 1, slice(None)), (second, -1, between)):
+            require(((first < 0) == (contacts["first_body"] >= 0)).all(), f"{where}: a contact of nobody")
+            for of, sign in ((first, 1), (second, -1)):
+                rows = of >= 0
                 at = np.searchsorted(ids, of[rows])
                 np.add.at(number, at, 1)
                 np.add.at(force, at, sign * contacts["force"][rows])

@@ -110,14 +110,14 @@ TEST_CASE(
       const Model model = kind.of(moving_rubbing_box(c, Leaving::drift));
       RememberingBox run(model, {}, make_test_backend), box(model, {}, make_test_backend);
       run.start(), run.take_steps(60);
-      State state = run.state();
-      state.shape_contacts = {};  // those of bodies among each other have no lines
-      box.motion = run.motion, box.start(state);
+      box.motion = run.motion, box.start(run.state());
       box.backend->particles().initial_forces();
       const std::string before = box.hash();
       const ContactLines lines = check_lines(model, *box.backend);
+      CHECK(lines.of_bodies.empty() == !c.bodies);
       Real energy = 0;
-      for (const ContactLine& line : lines.lines) energy += 800.0 / 2 * line.contact.slip * line.contact.slip;
+      for (const std::vector<ContactLine>* some : {&lines.lines, &lines.of_bodies})
+        for (const ContactLine& line : *some) energy += 800.0 / 2 * line.contact.slip * line.contact.slip;
       const Real springs = box.backend->reports().ledger(0).rotation.friction_springs;
       CHECK(springs > 0);
       if (c.modulus == 0) CHECK(near(energy, springs, {.relative = 1e-12}));
@@ -130,24 +130,27 @@ TEST_CASE("columns of contacts say what is at the end of each line") {
   Model& model = box.model;
   model.walls.push_back({"side", {0.85, 0, 0}, {-1, 0, 0}, 0});
   const SurfaceSet surfaces(model);
-  ContactLines lines{{7, 3}, {1, 3}, {}};
+  ContactLines lines{{7, 3}, {1, 3}, {}, {}};
   const GlobalId body = surface_id(surfaces.ground() + surfaces.placed() - 1);
   for (const auto& [first, second] :
        {std::pair<GlobalId, GlobalId>{7, surface_id(0)}, {3, 5}, {3, 9}, {3, body}})
     lines.lines.push_back({first, second, {1, 2, 3}, {{0, 1, 0}, {}, 0, 0, 0, 0.5}});
+  for (const GlobalId second : {body, surface_id(0)})
+    lines.of_bodies.push_back({surface_id(surfaces.ground()), second, {}, {{0, 1, 0}, {}, 0, 0, 0, 0}});
   const ContactNetwork network(model, {}, lines);
   const LineSnapshot shown = network.snapshot();
-  CHECK(shown.ends[1] == Vec3{1, 3, 3});
+  CHECK(shown.ends[5] == Vec3{1, 3, 3});
   std::vector<std::string> names;
   for (const PointField& field : shown.fields) {
     names.push_back(field.name);
-    const auto integers = [&]<class T>(const T* values) { return std::vector<int>(values, values + 4); };
+    const auto integers = [&]<class T>(const T* values) { return std::vector<int>(values, values + 6); };
     const std::vector<int> values = std::visit(integers, field.values);
-    if (field.name == "first") CHECK(values == std::vector{3, 3, 3, 7});
-    if (field.name == "second") CHECK(values == std::vector{5, 9, -1, -1});
-    if (field.name == "kind") CHECK(values == std::vector{0, 0, 2, 1});
-    if (field.name == "wall") CHECK(values == std::vector{-1, -1, -1, 0});
-    if (field.name == "body") CHECK(values == std::vector{-1, -1, 4, -1});
+    if (field.name == "first") CHECK(values == std::vector{-1, -1, 3, 3, 3, 7});
+    if (field.name == "second") CHECK(values == std::vector{-1, -1, 5, 9, -1, -1});
+    if (field.name == "kind") CHECK(values == std::vector{2, 1, 0, 0, 2, 1});
+    if (field.name == "wall") CHECK(values == std::vector{-1, 0, -1, -1, -1, 0});
+    if (field.name == "body") CHECK(values == std::vector{4, -1, -1, -1, 4, -1});
+    if (field.name == "first_body") CHECK(values == std::vector{0, 0, -1, -1, -1, -1});
   }
   CHECK(names == ContactNetwork::field_names(model));
   CHECK(std::ranges::count(names, "slip") == 1);
