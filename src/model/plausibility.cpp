@@ -59,16 +59,20 @@ std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
   if (model.bodies.empty())
     return "the deck has no particles and no bodies: nothing will move; was the file cut off?";
   std::string only;
-  const bool needed = model.rolls();  // implicit steps resist no rolling
-  if (model.integrator.particles == ParticleIntegrator::velocity_verlet && !needed)
-    only = "integrator.particles = \"velocity-verlet\"";
+  bool meets = false;  // contacts of bodies, which are stepped as those of particles
   const std::vector<MaterialUse> uses = material_uses(model);
   for (int a = 0; a < model.contact.materials(); ++a)
-    for (int b = a; b < model.contact.materials(); ++b)
-      if (model.contact.law(a, b).acts() && !can_meet(model, uses, a, b))
+    for (int b = a; b < model.contact.materials(); ++b) {
+      if (!model.contact.law(a, b).acts()) continue;
+      if (can_meet(model, uses, a, b))
+        meets = true;
+      else
         only = fmt::format("contact.pairs has a law for \"{}\" on \"{}\", which nothing here can use",
                            model.contact.material_names[static_cast<std::size_t>(a)],
                            model.contact.material_names[static_cast<std::size_t>(b)]);
+    }
+  if (model.integrator.particles == ParticleIntegrator::velocity_verlet && !meets && only.empty())
+    only = "integrator.particles = \"velocity-verlet\"";
   return only.empty() ? "" : "the deck has no particles, and yet " + only + "; was the file cut off?";
 }
 
