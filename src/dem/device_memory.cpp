@@ -12,6 +12,7 @@
 #include "dem/mixed_items.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/output_fields.hpp"
+#include "dem/surface_side.hpp"
 #include "dem/triangle_works.hpp"
 #include "dem/turning_items.hpp"
 #include "partition/halo.hpp"
@@ -43,6 +44,15 @@ constexpr double kReportArrays = 2 * sizeof(Real) + 3 * sizeof(Index) + 2 * size
                                  sizeof(GlobalId) + sizeof(Index);  // the last two: the library's buffers
 constexpr double kSpinReportArrays = sizeof(SpringEnergies);
 constexpr double kCohesionReportArrays = sizeof(Real);  // where contacts attract
+// Per surface that is placed, and per entry of the rows of surfaces where there are any: DeviceSurfaces.
+constexpr double kSurfaceArrays = 2 * sizeof(PlacedSurface) + sizeof(SurfaceFrame) + 2 * sizeof(Vec3);
+constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * sizeof(Index) +
+                                2 * sizeof(SurfaceLoad) + sizeof(SurfaceStep);
+constexpr double kRubbingArraysPerEntry = sizeof(SurfaceRub) + kRubbingArraysPerSlot;
+// And where there are meshes: DeviceMeshes.
+constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
+constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup), kRowOfTriangle = sizeof(Index);
+constexpr double kSpareRoom = 1.125;  // of arrays that may grow with every list
 constexpr double kCellBytes = sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
@@ -55,7 +65,8 @@ double output_bytes(const Output& output) {
 
 struct Sizes {
   double particles, ghosts, items, cells, slots;
-  bool on_bodies;  // whether there are surfaces
+  bool on_bodies;                     // whether there are surfaces
+  double entries, groups, triangles;  // of their rows
 };
 
 bool equal_radii(const Model& model) {
@@ -80,6 +91,31 @@ double slots_at_start(const ParticleStore& store, const ItemLayout& layout, Neig
   return slots;
 }
 
+// The rows of surfaces, of particles and bodies as they are at the start.
+SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const ItemLayout& layout,
+                          NeighborBuilder& builder) {
+  const Subdomain subdomain(model.space);
+  SurfaceSide side(model, subdomain, Ranks());
+  std::vector<BodyMotion> motion;
+  for (const Body& body : model.bodies) motion.push_back(start_motion(body));
+  motion.resize(side.surfaces().carriers());  // walls begin where they are
+  side.set_motion(motion);
+  side.bring_into_box(), side.place();
+  SurfaceRows rows;
+  builder.build_surfaces(store, layout, builder.cells(model.contact.skin, layout.owned), side.places(),
+                         model.contact.skin, rows);
+  return rows;
+}
+
+// What a mesh is on the device: the arrays of a MeshView.
+double bytes_of_mesh(const SurfaceMesh& mesh) {
+  const auto of = [](const auto& values) {
+    return static_cast<double>(values.size() * sizeof(values.front()));
+  };
+  return of(mesh.vertices) + of(mesh.triangles) + of(mesh.parts) + of(mesh.features) + of(mesh.tests) +
+         of(mesh.patches) + of(mesh.first_neighbour) + of(mesh.neighbours) + of(mesh.boxes);
+}
+
 Sizes sizes_of(const Model& model) {
   const Subdomain subdomain(model.space);
   NeighborBuilder builder(model);
@@ -90,16 +126,22 @@ Sizes sizes_of(const Model& model) {
   sizes.on_bodies = SurfaceSet(model).placed() > 0;
   sizes.particles = static_cast<double>(particles);
   ParticleStore store;  // only where it is needed: it is as large as the model
-  if (periodic || !equal) store.load(initial_records(model.particles, subdomain));
+  if (periodic || !equal || sizes.on_bodies) store.load(initial_records(model.particles, subdomain));
+  ItemLayout layout;
+  layout.owned = layout.active = layout.items = store.owned;
   if (periodic)
     sizes.ghosts =
         static_cast<double>(periodic_images(subdomain, store.position, builder.cutoff(skin)).size());
   sizes.items = sizes.particles + sizes.ghosts;
   sizes.cells = kBrickMargin * static_cast<double>(builder.grid(skin, particles).count());
   sizes.slots = slots_per_particle(model) * sizes.particles;
+  if (sizes.on_bodies) {
+    const SurfaceRows rows = rows_at_start(model, store, layout, builder);
+    sizes.entries = static_cast<double>(rows.surfaces.size());
+    sizes.groups = static_cast<double>(rows.groups.size());
+    sizes.triangles = static_cast<double>(rows.triangles.size());
+  }
   if (equal) return sizes;
-  ItemLayout layout;
-  layout.owned = layout.active = layout.items = store.owned;
   sizes.slots = std::max(sizes.slots, kListSlack * slots_at_start(store, layout, builder, skin));
   return sizes;
 }
@@ -136,6 +178,22 @@ double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
   return bytes;
 }
 
+// Of surfaces that are placed, their contacts, and what these remember.
+double surface_bytes(const Model& model, const Sizes& n) {
+  if (!n.on_bodies) return 0;
+  const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
+  double per_entry = kEntryArrays;
+  if (implicit && model.rotates()) per_entry += kRubbingArraysPerEntry;
+  if (model.output.contacts) per_entry += sizeof(ShownContact);
+  if (const int numbers = history_of(model.contact); numbers > 0)
+    per_entry += kSpareRoom * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
+  double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
+  if (!model.meshes.empty()) per_entry += kSpareRoom * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));
+  for (const ModelMesh& mesh : model.meshes) bytes += bytes_of_mesh(*mesh.surface);
+  return bytes + per_entry * n.entries +
+         kSpareRoom * (kGroupArrays * n.groups + kRowOfTriangle * n.triangles);
+}
+
 }  // namespace
 
 // Slots of a settled bed of equal particles, of which most rows of 32 hold one that has more neighbours than
@@ -156,6 +214,7 @@ std::size_t device_memory(const Model& model) {
   if (!explicit_steps)
     bytes += model.rotates() ? n.items * kRubbingArrays + n.slots * kRubbingArraysPerSlot
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
+  bytes += surface_bytes(model, n);
   bytes += static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
            static_cast<double>(kRecordsAtOnce) * sizeof(Particle);

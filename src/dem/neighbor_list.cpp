@@ -92,10 +92,7 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
   list.skin = skin;
   list.neighbors.clear();
   list.offsets.assign(static_cast<std::size_t>(layout.owned) + 1, 0);
-  near_.sort(cells.own, layout.items, [&](Index i) {
-    const bool searched = i < layout.active || i >= layout.owned;
-    return searched ? cells.cell(xyz(store.position[i])) : -1;
-  });
+  sort(store, layout, cells);
   for (Index i = 0; i < layout.owned; ++i) {
     const Index begin = static_cast<Index>(list.neighbors.size());
     if (i < layout.active) collect_row(store, i, list);
@@ -103,9 +100,28 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
               [&](Index a, Index b) { return store.row_key[a] < store.row_key[b]; });
     list.offsets[i + 1] = countable(list.neighbors.size(), "stage neighbors: more neighbours");
   }
+  find_surfaces(store, layout, places, skin, list.surfaces);
+}
+
+void NeighborBuilder::build_surfaces(const ParticleStore& store, const ItemLayout& layout,
+                                     const SearchCells& cells, const SurfacePlaces& places, Real skin,
+                                     SurfaceRows& rows) {
+  sort(store, layout, cells);
+  find_surfaces(store, layout, places, skin, rows);
+}
+
+void NeighborBuilder::sort(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells) {
+  near_.sort(cells.own, layout.items, [&](Index i) {
+    const bool searched = i < layout.active || i >= layout.owned;
+    return searched ? cells.cell(xyz(store.position[i])) : -1;
+  });
+}
+
+void NeighborBuilder::find_surfaces(const ParticleStore& store, const ItemLayout& layout,
+                                    const SurfacePlaces& places, Real skin, SurfaceRows& rows) const {
   const SortedParticles sorted{near_.grid,     near_.start,   near_.items,
                                store.position, layout.active, largest_radius_};
-  build_rows(sorted, layout.owned, {surfaces_, planes_, places, period_, past_touch(skin)}, list.surfaces);
+  build_rows(sorted, layout.owned, {surfaces_, planes_, places, period_, past_touch(skin)}, rows);
 }
 
 }  // namespace scree

@@ -67,6 +67,9 @@ class NeighborBuilder {
   // Fills the list from the positions of all items, and of the placed surfaces.
   void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
              const SurfacePlaces& places, Real skin, NeighborList& list);
+  // The rows of surfaces alone.
+  void build_surfaces(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
+                      const SurfacePlaces& places, Real skin, SurfaceRows& rows);
 
  private:
   // Items in the order of their cells.
@@ -79,6 +82,9 @@ class NeighborBuilder {
     template <class Cell>
     void sort(const CellGrid& cells, Index count, const Cell& cell);
   };
+  void sort(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells);
+  void find_surfaces(const ParticleStore& store, const ItemLayout& layout, const SurfacePlaces& places,
+                     Real skin, SurfaceRows& rows) const;
   // Adds the neighbours of item i.
   void collect_row(const ParticleStore& store, Index i, NeighborList& list) const;
 

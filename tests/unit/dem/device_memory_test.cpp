@@ -1,6 +1,7 @@
 // Whether the ranks that share a GPU fit into its memory together.
 #include "dem/device.hpp"
 #include "support/catch.hpp"
+#include "unit/dem/random_box.hpp"
 
 namespace scree {
 
@@ -12,7 +13,26 @@ DeviceClaim claim(char device, std::size_t needed, std::size_t free) {
   return {{device}, needed * kMegabyte, free * kMegabyte};
 }
 
+double memory_with_floor(int particles, int squares, Real height = 0) {
+  Model model = random_box(kBoxes[6], particles, 5);
+  if (squares > 0) add_floor(model, squares), model.walls.back().point.z = height;
+  return static_cast<double>(device_memory(model));
+}
+
 }  // namespace
+
+TEST_CASE("device memory has meshes with their trees, and the rows of those that are near them") {
+  const double few = memory_with_floor(0, 20), many = memory_with_floor(0, 40),
+               more = memory_with_floor(0, 80);
+  const double per_triangle = (more - many) / (2 * 60 * 80);
+  CHECK((per_triangle > sizeof(MeshTriangle) + 3 * sizeof(MeshFeature) / 2 && per_triangle < 400));
+  CHECK(near((more - many) / (many - few), 4, {.relative = 0.05}));
+  CHECK(few - memory_with_floor(0, 0) >= 800 * per_triangle);
+
+  const double close = memory_with_floor(500, 20), away = memory_with_floor(500, 20, 10);
+  CHECK(away > memory_with_floor(500, 0));
+  CHECK(close - away > 500 * 0.1 / 1.3 * sizeof(SurfaceLoad));  // those whose centres are half a radius away
+}
 
 TEST_CASE("a rank with a GPU of its own is judged by its own need") {
   const DeviceClaim claims[] = {claim('a', 300, 300), claim('b', 301, 300), claim('c', 1, 300)};

@@ -15,6 +15,7 @@
 #include "partition/subdomain.hpp"
 #include "support/backends.hpp"
 #include "support/catch.hpp"
+#include "support/test_meshes.hpp"
 
 namespace scree {
 
@@ -135,6 +136,19 @@ inline Model random_box(const BoxCase& box, int particles, std::uint64_t seed) {
   }
   if (box.bodies) add_bodies(random, box, model);
   return model;
+}
+
+// A wall of triangles in waves through the middle of the space.
+inline void add_floor(Model& model, int squares) {
+  const Vec3 min = model.space.min, size = model.space.max - min;
+  const TriangleMesh grid = mapped(unit_grid(squares, squares), [&](Vec3 v) {
+    return min +
+           Vec3{v.x * size.x, v.y * size.y, (0.5 + 0.05 * std::sin(9 * v.x) * std::cos(7 * v.y)) * size.z};
+  });
+  Wall floor{"floor", {}, {}};
+  floor.mesh = static_cast<int>(model.meshes.size());
+  model.meshes.push_back({"floor", std::make_shared<const SurfaceMesh>(sheet_mesh(grid))});
+  model.walls.push_back(floor);
 }
 
 // Larger, with some ten neighbours for each of any number of particles.
