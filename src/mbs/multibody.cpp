@@ -79,6 +79,10 @@ struct Multibody::Impl {
   std::string oscillation(Real share) const;
   [[noreturn]] void fail_for_oscillation() const;
 
+  // Of the carriers' wrenches.
+  std::vector<BodyWrench> wrench_of_bodies(const MultibodyState& state) const {
+    return {state.wrench.begin(), state.wrench.begin() + static_cast<std::ptrdiff_t>(motion.size())};
+  }
   void update_motion() {
     for (const auto& kind : system.kinds()) kind->motion(method.position(), method.velocity(), motion);
   }
@@ -189,6 +193,8 @@ void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vec
 void Multibody::predict(const MultibodyState& state, Real t, Real h) {
   impl_->time = t;
   if (t == 0 && impl_->corrects_start) {
+    // Those of the start, whatever was solved since or before a restart.
+    impl_->system.set_forces(impl_->wrench_of_bodies(state));
     impl_->open_step(state, t, 0);  // the correction is of accelerations at instants
     impl_->predict(impl_->corrected_start(state, h), t, h);
   } else {
@@ -309,8 +315,7 @@ MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const
 
 MultibodyState Multibody::at_instant(const MultibodyState& state, Real t) const {
   MultibodyState now = state;
-  const auto wrench = state.wrench.begin();
-  impl_->system.set_forces({wrench, wrench + static_cast<std::ptrdiff_t>(impl_->motion.size())});
+  impl_->system.set_forces(impl_->wrench_of_bodies(state));
   impl_->open_step(state, t, 0);
   try {
     impl_->newton.solve_instant(now, t);

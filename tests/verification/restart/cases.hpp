@@ -171,15 +171,16 @@ shapes = [{ radius = 0.02, offset = [0.04, -0.02, 0.04] }, { radius = 0.02, offs
           { radius = 0.03, offset = [0.0, 0.03, 0.06] }]
 )";
 
+inline const std::vector<std::vector<std::string>> kWays = {
+    {"integrator.particles=hht"},
+    {"integrator.particles=hht", "integrator.hht_alpha=-0.1"},
+    {"integrator.particles=hht", "time.control=adaptive"},
+    {"integrator.particles=velocity-verlet", "integrator.substeps=3"}};
+
 // Each case with each integrator and step control that it can have.
 inline std::vector<RestartCase> restart_cases() {
-  const std::vector<std::vector<std::string>> ways = {
-      {"integrator.particles=hht"},
-      {"integrator.particles=hht", "integrator.hht_alpha=-0.1"},
-      {"integrator.particles=hht", "time.control=adaptive"},
-      {"integrator.particles=velocity-verlet", "integrator.substeps=3"}};
   std::vector<RestartCase> cases;
-  for (const std::vector<std::string>& way : ways) {
+  for (const std::vector<std::string>& way : kWays) {
     const auto with = [&](std::vector<std::string> overrides) {
       overrides.insert(overrides.end(), way.begin(), way.end());
       return overrides;
@@ -193,7 +194,7 @@ inline std::vector<RestartCase> restart_cases() {
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
     cases.push_back({"rubbing shapes" + how, model_of(kRubbingShapes, with({})), false});
     // Long runs, and so fast that the list limits adaptive steps.
-    if (way == ways.front() || way == ways.back()) {
+    if (way == kWays.front() || way == kWays.back()) {
       cases.push_back({"far drifters" + how, model_of(kFarDrifters, with({})), true});
       cases.push_back(
           {"round and round" + how, model_of(kRoundAndRound, with({"space.max=[1.0, 0.5]"})), false});

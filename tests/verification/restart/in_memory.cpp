@@ -89,6 +89,17 @@ TEST_CASE("a restarted run continues bit for bit") {
   }
 }
 
+TEST_CASE("a run continues bit for bit from its start, where contacts turn spatial bodies") {
+  for (const std::vector<std::string>& way : kWays) {
+    CAPTURE(way);
+    std::vector<std::string> overrides = way;
+    overrides.insert(overrides.end(), {"time.end=0.01", "output.history_interval=0.002",
+                                       "bodies.block.body_angular_velocity=[3.0, 1.0, -2.0]",
+                                       "bodies.block.center_of_mass=[0.01, 0.0, 0.005]"});
+    const Model model = model_of(kRubbingShapes, overrides);
+    check_same(whole_run(model), interrupted_run(model, 0));
+  }
+}
 TEST_CASE("the neighbour list's skin does not change a bit") {
   for (const RestartCase& restart_case : restart_cases()) {
     CAPTURE(restart_case.name);
