@@ -36,9 +36,10 @@ def place(elements: Any, part: str, path: str) -> int:
                        f"{path}: no element is named {part}; there are {', '.join(filter(None, names)) or 'none'}")
 
 
-def key_of(message: str) -> str:
-    """That a message is about, with a place in front or without: "fast.toml:3:8: time.end = -1: must be ..."."""
-    found = re.match(r"(?:.*?:\d+:\d+: )?([^\s:]+)(?: = |: )", message)
+def key_of(message: str, deck: str) -> str:
+    """That a message is about, with the deck and a place in front or without: "fast.toml:3:8: time.end = -1: must be".
+    Of a number in brackets that is the whole list, of which the program speaks."""
+    found = re.match(rf"(?:{re.escape(deck)}(?::\d+:\d+)?: )?([^\s:]+?)(?:\.\d+)?(?: = |: )", message)
     return found[1] if found else ""
 
 
@@ -184,9 +185,10 @@ class Deck(MutableMapping[str, Any]):
             said, refusal = "" if where is None else self._said_by(where), ""
         except program.RefusedError as error:
             said, refusal = "", str(error)
+        told = key_of(refusal, self.name)
         lines = [refusal] if refusal else []
         lines += [f"{self.name}: {problem}" for problem in self.problems()
-                  if not refusal or key_of(problem) != key_of(refusal)]
+                  if not refusal or key_of(problem, self.name) != told]
         if lines:
             raise ScreeError("\n".join(lines))
         return said

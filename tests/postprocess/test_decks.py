@@ -174,6 +174,17 @@ class CheckTest(FolderTest):
         self.assertRegex(first, r"^box.toml:\d+:\d+: time.end = -1: must be a number above 0 \[s\]$")
         self.assertEqual(others, ["box.toml: bodies.lid.mass = -2: must be a number above 0 [kg]"])
 
+    def test_what_the_program_tells_too_is_told_once(self):
+        for path, value in ("gravity", [0, 0, "down"]), ("space", None), ("particles.block.size", None):
+            with self.subTest(path):
+                deck = box()
+                if value is None:
+                    del deck[path]
+                else:
+                    deck[path] = value
+                with self.assertRaisesRegex(scree.ScreeError, f"^.*{path}.*$"):
+                    deck.check(PROGRAM)
+
     def test_a_number_where_a_table_may_stand(self):
         deck = scree.Deck.read(DECK)
         deck["particles.block.radius"] = -1
