@@ -4,7 +4,6 @@ namespace scree {
 
 namespace {
 
-constexpr std::size_t kMostInFieldData = 10000;
 constexpr std::int64_t kStepsPerChunk = 128;
 const std::string kFieldData = "/VTKHDF/FieldData/", kSteps = "/VTKHDF/Steps/";
 const std::string kOffsets = "FieldDataOffsets/", kSizes = "FieldDataSizes/";
@@ -24,7 +23,6 @@ void create_names(Hdf5File& file, const SeriesNames& names) {
   std::string lines;
   for (const std::string& entry : names.entries) lines += entry + '\n';
   file.write_text("/Scree/" + names.name, lines);
-  if (names.entries.size() > kMostInFieldData) return;
   file.write_texts(kFieldData + names.name, names.entries, {"1", "name of each, in the deck's order"});
   file.create_rows<std::int64_t>(kSteps + kOffsets + names.name, {1, kStepsPerChunk},
                                  {"1", "first name of each snapshot"});

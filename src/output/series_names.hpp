@@ -16,7 +16,7 @@ struct SeriesNames {
 };
 
 // In a new file: the dataset /Scree/NAME, one per line. For VTK the same as text in the field data of every
-// snapshot, where there are not more than a reader should load with each.
+// snapshot, of which there is one copy for all.
 void create_names(Hdf5File& file, const SeriesNames& names);
 // With each snapshot more, and where the file is cut to so many. Files without field data stay so.
 void append_names(Hdf5File& file);
