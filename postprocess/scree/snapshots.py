@@ -162,8 +162,8 @@ class Snapshot:
     @property
     def contacts(self) -> Points:
         """The contacts of particles and of bodies' discs and spheres as lines, where the deck's output.contacts asked
-        for them; `.count` of them. The fields "wall", "body" and "first_body" count the run's wall_names and body_names.
-        Throws ScreeError where it did not."""
+        for them; `.count` of them. The fields "wall", "body" and "first_body" count the run's wall_names and
+        body_names. Throws ScreeError where it did not."""
         return self._points("contacts")
 
     @property
