@@ -219,14 +219,15 @@ void SurfaceSide::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) co
   std::fill(step.wrench.begin(), step.wrench.end(), BodyWrench{});
   std::fill(end.begin(), end.end(), BodyWrench{});
   step.stiffness.clear();
+  // Of a body, one more than where its blocks are: its meshes come after all bodies' shapes.
+  std::vector<std::size_t> place(model_.bodies.size());
   for (const StepSums& sums : merged(steps_)) {
     const int body = surfaces_.at(sums.surface).carrier;
     end[body] += sums.wrench(), step.wrench[body] += sums.wrench(kWrenchTerms);
     if (!surfaces_.is_on_body(sums.surface)) continue;
-    // The surfaces of a body follow each other.
-    if (step.stiffness.empty() || step.stiffness.back().body != body)
-      step.stiffness.push_back({body, {}, {}});
-    WrenchStiffness& blocks = step.stiffness.back();
+    std::size_t& own = place[static_cast<std::size_t>(body)];
+    if (own == 0) step.stiffness.push_back({body, {}, {}}), own = step.stiffness.size();
+    WrenchStiffness& blocks = step.stiffness[own - 1];
     for (int k = 0; k < kBlockTerms; ++k) {
       blocks.stiffness[k] += sums.sum[2 * kWrenchTerms + k].value();
       blocks.damping[k] += sums.sum[2 * kWrenchTerms + kBlockTerms + k].value();
