@@ -259,19 +259,42 @@ void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
   place_start(places, h);
   place(places.placed, 0);
   steps_.resize(static_cast<std::size_t>(store_.owned));
+  with_shapes_.resize(list_.neighbors.size());
+  const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
   const StepStart start = step_start(h);
   if (model_.rotates()) {
     found_ = held_, has_step_ = true;
     RubbingStart rubbing{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
     entries_.find_rubs(places, store_, list_.surfaces, rubbing, found_.views());
     rubbing.on_bodies = entries_.rubs();
-    kernels_->body_rubs(views(found_.views()), store_.owned, rubbing, arm_.data(), steps_.data());
+    kernels_->body_rubs(views(found_.views()), store_.owned, rubbing, arm_.data(), steps_.data(), to);
     found_.accepted();
   } else {
     entries_.find_steps(places, store_, list_.surfaces, start);
-    kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data());
+    kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
   }
   for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = items_[i].surface;
+  find_pairs();
+}
+
+// Two shapes see their contact both; that of the lower number counts. Shapes touch meshes of bodies, too.
+void BodyContacts::find_pairs() {
+  pairs_.clear();
+  const auto carrier = [&](Index surface) { return surfaces_.at(surface).carrier; };
+  const auto touched = [&](Index item, Vec3 towards) -> TouchedBody {
+    return {carrier(items_[item].surface), arm_[item] + store_.position[item].w * towards};
+  };
+  for (Index i = 0; i < store_.owned; ++i)
+    for (Index k = 0; k < steps_[i].partners; ++k) {
+      const ShapeContact& contact = with_shapes_[list_.offsets[i] + k];
+      if (items_[contact.other].surface < items_[i].surface) continue;
+      const Vec3 towards = -contact.slopes.normal;
+      pairs_.add(touched(i, towards), touched(contact.other, -towards), contact.slopes);
+    }
+  entries_.for_each_slope(list_.surfaces, [&](Index item, Index surface, Vec3 place, const auto& slopes) {
+    if (surfaces_.is_on_body(surface))
+      pairs_.add(touched(item, -slopes.normal), {carrier(surface), place}, slopes);
+  });
 }
 
 void BodyContacts::add_sums(std::vector<InstantSums>& to) const {

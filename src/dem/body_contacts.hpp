@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem/body_items.hpp"
+#include "dem/body_pairs.hpp"
 #include "dem/contact_kernels.hpp"
 #include "dem/cpu_history.hpp"
 #include "dem/cpu_surfaces.hpp"
@@ -62,9 +63,10 @@ class BodyContacts {
   // Of the last find: what surfaces get that are touched, some twice.
   void add_sums(std::vector<InstantSums>& to) const;
   void add_sums(std::vector<StepSums>& to) const;
-  BodyContactTotals totals() const;                 // of find_loads
-  BodyStep step_totals() const;                     // of find_steps; without sums
-  std::vector<TriangleSums> triangle_sums() const;  // of find_loads
+  std::vector<PairStiffness> pairs() const { return pairs_.blocks(); }  // of find_steps
+  BodyContactTotals totals() const;                                     // of find_loads
+  BodyStep step_totals() const;                                         // of find_steps; without sums
+  std::vector<TriangleSums> triangle_sums() const;                      // of find_loads
   // What shapes do to a wall at rest, where they were at the last find at an instant. wall: index into
   // Model::walls.
   ContactSum on_wall(int wall);
@@ -102,6 +104,7 @@ class BodyContacts {
   void place(std::span<const PlacedSurface> placed, Real h);
   void place_start(const SurfacePlaces& places, Real h);
   StepStart step_start(Real h) const;
+  void find_pairs();
   CpuHistory::Listed listed(const SurfacePlaces& places) const {
     return {store_, list_, places, entries_.numbers()};
   }
@@ -126,6 +129,8 @@ class BodyContacts {
   bool has_list_ = false, has_step_ = false;
   std::vector<BodyLoad> loads_;
   std::vector<BodyStep> steps_;
+  std::vector<ShapeContact> with_shapes_;
+  BodyPairs pairs_;
 };
 
 }  // namespace scree

@@ -26,8 +26,38 @@ struct BodyLoad {
 struct BodyStep {
   StepSums sums;
   ContactBooks books;
-  Real friction = 0;  // of what they dissipate [J]
+  Real friction = 0;   // of what they dissipate [J]
+  Index partners = 0;  // shapes of other bodies that it touches
 };
+
+// How the force of a contact changes with the motion of its partners, over an implicit step.
+struct ContactSlopes {
+  Vec3 normal, direction;   // unit; direction: in which they slide, else zero
+  Real stiffness, damping;  // along the normal [N/m], [N s/m]
+  Real shear;               // across it, but along `direction` [N/m]
+};
+
+// Of a shape with that of another body, an item.
+struct ShapeContact {
+  Index other;
+  ContactSlopes slopes;
+};
+
+// Where the walk of the shapes writes their contacts with each other: the partners of i from the place on
+// where i's row begins.
+struct ShapeContactsTo {
+  const Index* offsets;
+  ShapeContact* contacts;
+
+  SCREE_HD void put(Index i, BodyStep& sum, const ShapeContact& contact) const {
+    contacts[offsets[i] + sum.partners] = contact;
+    ++sum.partners;
+  }
+};
+
+SCREE_HD ContactSlopes slopes_of(const StepContact& c) {
+  return {c.normal, {}, c.step.stiffness, c.step.damping, 0};
+}
 
 // The shapes as they are looked at.
 struct BodyLook {
@@ -109,6 +139,7 @@ struct BodyStepItem {
   StepWalk<Laws, Rows> walk;
   const Vec3* arm;  // at the end of the step
   BodyStep* out;
+  ShapeContactsTo to;
 
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
@@ -118,12 +149,21 @@ struct BodyStepItem {
       sum.sums.add_contact(SurfaceStep{true, contact, {}, arm[i] + self.p.w * contact.normal});
     };
     const StepContactOf of{walk.look.start.resolve_events};
-    walk.neighbors(self, of, add);
+    walk.neighbors(self, of, [&](const StepContact& contact, Index j) {
+      add(contact, j);
+      to.put(i, sum, {j, slopes_of(contact)});
+    });
     walk.surfaces(self, of, add);
     sum.books = books_of(walk, i, kPairShare);
     out[i] = sum;
   }
 };
+
+SCREE_HD ContactSlopes slopes_of(const RubbingContact& c) {
+  ContactSlopes slopes = slopes_of(c.normal);
+  slopes.direction = c.rub.direction, slopes.shear = c.rub.stiffness;
+  return slopes;
+}
 
 // A contact over an implicit step in which it rubs.
 struct BodyRubOf {
@@ -153,6 +193,7 @@ struct BodyRubItem {
   RubbingWalk<Laws, Rows> walk;
   const Vec3* arm;  // at the end of the step
   BodyStep* out;
+  ShapeContactsTo to;
 
   SCREE_HD void operator()(Index i) const {
     BodyStep sum;
@@ -163,7 +204,10 @@ struct BodyRubItem {
       sum.sums.add_contact(SurfaceRub{true, turned(found.contact), {}, arm[i], self.p.w, {}, {}});
       sum.books.add(found.books, share), sum.friction += share * found.books.friction;
     };
-    walk.template neighbors<true>(self, of, [&](const auto& found, Index) { add(found, kPairShare); });
+    walk.template neighbors<true>(self, of, [&](const auto& found, Index j) {
+      add(found, kPairShare);
+      if (found.books.acts) to.put(i, sum, {j, slopes_of(found.contact)});
+    });
     walk.template surfaces<true>(self, of, [&](const auto& found, Index) { add(found, 1); });
     out[i] = sum;
   }

@@ -57,9 +57,9 @@ class ContactKernels {
   virtual void body_loads(const ContactViews<PackedRows>& in, Index n, const BodyLook& look,
                           BodyLoad* out) const = 0;
   virtual void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start,
-                          const Vec3* arm, BodyStep* out) const = 0;
+                          const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const = 0;
   virtual void body_rubs(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start,
-                         const Vec3* arm, BodyStep* out) const = 0;
+                         const Vec3* arm, BodyStep* out, const ShapeContactsTo& to) const = 0;
   // Of the first n items of WallContactItem, over all ranks.
   virtual void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice,
                          const Ranks& ranks, Real (&sums)[kWallTerms]) const = 0;

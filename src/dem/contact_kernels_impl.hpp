@@ -66,13 +66,13 @@ class CpuContactKernels : public ContactKernels {
     for_each(Serial{}, n, BodyLoadItem<Laws, PackedRows, InstantLook<Laws>>{{in, laws_}, look.arm, out});
   }
   void body_steps(const ContactViews<PackedRows>& in, Index n, const StepStart& start, const Vec3* arm,
-                  BodyStep* out) const override {
-    for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out});
+                  BodyStep* out, const ShapeContactsTo& to) const override {
+    for_each(Serial{}, n, BodyStepItem<Laws, PackedRows>{{in, laws_, {start}}, arm, out, to});
   }
   void body_rubs(const ContactViews<PackedRows>& in, Index n, const RubbingStart& start, const Vec3* arm,
-                 BodyStep* out) const override {
+                 BodyStep* out, const ShapeContactsTo& to) const override {
     over_rubbing_step(in, start, [&](const auto& walk) {
-      for_each(Serial{}, n, BodyRubItem<Laws, PackedRows>{walk, arm, out});
+      for_each(Serial{}, n, BodyRubItem<Laws, PackedRows>{walk, arm, out, to});
     });
   }
   void wall_sums(const ContactViews<PackedRows>& in, Index n, const WallChoice& choice, const Ranks& ranks,

@@ -33,6 +33,22 @@ class CpuSurfaces {
   std::vector<InstantSums> load_sums(const SurfaceRows& rows) const;
   std::vector<StepSums> step_sums(const SurfaceRows& rows) const;
   std::vector<StepSums> rub_sums(const SurfaceRows& rows) const;
+  // Calls visit(particle, placed surface, place where they touch from the centre of what carries it, slopes)
+  // for the contacts over a step that were found last.
+  template <class Visit>
+  void for_each_slope(const SurfaceRows& rows, const Visit& visit) const {
+    for (const Index entry : rows.by_surface) {
+      const auto show = [&](const auto& contact, Vec3 place) {
+        if (contact.touches)
+          visit(rows.particles[entry], numbers().placed(rows.surfaces[entry]), place,
+                slopes_of(contact.contact));
+      };
+      if (moves_)
+        show(rubs_[entry], rubs_[entry].arm + rubs_[entry].radius * rubs_[entry].contact.normal.normal);
+      else
+        show(steps_[entry], steps_[entry].arm);
+    }
+  }
   // Of the last find_loads(), which looked at the store's particles at an instant; per entry.
   std::vector<ShownContact> shown(const SurfacePlaces& places, const ParticleStore& store,
                                   const SurfaceRows& rows, const HistoryViews& history) const;

@@ -219,6 +219,7 @@ void SurfaceSide::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) co
   std::fill(step.wrench.begin(), step.wrench.end(), BodyWrench{});
   std::fill(end.begin(), end.end(), BodyWrench{});
   step.stiffness.clear();
+  step.pairs = bodies_.pairs();  // rank 0's
   // Of a body, one more than where its blocks are: its meshes come after all bodies' shapes.
   std::vector<std::size_t> place(model_.bodies.size());
   for (const StepSums& sums : merged(steps_)) {

@@ -88,6 +88,14 @@ void HhtMethod::newton_matrix(std::span<Real> values) {
   const KktWeights weights{
       scale, position_gain(), newmark_velocity_gain(coefficients_, step_), position_gain() * scale, scale, 1};
   kkt_.assemble(terms_, derivatives_, weights, compliance(), values);
+  coupling_.clear();
+  for (const CoupledEntry& entry : derivatives_.coupling)
+    coupling_.push_back({count(entry.row), count(entry.column),
+                         weights.stiffness * entry.stiffness + weights.damping * entry.damping});
+}
+
+void HhtMethod::add_coupled(Real scale, std::span<const Real> x, std::span<Real> y) const {
+  for (const Coupling& entry : coupling_) y[entry.row] += scale * entry.value * x[entry.column];
 }
 
 void HhtMethod::apply_correction(std::span<const Real> delta) {

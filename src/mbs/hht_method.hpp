@@ -42,6 +42,11 @@ class HhtMethod {
   //   A = (M / (1 + alpha) - h gamma Q_v) T^-1 + beta h^2 ((M a)_q / (1 + alpha) + (Phi_q^T lambda - Q)_q)
   // and -Q_lambda stands beside Phi_q^T.
   void newton_matrix(std::span<Real> values);
+  // Of the last newton_matrix() what no pattern has: its part between bodies that touch each other, O.
+  bool is_coupled() const { return !coupling_.empty(); }
+  // y += scale O x, of the coordinates.
+  void add_coupled(Real scale, std::span<const Real> x, std::span<Real> y) const;
+
   // Subtracts `delta`, the Newton matrix' solution for residual(), from (a, lambda), T^-1 times in a, and
   // updates q, v.
   void apply_correction(std::span<const Real> delta);
@@ -118,6 +123,11 @@ class HhtMethod {
   SystemDerivatives derivatives_;
   KktMatrix kkt_;
   RowCompliance compliance_;
+  struct Coupling {
+    std::size_t row, column;
+    Real value;
+  };
+  std::vector<Coupling> coupling_;
   bool opened_ = false;  // a step, whose compliance is not known yet
   Real time_ = 0, step_ = 0;
   std::vector<Real> start_position_, start_velocity_, start_acceleration_, start_force_;

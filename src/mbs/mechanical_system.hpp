@@ -41,6 +41,13 @@ struct SystemTerms {
   Real force_scale = 0;
 };
 
+// An entry of (-Q)_q and -Q_v T^-1 at a place that comes and goes: those of bodies that touch each other. No
+// pattern has it.
+struct CoupledEntry {
+  int row, column;
+  Real stiffness, damping;
+};
+
 // What Newton's matrix needs besides; [coordinates, coordinates] where nothing else stands.
 struct SystemDerivatives {
   SparseTerm stiffness;          // (Phi_q^T lambda - Q)_q
@@ -48,6 +55,7 @@ struct SystemDerivatives {
   SparseTerm inertia_stiffness;  // (M a)_q
   SparseTerm tangent_inertia;    // M (T^-1 - 1)
   SparseTerm reaction;           // -Q_lambda^T [constraints, coordinates]
+  std::vector<CoupledEntry> coupling;
 };
 
 class MechanicalSystem {

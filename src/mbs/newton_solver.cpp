@@ -23,6 +23,10 @@ constexpr int kSharePasses = 2;
 // Forces that the reactions load are found at a step's end in two or three passes.
 constexpr int kLoadPasses = 10;
 constexpr Real kLoadRoundOff = 1e-14;
+// What of the forces between bodies that touch may be left of a Newton correction, and how often the factors
+// are used for it.
+constexpr Real kCoupledShare = 1e-3;
+constexpr int kCoupledPasses = 30;
 
 }  // namespace
 
@@ -64,8 +68,7 @@ Real NewtonSolver::scaled_residual() const {
   return std::max(dynamic / std::max(largest, std::numeric_limits<Real>::min()), kinematic);
 }
 
-Real NewtonSolver::scaled_correction() const {
-  const std::span<const Real> delta = solver_.solution();
+Real NewtonSolver::scaled_correction(std::span<const Real> delta) const {
   Real largest = 0;
   for (std::size_t i = 0; i < system_.coordinate_scale().size(); ++i) {
     largest = std::max(largest, std::abs(delta[i]) / system_.coordinate_scale()[i]);
@@ -185,6 +188,45 @@ Real NewtonSolver::scaled_change() {
   return largest / std::max(method_.terms().force_scale, std::numeric_limits<Real>::min());
 }
 
+Real NewtonSolver::product(const std::vector<Real>& a, const std::vector<Real>& b) const {
+  const std::vector<Real>& scale = system_.coordinate_scale();
+  Real sum = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i) sum += (scale[i] * a[i]) * (scale[i] * b[i]);
+  return sum;
+}
+
+// With the factors of A: x = A^-1 b leaves -O x of b; z = A^-1 r has the image (A + O) z = r + O z.
+std::span<const Real> NewtonSolver::solve_coupled() {
+  const std::size_t n = system_.coordinate_scale().size();
+  const auto add = [](std::vector<Real>& to, Real scale, const std::vector<Real>& what) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += scale * what[i];
+  };
+  coupled_.assign(solver_.solution().begin(), solver_.solution().end());
+  left_.assign(n, 0);
+  method_.add_coupled(-1, coupled_, left_);
+  const Real enough = kCoupledShare * kCoupledShare * product(left_, left_);
+  directions_.clear(), images_.clear();
+  for (int pass = 0; pass < kCoupledPasses && product(left_, left_) > enough; ++pass) {
+    std::fill(solver_.rhs().begin(), solver_.rhs().end(), 0);
+    std::copy(left_.begin(), left_.end(), solver_.rhs().begin());
+    solve_sharing(solver_, false, {});
+    std::vector<Real> direction(solver_.solution().begin(), solver_.solution().end()), image = left_;
+    method_.add_coupled(1, direction, image);
+    for (std::size_t k = 0; k < images_.size(); ++k) {
+      const Real share = product(image, images_[k]);
+      add(image, -share, images_[k]), add(direction, -share, directions_[k]);
+    }
+    const Real size = std::sqrt(product(image, image));
+    if (!(size > 0)) break;
+    for (std::vector<Real>* vector : {&image, &direction})
+      for (Real& value : *vector) value /= size;
+    const Real step = product(left_, image);
+    add(coupled_, step, direction), add(left_, -step, image);
+    directions_.push_back(std::move(direction)), images_.push_back(std::move(image));
+  }
+  return coupled_;
+}
+
 IterationNorms NewtonSolver::iterate() {
   method_.evaluate_residual();
   IterationNorms norms;
@@ -194,8 +236,9 @@ IterationNorms NewtonSolver::iterate() {
   std::copy(method_.residual().begin(), method_.residual().end(), solver_.rhs().begin());
   refactor = drop_misfit(solver_, refactor);
   solve_sharing(solver_, refactor, method_.multipliers());
-  norms.correction = scaled_correction();
-  method_.apply_correction(solver_.solution());
+  const std::span<const Real> delta = method_.is_coupled() ? solve_coupled() : solver_.solution();
+  norms.correction = scaled_correction(delta);
+  method_.apply_correction(delta);
   last_residual_ = norms.residual;
   first_ = false;
   return norms;

@@ -12,7 +12,8 @@ namespace scree {
 // Full Newton. Within a step the factored matrix of the last iteration is used once more if that iteration
 // already cut the residual to 1e-2 or less: the matrix then describes the step well. What is kept from step
 // to step are factors of a matrix that is the same bit for bit, so that a restarted run repeats the bits of
-// an uninterrupted one.
+// an uninterrupted one. Bodies that touch each other come and go: what the matrix has between them is not in
+// what is factored.
 class NewtonSolver {
  public:
   // `system` and `method` must outlive the solver.
@@ -67,9 +68,14 @@ class NewtonSolver {
   // of them.
   void solve_sharing(PetscSolver& solver, bool refactor, const std::vector<Real>& multipliers);
   Real scaled_residual() const;
-  Real scaled_correction() const;
+  Real scaled_correction(std::span<const Real> delta) const;
   Real scaled_change();
   void solve_linear(PetscSolver& solver, bool refactor);
+  // From the solution of solver_, which knows nothing of O (HhtMethod::is_coupled), to that with it: by
+  // generalized conjugate residuals (Eisenstat, Elman, Schultz, SIAM J. Numer. Anal. 20, 1983) over its
+  // factors. Sums are of one rank, in one order.
+  std::span<const Real> solve_coupled();
+  Real product(const std::vector<Real>& a, const std::vector<Real>& b) const;  // of forces [J^2]
 
   const MechanicalSystem& system_;
   HhtMethod& method_;
@@ -79,6 +85,8 @@ class NewtonSolver {
   std::vector<Real> acceleration_matrix_;  // [entries of the pattern]
   bool has_acceleration_factors_ = false;  // of acceleration_solver_.values()
   std::vector<Real> misfit_, forces_, gaps_;
+  std::vector<Real> coupled_, left_;                    // a solution, and what of the forces it leaves
+  std::vector<std::vector<Real>> directions_, images_;  // and their products with the matrix, of norm 1
   Real last_residual_ = 0;
   bool first_ = true;  // iteration of its step
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mbs/body_coupling.hpp"
 #include "mbs/coupler.hpp"
 #include "mbs/joints.hpp"
 #include "model/connections.hpp"
@@ -173,7 +174,7 @@ void RigidBodySystem::evaluate(const SystemInstant& at, SystemTerms& terms) {
 }
 
 void RigidBodySystem::set_contacts(const ContactWrenches& contacts) {
-  wrench_ = contacts.wrench;
+  wrench_ = contacts.wrench, pairs_ = contacts.pairs;
   for (const auto& kind : kinds_) kind->set_contact_stiffness(contacts.stiffness);
 }
 
@@ -189,6 +190,7 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
   derivatives.damping.begin();
   derivatives.tangent_inertia.begin();
   derivatives.reaction.begin();
+  derivatives.coupling.clear();
   for (const auto& kind : kinds_) kind->set_tangents(iterate.displacement, poses_);
   for (const auto& element : elements_) {
     element->add_derivatives(poses_, at.time, derivatives.stiffness, derivatives.damping);
@@ -199,6 +201,7 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
     kind->add_inertial_derivatives(poses_, derivatives);
     kind->add_contact_derivatives(poses_, wrench_, derivatives);
   }
+  for (const PairStiffness& pair : pairs_) add_coupling(pair, bodies_, layout_, poses_, derivatives);
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     constraints_[i]->hessian(poses_, &iterate.multipliers[static_cast<std::size_t>(first_row_[i])],
                              derivatives.stiffness);

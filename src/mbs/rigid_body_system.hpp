@@ -135,6 +135,7 @@ class RigidBodySystem final : public MechanicalSystem {
   BodyPoses poses_;
   BodyPoses scratch_;
   std::vector<BodyWrench> wrench_;
+  std::vector<PairStiffness> pairs_;
   std::vector<std::unique_ptr<Constraint>> constraints_;
   std::vector<int> first_row_;  // of every constraint object
   std::vector<bool> is_angle_;  // of every row

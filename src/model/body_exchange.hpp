@@ -88,10 +88,18 @@ struct WrenchStiffness {
   std::array<Real, 21> damping{};    // the same times [s]
 };
 
+// The same of two bodies that touch each other, of the wrench on the first one by the motion of the second:
+// 6x6 blocks, row by row. Of that on the second one by the motion of the first they are the transposed ones.
+struct PairStiffness {
+  int first = 0, second = 0;
+  std::array<Real, 36> stiffness{}, damping{};
+};
+
 // What a Newton iteration of the bodies needs of their contacts.
 struct ContactWrenches {
   std::vector<BodyWrench> wrench;          // per body
   std::vector<WrenchStiffness> stiffness;  // of bodies that are touched, no body twice
+  std::vector<PairStiffness> pairs{};      // of bodies that touch each other, no two of them twice
 };
 
 // Slot of (row, column), row <= column, in the packed upper triangle of a 6x6 block.

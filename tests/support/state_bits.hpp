@@ -27,9 +27,13 @@ inline auto fields(const WrenchStiffness& w) {
   const auto& [body, stiffness, damping] = w;
   return std::tie(body, stiffness, damping);
 }
+inline auto fields(const PairStiffness& p) {
+  const auto& [first, second, stiffness, damping] = p;
+  return std::tie(first, second, stiffness, damping);
+}
 inline auto fields(const ContactWrenches& w) {
-  const auto& [wrench, stiffness] = w;
-  return std::tie(wrench, stiffness);
+  const auto& [wrench, stiffness, pairs] = w;
+  return std::tie(wrench, stiffness, pairs);
 }
 
 // Names of the arrays that differ in a bit, or that only one of the two has; "" if there is none. Of states:

@@ -1,6 +1,8 @@
 // Steps of both sides: refused ones leave no trace, and what the neighbour list covers changes nothing.
 #include "coupling/coupled_step.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "dem/particle_store.hpp"
@@ -9,6 +11,7 @@
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/petsc_run.hpp"
+#include "support/simulation_run.hpp"
 #include "support/state_bits.hpp"
 
 namespace scree {
@@ -42,6 +45,60 @@ size = [1, 3]
 radius = 0.085
 mass = 1.0
 velocity = [0.0, -1.0]
+)";
+
+const std::string kTouching = R"(
+gravity = [0.0, -9.81, 0.0]
+[space]
+dimension = 3
+min = [-2.0, -1.0, -2.0]
+max = [2.0, 8.0, 2.0]
+y_min = "wall"
+[time]
+end = 0.06
+control = "fixed"
+[[contact.pairs]]
+stiffness = 1e5
+damping = 30.0
+)";
+
+// Balls that stand on each other, askew.
+const std::string kStack = R"(
+[[bodies]]
+name = "ball"
+kind = "spatial"
+count = 12
+position = [0.0, -0.9, 0.0]
+spacing = [0.02, 0.1985, 0.005]
+mass = 1.0
+inertia_tensor = [4e-3, 4e-3, 4e-3, 0.0, 0.0, 0.0]
+shapes = [{ radius = 0.1, offset = [0.01, 0.0, -0.02] }]
+)";
+
+// A plate of triangles on three legs, with balls on it.
+const std::string kPlate = R"(
+[[meshes]]
+name = "plate"
+kind = "box"
+size = [0.6, 0.1, 0.6]
+[[bodies]]
+name = "plate"
+kind = "spatial"
+position = [0.0, -0.8501, 0.0]
+mass = 0.5
+inertia_tensor = [0.02, 0.03, 0.02, 0.0, 0.0, 0.0]
+meshes = [{ mesh = "plate" }]
+shapes = [{ radius = 0.05, offset = [0.2, -0.1, 0.2] }, { radius = 0.05, offset = [-0.2, -0.1, 0.2] },
+          { radius = 0.05, offset = [0.0, -0.1, -0.2] }]
+[[bodies]]
+name = "ball"
+kind = "spatial"
+count = 3
+position = [-0.21, -0.7006, 0.05]
+spacing = [0.21, 0.0, -0.03]
+mass = 1.0
+inertia_tensor = [4e-3, 4e-3, 4e-3, 0.0, 0.0, 0.0]
+shapes = [{ radius = 0.1 }]
 )";
 
 // Both sides at the start of a run.
@@ -202,6 +259,21 @@ TEST_CASE("explicit steps do not depend on how many are asked for at once, nor o
   CHECK(narrow->backend->reports().ledger(kStep / 20).contact_loss > 0);
   CHECK(differing(*narrow, *wide) == "");
   CHECK(differing(*narrow, *together) == "");
+}
+
+TEST_CASE("Newton's matrix knows that bodies touch each other") {
+  for (const auto& [name, bodies] : {std::pair{"stack", kStack}, {"plate", kPlate}})
+    for (const Real step : {1e-3, 3e-3})
+      for (const std::string friction : {"0.0", "0.5"}) {
+        CAPTURE(name, step, friction);
+        petsc();
+        SimulationRun run(model_of(
+            kTouching + bodies, {fmt::format("time.step={}", step), "contact.pairs.0.friction=" + friction}));
+        run.run();
+        const StepCounts& n = run.counts();
+        CAPTURE(n.newton_iterations, n.steps);
+        CHECK((n.rejected_newton == 0 && n.newton_iterations < 6 * n.steps));
+      }
 }
 
 TEST_CASE("a run resumed from its state goes on with the same bits") {

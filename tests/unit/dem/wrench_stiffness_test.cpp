@@ -45,15 +45,31 @@ Model touched_body(int dimension) {
   return model;
 }
 
-// Force and torque of the step's wrench as one row of six.
-std::array<Real, 6> wrench_at(LoadedBox& box, ImplicitStep& step, const BodyMotion& motion,
-                              ContactWrenches& contacts) {
-  std::vector<BodyWrench> end(1);
-  contacts.wrench.resize(1);
-  box.backend->list().place_bodies(std::vector<BodyMotion>{motion});
+// Its shapes and those of another body in the places of particles, which there are none of.
+Model two_bodies(int dimension) {
+  Model model = touched_body(dimension);
+  Body other;
+  other.position = {0.1, 0.6, 0}, other.angle = -1.1;
+  for (const Vec3& place : model.particles.position) {
+    const Vec3 arm = place - other.position;
+    const Real c = std::cos(other.angle), s = std::sin(other.angle);
+    other.shapes.push_back({{c * arm.x + s * arm.y, c * arm.y - s * arm.x, arm.z}, kRadius, 0});
+  }
+  model.bodies.push_back(other);
+  model.particles = {};
+  count_particles(model.particles, model.contact.materials());
+  return model;
+}
+
+// Force and torque of the step's wrench on a body as one row of six.
+std::array<Real, 6> wrench_at(LoadedBox& box, ImplicitStep& step, const std::vector<BodyMotion>& motion,
+                              ContactWrenches& contacts, std::size_t body = 0) {
+  std::vector<BodyWrench> end(motion.size());
+  contacts.wrench.resize(motion.size());
+  box.backend->list().place_bodies(motion);
   step.contact_force();
   step.reduce_wrench(contacts, end);
-  const BodyWrench& wrench = contacts.wrench[0];
+  const BodyWrench& wrench = contacts.wrench[body];
   return {wrench.force.x, wrench.force.y, wrench.force.z, wrench.torque.x, wrench.torque.y, wrench.torque.z};
 }
 
@@ -79,17 +95,18 @@ TEST_CASE("the wrench's blocks are minus its derivatives") {
     LoadedBox box(touched_body(dimension));
     const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-4);
     ContactWrenches contacts, unused;
-    wrench_at(box, *step, box.motion[0], contacts);
+    wrench_at(box, *step, box.motion, contacts);
+    CHECK(contacts.pairs.empty());
     REQUIRE(contacts.stiffness.size() == 1);
     const WrenchStiffness blocks = contacts.stiffness[0];
     for (const int column : kColumns) {
       if (dimension == 2 && column == 2) continue;
       CAPTURE(dimension, column);
       const Real dx = 0.01 * kOverlap, dv = 1e-3;
-      const auto up = wrench_at(box, *step, moved(box.motion[0], column, dx, 0), unused);
-      const auto down = wrench_at(box, *step, moved(box.motion[0], column, -dx, 0), unused);
-      const auto faster = wrench_at(box, *step, moved(box.motion[0], column, 0, dv), unused);
-      const auto slower = wrench_at(box, *step, moved(box.motion[0], column, 0, -dv), unused);
+      const auto up = wrench_at(box, *step, {moved(box.motion[0], column, dx, 0)}, unused);
+      const auto down = wrench_at(box, *step, {moved(box.motion[0], column, -dx, 0)}, unused);
+      const auto faster = wrench_at(box, *step, {moved(box.motion[0], column, 0, dv)}, unused);
+      const auto slower = wrench_at(box, *step, {moved(box.motion[0], column, 0, -dv)}, unused);
       for (int row = 0; row < 6; ++row) {
         const auto r = static_cast<std::size_t>(row);
         CAPTURE(row);
@@ -99,6 +116,38 @@ TEST_CASE("the wrench's blocks are minus its derivatives") {
       }
     }
   }
+}
+
+TEST_CASE("the blocks of two bodies that touch are minus the derivatives by each other's motion") {
+  for (const int dimension : {2, 3})
+    for (const std::size_t moving : {std::size_t{0}, std::size_t{1}}) {
+      LoadedBox box(two_bodies(dimension));
+      const std::unique_ptr<ImplicitStep> step = predicted_step(*box.backend, 1e-4);
+      ContactWrenches contacts, unused;
+      wrench_at(box, *step, box.motion, contacts);
+      REQUIRE(contacts.pairs.size() == 1);
+      const PairStiffness& pair = contacts.pairs[0];
+      CHECK((pair.first == 0 && pair.second == 1));
+      for (const int column : kColumns) {
+        if (dimension == 2 && column == 2) continue;
+        CAPTURE(dimension, moving, column);
+        const auto wrench = [&](Real position, Real velocity) {
+          std::vector<BodyMotion> motion = box.motion;
+          motion[moving] = moved(motion[moving], column, position, velocity);
+          return wrench_at(box, *step, motion, unused, 1 - moving);
+        };
+        const Real dx = 0.01 * kOverlap, dv = 1e-3;
+        const auto up = wrench(dx, 0), down = wrench(-dx, 0), faster = wrench(0, dv), slower = wrench(0, -dv);
+        for (int row = 0; row < 6; ++row) {
+          const auto r = static_cast<std::size_t>(row),
+                     at = static_cast<std::size_t>(moving == 1 ? 6 * row + column : 6 * column + row);
+          CAPTURE(row);
+          const Real stiffness = (down[r] - up[r]) / (2 * dx), damping = (slower[r] - faster[r]) / (2 * dv);
+          CHECK(near(pair.stiffness[at], stiffness, {.absolute = kGeometric * kStiffness}));
+          CHECK(near(pair.damping[at], damping, {.absolute = kRoundOff * kDamping}));
+        }
+      }
+    }
 }
 
 }  // namespace scree
