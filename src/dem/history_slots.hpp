@@ -17,7 +17,7 @@ namespace scree {
 // the rows cost no more than their own. In w of the first: the number of the step that wrote them. What the
 // last step did not write is of a contact that has ended: nothing need be cleared.
 inline constexpr int kMostNumbers = 7;  // that a law may remember of a contact
-SCREE_HD constexpr int records_of(int numbers) { return numbers == 0 ? 0 : numbers <= 3 ? 1 : 2; }
+SCREE_HD constexpr int records_of(int numbers) { return numbers <= 0 ? 0 : numbers <= 3 ? 1 : 2; }
 
 // The k-th of the numbers.
 template <class Record>
@@ -48,7 +48,8 @@ struct HistoryViews {
   // step, and after the step that is evaluated, if it is accepted. The latter is null where they are only
   // looked at.
   Vec4 *bodies = nullptr, *ahead = nullptr;
-  // Of these the features of meshes, per entry.
+  // Of these the features of meshes, per entry, on sheets with the side (mesh/sheet_sides.hpp); where there
+  // are no records kNoFeature is of none.
   Index *features = nullptr, *features_ahead = nullptr;
   Real step = 0;  // number of the last accepted step, above 0
 
@@ -101,18 +102,22 @@ struct HistoryViews {
 // What a contact of a particle is called while there is no list: like a row_key, surfaces counted past all
 // particles, and of a mesh by the feature that it touches, too. The image is the one that the partner has
 // beside the particle where both are in the periodic box, so that no name depends on when that was last seen
-// to.
-inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48;
-SCREE_HD GlobalId surface_id(Index surface, Index feature = 0) {
-  return kFirstSurfaceId + surface + (GlobalId{feature} << kSurfaceBits);
+// to. One with a sheet that the particle's centre is past counts on from there.
+inline constexpr GlobalId kFirstSurfaceId = GlobalId{1} << 48, kFirstPastId = 2 * kFirstSurfaceId,
+                          kPartnersEnd = 3 * kFirstSurfaceId;
+SCREE_HD GlobalId surface_id(Index surface, Index feature = 0, bool past = false) {
+  return (past ? kFirstPastId : kFirstSurfaceId) + surface + (GlobalId{feature} << kSurfaceBits);
 }
 SCREE_HD bool is_surface(std::int64_t contact_key) { return contact_key >= 27 * kFirstSurfaceId; }
+SCREE_HD bool is_past(std::int64_t contact_key) { return contact_key >= 27 * kFirstPastId; }
 // Of a contact with a mesh.
 SCREE_HD Index feature_of(std::int64_t contact_key) {
-  return static_cast<Index>((contact_key / 27 - kFirstSurfaceId) >> kSurfaceBits);
+  return static_cast<Index>((contact_key / 27 % kFirstSurfaceId) >> kSurfaceBits);
 }
+// And on this side of it.
 SCREE_HD std::int64_t without_feature(std::int64_t contact_key) {
-  return contact_key - 27 * (GlobalId{feature_of(contact_key)} << kSurfaceBits);
+  const GlobalId of_feature = GlobalId{feature_of(contact_key)} << kSurfaceBits;
+  return contact_key - 27 * (is_past(contact_key) ? of_feature + kFirstSurfaceId : of_feature);
 }
 
 // Sides of the periodic box.

@@ -14,11 +14,17 @@ constexpr Real kFlatSine = 1e-9;
 class FeatureFinder {
  public:
   FeatureFinder(const MeshTopology& topology, const MeshParts& parts, bool sheet)
-      : topology_(topology), parts_(parts), sheet_(sheet), touched_(topology.mesh.vertices.size(), false) {}
+      : topology_(topology),
+        parts_(parts),
+        sheet_(sheet),
+        touched_(topology.mesh.vertices.size(), false),
+        open_(touched_) {}
 
   MeshFeatures find() {
-    for (const MeshEdge& edge : topology_.edges)
+    for (const MeshEdge& edge : topology_.edges) {
       if (may_touch(edge)) touched_[edge.low] = touched_[edge.high] = true;
+      if (!topology_.joins_two(edge)) open_[edge.low] = open_[edge.high] = true;
+    }
     for (Index t = 0; t < static_cast<Index>(topology_.mesh.triangles.size()); ++t) add_triangle(t);
     return std::move(result_);
   }
@@ -94,7 +100,8 @@ class FeatureFinder {
       outward += angle_at(v, next, last) * part(t).normal;
     }
     make_unique(tests);
-    add(v, -1, tests, patches, outward, parts_.part_of[topology_.triangles_at.of(v)[0]]);
+    add(v, open_[v] ? kOpenVertex : kVertex, tests, patches, outward,
+        parts_.part_of[topology_.triangles_at.of(v)[0]]);
   }
 
   Real angle_at(Index v, Index next, Index last) const {
@@ -124,7 +131,7 @@ class FeatureFinder {
   const MeshTopology& topology_;
   const MeshParts& parts_;
   bool sheet_;
-  std::vector<bool> touched_;
+  std::vector<bool> touched_, open_;  // vertices
   MeshFeatures result_;
 };
 

@@ -30,10 +30,13 @@ struct MeshTriangle {
   Index first_feature, features;  // those that it owns: rows of MeshView::features
 };
 
+// MeshFeature::b of vertices; the latter has an edge that does not join two faces.
+inline constexpr Index kVertex = -1, kOpenVertex = -2;
+
 // An edge or a vertex that a sphere may touch, owned by the lowest of its triangles. `tests`: of an edge the
 // parts of its faces (~part where the face runs from b to a), of a vertex the other ends of its edges.
 struct MeshFeature {
-  Index a, b;  // vertices, a < b; b = -1: a vertex
+  Index a, b;  // vertices, a < b; b below 0: a vertex
   Index first_test, tests;
   Index first_patch, patches;  // that it adjoins, increasing
   Vec3f outward;               // unit: the mean normal of its faces, at a vertex weighted by their angles
