@@ -63,7 +63,7 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
       kernels_(make_contact_kernels(without_attraction(model.contact))),
       planes_(wall_planes(model)),
       entries_(model, subdomain, *kernels_, 0, masses_of_carriers(model, surfaces)),
-      held_(kernels_->history(), {model.space.min, subdomain.period()}),
+      held_(kept_numbers(model, kernels_->history()), {model.space.min, subdomain.period()}),
       found_(held_) {}
 
 // Per surface, in order.
@@ -162,7 +162,7 @@ void BodyContacts::build(const SurfacePlaces& places, Real skin) {
 // Of the shapes that the list has: what the others remember is of contacts that have ended.
 void BodyContacts::take_contacts(const SurfacePlaces& places) {
   KeptContacts rows;
-  rows.numbers = kernels_->history();
+  rows.numbers = kept_.numbers;
   std::size_t k = 0;
   for (Index i = 0; i < store_.owned; ++i) {
     for (; k < kept_.shapes.size() && kept_.shapes[k] <= items_[i].surface; ++k)
@@ -180,15 +180,15 @@ void BodyContacts::leave_list(const SurfacePlaces& places) {
 }
 
 void BodyContacts::load(const ShapeContacts& contacts) {
-  kept_ = contacts.numbers == kernels_->history() ? contacts : ShapeContacts{};
-  kept_.numbers = kernels_->history();
+  kept_ = contacts.numbers == held_.numbers() ? contacts : ShapeContacts{};
+  kept_.numbers = held_.numbers();
   has_list_ = false;
 }
 
 ShapeContacts BodyContacts::contacts(const SurfacePlaces& places) {
   if (!has_list_) return kept_;
   ShapeContacts out;
-  out.numbers = kernels_->history();
+  out.numbers = held_.numbers();
   if (!held_.exists()) return out;
   place(places.placed, 0);
   const KeptContacts rows = held_.contacts(listed(places));
@@ -241,7 +241,7 @@ ContactViews<PackedRows> BodyContacts::views(const HistoryViews& history) const 
 }
 
 void BodyContacts::find_loads(const SurfacePlaces& places, Real h) {
-  const bool in_step = h > 0 && model_.rotates();
+  const bool in_step = h > 0 && held_.exists();
   if (!in_step) h = 0;
   if (in_step) found_ = held_, has_step_ = true;
   const HistoryViews history = in_step ? found_.views() : held_.views().only_read();
@@ -262,17 +262,17 @@ void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
   with_shapes_.resize(list_.neighbors.size());
   const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
   const StepStart start = step_start(h);
+  if (held_.exists()) found_ = held_, has_step_ = true;
   if (model_.rotates()) {
-    found_ = held_, has_step_ = true;
     RubbingStart rubbing{start, start_spin_.data(), mean_spin_.data(), {}, nullptr};
     entries_.find_rubs(places, store_, list_.surfaces, rubbing, found_.views());
     rubbing.on_bodies = entries_.rubs();
     kernels_->body_rubs(views(found_.views()), store_.owned, rubbing, arm_.data(), steps_.data(), to);
-    found_.accepted();
   } else {
-    entries_.find_steps(places, store_, list_.surfaces, start);
+    entries_.find_steps(places, store_, list_.surfaces, start, found_.views());
     kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
   }
+  if (held_.exists()) found_.accepted();
   for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = items_[i].surface;
   find_pairs();
 }

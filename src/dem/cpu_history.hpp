@@ -8,16 +8,18 @@
 #include "dem/kept_contacts.hpp"
 #include "dem/neighbor_list.hpp"
 #include "dem/particle_store.hpp"
+#include "dem/sheet_names.hpp"
 #include "dem/surfaces.hpp"
 
 namespace scree {
 
 class CpuHistory {
  public:
-  // numbers: per contact; 0: nothing below does anything.
+  // numbers: per contact, or kSidesAlone; 0: nothing below does anything.
   CpuHistory(int numbers, const PeriodicBox& box) : numbers_(numbers), box_(box) {}
 
-  bool exists() const { return numbers_ > 0; }
+  bool exists() const { return numbers_ != 0; }
+  int numbers() const { return numbers_; }
   int records() const { return records_of(numbers_); }
   bool at_slots() const { return at_slots_; }
   // For walks on the list.
@@ -49,10 +51,18 @@ class CpuHistory {
                const std::vector<Index>& staying);
 
  private:
+  static HistoryViews sides_alone(std::vector<Index>& of, std::vector<Index>& ahead);
   // Of what stands at a slot, or at an entry of the surfaces, of a particle at p.
   std::int64_t neighbor_key(const Listed& at, Vec3 p, Index slot) const;
-  std::int64_t surface_key(const Listed& at, Vec3 p, Index entry, Index feature) const;
+  std::int64_t surface_key(const Listed& at, Vec3 p, Index entry) const;
+  std::int64_t mesh_key(const Listed& at, Vec3 p, Index entry, GlobalId name) const;
   bool is_mesh(const Listed& at, Index entry) const;
+  BesideMesh beside_mesh(const Listed& at, Vec3 p, Index entry) const;
+  bool is_alone() const { return numbers_ == kSidesAlone; }
+  // What is remembered at a slot of these records; of meshes at an entry.
+  bool is_closed(const std::vector<Vec4>& records, Index slot) const {
+    return is_alone() ? features_[slot] != kNoFeature : records[first_record(slot)].w == step_;
+  }
   void take_row(const Listed& at, Index i);
   void take_mesh(const Listed& at, Index i, Index entry);
   std::size_t first_record(std::int64_t slot) const {
@@ -64,7 +74,7 @@ class CpuHistory {
   PeriodicBox box_;
   bool at_slots_ = false;
   KeptContacts kept_;                                      // of the owned particles, unless at the slots
-  std::vector<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews
+  std::vector<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews; empty if kSidesAlone
   std::vector<Index> features_, features_ahead_;
   Real step_ = 2;  // there is one before the first
 };

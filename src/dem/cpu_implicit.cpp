@@ -107,7 +107,7 @@ StepNorms CpuImplicitStep::largest_norms() {
 void CpuImplicitStep::find_steps() {
   if (items_.side.size() == 0) return;
   const SurfaceRows& rows = items_.list.surfaces;
-  items_.surfaces.find_steps(items_.side.places(), items_.store, rows, step_start());
+  items_.surfaces.find_steps(items_.side.places(), items_.store, rows, step_start(), items_.history.views());
   items_.side.take_steps(items_.surfaces.step_sums(rows), h_);
 }
 

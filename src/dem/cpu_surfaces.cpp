@@ -106,10 +106,10 @@ void CpuSurfaces::make_room(const SurfaceRows& rows) {
 }
 
 void CpuSurfaces::find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
-                             const StepStart& start) {
+                             const StepStart& start, const HistoryViews& history) {
   steps_.resize(rows.surfaces.size()), make_room(rows);
   const SurfaceViews views =
-      entry_views(places, store, rows, {store.position.data(), store.velocity.data(), nullptr, {}});
+      entry_views(places, store, rows, {store.position.data(), store.velocity.data(), nullptr, history});
   touch_over_step(views, rows, start, places.start.data());
   kernels_.surface_steps(views, static_cast<Index>(rows.by_surface.size()), start, places.start.data(),
                          steps_.data());

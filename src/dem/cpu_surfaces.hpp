@@ -23,10 +23,11 @@ class CpuSurfaces {
   // views().
   void find_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
                   const SurfaceLook& look);
-  // The same over an implicit step, with the particles of the store.
+  // The same over an implicit step, with the particles of the store; history: with what contacts will
+  // remember if the step is accepted.
   void find_steps(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
-                  const StepStart& start);
-  // And where contacts rub; history: with what they will remember if the step is accepted.
+                  const StepStart& start, const HistoryViews& history);
+  // And where contacts rub.
   void find_rubs(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
                  const RubbingStart& start, const HistoryViews& history);
   // What these sum to, per surface that something touches.

@@ -7,6 +7,12 @@
 
 namespace scree {
 
+int kept_numbers(const Model& model, int of_law) {
+  const bool sheets =
+      std::ranges::any_of(model.meshes, [](const ModelMesh& mesh) { return mesh.surface->sheet; });
+  return of_law == 0 && sheets ? kSidesAlone : of_law;
+}
+
 void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {
   const auto row = static_cast<std::size_t>(particle);
   for (std::int64_t k = from.offsets[row]; k < from.offsets[row + 1]; ++k)
@@ -15,7 +21,7 @@ void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {
 }
 
 void KeptContacts::order_from(std::size_t contact) {
-  const auto n = static_cast<std::size_t>(numbers);
+  const auto n = static_cast<std::size_t>(width());
   for (std::size_t k = contact + 1; k < keys.size(); ++k)
     for (std::size_t at = k; at > contact && keys[at - 1] > keys[at]; --at) {
       std::swap(keys[at - 1], keys[at]);
@@ -55,7 +61,7 @@ void KeptContacts::set_counts(std::span<const std::int64_t> counts) {
 
 double bytes_remembered(int numbers, double slots) {
   constexpr double kTouching = 6;
-  if (numbers == 0) return 0;
+  if (numbers <= 0) return 0;
   return slots * records_of(numbers) * static_cast<double>(sizeof(Vec4)) +
          kTouching * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
 }
@@ -81,7 +87,7 @@ KeptContacts KeptContacts::without_surfaces() const {
 KeptContacts no_contacts(int numbers, std::int64_t particles) {
   KeptContacts out;
   out.numbers = numbers;
-  if (numbers > 0) out.offsets.assign(static_cast<std::size_t>(particles) + 1, 0);
+  if (numbers != 0) out.offsets.assign(static_cast<std::size_t>(particles) + 1, 0);
   return out;
 }
 
@@ -102,7 +108,7 @@ KeptContacts in_order(const IdOrder& order, KeptContacts contacts) {
   if (contacts.numbers == 0) return contacts;
   const std::vector<std::int64_t> counts = contacts.counts();
   std::vector<std::int64_t> of_values = counts;
-  for (std::int64_t& count : of_values) count *= contacts.numbers;
+  for (std::int64_t& count : of_values) count *= contacts.width();
   contacts.keys = order.apply(std::move(contacts.keys), counts);
   contacts.values = order.apply(std::move(contacts.values), std::move(of_values));
   contacts.set_counts(order.apply(counts));

@@ -7,25 +7,33 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "model/model.hpp"
 #include "partition/id_order.hpp"
 #include "partition/ranks.hpp"
 
 namespace scree {
 
+// KeptContacts::numbers where the law remembers nothing, but contacts with sheets keep their sides: those
+// alone are kept, and their names tell all.
+inline constexpr int kSidesAlone = -1;
+// What contacts of the model keep where their law remembers so many numbers: these, or kSidesAlone.
+int kept_numbers(const Model& model, int of_law);
+
 // The contacts that were closed at the last step, particle by particle; ghosts have none. The particles
 // themselves stand elsewhere, in the same order.
 struct KeptContacts {
-  int numbers = 0;                       // per contact; 0: nothing is remembered, and no particle has a row
+  int numbers = 0;  // per contact; 0: nothing is remembered, and no particle has a row; or kSidesAlone
   std::vector<std::int64_t> offsets{0};  // [particles + 1] into the contacts
   std::vector<std::int64_t> keys;        // [contacts], increasing in a row: the partner (history_slots.hpp)
-  std::vector<Real> values;              // [contacts][numbers]
+  std::vector<Real> values;              // [contacts][width()]
 
+  int width() const { return numbers > 0 ? numbers : 0; }
   std::int64_t particles() const { return std::ssize(offsets) - 1; }
   std::int64_t contacts(std::int64_t particle) const {
     return offsets[static_cast<std::size_t>(particle) + 1] - offsets[static_cast<std::size_t>(particle)];
   }
   std::span<const Real> values_of(std::int64_t contact) const {
-    const auto n = static_cast<std::size_t>(numbers);
+    const auto n = static_cast<std::size_t>(width());
     return {values.data() + static_cast<std::size_t>(contact) * n, n};
   }
   // Per particle.

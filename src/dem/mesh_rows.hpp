@@ -28,8 +28,8 @@ struct MeshTouch {
   bool touches;  // else nothing below has a meaning
   bool is_face;  // or acts as one
   ContactGeometry geometry;
-  Vec3 contact;             // where forces act, from the surface's point [m]
-  Vec3 normal0;             // where the step began
+  Vec3 contact;    // where forces act, from the surface's point [m]
+  Vec3 normal0;    // where the step began
   Index feature;   // on a sheet with the side (mesh/sheet_sides.hpp)
   Index triangle;  // over a step, a contact that ended in it has the triangle of its start
   Index from;      // entry whose memory the contact goes on from; -1: none

@@ -6,6 +6,7 @@
 #include "dem/surface_items.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/mesh_tree.hpp"
+#include "mesh/sheet_sides.hpp"
 #include "physics/contact_geometry.hpp"
 
 namespace scree {
@@ -17,19 +18,45 @@ struct FeaturePair {
 };
 
 SCREE_HD bool is_face(const MeshView& mesh, Index feature) { return feature < mesh.part_count; }
+// An edge or a vertex of a sheet that the centre is past acts as the plane across the normal there.
+SCREE_HD bool acts_as_face(const MeshView& mesh, const MeshContact& found) {
+  return is_face(mesh, found.feature) || (mesh.sheet && found.distance < 0);
+}
 
 // c: the sphere's centre in the mesh's frame. A face acts through the same function as an analytic plane, at
 // the foot of a radius below the centre; an edge or a vertex as a sphere of no radius.
 SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found, const Mat3& axes, Vec3 c,
                                   Real radius) {
   const Vec3 normal = axes * found.normal;
-  if (is_face(mesh, found.feature)) {
+  if (acts_as_face(mesh, found)) {
     ContactGeometry g = plane_pair(c, radius, found.point, found.normal);
     g.direction = normal;
     return {g, axes * (c - radius * found.normal)};
   }
   return {{radius - found.distance, found.distance, normal, 1}, axes * found.point};
 }
+
+// The sides of the contacts of a group with a sheet, as they are remembered and, by a step that may be
+// accepted, kept. Laws that remember do both with their own records.
+struct SideMemory {
+  const HistoryViews& history;
+  int records;
+
+  SCREE_HD bool is_alone() const { return history.bodies == nullptr && history.features != nullptr; }
+  SCREE_HD bool remembers(Index entry) const {
+    if (history.bodies != nullptr) return history.bodies[std::int64_t{entry} * records].w == history.step;
+    return history.features != nullptr && history.features[entry] != kNoFeature;
+  }
+  SCREE_HD RememberedSides of(const MeshGroup& group) const {
+    RememberedSides sides;
+    for (Index e = group.entry; e < group.entry + group.entries; ++e)
+      if (remembers(e)) sides.add(history.features[e]);
+    return sides;
+  }
+  SCREE_HD void keep(Index entry, Index sided) const {
+    if (is_alone()) history.features_ahead[entry] = sided;
+  }
+};
 
 // Contacts of the particle now that were remembered, each with the entry that did.
 struct RememberedTouches {
@@ -89,12 +116,13 @@ struct MeshTouchItem {
     const Index last = touches[group.entry].triangle;
     if (group.entries == 1 && stay(group.entry, sphere, last)) return;
     MeshContact found[kMeshSlots];
-    const int count =
-        min_of(find_mesh_contacts(mesh, c, searched(p.w), in.meshes.triangles + group.first_triangle,
-                                  group.triangles, found, last),
-               static_cast<int>(group.entries));
+    int count = min_of(find_mesh_contacts(mesh, c, searched(p.w), in.meshes.triangles + group.first_triangle,
+                                          group.triangles, found, last),
+                       static_cast<int>(group.entries));
+    if (mesh.sheet) count = SideKeeper(mesh, c, memory().of(group)).keep(found, count);
     for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
     for (int k = 0; k < count; ++k) put(group.entry + k, sphere, found[k]);
+    if (mesh.sheet && in.h > 0) keep_sides(group, count);
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
   }
 
@@ -117,13 +145,18 @@ struct MeshTouchItem {
   SCREE_HD void put(Index entry, const Sphere& of, const MeshContact& found) const {
     const FeaturePair pair = feature_pair(of.mesh, found, of.axes, of.c, of.radius);
     touches[entry] = {pair.geometry.overlap > (kReaches ? -in.reach : 0),
-                      is_face(of.mesh, found.feature),
+                      acts_as_face(of.mesh, found),
                       pair.geometry,
                       pair.contact,
                       pair.geometry.normal(),
-                      found.feature,
+                      sided_feature(of.mesh, found),
                       found.triangle,
                       -1};
+  }
+  SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
+  SCREE_HD void keep_sides(const MeshGroup& group, int count) const {
+    for (Index k = 0; k < group.entries; ++k)
+      memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
   }
   // How far from its centre a sphere of this radius may have contacts [m].
   SCREE_HD Real searched(Real radius) const { return kReaches ? radius + in.reach : radius; }
@@ -136,10 +169,24 @@ struct MeshTouchItem {
     MeshContact face;
     if (!stays_over(sphere.mesh, triangle, sphere.c, searched(sphere.radius), face)) return false;
     const bool goes_on = in.history.bodies != nullptr && remembers(entry);
-    if (goes_on && in.history.features[entry] != face.feature) return false;
+    if (sphere.mesh.sheet) {
+      if (!stay_on_side(entry, sphere, face)) return false;
+    } else if (goes_on && in.history.features[entry] != face.feature) {
+      return false;
+    }
     put(entry, sphere, face);
+    if (sphere.mesh.sheet && in.h > 0) memory().keep(entry, touches[entry].feature);
     if (in.history.bodies != nullptr) touches[entry].normal0 = sphere.normal0_of(face.feature, face.normal);
     if (goes_on) touches[entry].from = entry;
+    return true;
+  }
+  // The same of a sheet: gives the contact its side.
+  SCREE_HD bool stay_on_side(Index entry, const Sphere& sphere, MeshContact& face) const {
+    if (!memory().remembers(entry)) return true;
+    if (without_side(in.history.features[entry]) != face.feature) return false;
+    RememberedSides old;
+    old.add(in.history.features[entry]);
+    SideKeeper(sphere.mesh, sphere.c, old).keep(&face, 1);
     return true;
   }
   struct Found {
@@ -153,9 +200,12 @@ struct MeshTouchItem {
     RememberedTouches old;
     for (Index e = group.entry; e < group.entry + group.entries; ++e) {
       if (!remembers(e)) continue;
-      const Index feature = in.history.features[e];
+      const Index remembered = in.history.features[e],
+                  feature = mesh.sheet ? without_side(remembered) : remembered;
+      const Vec3 side = mesh.sheet && !is_open(mesh, feature) ? side_direction(mesh, remembered)
+                                                              : side_of(found, mesh, feature);
       old.entry[old.count] = e;
-      old.contact[old.count++] = mesh_feature_at(mesh, feature, sphere.c0, side_of(found, mesh, feature));
+      old.contact[old.count++] = mesh_feature_at(mesh, feature, sphere.c0, side);
     }
     for (const Kinship kin : {Kinship::same, Kinship::same_patch, Kinship::neighbour})
       for (int k = 0; k < found.count && old.count > 0; ++k) {
@@ -171,10 +221,10 @@ struct MeshTouchItem {
       }
     for (int k = 0; k < found.count; ++k) {
       MeshTouch& out = touches[group.entry + k];
-      if (out.from < 0) out.normal0 = sphere.normal0_of(out.feature, found.contacts[k].normal);
+      if (out.from < 0) out.normal0 = sphere.normal0_of(found.contacts[k].feature, found.contacts[k].normal);
     }
   }
-  // What a remembered feature of a sheet is seen along.
+  // What a remembered feature of a sheet is seen along where that has no sides.
   SCREE_HD static Vec3 side_of(const Found& found, const MeshView& mesh, Index feature) {
     for (int k = 0; k < found.count; ++k)
       if (found.contacts[k].feature == feature) return found.contacts[k].normal;
@@ -207,9 +257,11 @@ struct MeshStepTouchItem {
     const Index* const triangles = in.meshes.triangles + group.first_triangle;
     MeshContact now[kMeshSlots];
     RememberedTouches old;
-    const int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
+    int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
     old.count = find_mesh_contacts(mesh, start.c, p.w, triangles, group.triangles, old.contact);
-    for (int k = 0; k < old.count; ++k) old.entry[k] = remembering(group, old.contact[k].feature);
+    if (mesh.sheet) count = keep_sides(group, {mesh, end.c, start.c}, now, count, old);
+    for (int k = 0; k < old.count; ++k)
+      old.entry[k] = remembering(group, sided_feature(mesh, old.contact[k]));
     // Those that are there at the end come first, whether they were at the start or not.
     bool matched[kMeshSlots] = {};
     for (const Kinship kin : {Kinship::same, Kinship::same_patch})
@@ -234,6 +286,9 @@ struct MeshStepTouchItem {
       open(touches[group.entry + next].geometry);
     }
     for (; next < group.entries; ++next) touches[group.entry + next].touches = false;
+    if (mesh.sheet)
+      for (Index k = 0; k < group.entries; ++k)
+        memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
   }
 
  private:
@@ -246,17 +301,31 @@ struct MeshStepTouchItem {
   struct Sights {
     const Sight &end, &start;
   };
+  // The centre in the frame of a sheet, at both ends.
+  struct Passage {
+    const MeshView& mesh;
+    Vec3 c, c0;
+  };
+  SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
+  // Of the contacts at the start, then of those at the end, which go on from them.
+  SCREE_HD int keep_sides(const MeshGroup& group, const Passage& of, MeshContact* now, int count,
+                          RememberedTouches& old) const {
+    old.count = SideKeeper(of.mesh, of.c0, memory().of(group)).keep(old.contact, old.count);
+    RememberedSides sides;
+    for (int k = 0; k < old.count; ++k) sides.add(sided_feature(of.mesh, old.contact[k]));
+    return SideKeeper(of.mesh, of.c, sides).keep(now, count);
+  }
   SCREE_HD void put(Index entry, const MeshView& mesh, const MeshContact& now, const MeshContact& was,
                     const Sights& sights, Index from) const {
     const Sight &end = sights.end, &start = sights.start;
     const FeaturePair pair = feature_pair(mesh, now, end.axes, end.c, end.radius),
                       pair0 = feature_pair(mesh, was, start.axes, start.c, start.radius);
     touches[entry] = {true,
-                      is_face(mesh, now.feature),
+                      acts_as_face(mesh, now),
                       pair.geometry,
                       pair.contact,
                       pair0.geometry.normal(),
-                      now.feature,
+                      sided_feature(mesh, now),
                       now.triangle >= 0 ? now.triangle : was.triangle,
                       from};
     before[entry] = {pair0.geometry, pair0.contact};

@@ -11,13 +11,14 @@ namespace scree {
 
 // The contacts that were closed at the last step, ordered by shape and key.
 struct ShapeContacts {
-  int numbers = 0;                   // per contact; 0: nothing is remembered
+  int numbers = 0;                   // as in KeptContacts
   std::vector<std::int64_t> shapes;  // number of the placed surface (SurfaceSet)
   std::vector<std::int64_t> keys;    // the partner, a shape or another surface, as in KeptContacts
-  std::vector<Real> values;          // [contacts][numbers]
+  std::vector<Real> values;          // [contacts][width()]
 
+  int width() const { return numbers > 0 ? numbers : 0; }
   std::span<const Real> values_of(std::size_t contact) const {
-    const auto n = static_cast<std::size_t>(numbers);
+    const auto n = static_cast<std::size_t>(width());
     return {values.data() + contact * n, n};
   }
   friend bool operator==(const ShapeContacts&, const ShapeContacts&) = default;

@@ -38,11 +38,11 @@ void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t be
   const auto partners = read_rows(in.row_array<std::int64_t>(kPartners), first, count),
              images = read_rows(in.row_array<std::int64_t>(kImages), first, count);
   for (std::size_t k = 0; k < partners.size(); ++k) {
-    if (partners[k] < 0 || partners[k] >= 2 * kFirstSurfaceId || images[k] < 0 || images[k] >= 27)
+    if (partners[k] < 0 || partners[k] >= kPartnersEnd || images[k] < 0 || images[k] >= 27)
       throw IoError(in.path + ": the partner of a contact or its image is none");
     contacts.keys.push_back(row_key(partners[k], static_cast<std::int8_t>(images[k])));
   }
-  contacts.values = read_rows(in.row_array<Real>(kHistory), first, count);
+  if (contacts.width() > 0) contacts.values = read_rows(in.row_array<Real>(kHistory), first, count);
 }
 
 }  // namespace
@@ -55,12 +55,16 @@ void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
       kCounts, "contacts of each particle, in the order of the particles", contacts.particles(),
       [&contacts](std::int64_t i) { return contacts.contacts(i); }, out);
   add_integers(
-      kPartners, "of each contact: id of the other particle, or 2^48 plus the number of the surface", count,
-      [key](std::int64_t k) { return id_of(key(k)); }, out);
+      kPartners,
+      "of each contact: id of the other particle, or 2^48 plus the number of the surface and 2^20 times that "
+      "of what is "
+      "touched of a mesh, 2^49 if the centre is past a sheet",
+      count, [key](std::int64_t k) { return id_of(key(k)); }, out);
   add_integers(
       kImages, "which of its images, beside the particle: 13 plus the periods in x, 3 in y, 9 in z", count,
       [key](std::int64_t k) { return key(k) % 27; }, out);
-  const int numbers = contacts.numbers;
+  const int numbers = contacts.width();
+  if (numbers == 0) return;
   out.real_rows[kHistory] = {numbers, count,
                              [&contacts, numbers](std::int64_t first, std::int64_t rows, Real* to) {
                                std::copy_n(contacts.values.begin() + first * numbers, rows * numbers, to);
@@ -70,14 +74,15 @@ void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
 
 int numbers_in(const Checkpoint& checkpoint) {
   const auto history = checkpoint.real_rows.find(kHistory);
-  return history == checkpoint.real_rows.end() ? 0 : history->second.width;
+  if (history != checkpoint.real_rows.end()) return history->second.width;
+  return checkpoint.integer_rows.count(kCounts) > 0 ? kSidesAlone : 0;
 }
 
 KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
   KeptContacts contacts;
   contacts.numbers = numbers_in(in);
   if (contacts.numbers == 0) return contacts;
-  const std::int64_t rows = in.row_array<Real>(kHistory).count, all = ranks.sum(rows);
+  const std::int64_t rows = in.row_array<std::int64_t>(kPartners).count, all = ranks.sum(rows);
   ranks.together([&] {
     const CheckpointRows<std::int64_t>& counts = in.row_array<std::int64_t>(kCounts);
     contacts.set_counts(read_rows(counts, 0, counts.count));
@@ -86,7 +91,8 @@ KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
   });
   const std::int64_t own = contacts.offsets.back(), below = ranks.sum_below(own),
                      below_rows = ranks.sum_below(rows);
-  if (ranks.sum(own) != all || ranks.sum(in.row_array<std::int64_t>(kPartners).count) != all ||
+  const bool has_values = contacts.width() > 0;
+  if (ranks.sum(own) != all || (has_values && ranks.sum(in.row_array<Real>(kHistory).count) != all) ||
       ranks.sum(in.row_array<std::int64_t>(kImages).count) != all)
     throw IoError(in.path + ": the contacts' arrays do not fit together");
   ranks.together([&] { read_contacts(in, below, below_rows, contacts); });
@@ -95,6 +101,8 @@ KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
 
 void add_contacts(const KeptContacts& contacts, std::size_t particle, BitHash& hash) {
   for (std::int64_t k = contacts.offsets[particle]; k < contacts.offsets[particle + 1]; ++k) {
+    // Where nothing else is remembered the side is where the centre is, unless that is past the sheet.
+    if (contacts.numbers == kSidesAlone && !is_past(contacts.keys[static_cast<std::size_t>(k)])) continue;
     hash.add(contacts.keys[static_cast<std::size_t>(k)]);
     for (const Real value : contacts.values_of(k)) hash.add(value);
   }

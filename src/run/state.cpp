@@ -189,7 +189,7 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
       if ((field.parts & kState) != 0)
         for (const auto number : numbers_of(state.particles[i].*member)) one.add(number);
     });
-    if (state.contacts.numbers > 0) add_contacts(state.contacts, i, one);
+    if (state.contacts.numbers != 0) add_contacts(state.contacts, i, one);
     sum += one.hash();
   }
   if (!with_rest) return sum;
@@ -203,10 +203,10 @@ namespace {
 // How many numbers each remembers follows from how many there are.
 void count_numbers(const std::string& path, ShapeContacts& contacts) {
   const std::size_t count = contacts.shapes.size(), values = contacts.values.size();
-  if (contacts.keys.size() != count || (count == 0 ? values > 0 : values == 0 || values % count > 0))
+  if (contacts.keys.size() != count || (count == 0 ? values > 0 : values % count > 0))
     throw IoError(fmt::format("{}: the arrays {}, {} and {} do not fit together", path, kShapeContactsOf,
                               kShapeContactsWith, kShapeHistory));
-  contacts.numbers = count > 0 ? static_cast<int>(values / count) : 0;
+  contacts.numbers = count == 0 ? 0 : values == 0 ? kSidesAlone : static_cast<int>(values / count);
   for (std::size_t k = 1; k < count; ++k)
     if (std::pair(contacts.shapes[k - 1], contacts.keys[k - 1]) >=
         std::pair(contacts.shapes[k], contacts.keys[k]))
