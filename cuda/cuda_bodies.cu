@@ -29,8 +29,9 @@ const ShownContact* CudaBodies::find_shown() {
 
 void CudaBodies::find_steps(const StepStart& start) {
   if (!have_surfaces()) return;
-  items_.surfaces.find_steps(items_.device(), *items_.kernels, items_.now.position.data(),
-                             items_.now.velocity.data(), start);
+  items_.surfaces.find_steps(
+      items_.device(), *items_.kernels, start,
+      {items_.now.position.data(), items_.now.velocity.data(), nullptr, items_.history.views()});
 }
 
 void CudaBodies::find_rubs(const RubbingStart& start) {

@@ -3,6 +3,7 @@
 #include "base/countable.hpp"
 #include "dem/device.hpp"
 #include "dem/particle_fields.hpp"
+#include "dem/sheet_names.hpp"
 #include "device_history.cuh"
 #include "for_each.cuh"
 
@@ -23,11 +24,12 @@ struct NamedRows {
   SurfaceList surfaces;
   PeriodicBox box;
   HistoryViews history;
-  int numbers, records;  // per contact
+  int numbers, records;  // per contact; no records: kSidesAlone
 
-  // Calls visit(record, key) for what stands in row i, key() being its name; in their order.
+  // Calls visit(record, key) for what stands in row i but for meshes, key() being its name; in their order.
   template <class Visit>
   __device__ void visit(Index i, const Visit& visit) const {
+    if (records == 0) return;
     const Vec3 p = xyz(position[i]);
     std::int64_t slot = rows.first(i);
     for (Index left = rows.counts[i]; left > 0; --left, slot += kSlice)
@@ -36,27 +38,45 @@ struct NamedRows {
         return row_key(id_of(row_keys[j]), box.image_beside(p, xyz(position[j])));
       });
     for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
-      visit(record_of(entry), [&] { return surface_key(entry, p, is_mesh(entry) ? feature(entry) : 0); });
+      if (!is_mesh(entry)) visit(record_of(entry), [&] { return surface_key(entry, p); });
+  }
+  // Calls visit(entry) for those of meshes.
+  template <class Visit>
+  __device__ void visit_meshes(Index i, const Visit& visit) const {
+    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
+      if (is_mesh(entry)) visit(entry);
   }
 
   __device__ Vec4* record_of(Index entry) const {
     const bool at_rest = surfaces.numbers.at_rest(surfaces.surfaces[entry]);
     return (at_rest ? history.ground : history.bodies) + std::int64_t{entry} * records;
   }
+  // Of a mesh.
+  __device__ bool is_closed(Index entry) const {
+    return records > 0 ? record_of(entry)->w == history.step : feature(entry) != kNoFeature;
+  }
   __device__ bool is_mesh(Index entry) const {
-    const Index s = surfaces.surfaces[entry];
-    return !surfaces.numbers.at_rest(s) &&
-           surfaces.placed[surfaces.numbers.placed(s)].kind == SurfaceKind::mesh;
+    return !surfaces.numbers.at_rest(surfaces.surfaces[entry]) && placed(entry).kind == SurfaceKind::mesh;
+  }
+  __device__ const PlacedSurface& placed(Index entry) const {
+    return surfaces.placed[surfaces.numbers.placed(surfaces.surfaces[entry])];
   }
   __device__ Index& feature(Index entry) const { return history.features[entry]; }
-  __device__ std::int64_t surface_key(Index entry, Vec3 p, Index feature) const {
+  __device__ std::int64_t surface_key(Index entry, Vec3 p) const {
     const Index s = surfaces.surfaces[entry];
     if (surfaces.numbers.at_rest(s)) return row_key(surface_id(s));
-    const PlacedSurface& surface = surfaces.placed[surfaces.numbers.placed(s)];
-    if (surface.kind == SurfaceKind::plane) return row_key(surface_id(s));  // it has no images
-    const PeriodicBox of =
-        surface.kind == SurfaceKind::mesh ? box.without(surfaces.frames[surface.frame].spanned) : box;
-    return row_key(surface_id(s, feature), of.image_beside(p, surface.point, surfaces.images[entry]));
+    if (placed(entry).kind == SurfaceKind::plane) return row_key(surface_id(s));  // it has no images
+    return row_key(surface_id(s), box.image_beside(p, placed(entry).point, surfaces.images[entry]));
+  }
+  __device__ std::int64_t mesh_key(Index entry, Vec3 p, GlobalId name) const {
+    const PlacedSurface& surface = placed(entry);
+    const PeriodicBox of = box.without(surfaces.frames[surface.frame].spanned);
+    return row_key(name, of.image_beside(p, surface.point, surfaces.images[entry]));
+  }
+  __device__ BesideMesh beside_mesh(Index entry, Vec3 p) const {
+    const SurfaceFrame& frame = surfaces.frames[placed(entry).frame];
+    return {surfaces.meshes[frame.mesh], placed(entry), frame, p,
+            image_shift(surfaces.images[entry], box.period)};
   }
   // Whether two entries of a row are of the same mesh and image.
   __device__ bool alike(Index a, Index b) const {
@@ -73,6 +93,7 @@ struct CountClosedItem {
     Index count = 0;
     names.visit(first + k,
                 [&](const Vec4* record, const auto&) { count += record->w == names.history.step; });
+    names.visit_meshes(first + k, [&](Index entry) { count += names.is_closed(entry); });
     counts[k] = count;
   }
 };
@@ -82,13 +103,23 @@ struct KeepItem {
   Index first;
   KeptViews kept;
   __device__ void operator()(Index k) const {
+    const Index i = first + k;
     Index at = kept.offsets[k];
-    names.visit(first + k, [&](const Vec4* record, const auto& key) {
-      if (record->w != names.history.step) return;
-      kept.keys[at] = key();
+    const auto add = [&](const Vec4* record, std::int64_t key) {
+      kept.keys[at] = key;
       Real* const to = kept.values + std::int64_t{at} * names.numbers;
       for (int n = 0; n < names.numbers; ++n) to[n] = number_of(record, n);
       ++at;
+    };
+    names.visit(i, [&](const Vec4* record, const auto& key) {
+      if (record->w == names.history.step) add(record, key());
+    });
+    const Vec3 p = xyz(names.position[i]);
+    names.visit_meshes(i, [&](Index entry) {
+      if (!names.is_closed(entry)) return;
+      const GlobalId name =
+          names.beside_mesh(entry, p).name(names.surfaces.surfaces[entry], names.feature(entry));
+      add(names.record_of(entry), names.mesh_key(entry, p, name));
     });
     order(kept.offsets[k], at);
   }
@@ -126,32 +157,39 @@ struct TakeItem {
       while (at < end && kept.keys[at] < wanted) ++at;
       if (at < end && kept.keys[at] == wanted) put(record, at);
     });
-    for (Index entry = names.surfaces.offsets[i]; entry < names.surfaces.offsets[i + 1]; ++entry)
-      if (names.is_mesh(entry) && (entry == names.surfaces.offsets[i] || !names.alike(entry - 1, entry)))
-        take_mesh(i, entry);
+    names.visit_meshes(i, [&](Index entry) {
+      if (entry == names.surfaces.offsets[i] || !names.alike(entry - 1, entry)) take_mesh(i, entry);
+    });
   }
 
  private:
   __device__ void put(Vec4* record, Index contact) const {
     const Real* const from = kept.values + std::int64_t{contact} * names.numbers;
     for (int k = 0; k < names.numbers; ++k) number_of(record, k) = from[k];
-    record->w = names.history.step;
+    if (names.records > 0) record->w = names.history.step;
   }
   // What the particle remembers of a mesh goes to the entries of their group, the first of which is given.
   __device__ void take_mesh(Index i, Index entry) const {
-    const std::int64_t wanted = names.surface_key(entry, xyz(names.position[i]), 0);
+    const Vec3 p = xyz(names.position[i]);
+    const BesideMesh beside = names.beside_mesh(entry, p);
+    const std::int64_t wanted = names.mesh_key(entry, p, surface_id(names.surfaces.surfaces[entry]));
     Index slot = entry;
     for (; slot < names.surfaces.offsets[i + 1] && names.alike(entry, slot); ++slot)
-      *names.record_of(slot) = {};
+      for (int r = 0; r < names.records; ++r) names.record_of(slot)[r] = {};
     const Index last = slot;
     slot = entry;
     for (Index k = kept.offsets[row_of[i]]; k < kept.offsets[row_of[i] + 1] && slot < last; ++k) {
       const std::int64_t key = kept.keys[k];
       if (!is_surface(key) || without_feature(key) != wanted) continue;
-      names.feature(slot) = feature_of(key);
+      names.feature(slot) = beside.remembered(key);
       put(names.record_of(slot++), k);
     }
   }
+};
+
+struct NoFeatureItem {
+  Index *now, *ahead;
+  SCREE_HD void operator()(Index entry) const { now[entry] = ahead[entry] = kNoFeature; }
 };
 
 struct RowLengthItem {
@@ -207,13 +245,14 @@ NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box, cons
 
 DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, DeviceRoom& room)
     : numbers_(numbers), box_(box), stream_(stream), room_(room) {
-  if (exists()) first_step_.resize(1), h_first_step_.resize(1);
+  if (width() > 0) first_step_.resize(1), h_first_step_.resize(1);
 }
 
 HistoryViews DeviceHistory::views(bool ahead) {
   if (!exists()) return {};
   HistoryViews views{neighbors_.data(), ground_.data(),         bodies_.data(), ahead_.data(),
                      features_.data(),  features_ahead_.data(), step_};
+  if (is_alone()) views.neighbors = views.ground = views.bodies = views.ahead = nullptr;
   if (ahead) std::swap(views.bodies, views.ahead), std::swap(views.features, views.features_ahead);
   return views;
 }
@@ -239,7 +278,7 @@ HistoryViews DeviceHistory::views_in_run() {
 }
 
 void DeviceHistory::begin_run() {
-  if (!exists()) return;
+  if (width() == 0) return;
   run_start_ = h_first_step_[0] = step_;
   copy_async(first_step_.data(), h_first_step_.data(), 1, stream_);
 }
@@ -257,26 +296,26 @@ std::size_t DeviceHistory::add_up(Rows& rows, Index count) {
 
 void DeviceHistory::make_room(Rows& rows, std::size_t contacts) const {
   rows.keys.resize_with_spare(contacts);
-  rows.values.resize_with_spare(contacts * static_cast<std::size_t>(numbers_));
+  rows.values.resize_with_spare(contacts * static_cast<std::size_t>(width()));
 }
 
 std::size_t DeviceHistory::count_rows(Rows& rows, const Listed& at, Index first, Index count) {
   countable(static_cast<std::size_t>(at.list.entries()), "stage migrate: more contacts");
   rows.offsets.resize(static_cast<std::size_t>(count) + 1);
   for_each({stream_}, count,
-           CountClosedItem{names_of(at, box_, views(), numbers_), first, rows.offsets.data()});
+           CountClosedItem{names_of(at, box_, views(), width()), first, rows.offsets.data()});
   return add_up(rows, count);
 }
 
 void DeviceHistory::fill_rows(Rows& rows, const Listed& at, Index first, Index count) {
-  for_each({stream_}, count, KeepItem{names_of(at, box_, views(), numbers_), first, kept_views(rows)});
+  for_each({stream_}, count, KeepItem{names_of(at, box_, views(), width()), first, kept_views(rows)});
 }
 
 void DeviceHistory::leave_slots(const Listed& at) {
   if (!at_slots_) return;
   row_of_.resize(static_cast<std::size_t>(at.owned));
   const std::size_t contacts = count_rows(kept_, at, 0, at.owned),
-                    numbers = static_cast<std::size_t>(numbers_),
+                    numbers = static_cast<std::size_t>(width()),
                     room = contacts + contacts / kKeptSpare;  // for those that come with particles
   room_.lay_out(RoomFor{kept_.keys, room}, RoomFor{kept_.values, room * numbers});
   kept_.keys.resize(contacts), kept_.values.resize(contacts * numbers);
@@ -287,16 +326,17 @@ void DeviceHistory::leave_slots(const Listed& at) {
 
 void DeviceHistory::take_slots(const Listed& at) {
   if (!exists()) return;
-  const auto records = static_cast<std::size_t>(records_of(numbers_));
+  const auto records = static_cast<std::size_t>(records_of(width()));
   if (const auto needed = static_cast<std::size_t>(at.list.used()) * records; needed > neighbors_.size())
     neighbors_.resize(needed + needed / kSlotsSpare);
   for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
   for (DeviceArray<Index>* of_meshes : {&features_, &features_ahead_})
     of_meshes->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()));
-  features_.zero(stream_), ahead_.zero(stream_);
+  ahead_.zero(stream_);
+  for_each({stream_}, at.surfaces.entries(), NoFeatureItem{features_.data(), features_ahead_.data()});
   for_each({stream_}, at.owned,
-           TakeItem{names_of(at, box_, views(), numbers_), kept_views(kept_), row_of_.data()});
+           TakeItem{names_of(at, box_, views(), width()), kept_views(kept_), row_of_.data()});
   kept_.keys.release(), kept_.values.release();
   at_slots_ = true;
 }
@@ -355,7 +395,7 @@ KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
            RowLengthItem{kept_.offsets.data(), row_of_.data(), particles, packed_.offsets.data()});
   make_room(packed_, add_up(packed_, n));
   for_each({stream_}, n,
-           CopyRowItem{kept_views(kept_), row_of_.data(), particles, numbers_, kept_views(packed_)});
+           CopyRowItem{kept_views(kept_), row_of_.data(), particles, width(), kept_views(packed_)});
   return download(packed_);
 }
 

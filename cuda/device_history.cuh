@@ -13,11 +13,11 @@ namespace scree {
 
 class DeviceHistory {
  public:
-  // numbers: per contact; 0: nothing below does anything. What is queued without a device goes to the stream.
-  // room: what is kept from one list to the next stands there.
+  // numbers: per contact, or kSidesAlone; 0: nothing below does anything. What is queued without a device
+  // goes to the stream. room: what is kept from one list to the next stands there.
   DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, DeviceRoom& room);
 
-  bool exists() const { return numbers_ > 0; }
+  bool exists() const { return numbers_ != 0; }
   bool at_slots() const { return at_slots_; }
   // For walks on the list, outside a run of explicit steps. ahead: what contacts with placed surfaces
   // remember is in the arrays of what was evaluated ahead.
@@ -72,6 +72,8 @@ class DeviceHistory {
     DeviceArray<std::int64_t> keys;
     DeviceArray<Real> values;
   };
+  bool is_alone() const { return numbers_ == kSidesAlone; }
+  int width() const { return is_alone() ? 0 : numbers_; }
   // What rows of so many particles from the first on hold: the offsets; with room for them, the contacts.
   std::size_t count_rows(Rows& rows, const Listed& at, Index first, Index count);
   void fill_rows(Rows& rows, const Listed& at, Index first, Index count);
@@ -85,7 +87,7 @@ class DeviceHistory {
   const cudaStream_t stream_;
   DeviceRoom& room_;
   bool at_slots_ = false;
-  DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews
+  DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews; empty if kSidesAlone
   DeviceArray<Index> features_, features_ahead_;
   Real step_ = 2, run_start_ = 2;  // there is one before the first
   DeviceArray<Real> first_step_;

@@ -309,11 +309,11 @@ std::string DeviceSurfaces::key_of_loads(const DeviceContactKernels& kernels, co
          key_of(meshes_.groups()) + key_of(placed_entries_);
 }
 
-void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
-                                const Vec4* velocity, const StepStart& start) {
+void DeviceSurfaces::find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
+                                const SurfaceLook& look) {
   h_step_sums_.resize(h_chunks_.size());
   meshes_.make_room_over_step(entries_);
-  const SurfaceViews views = entry_views(kernels, {position, velocity, nullptr, {}});
+  const SurfaceViews views = entry_views(kernels, look);
   meshes_.touch_over_step(device, views, start.position, start_places_.data());
   kernels.surface_steps(device, views, chunk_list(), {start, start_places_.data()}, steps_.data(),
                         h_step_sums_.data());

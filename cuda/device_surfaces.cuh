@@ -24,6 +24,7 @@ struct SurfaceList {
   const std::int8_t* images;        // [entries]
   const PlacedSurface* placed;      // where they are now
   const SurfaceFrame* frames;
+  const MeshView* meshes;
   SurfaceNumbers numbers;
 };
 
@@ -50,7 +51,8 @@ class DeviceSurfaces {
   Index entries() const { return entries_; }
   SurfaceNumbers numbers() const { return {planes_.data(), ground_}; }
   SurfaceList list() const {
-    return {offsets_.data(), surfaces_.data(), images_.data(), places_.data(), frames_.data(), numbers()};
+    return {offsets_.data(), surfaces_.data(),      images_.data(), places_.data(),
+            frames_.data(),  meshes_.rows().meshes, numbers()};
   }
 
   // Which of the two sets of loads: those of the step, which the particles read, or of another look at the
@@ -68,9 +70,10 @@ class DeviceSurfaces {
   void find_loads_in_run(Device device, const DeviceContactKernels& kernels, const OpenStepLook& look,
                          Real h);
   std::string key_of_loads(const DeviceContactKernels& kernels, const OpenStepLook& look, Real h) const;
-  void find_steps(Device device, const DeviceContactKernels& kernels, const Vec4* position,
-                  const Vec4* velocity, const StepStart& start);
-  // The same where contacts rub; `look`: at the end of the step.
+  // Over an implicit step; `look`: at its end, with what contacts will remember if it is accepted.
+  void find_steps(Device device, const DeviceContactKernels& kernels, const StepStart& start,
+                  const SurfaceLook& look);
+  // The same where contacts rub.
   void find_rubs(Device device, const DeviceContactKernels& kernels, const RubbingStart& start,
                  const SurfaceLook& look);
   // Queues what is shown of the contacts, per entry, of the loads of the step, which were found at an instant
