@@ -2,6 +2,7 @@
 // and device, with the same bits.
 #pragma once
 
+#include <initializer_list>
 #include <limits>
 
 #include "mesh/mesh_contacts.hpp"
@@ -69,8 +70,8 @@ class SideKeeper {
       : mesh_(mesh), c_(c), old_(old) {}
 
   // contacts: as the centre c sees them. Those that c is past get a negative distance and the normal of their
-  // side. Returns how many there are, in the same order: what is touched first while c is past, from behind,
-  // does not count.
+  // side. Returns how many there are, in the same order: of what continues the sheet that c is past the
+  // nearest alone counts.
   SCREE_HD int keep(MeshContact* contacts, int count) {
     bool goes_on[kMeshSlots] = {};
     int past = 0;
@@ -82,7 +83,7 @@ class SideKeeper {
         past += turn_to(old_.sided[before], contacts[k]);
         goes_on[k] = true, old_.take_out(before);
       }
-    return past > 0 ? leave_out(contacts, count, goes_on) : count;
+    return past > 0 ? keep_nearest(contacts, count, goes_on) : count;
   }
 
  private:
@@ -113,23 +114,36 @@ class SideKeeper {
   }
   SCREE_HD bool turn_to(Index old, MeshContact& contact) const {
     if ((old < 0) == (sided_feature(mesh_, contact) < 0) || is_open(mesh_, contact.feature)) return false;
+    turn(contact);
+    return true;
+  }
+  SCREE_HD static void turn(MeshContact& contact) {
     contact.distance = -contact.distance;
     contact.normal = opposite(contact.normal);
-    return true;
   }
   // Whether a contact that begins is with what continues the sheet that c is past, from the same side of it.
   SCREE_HD bool is_behind(const MeshContact& begins, const MeshContact& other) const {
     return other.distance < 0 && (sided_feature(mesh_, begins) < 0) != (sided_feature(mesh_, other) < 0) &&
            on_neighbouring_patches(mesh_, begins.feature, other.feature);
   }
-  SCREE_HD int leave_out(MeshContact* contacts, int count, const bool* goes_on) const {
-    bool behind[kMeshSlots] = {};
-    for (int k = 0; k < count; ++k)
-      for (int j = 0; j < count && !goes_on[k] && !behind[k]; ++j)
-        behind[k] = goes_on[j] && is_behind(contacts[k], contacts[j]);
+  // As inside a closed mesh the nearest pushes out, and that alone. contacts: in order of distance.
+  SCREE_HD int keep_nearest(MeshContact* contacts, int count, bool* goes_on) const {
+    bool left_out[kMeshSlots] = {};
+    for (int k = 0; k < count; ++k) {
+      if (goes_on[k]) continue;
+      bool farther[kMeshSlots] = {}, takes_over = false;
+      for (int j = 0; j < count && !left_out[k]; ++j) {
+        if (!goes_on[j] || left_out[j] || !is_behind(contacts[k], contacts[j])) continue;
+        farther[j] = contacts[k].distance < -contacts[j].distance;
+        takes_over = takes_over || farther[j], left_out[k] = !farther[j];
+      }
+      if (left_out[k] || !takes_over) continue;
+      for (int j = 0; j < count; ++j) left_out[j] = left_out[j] || farther[j];
+      turn(contacts[k]), goes_on[k] = true;
+    }
     int kept = 0;
     for (int k = 0; k < count; ++k)
-      if (!behind[k]) contacts[kept++] = contacts[k];
+      if (!left_out[k]) contacts[kept++] = contacts[k];
     return kept;
   }
 

@@ -28,6 +28,8 @@ WORKS = ['output.surface_fields=["pressure", "shear", "impact_work", "sliding_wo
 LINES = ["output.contacts=true"]
 # Powder that sticks to walls, meshes and bodies.
 STICKY_MESHES = [HERE / "sticky_meshes.toml", "parallel.imbalance=0.0"]
+# Soft grains, and a body of spheres, that are half-way through sheets, past which their contacts keep their sides.
+SHEETS = [HERE / "sheets.toml", "parallel.imbalance=0.0"]
 # The cases that a restart continues, too.
 MAIN_CASES = {
     "5.3 net and 400 particles": ([*NET, "time.end=0.6", "output.history_particles=[0, 399]"], (1, 2, 3, 4, 8)),
@@ -50,6 +52,7 @@ MAIN_CASES = {
     "elements in space": ([*ELEMENTS, "time.end=0.08"], (1, 2, 4)),
     "meshes and their works": ([*MESHES, *WORKS, "time.end=0.08"], (1, 2, 3, 4)),
     "meshes at rest and their works": ([*AT_REST, *WORKS], (1, 2, 3, 4)),
+    "meshes, soft sheets": ([*SHEETS, "time.end=0.08"], (1, 2, 4)),
     "rubbing, implicit": ([*RUBBING, *IMPLICIT, *FIXED, "time.step=8e-5", "time.end=0.08"], (1, 2, 3, 4, 8)),
     "rubbing after Hertz and Mindlin, implicit": ([HERE / "rubbing_hertz.toml", *IMPLICIT, *FIXED,
                                                    "parallel.imbalance=0.0", "time.step=8e-5", "time.end=0.08"],
@@ -67,6 +70,9 @@ CASES = {
     "meshes at rest": (AT_REST, (1, 3)),
     "meshes and their works, implicit": ([*MESHES, *WORKS, *IMPLICIT, *FIXED, "integrator.substeps=1",
                                           "time.end=0.08"], (1, 2, 4)),
+    "sheets that rub": ([*SHEETS, "contact.pairs.0.friction=0.4", "time.end=0.08"], (1, 3)),
+    "sheets that rub, implicit": ([*SHEETS, *IMPLICIT, *FIXED, "integrator.substeps=1", "contact.pairs.0.friction=0.4",
+                                   "time.end=0.08"], (1, 4)),
     "5.3, particles removed": ([*NET, "time.end=0.85", "space.leaving=remove"], (1, 3)),
     "valley, adaptive": ([INPUT / "paper/valley.toml", "time.control=adaptive", "time.end=0.8"], (1, 2)),
 }
