@@ -183,10 +183,9 @@ struct MeshTouchItem {
   // The same of a sheet: gives the contact its side.
   SCREE_HD bool stay_on_side(Index entry, const Sphere& sphere, MeshContact& face) const {
     if (!memory().remembers(entry)) return true;
-    if (without_side(in.history.features[entry]) != face.feature) return false;
-    RememberedSides old;
-    old.add(in.history.features[entry]);
-    SideKeeper(sphere.mesh, sphere.c, old).keep(&face, 1);
+    const Index remembered = in.history.features[entry];
+    if (without_side(remembered) != face.feature) return false;
+    if (remembered != sided_feature(sphere.mesh, face)) turn_over(face);
     return true;
   }
   struct Found {

@@ -52,6 +52,12 @@ SCREE_HD bool is_past(const MeshView& mesh, Index sided, Vec3 c) {
   return (sided >= 0) != is_outward(mesh, without_side(sided), c);
 }
 
+// To the other side, past the sheet.
+SCREE_HD void turn_over(MeshContact& contact) {
+  contact.distance = -contact.distance;
+  contact.normal = opposite(contact.normal);
+}
+
 // The contacts of a sphere with a sheet at the last step.
 struct RememberedSides {
   Index sided[kMeshSlots];
@@ -114,12 +120,8 @@ class SideKeeper {
   }
   SCREE_HD bool turn_to(Index old, MeshContact& contact) const {
     if ((old < 0) == (sided_feature(mesh_, contact) < 0) || is_open(mesh_, contact.feature)) return false;
-    turn(contact);
+    turn_over(contact);
     return true;
-  }
-  SCREE_HD static void turn(MeshContact& contact) {
-    contact.distance = -contact.distance;
-    contact.normal = opposite(contact.normal);
   }
   // Whether a contact that begins is with what continues the sheet that c is past, from the same side of it.
   SCREE_HD bool is_behind(const MeshContact& begins, const MeshContact& other) const {
@@ -139,7 +141,7 @@ class SideKeeper {
       }
       if (left_out[k] || !takes_over) continue;
       for (int j = 0; j < count; ++j) left_out[j] = left_out[j] || farther[j];
-      turn(contacts[k]), goes_on[k] = true;
+      turn_over(contacts[k]), goes_on[k] = true;
     }
     int kept = 0;
     for (int k = 0; k < count; ++k)
