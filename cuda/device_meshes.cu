@@ -123,7 +123,7 @@ struct StateLook {
 };
 
 // Most groups have one entry.
-template <bool kReaches, class Look>
+template <bool kReaches, bool kSheets, class Look>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
                  MeshTouch* touches) {
@@ -139,20 +139,20 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
       only_entry = group.entry;
       records.own().triangle = touches[only_entry].triangle;
     }
-    MeshTouchItem<kReaches>{now, only_entry < 0 ? touches : only(records.own(), only_entry)}(g);
+    MeshTouchItem<kReaches, kSheets>{now, only_entry < 0 ? touches : only(records.own(), only_entry)}(g);
   }
   records.store(touches, only_entry);
 }
 
-template <class Look>
+template <bool kSheets, class Look>
 void queue_touches(Device device, Index groups, const SurfaceViews& views, const Look& look,
                    MeshTouch* touches) {
   if (groups == 0) return;
   const unsigned blocks = blocks_for(groups, kTouchThreads);
   if (views.reach > 0)
-    touch_kernel<true><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
+    touch_kernel<true, kSheets><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
   else
-    touch_kernel<false><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
+    touch_kernel<false, kSheets><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
   require_cuda(cudaGetLastError(), "contacts with meshes");
 }
 
@@ -174,7 +174,8 @@ const T* uploaded(DeviceArray<T>& array, const std::vector<T>& values, cudaStrea
 
 }  // namespace
 
-DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream) : surfaces_(model), cursors_(kCursors) {
+DeviceMeshes::DeviceMeshes(const Model& model, cudaStream_t stream)
+    : surfaces_(model), sheets_(has_sheets(model)), cursors_(kCursors) {
   std::vector<MeshView> views;
   meshes_.reserve(model.meshes.size());
   for (const ModelMesh& mesh : model.meshes) {
@@ -273,17 +274,27 @@ void DeviceMeshes::make_room_over_step(Index entries) {
 }
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
-  queue_touches(device, count_, views, StateLook{}, touches_.data());
+  if (sheets_)
+    queue_touches<true>(device, count_, views, StateLook{}, touches_.data());
+  else
+    queue_touches<false>(device, count_, views, StateLook{}, touches_.data());
 }
 
 void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look) {
-  queue_touches(device, count_, views, look, touches_.data());
+  if (sheets_)
+    queue_touches<true>(device, count_, views, look, touches_.data());
+  else
+    queue_touches<false>(device, count_, views, look, touches_.data());
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,
                                    const PlacedSurface* start_placed) {
-  for_each(device, count_,
-           MeshStepTouchItem{views, start_position, start_placed, touches_.data(), before_.data()});
+  if (sheets_)
+    for_each(device, count_,
+             MeshStepTouchItem<true>{views, start_position, start_placed, touches_.data(), before_.data()});
+  else
+    for_each(device, count_,
+             MeshStepTouchItem<false>{views, start_position, start_placed, touches_.data(), before_.data()});
 }
 
 }  // namespace scree

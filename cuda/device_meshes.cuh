@@ -106,6 +106,7 @@ class DeviceMeshes {
   std::vector<Arrays> meshes_;
   DeviceArray<MeshView> views_;
   SurfaceSet surfaces_;
+  bool sheets_;
   std::vector<Index> instances_;  // placed surfaces that are meshes
   Index count_ = 0;               // of groups
   DeviceArray<CellsNear> cells_;

@@ -24,8 +24,8 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
 
 // The triangles that particles touched last may be anywhere in memory: each is asked for some groups before
 // it is looked at, its corners as soon as it is there.
-template <bool kReaches>
-void touch_ahead(const MeshTouchItem<kReaches>& item, Index groups) {
+template <bool kReaches, bool kSheets>
+void touch_ahead(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
   constexpr Index kAhead = 8;
   const auto last_touched = [&](Index g, const auto& use) {
     if (g >= groups) return;
@@ -52,6 +52,7 @@ CpuSurfaces::CpuSurfaces(const Model& model, const Subdomain& subdomain, const C
       masses_(std::move(masses)),
       planes_(wall_planes(model)),
       reach_(reach),
+      sheets_(has_sheets(model)),
       box_{model.space.min, subdomain.period()},
       works_(model),
       work_sums_(works_.sums({})),
@@ -85,10 +86,14 @@ void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& s
     touches_.resize(rows.surfaces.size());
     const SurfaceViews views = entry_views(places, store, rows, look);
     const auto groups = static_cast<Index>(rows.groups.size());
-    if (reach_ > 0)
-      touch_ahead(MeshTouchItem<true>{views, touches_.data()}, groups);
+    if (reach_ > 0 && sheets_)
+      touch_ahead(MeshTouchItem<true, true>{views, touches_.data()}, groups);
+    else if (reach_ > 0)
+      touch_ahead(MeshTouchItem<true, false>{views, touches_.data()}, groups);
+    else if (sheets_)
+      touch_ahead(MeshTouchItem<false, true>{views, touches_.data()}, groups);
     else
-      touch_ahead(MeshTouchItem<false>{views, touches_.data()}, groups);
+      touch_ahead(MeshTouchItem<false, false>{views, touches_.data()}, groups);
   }
   kernels_.surface_loads(entry_views(places, store, rows, look), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());
@@ -96,8 +101,15 @@ void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& s
 
 void CpuSurfaces::touch_over_step(const SurfaceViews& views, const SurfaceRows& rows, const StepStart& start,
                                   const PlacedSurface* start_placed) {
-  for_each(Serial{}, static_cast<Index>(rows.groups.size()),
-           MeshStepTouchItem{views, start.position, start_placed, touches_.data(), touches_before_.data()});
+  const auto groups = static_cast<Index>(rows.groups.size());
+  if (sheets_)
+    for_each(Serial{}, groups,
+             MeshStepTouchItem<true>{views, start.position, start_placed, touches_.data(),
+                                     touches_before_.data()});
+  else
+    for_each(Serial{}, groups,
+             MeshStepTouchItem<false>{views, start.position, start_placed, touches_.data(),
+                                      touches_before_.data()});
 }
 
 void CpuSurfaces::make_room(const SurfaceRows& rows) {

@@ -86,6 +86,7 @@ class CpuSurfaces {
   std::vector<Real> masses_;
   std::vector<WallPlane> planes_;
   Real reach_;  // [m]
+  bool sheets_;
   PeriodicBox box_;
   std::vector<MeshTouch> touches_;  // per entry; empty without meshes
   std::vector<MeshTouchBefore> touches_before_;

@@ -4,13 +4,12 @@
 #include <utility>
 
 #include "dem/history_slots.hpp"
+#include "dem/surfaces.hpp"
 
 namespace scree {
 
 int kept_numbers(const Model& model, int of_law) {
-  const bool sheets =
-      std::ranges::any_of(model.meshes, [](const ModelMesh& mesh) { return mesh.surface->sheet; });
-  return of_law == 0 && sheets ? kSidesAlone : of_law;
+  return of_law == 0 && has_sheets(model) ? kSidesAlone : of_law;
 }
 
 void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {

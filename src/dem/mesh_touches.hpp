@@ -18,17 +18,28 @@ struct FeaturePair {
 };
 
 SCREE_HD bool is_face(const MeshView& mesh, Index feature) { return feature < mesh.part_count; }
+// Whether a mesh has two sides. kSheets: whether any of the model's has, so that others take nothing for it.
+template <bool kSheets>
+SCREE_HD bool is_sheet(const MeshView& mesh) {
+  return kSheets && mesh.sheet;
+}
 // An edge or a vertex of a sheet that the centre is past acts as the plane across the normal there.
+template <bool kSheets>
 SCREE_HD bool acts_as_face(const MeshView& mesh, const MeshContact& found) {
-  return is_face(mesh, found.feature) || (mesh.sheet && found.distance < 0);
+  return is_face(mesh, found.feature) || (is_sheet<kSheets>(mesh) && found.distance < 0);
+}
+template <bool kSheets>
+SCREE_HD Index remembered_feature(const MeshView& mesh, const MeshContact& contact) {
+  return is_sheet<kSheets>(mesh) ? sided_feature(mesh, contact) : contact.feature;
 }
 
 // c: the sphere's centre in the mesh's frame. A face acts through the same function as an analytic plane, at
 // the foot of a radius below the centre; an edge or a vertex as a sphere of no radius.
+template <bool kSheets>
 SCREE_HD FeaturePair feature_pair(const MeshView& mesh, const MeshContact& found, const Mat3& axes, Vec3 c,
                                   Real radius) {
   const Vec3 normal = axes * found.normal;
-  if (acts_as_face(mesh, found)) {
+  if (acts_as_face<kSheets>(mesh, found)) {
     ContactGeometry g = plane_pair(c, radius, found.point, found.normal);
     g.direction = normal;
     return {g, axes * (c - radius * found.normal)};
@@ -95,7 +106,7 @@ SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const Rememb
 // the explicit step that ends there. kReaches: also what lies within in.reach of touch, of which the law says
 // whether it is a contact. What the particle touches is the same by either, unless its centre is deeper than
 // its radius inside a closed mesh.
-template <bool kReaches>
+template <bool kReaches, bool kSheets>
 struct MeshTouchItem {
   SurfaceViews in;
   MeshTouch* touches;  // per entry
@@ -119,10 +130,10 @@ struct MeshTouchItem {
     int count = min_of(find_mesh_contacts(mesh, c, searched(p.w), in.meshes.triangles + group.first_triangle,
                                           group.triangles, found, last),
                        static_cast<int>(group.entries));
-    if (mesh.sheet) count = SideKeeper(mesh, c, memory().of(group)).keep(found, count);
+    if (is_sheet<kSheets>(mesh)) count = SideKeeper(mesh, c, memory().of(group)).keep(found, count);
     for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
     for (int k = 0; k < count; ++k) put(group.entry + k, sphere, found[k]);
-    if (mesh.sheet && in.h > 0) keep_sides(group, count);
+    if (is_sheet<kSheets>(mesh) && in.h > 0) keep_sides(group, count);
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
   }
 
@@ -139,17 +150,17 @@ struct MeshTouchItem {
       return normal0_of(mesh_feature_at(mesh, feature, c0, side));
     }
     SCREE_HD Vec3 normal0_of(const MeshContact& contact) const {
-      return feature_pair(mesh, contact, axes0, c0, radius).geometry.normal();
+      return feature_pair<kSheets>(mesh, contact, axes0, c0, radius).geometry.normal();
     }
   };
   SCREE_HD void put(Index entry, const Sphere& of, const MeshContact& found) const {
-    const FeaturePair pair = feature_pair(of.mesh, found, of.axes, of.c, of.radius);
+    const FeaturePair pair = feature_pair<kSheets>(of.mesh, found, of.axes, of.c, of.radius);
     touches[entry] = {pair.geometry.overlap > (kReaches ? -in.reach : 0),
-                      acts_as_face(of.mesh, found),
+                      acts_as_face<kSheets>(of.mesh, found),
                       pair.geometry,
                       pair.contact,
                       pair.geometry.normal(),
-                      sided_feature(of.mesh, found),
+                      remembered_feature<kSheets>(of.mesh, found),
                       found.triangle,
                       -1};
   }
@@ -169,13 +180,13 @@ struct MeshTouchItem {
     MeshContact face;
     if (!stays_over(sphere.mesh, triangle, sphere.c, searched(sphere.radius), face)) return false;
     const bool goes_on = in.history.bodies != nullptr && remembers(entry);
-    if (sphere.mesh.sheet) {
+    if (is_sheet<kSheets>(sphere.mesh)) {
       if (!stay_on_side(entry, sphere, face)) return false;
     } else if (goes_on && in.history.features[entry] != face.feature) {
       return false;
     }
     put(entry, sphere, face);
-    if (sphere.mesh.sheet && in.h > 0) memory().keep(entry, touches[entry].feature);
+    if (is_sheet<kSheets>(sphere.mesh) && in.h > 0) memory().keep(entry, touches[entry].feature);
     if (in.history.bodies != nullptr) touches[entry].normal0 = sphere.normal0_of(face.feature, face.normal);
     if (goes_on) touches[entry].from = entry;
     return true;
@@ -200,9 +211,9 @@ struct MeshTouchItem {
     for (Index e = group.entry; e < group.entry + group.entries; ++e) {
       if (!remembers(e)) continue;
       const Index remembered = in.history.features[e],
-                  feature = mesh.sheet ? without_side(remembered) : remembered;
-      const Vec3 side = mesh.sheet && !is_open(mesh, feature) ? side_direction(mesh, remembered)
-                                                              : side_of(found, mesh, feature);
+                  feature = is_sheet<kSheets>(mesh) ? without_side(remembered) : remembered;
+      const bool has_side = is_sheet<kSheets>(mesh) && !is_open(mesh, feature);
+      const Vec3 side = has_side ? side_direction(mesh, remembered) : side_of(found, mesh, feature);
       old.entry[old.count] = e;
       old.contact[old.count++] = mesh_feature_at(mesh, feature, sphere.c0, side);
     }
@@ -235,6 +246,7 @@ struct MeshTouchItem {
 };
 
 // The same over an implicit step: the contacts at either end, those at both matched.
+template <bool kSheets>
 struct MeshStepTouchItem {
   SurfaceViews in;
   const Vec4* start_position;
@@ -258,9 +270,9 @@ struct MeshStepTouchItem {
     RememberedTouches old;
     int count = find_mesh_contacts(mesh, end.c, p.w, triangles, group.triangles, now);
     old.count = find_mesh_contacts(mesh, start.c, p.w, triangles, group.triangles, old.contact);
-    if (mesh.sheet) count = keep_sides(group, {mesh, end.c, start.c}, now, count, old);
+    if (is_sheet<kSheets>(mesh)) count = keep_sides(group, {mesh, end.c, start.c}, now, count, old);
     for (int k = 0; k < old.count; ++k)
-      old.entry[k] = remembering(group, sided_feature(mesh, old.contact[k]));
+      old.entry[k] = remembering(group, remembered_feature<kSheets>(mesh, old.contact[k]));
     // Those that are there at the end come first, whether they were at the start or not.
     bool matched[kMeshSlots] = {};
     for (const Kinship kin : {Kinship::same, Kinship::same_patch})
@@ -285,7 +297,7 @@ struct MeshStepTouchItem {
       open(touches[group.entry + next].geometry);
     }
     for (; next < group.entries; ++next) touches[group.entry + next].touches = false;
-    if (mesh.sheet)
+    if (is_sheet<kSheets>(mesh))
       for (Index k = 0; k < group.entries; ++k)
         memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);
   }
@@ -317,14 +329,14 @@ struct MeshStepTouchItem {
   SCREE_HD void put(Index entry, const MeshView& mesh, const MeshContact& now, const MeshContact& was,
                     const Sights& sights, Index from) const {
     const Sight &end = sights.end, &start = sights.start;
-    const FeaturePair pair = feature_pair(mesh, now, end.axes, end.c, end.radius),
-                      pair0 = feature_pair(mesh, was, start.axes, start.c, start.radius);
+    const FeaturePair pair = feature_pair<kSheets>(mesh, now, end.axes, end.c, end.radius),
+                      pair0 = feature_pair<kSheets>(mesh, was, start.axes, start.c, start.radius);
     touches[entry] = {true,
-                      acts_as_face(mesh, now),
+                      acts_as_face<kSheets>(mesh, now),
                       pair.geometry,
                       pair.contact,
                       pair0.geometry.normal(),
-                      sided_feature(mesh, now),
+                      remembered_feature<kSheets>(mesh, now),
                       now.triangle >= 0 ? now.triangle : was.triangle,
                       from};
     before[entry] = {pair0.geometry, pair0.contact};

@@ -1,6 +1,12 @@
 #include "dem/surfaces.hpp"
 
+#include <algorithm>
+
 namespace scree {
+
+bool has_sheets(const Model& model) {
+  return std::ranges::any_of(model.meshes, [](const ModelMesh& mesh) { return mesh.surface->sheet; });
+}
 
 std::vector<WallPlane> wall_planes(const Model& model) {
   std::vector<WallPlane> planes;

@@ -44,6 +44,8 @@ struct WallPlane {
   Index placed = -1;
 };
 std::vector<WallPlane> wall_planes(const Model& model);
+// Whether a mesh of the model has two sides.
+bool has_sheets(const Model& model);
 
 // The surfaces of a model are numbered: the walls in the deck's order, then the shapes of the bodies, then
 // their meshes. All but the planes at rest are placed anew as time goes on; these have a second number, first
