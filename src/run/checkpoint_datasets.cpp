@@ -81,8 +81,11 @@ void check_datasets(const Checkpoint& checkpoint, const Model& model, const std:
                                                     : checkpoint.integer_array(kWorksName).size());
   if (checkpoint.reals.count(kShapeRubbing) > 0) sizes.shapes.rubbing.of[kFrictionLoss] = 1;
   for (auto [name, values] : {std::pair(kShapeContactsOf, &sizes.shape_contacts.shapes),
-                              std::pair(kShapeContactsWith, &sizes.shape_contacts.keys)})
+                              std::pair(kShapeContactsWith, &sizes.shape_contacts.keys),
+                              std::pair(kShapeSidesOf, &sizes.shape_contacts.shapes),
+                              std::pair(kShapeSidesWith, &sizes.shape_contacts.keys)})
     if (checkpoint.integers.count(name) > 0) values->resize(checkpoint.integer_array(name).size());
+  sizes.shape_contacts.numbers = shape_numbers_in(checkpoint);
   if (checkpoint.reals.count(kShapeHistory) > 0)
     sizes.shape_contacts.values.resize(checkpoint.real_array(kShapeHistory).size());
   // What contacts remember may be there or not, and so may rotation: no history is none.

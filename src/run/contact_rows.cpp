@@ -11,8 +11,19 @@
 namespace scree {
 namespace {
 
-constexpr const char *kCounts = "contacts/count", *kPartners = "contacts/partner",
-                     *kImages = "contacts/image", *kHistory = "contacts/history";
+constexpr const char* kHistory = "contacts/history";
+
+// The other rows have names of their own where sides of sheets are all that is kept: a file that lacks
+// the history is none.
+struct RowNames {
+  const char *counts, *partners, *images;
+};
+constexpr RowNames kOfContacts{"contacts/count", "contacts/partner", "contacts/image"},
+    kOfSides{"sides/count", "sides/partner", "sides/image"};
+
+const RowNames& names_of(const KeptContacts& contacts) {
+  return contacts.numbers == kSidesAlone ? kOfSides : kOfContacts;
+}
 
 // rows of one integer each.
 template <class Number>
@@ -34,9 +45,10 @@ std::vector<T> read_rows(const CheckpointRows<T>& rows, std::int64_t first, std:
 // Whose rows are this rank's: those of the contacts of its particles, of which the ranks below have so many.
 void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t below_rows,
                    KeptContacts& contacts) {
+  const RowNames& names = names_of(contacts);
   const std::int64_t first = below_own - below_rows, count = contacts.offsets.back();
-  const auto partners = read_rows(in.row_array<std::int64_t>(kPartners), first, count),
-             images = read_rows(in.row_array<std::int64_t>(kImages), first, count);
+  const auto partners = read_rows(in.row_array<std::int64_t>(names.partners), first, count),
+             images = read_rows(in.row_array<std::int64_t>(names.images), first, count);
   for (std::size_t k = 0; k < partners.size(); ++k) {
     if (partners[k] < 0 || partners[k] >= kPartnersEnd || images[k] < 0 || images[k] >= 27)
       throw IoError(in.path + ": the partner of a contact or its image is none");
@@ -49,20 +61,20 @@ void read_contacts(const Checkpoint& in, std::int64_t below_own, std::int64_t be
 
 void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
   if (contacts.numbers == 0) return;
+  const RowNames& names = names_of(contacts);
   const std::int64_t count = std::ssize(contacts.keys);
   const auto key = [&contacts](std::int64_t k) { return contacts.keys[static_cast<std::size_t>(k)]; };
   add_integers(
-      kCounts, "contacts of each particle, in the order of the particles", contacts.particles(),
+      names.counts, "contacts of each particle, in the order of the particles", contacts.particles(),
       [&contacts](std::int64_t i) { return contacts.contacts(i); }, out);
   add_integers(
-      kPartners,
+      names.partners,
       "of each contact: id of the other particle, or 2^48 plus the number of the surface and 2^20 times that "
-      "of what is "
-      "touched of a mesh, 2^49 if the centre is past a sheet",
+      "of the feature of a mesh, 2^49 where the centre is past a sheet",
       count, [key](std::int64_t k) { return id_of(key(k)); }, out);
   add_integers(
-      kImages, "which of its images, beside the particle: 13 plus the periods in x, 3 in y, 9 in z", count,
-      [key](std::int64_t k) { return key(k) % 27; }, out);
+      names.images, "which of its images, beside the particle: 13 plus the periods in x, 3 in y, 9 in z",
+      count, [key](std::int64_t k) { return key(k) % 27; }, out);
   const int numbers = contacts.width();
   if (numbers == 0) return;
   out.real_rows[kHistory] = {numbers, count,
@@ -75,16 +87,17 @@ void add_contacts(const KeptContacts& contacts, Checkpoint& out) {
 int numbers_in(const Checkpoint& checkpoint) {
   const auto history = checkpoint.real_rows.find(kHistory);
   if (history != checkpoint.real_rows.end()) return history->second.width;
-  return checkpoint.integer_rows.count(kCounts) > 0 ? kSidesAlone : 0;
+  return checkpoint.integer_rows.count(kOfSides.counts) > 0 ? kSidesAlone : 0;
 }
 
 KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
   KeptContacts contacts;
   contacts.numbers = numbers_in(in);
   if (contacts.numbers == 0) return contacts;
-  const std::int64_t rows = in.row_array<std::int64_t>(kPartners).count, all = ranks.sum(rows);
+  const RowNames& names = names_of(contacts);
+  const std::int64_t rows = in.row_array<std::int64_t>(names.partners).count, all = ranks.sum(rows);
   ranks.together([&] {
-    const CheckpointRows<std::int64_t>& counts = in.row_array<std::int64_t>(kCounts);
+    const CheckpointRows<std::int64_t>& counts = in.row_array<std::int64_t>(names.counts);
     contacts.set_counts(read_rows(counts, 0, counts.count));
     for (const std::int64_t count : contacts.counts())
       if (count < 0 || count > all) throw IoError(in.path + ": a particle has no such number of contacts");
@@ -93,7 +106,7 @@ KeptContacts unpack_contacts(const Checkpoint& in, const Ranks& ranks) {
                      below_rows = ranks.sum_below(rows);
   const bool has_values = contacts.width() > 0;
   if (ranks.sum(own) != all || (has_values && ranks.sum(in.row_array<Real>(kHistory).count) != all) ||
-      ranks.sum(in.row_array<std::int64_t>(kImages).count) != all)
+      ranks.sum(in.row_array<std::int64_t>(names.images).count) != all)
     throw IoError(in.path + ": the contacts' arrays do not fit together");
   ranks.together([&] { read_contacts(in, below, below_rows, contacts); });
   return contacts;

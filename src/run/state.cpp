@@ -73,8 +73,9 @@ void visit_state(Visitor& visit, StateType& state) {
   visit("shapes/loss_power", state.shapes.loss_power);
   visit("shapes/integrator_loss", state.shapes.integrator_loss);
   visit.if_any(kShapeRubbing, state.shapes.rubbing);
-  visit.if_any(kShapeContactsOf, state.shape_contacts.shapes);
-  visit.if_any(kShapeContactsWith, state.shape_contacts.keys);
+  const bool sides_alone = state.shape_contacts.numbers == kSidesAlone;
+  visit.if_any(sides_alone ? kShapeSidesOf : kShapeContactsOf, state.shape_contacts.shapes);
+  visit.if_any(sides_alone ? kShapeSidesWith : kShapeContactsWith, state.shape_contacts.keys);
   visit.if_any(kShapeHistory, state.shape_contacts.values);
   visit.if_any(kWorksName, state.works);
   visit("carried_out/left", state.carried_out.left);
@@ -200,13 +201,14 @@ std::uint64_t state_hash(const State& state, bool with_rest) {
 
 namespace {
 
-// How many numbers each remembers follows from how many there are.
+// How many numbers each remembers follows from how many there are, unless they are known to have none.
 void count_numbers(const std::string& path, ShapeContacts& contacts) {
   const std::size_t count = contacts.shapes.size(), values = contacts.values.size();
-  if (contacts.keys.size() != count || (count == 0 ? values > 0 : values % count > 0))
+  const bool has_values = contacts.numbers != kSidesAlone && count > 0;
+  if (contacts.keys.size() != count || (has_values ? values == 0 || values % count > 0 : values > 0))
     throw IoError(fmt::format("{}: the arrays {}, {} and {} do not fit together", path, kShapeContactsOf,
                               kShapeContactsWith, kShapeHistory));
-  contacts.numbers = count == 0 ? 0 : values == 0 ? kSidesAlone : static_cast<int>(values / count);
+  if (contacts.numbers != kSidesAlone) contacts.numbers = count > 0 ? static_cast<int>(values / count) : 0;
   for (std::size_t k = 1; k < count; ++k)
     if (std::pair(contacts.shapes[k - 1], contacts.keys[k - 1]) >=
         std::pair(contacts.shapes[k], contacts.keys[k]))
@@ -215,11 +217,14 @@ void count_numbers(const std::string& path, ShapeContacts& contacts) {
 
 }  // namespace
 
+int shape_numbers_in(const Checkpoint& in) { return in.integers.count(kShapeSidesOf) > 0 ? kSidesAlone : 0; }
+
 State unpack(const Checkpoint& checkpoint, const Ranks& ranks) {
   State state;
   ranks.together([&] {  // a file may be unreadable where one rank's rows are
     Reader reader(checkpoint);
     state.there = fields_there(checkpoint);
+    state.shape_contacts.numbers = shape_numbers_in(checkpoint);
     visit_state(reader, state), visit_output(reader, state);
     count_numbers(checkpoint.path, state.shape_contacts);
     state.particles = unpack_particles(checkpoint);

@@ -43,11 +43,15 @@ struct State {
 
 // The dataset of State::works.
 inline constexpr const char* kWorksName = "surfaces/works";
-// The datasets of State::shape_contacts, and of what ShapeLosses has lost by rubbing.
+// The datasets of State::shape_contacts, the latter two where sides of sheets are all that is kept, and of
+// what ShapeLosses has lost by rubbing.
 inline constexpr const char *kShapeContactsOf = "shapes/contact_shape",
                             *kShapeContactsWith = "shapes/contact_partner",
-                            *kShapeHistory = "shapes/contact_history",
+                            *kShapeHistory = "shapes/contact_history", *kShapeSidesOf = "shapes/side_shape",
+                            *kShapeSidesWith = "shapes/side_partner",
                             *kShapeRubbing = "shapes/rubbing_losses";
+// ShapeContacts::numbers as far as the names of datasets tell: kSidesAlone, else 0.
+int shape_numbers_in(const Checkpoint& in);
 // Which fields the checkpoint's particles have.
 FieldsThere fields_there(const Checkpoint& in);
 // With this rank's particles; to be used as long as the state is there, and the same.
