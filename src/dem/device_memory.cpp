@@ -185,7 +185,7 @@ double surface_bytes(const Model& model, const Sizes& n) {
   double per_entry = kEntryArrays;
   if (implicit && model.rotates()) per_entry += kRubbingArraysPerEntry;
   if (model.output.contacts) per_entry += sizeof(ShownContact);
-  if (const int numbers = history_of(model.contact); numbers > 0)
+  if (const int numbers = kept_numbers(model, history_of(model.contact)); numbers != 0)
     per_entry += kSpareRoom * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
   double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
   if (!model.meshes.empty()) per_entry += kSpareRoom * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));
