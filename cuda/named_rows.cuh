@@ -1,0 +1,80 @@
+// What contacts remember at the slots of a list on the device, and how it is named.
+#pragma once
+
+#include "dem/history_slots.hpp"
+#include "dem/particle_fields.hpp"
+#include "dem/sheet_names.hpp"
+#include "device_list.cuh"
+#include "device_surfaces.cuh"
+
+namespace scree {
+
+// The list with what contacts remember, and how it names them.
+struct NamedRows {
+  const Vec4* position;
+  const std::int64_t* row_keys;
+  SlicedRows rows;
+  SurfaceList surfaces;
+  PeriodicBox box;
+  HistoryViews history;
+  int numbers, records;  // per contact; no records: kSidesAlone
+
+  // Calls visit(record, key) for what stands in row i but for meshes, key() being its name; in their order.
+  template <class Visit>
+  __device__ void visit(Index i, const Visit& visit) const {
+    if (records == 0) return;
+    const Vec3 p = xyz(position[i]);
+    std::int64_t slot = rows.first(i);
+    for (Index left = rows.counts[i]; left > 0; --left, slot += kSlice)
+      visit(history.neighbors + slot * records, [&] {
+        const Index j = rows.neighbors[slot];
+        return row_key(id_of(row_keys[j]), box.image_beside(p, xyz(position[j])));
+      });
+    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
+      if (!is_mesh(entry)) visit(record_of(entry), [&] { return surface_key(entry, p); });
+  }
+  // Calls visit(entry) for those of meshes.
+  template <class Visit>
+  __device__ void visit_meshes(Index i, const Visit& visit) const {
+    for (Index entry = surfaces.offsets[i]; entry < surfaces.offsets[i + 1]; ++entry)
+      if (is_mesh(entry)) visit(entry);
+  }
+
+  __device__ Vec4* record_of(Index entry) const {
+    const bool at_rest = surfaces.numbers.at_rest(surfaces.surfaces[entry]);
+    return (at_rest ? history.ground : history.bodies) + std::int64_t{entry} * records;
+  }
+  // Of a mesh.
+  __device__ bool is_closed(Index entry) const {
+    return records > 0 ? record_of(entry)->w == history.step : feature(entry) != kNoFeature;
+  }
+  __device__ bool is_mesh(Index entry) const {
+    return !surfaces.numbers.at_rest(surfaces.surfaces[entry]) && placed(entry).kind == SurfaceKind::mesh;
+  }
+  __device__ const PlacedSurface& placed(Index entry) const {
+    return surfaces.placed[surfaces.numbers.placed(surfaces.surfaces[entry])];
+  }
+  __device__ Index& feature(Index entry) const { return history.features[entry]; }
+  __device__ std::int64_t surface_key(Index entry, Vec3 p) const {
+    const Index s = surfaces.surfaces[entry];
+    if (surfaces.numbers.at_rest(s)) return row_key(surface_id(s));
+    if (placed(entry).kind == SurfaceKind::plane) return row_key(surface_id(s));  // it has no images
+    return row_key(surface_id(s), box.image_beside(p, placed(entry).point, surfaces.images[entry]));
+  }
+  __device__ std::int64_t mesh_key(Index entry, Vec3 p, GlobalId name) const {
+    const PlacedSurface& surface = placed(entry);
+    const PeriodicBox of = box.without(surfaces.frames[surface.frame].spanned);
+    return row_key(name, of.image_beside(p, surface.point, surfaces.images[entry]));
+  }
+  __device__ BesideMesh beside_mesh(Index entry, Vec3 p) const {
+    const SurfaceFrame& frame = surfaces.frames[placed(entry).frame];
+    return {surfaces.meshes[frame.mesh], placed(entry), frame, p,
+            image_shift(surfaces.images[entry], box.period)};
+  }
+  // Whether two entries of a row are of the same mesh and image.
+  __device__ bool alike(Index a, Index b) const {
+    return surfaces.surfaces[a] == surfaces.surfaces[b] && surfaces.images[a] == surfaces.images[b];
+  }
+};
+
+}  // namespace scree
