@@ -157,21 +157,31 @@ void check_works(const Checkpoint& checkpoint, const Differences& differences, c
       options.restart));
 }
 
+// Whether other surfaces, or features of meshes, may have the numbers by which contacts with them are
+// remembered.
+bool renumbers_surfaces(const std::string& pattern) {
+  const auto has = [&](const char* word) { return pattern.find(word) != std::string::npos; };
+  return starts_with_any(pattern, {"walls", "space."}) || has("mesh") || has("discs") || has("spheres");
+}
+
 // The deck's values hold from now on. What the state carries on from the steps before belongs to the old
 // ones, forces and accelerations to the old model.
 void apply(const Differences& differences, const Model& model, Restart& restart) {
   if (differences.empty()) return;
   restart.changed = true;
-  bool new_steps = false, other_walls = false;
+  bool new_steps = false, other_surfaces = false;
   for (const DeckDifference& difference : differences) {
     new_steps |= starts_with_any(difference.pattern, {"time."});
-    other_walls |= starts_with_any(difference.pattern, {"walls", "space."});
+    other_surfaces |= renumbers_surfaces(difference.pattern);
     restart.forces_changed |= !starts_with_any(difference.pattern, {"time.", "integrator."}) ||
                               difference.pattern == "integrator.particles";
     restart.changes += fmt::format("t = {:.9g} s: {}\n", restart.state.clock.time, to_text(difference));
   }
-  // Walls are numbered: what contacts with them remember may belong to others now.
-  if (other_walls) restart.state.contacts = restart.state.contacts.without_surfaces();
+  if (other_surfaces) {
+    restart.state.contacts = restart.state.contacts.without_surfaces();
+    ShapeContacts& of_shapes = restart.state.shape_contacts;
+    of_shapes.shapes.clear(), of_shapes.keys.clear(), of_shapes.values.clear();
+  }
   if (new_steps) restart.state.clock = with_new_steps(restart.state.clock, model.time);
 }
 

@@ -12,6 +12,40 @@ import unittest
 from test_cli import (BAD_INPUT, DECK, DONE, ENVIRONMENT, EXPLICIT, FAILED, IO_FAILED, LIMIT, SCREE, STOPPED,
                       CommandLineTest)
 
+FUNNEL = """gravity = [0, 0, -10]
+[space]
+dimension = 3
+min = [-1, -1, -1]
+max = [1, 1, 1]
+[time]
+end = 0.2
+step = 1e-4
+control = "fixed"
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e4
+damping = 1.0
+[[meshes]]
+name = "funnel"
+kind = "funnel"
+radius = 0.05
+top_radius = 0.5
+length = 0.3
+segments = 400
+feature_angle = 0.005
+[[walls]]
+name = "funnel"
+mesh = "funnel"
+[[particles]]
+kind = "random"
+count = 200
+min = [-0.3, -0.3, 0.3]
+max = [0.3, 0.3, 0.6]
+radius = 0.02
+mass = 0.05
+"""
+
 
 class ChangesTest(CommandLineTest):
     def test_a_failed_run_goes_on_with_half_the_step(self):
@@ -25,6 +59,15 @@ class ChangesTest(CommandLineTest):
         record = json.loads((self.folder / "out/run_record.json").read_text())
         self.assertTrue(any("not bit for bit" in warning for warning in record["warnings"]))
         self.assertTrue(any(": time.step: 0.002 -> 0.0001" in line for line in record["run"]["changes"]))
+
+    def test_contacts_with_other_meshes_begin_anew(self):
+        deck, checkpoint = self.write("funnel.toml", FUNNEL), self.folder / "out/checkpoint_end.h5"
+        for friction in (0.3, 0.0):
+            with self.subTest(friction=friction):
+                words = ("run", deck, "--overwrite", "--set", f"contact.pairs.0.friction={friction}", "--output")
+                self.expect(DONE, *words, self.folder / "out")
+                self.expect(DONE, *words, self.folder / "other", "--restart", checkpoint, "--allow-changes", "--set",
+                            "meshes.funnel.segments=12", "--set", "time.end=0.22")
 
     def test_allow_changes_is_for_restarts(self):
         self.assertIn("--restart", self.run_deck(BAD_INPUT, "out", "--allow-changes").stderr)
