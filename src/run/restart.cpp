@@ -141,11 +141,15 @@ void check_allowed(const Differences& differences, const Model& model, const Run
                   options.restart, listed(refused)));
 }
 
+bool names(const DeckDifference& difference, const char* word) {
+  return difference.pattern.find(word) != std::string::npos;
+}
+
 void check_works(const Checkpoint& checkpoint, const Differences& differences, const Model& model,
                  const RunOptions& options) {
   if (!model.output.adds_up_works()) return;
   for (const DeckDifference& difference : differences)
-    if (difference.pattern.find("mesh") != std::string::npos)
+    if (names(difference, "mesh"))
       throw InputError(fmt::format(
           "--restart {}: output.surface_fields asks for works or wear, which are those of the triangles that "
           "the checkpoint was written with; other meshes are not allowed: {}",
@@ -159,9 +163,9 @@ void check_works(const Checkpoint& checkpoint, const Differences& differences, c
 
 // Whether other surfaces, or features of meshes, may have the numbers by which contacts with them are
 // remembered.
-bool renumbers_surfaces(const std::string& pattern) {
-  const auto has = [&](const char* word) { return pattern.find(word) != std::string::npos; };
-  return starts_with_any(pattern, {"walls", "space."}) || has("mesh") || has("discs") || has("spheres");
+bool renumbers_surfaces(const DeckDifference& difference) {
+  return starts_with_any(difference.pattern, {"walls", "space."}) || names(difference, "mesh") ||
+         names(difference, "shapes");
 }
 
 // The deck's values hold from now on. What the state carries on from the steps before belongs to the old
@@ -172,7 +176,7 @@ void apply(const Differences& differences, const Model& model, Restart& restart)
   bool new_steps = false, other_surfaces = false;
   for (const DeckDifference& difference : differences) {
     new_steps |= starts_with_any(difference.pattern, {"time."});
-    other_surfaces |= renumbers_surfaces(difference.pattern);
+    other_surfaces |= renumbers_surfaces(difference);
     restart.forces_changed |= !starts_with_any(difference.pattern, {"time.", "integrator."}) ||
                               difference.pattern == "integrator.particles";
     restart.changes += fmt::format("t = {:.9g} s: {}\n", restart.state.clock.time, to_text(difference));
