@@ -73,7 +73,8 @@ struct FindNearItem {
       Index* to = triangles + first;
       visit_near(in, mesh, cells, p, [&](Index t) { *to++ = t; });
       near[g] = {i, cells.number, cells.image};
-      groups[g] = {0, slots_needed(mesh, triangles + first, found), first, found};
+      const RowKind kind = kind_of_row(mesh, triangles + first, found);
+      groups[g] = {0, slots_needed(mesh, kind, triangles + first, found), first, found, kind};
     });
   }
 };
@@ -122,26 +123,30 @@ struct StateLook {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
-// Most groups have one entry.
+// A thread looks for the one contact that most groups have; what is left of a block its first threads then
+// look at in full, so that no warp waits for the few of its lanes that must.
 template <bool kReaches, bool kSheets, class Look>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
                  MeshTouch* touches) {
   __shared__ TouchRecords::Shared shared;
+  __shared__ Index left[kTouchThreads], left_count;
   SurfaceViews now = views;
   if (!look.open(now)) return;
+  if (threadIdx.x == 0) left_count = 0;
+  __syncthreads();
+  const MeshTouchItem<kReaches, kSheets> item{now, touches};
   const TouchRecords records(shared);
   const Index g = thread_index();
-  Index only_entry = -1;
+  Index entry = -1;
   if (g < groups) {
-    const MeshGroup group = now.meshes.groups[g];
-    if (group.entries == 1) {
-      only_entry = group.entry;
-      records.own().triangle = touches[only_entry].triangle;
-    }
-    MeshTouchItem<kReaches, kSheets>{now, only_entry < 0 ? touches : only(records.own(), only_entry)}(g);
+    const Nearest found = item.quick(g, records.own());
+    if (found == Nearest::one) entry = now.meshes.groups[g].entry;
+    if (found == Nearest::unclear) left[atomicAdd(&left_count, 1)] = g;
   }
-  records.store(touches, only_entry);
+  records.store(touches, entry);
+  __syncthreads();
+  for (auto k = static_cast<Index>(threadIdx.x); k < left_count; k += kTouchThreads) item.in_full(left[k]);
 }
 
 template <bool kSheets, class Look>

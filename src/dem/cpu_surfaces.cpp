@@ -79,7 +79,7 @@ SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& places, const Particl
           masses_.empty() ? nullptr : masses_.data()};
 }
 
-void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
                              const SurfaceLook& look) {
   loads_.resize(rows.surfaces.size());
   if (!rows.groups.empty()) {
@@ -87,13 +87,13 @@ void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& s
     const SurfaceViews views = entry_views(places, store, rows, look);
     const auto groups = static_cast<Index>(rows.groups.size());
     if (reach_ > 0 && sheets_)
-      touch_ahead(MeshTouchItem<true, true>{views, touches_.data()}, groups);
+      touch_ahead(MeshTouchItem<true, true>{views, touches_.data(), rows.standings.data()}, groups);
     else if (reach_ > 0)
-      touch_ahead(MeshTouchItem<true, false>{views, touches_.data()}, groups);
+      touch_ahead(MeshTouchItem<true, false>{views, touches_.data(), rows.standings.data()}, groups);
     else if (sheets_)
-      touch_ahead(MeshTouchItem<false, true>{views, touches_.data()}, groups);
+      touch_ahead(MeshTouchItem<false, true>{views, touches_.data(), rows.standings.data()}, groups);
     else
-      touch_ahead(MeshTouchItem<false, false>{views, touches_.data()}, groups);
+      touch_ahead(MeshTouchItem<false, false>{views, touches_.data(), rows.standings.data()}, groups);
   }
   kernels_.surface_loads(entry_views(places, store, rows, look), static_cast<Index>(rows.by_surface.size()),
                          loads_.data());

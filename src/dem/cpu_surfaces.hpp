@@ -21,7 +21,7 @@ class CpuSurfaces {
 
   // The surfaces as they are placed, with the particles of the store as `look` has them: for the loads in
   // views().
-  void find_loads(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
+  void find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
                   const SurfaceLook& look);
   // The same over an implicit step, with the particles of the store; history: with what contacts will
   // remember if the step is accepted.

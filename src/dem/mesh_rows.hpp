@@ -5,6 +5,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "mesh/mesh_view.hpp"
+#include "mesh/row_kinds.hpp"
 #include "physics/contact_geometry.hpp"
 
 namespace scree {
@@ -14,6 +15,7 @@ namespace scree {
 struct MeshGroup {
   Index entry, entries;
   Index first_triangle, triangles;
+  RowKind kind;
 };
 
 // Rows of meshes near particles; a part of the surface rows.

@@ -6,7 +6,9 @@
 #include "dem/surface_items.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/mesh_tree.hpp"
+#include "mesh/row_kinds.hpp"
 #include "mesh/sheet_sides.hpp"
+#include "mesh/standing.hpp"
 #include "physics/contact_geometry.hpp"
 
 namespace scree {
@@ -109,32 +111,46 @@ SCREE_HD int find_kin(const MeshView& mesh, const MeshContact& now, const Rememb
 template <bool kReaches, bool kSheets>
 struct MeshTouchItem {
   SurfaceViews in;
-  MeshTouch* touches;  // per entry
+  MeshTouch* touches;   // per entry
+  Standing* standings;  // per group; since the list was built
 
   SCREE_HD void operator()(Index g) const {
+    if (stay(g, touches[in.meshes.groups[g].entry]) == Nearest::unclear) look(g);
+  }
+
+  // Where the particle has not moved so far that its triangles must be looked at: writes its contact to
+  // `first`, for the first of the group's entries. Unclear: it must.
+  SCREE_HD Nearest stay(Index g, MeshTouch& first) const {
     const MeshGroup group = in.meshes.groups[g];
-    const Index i = in.entries.particles[group.entry];
-    const PlacedSurface& surface = in.placed[in.surface_of(group.entry)];
-    const SurfaceFrame& frame = in.frames[surface.frame];
-    const MeshView& mesh = in.meshes.meshes[frame.mesh];
-    const Vec4 p = in.position[i];
-    const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
-    const Vec3 c = transposed_times(frame.axes, from_point);
-    const Vec3 travel = in.h > 0 ? in.h * xyz(in.velocity[i]) - surface.travel : Vec3{};
-    const Vec3 c0 = in.h > 0 ? transposed_times(frame.before, from_point - travel) : c;
-    const Sphere sphere{mesh, frame.axes, in.h > 0 ? frame.before : frame.axes, c, c0, p.w};
-    // It rests or rolls on the triangle that it touched last, if the list is no newer.
-    const Index last = touches[group.entry].triangle;
-    if (group.entries == 1 && stay(group.entry, sphere, last)) return;
-    MeshContact found[kMeshSlots];
-    int count = min_of(find_mesh_contacts(mesh, c, searched(p.w), in.meshes.triangles + group.first_triangle,
-                                          group.triangles, found, last),
-                       static_cast<int>(group.entries));
-    if (is_sheet<kSheets>(mesh)) count = SideKeeper(mesh, c, memory().of(group)).keep(found, count);
-    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
-    for (int k = 0; k < count; ++k) put(group.entry + k, sphere, found[k]);
-    if (is_sheet<kSheets>(mesh) && in.h > 0) keep_sides(group, count);
-    if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
+    const Sphere sphere = sphere_of(group);
+    const Standing standing = standings[g];
+    if (!standing.holds(sphere.c)) return Nearest::unclear;
+    MeshContact contact;
+    const Nearest found = standing.triangle >= 0 && is_over_within(sphere, standing.triangle, contact)
+                              ? Nearest::one
+                              : Nearest::none;
+    return write(group, sphere, found, contact, first) ? found : Nearest::unclear;
+  }
+
+  // Of any group, at its triangles.
+  SCREE_HD void look(Index g) const {
+    const MeshGroup group = in.meshes.groups[g];
+    const Sphere sphere = sphere_of(group);
+    const MeshView& mesh = sphere.mesh;
+    const Real reach = searched(sphere.radius);
+    const Index* const triangles = in.meshes.triangles + group.first_triangle;
+    MeshContact contact;
+    Nearest found = Nearest::unclear;
+    if (group.kind != RowKind::any)
+      found = NearestContact(mesh, sphere.c, reach)
+                  .find(triangles, group.triangles, touches[group.entry].triangle, contact);
+    if (found != Nearest::unclear && !write(group, sphere, found, contact, touches[group.entry]))
+      found = Nearest::unclear;
+    if (found == Nearest::unclear) found = look_in_full(group, sphere, contact);
+    const StandingRow row{mesh, group.kind, triangles, group.triangles, sphere.c, reach};
+    standings[g] = found == Nearest::none                                    ? row.clear()
+                   : found == Nearest::one && is_face(mesh, contact.feature) ? row.over(contact.triangle)
+                                                                             : kNoStanding;
   }
 
  private:
@@ -153,16 +169,70 @@ struct MeshTouchItem {
       return feature_pair<kSheets>(mesh, contact, axes0, c0, radius).geometry.normal();
     }
   };
-  SCREE_HD void put(Index entry, const Sphere& of, const MeshContact& found) const {
+  SCREE_HD Sphere sphere_of(const MeshGroup& group) const {
+    const Index i = in.entries.particles[group.entry];
+    const PlacedSurface& surface = in.placed[in.surface_of(group.entry)];
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const Vec4 p = in.position[i];
+    const Vec3 from_point = (place_beside(surface, frame, xyz(p)) - in.shift_of(group.entry)) - surface.point;
+    const Vec3 c = transposed_times(frame.axes, from_point);
+    const Vec3 travel = in.h > 0 ? in.h * xyz(in.velocity[i]) - surface.travel : Vec3{};
+    const Vec3 c0 = in.h > 0 ? transposed_times(frame.before, from_point - travel) : c;
+    return {in.meshes.meshes[frame.mesh], frame.axes, in.h > 0 ? frame.before : frame.axes, c, c0, p.w};
+  }
+  SCREE_HD void put(MeshTouch& to, const Sphere& of, const MeshContact& found) const {
     const FeaturePair pair = feature_pair<kSheets>(of.mesh, found, of.axes, of.c, of.radius);
-    touches[entry] = {pair.geometry.overlap > (kReaches ? -in.reach : 0),
-                      acts_as_face<kSheets>(of.mesh, found),
-                      pair.geometry,
-                      pair.contact,
-                      pair.geometry.normal(),
-                      remembered_feature<kSheets>(of.mesh, found),
-                      found.triangle,
-                      -1};
+    to = {pair.geometry.overlap > (kReaches ? -in.reach : 0),
+          acts_as_face<kSheets>(of.mesh, found),
+          pair.geometry,
+          pair.contact,
+          pair.geometry.normal(),
+          remembered_feature<kSheets>(of.mesh, found),
+          found.triangle,
+          -1};
+  }
+  // For several contacts. Where there is one alone: that.
+  SCREE_HD Nearest look_in_full(const MeshGroup& group, const Sphere& sphere, MeshContact& only_one) const {
+    const MeshView& mesh = sphere.mesh;
+    MeshContact found[kMeshSlots];
+    int count = min_of(find_mesh_contacts(mesh, sphere.c, searched(sphere.radius),
+                                          in.meshes.triangles + group.first_triangle, group.triangles, found,
+                                          touches[group.entry].triangle),
+                       static_cast<int>(group.entries));
+    if (is_sheet<kSheets>(mesh)) count = SideKeeper(mesh, sphere.c, memory().of(group)).keep(found, count);
+    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
+    for (int k = 0; k < count; ++k) put(touches[group.entry + k], sphere, found[k]);
+    if (is_sheet<kSheets>(mesh) && in.h > 0) keep_sides(group, count);
+    if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
+    if (count == 1) only_one = found[0];
+    return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
+  }
+  // The contact with the plane of a triangle that c is over, if that is within reach.
+  SCREE_HD bool is_over_within(const Sphere& sphere, Index t, MeshContact& face) const {
+    const MeshView& mesh = sphere.mesh;
+    const Index id = mesh.triangles[t].part;
+    const MeshPart& part = mesh.parts[id];
+    const Real height = dot(sphere.c - part.point, part.normal);
+    face = {id, t, std::abs(height), part.point, height >= 0 ? part.normal : opposite(part.normal)};
+    return face.distance < searched(sphere.radius);
+  }
+  // That this contact, or none, is all of a group. False: it goes on from others than itself, and nothing was
+  // written.
+  SCREE_HD bool write(const MeshGroup& group, const Sphere& sphere, Nearest found, MeshContact contact,
+                      MeshTouch& first) const {
+    const MeshView& mesh = sphere.mesh;
+    const Before before = before_of(group);
+    const bool is_one = found == Nearest::one;
+    if (before.entries > 1 || (is_one && !continues(mesh, before, contact))) return false;
+    for (Index k = is_one ? 1 : 0; k < group.entries; ++k) touches[group.entry + k].touches = false;
+    if (is_one) {
+      put(first, sphere, contact);
+      if (in.history.bodies != nullptr) go_on_alone(first, sphere, before, contact);
+    }
+    if (is_sheet<kSheets>(mesh) && in.h > 0)
+      for (Index k = 0; k < group.entries; ++k)
+        memory().keep(group.entry + k, is_one && k == 0 ? first.feature : kNoFeature);
+    return true;
   }
   SCREE_HD SideMemory memory() const { return {in.history, in.records}; }
   SCREE_HD void keep_sides(const MeshGroup& group, int count) const {
@@ -174,30 +244,30 @@ struct MeshTouchItem {
   SCREE_HD bool remembers(Index entry) const {
     return in.history.bodies[std::int64_t{entry} * in.records].w == in.history.step;
   }
-  // The only entry of its group, which is then near one plane and no edge of it. False: not on that face, or
-  // not only.
-  SCREE_HD bool stay(Index entry, const Sphere& sphere, Index triangle) const {
-    MeshContact face;
-    if (!stays_over(sphere.mesh, triangle, sphere.c, searched(sphere.radius), face)) return false;
-    const bool goes_on = in.history.bodies != nullptr && remembers(entry);
-    if (is_sheet<kSheets>(sphere.mesh)) {
-      if (!stay_on_side(entry, sphere, face)) return false;
-    } else if (goes_on && in.history.features[entry] != face.feature) {
-      return false;
-    }
-    put(entry, sphere, face);
-    if (is_sheet<kSheets>(sphere.mesh) && in.h > 0) memory().keep(entry, touches[entry].feature);
-    if (in.history.bodies != nullptr) touches[entry].normal0 = sphere.normal0_of(face.feature, face.normal);
-    if (goes_on) touches[entry].from = entry;
+  // What the contacts of a group remember: in how many entries, and what in the last of these.
+  struct Before {
+    Index entries = 0, entry = -1, feature = kNoFeature;
+  };
+  SCREE_HD Before before_of(const MeshGroup& group) const {
+    Before before;
+    for (Index e = group.entry; e < group.entry + group.entries; ++e)
+      if (memory().remembers(e)) ++before.entries, before.entry = e, before.feature = in.history.features[e];
+    return before;
+  }
+  // False: another feature is remembered. Gives a contact with a sheet the side on which it began.
+  SCREE_HD static bool continues(const MeshView& mesh, const Before& before, MeshContact& contact) {
+    if (before.entries == 0) return true;
+    if (!is_sheet<kSheets>(mesh)) return before.feature == contact.feature;
+    if (without_side(before.feature) != contact.feature) return false;
+    if (before.feature != sided_feature(mesh, contact)) turn_over(contact);
     return true;
   }
-  // The same of a sheet: gives the contact its side.
-  SCREE_HD bool stay_on_side(Index entry, const Sphere& sphere, MeshContact& face) const {
-    if (!memory().remembers(entry)) return true;
-    const Index remembered = in.history.features[entry];
-    if (without_side(remembered) != face.feature) return false;
-    if (remembered != sided_feature(sphere.mesh, face)) turn_over(face);
-    return true;
+  SCREE_HD static void go_on_alone(MeshTouch& touch, const Sphere& sphere, const Before& before,
+                                   const MeshContact& contact) {
+    touch.from = before.entry;
+    const bool has_side = is_sheet<kSheets>(sphere.mesh) && before.entries > 0;
+    touch.normal0 = sphere.normal0_of(
+        contact.feature, has_side ? side_direction(sphere.mesh, before.feature) : contact.normal);
   }
   struct Found {
     const MeshContact* contacts;

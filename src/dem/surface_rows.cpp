@@ -7,6 +7,7 @@
 #include "base/countable.hpp"
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/mesh_tree.hpp"
+#include "mesh/row_kinds.hpp"
 #include "partition/halo_plan.hpp"
 
 namespace scree {
@@ -77,8 +78,9 @@ class EntryFinder {
       if (!may_touch(i, s)) return;
       triangles_.clear();
       const MeshView& mesh = triangles_near(search_.places, s, position(i), shift, skin, triangles_);
-      if (!triangles_.empty())
-        add(entry, i, slots_needed(mesh, triangles_.data(), static_cast<Index>(triangles_.size())));
+      const auto count = static_cast<Index>(triangles_.size());
+      const RowKind kind = kind_of_row(mesh, triangles_.data(), count);
+      if (count > 0) add(entry, i, slots_needed(mesh, kind, triangles_.data(), count));
     });
   }
   void add(Entry entry, Index particle, int times) {
@@ -133,12 +135,14 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
            rows.images[end] == rows.images[entry])
       ++end;
     const auto first = static_cast<Index>(rows.triangles.size());
-    triangles_near(search.places, s, sorted.position[static_cast<std::size_t>(i)],
-                   image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin),
-                   rows.triangles);
+    const MeshView& mesh = triangles_near(search.places, s, sorted.position[static_cast<std::size_t>(i)],
+                                          image_shift(rows.images[entry], search.period),
+                                          search.surfaces.skin_of(s, search.skin), rows.triangles);
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
-    rows.groups.push_back({entry, end - entry, first, last - first});
+    const RowKind kind = kind_of_row(mesh, rows.triangles.data() + first, last - first);
+    rows.groups.push_back({entry, end - entry, first, last - first, kind});
   }
+  rows.standings.assign(rows.groups.size(), kNoStanding);
 }
 
 Vec3 magnitudes(Vec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }

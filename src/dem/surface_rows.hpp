@@ -11,6 +11,7 @@
 #include "dem/contact_walk.hpp"
 #include "dem/mesh_rows.hpp"
 #include "dem/surfaces.hpp"
+#include "mesh/standing.hpp"
 #include "partition/cell_grid.hpp"
 
 namespace scree {
@@ -24,7 +25,8 @@ struct SurfaceRows {
   std::vector<Index> particles;     // [entries]
   std::vector<Index> by_surface;    // [entries with placed surfaces], surface by surface
   std::vector<MeshGroup> groups;
-  std::vector<Index> triangles;  // of the groups
+  std::vector<Index> triangles;     // of the groups
+  std::vector<Standing> standings;  // per group: of those who looked at it; the rows do not depend on it
 
   SurfaceEntries entries() const {
     return {surfaces.data(), images.data(), particles.data(), by_surface.data()};

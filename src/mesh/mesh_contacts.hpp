@@ -62,17 +62,19 @@ SCREE_HD bool comes_before(const MeshView& mesh, const MeshContact& a, const Mes
   return of_a != of_b ? of_a < of_b : a.feature < b.feature;
 }
 
-// From the nearest point of an edge to c, if c lies in the edge's normal cone.
-SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec3 c, Vec3& from) {
+// From the nearest point of an edge to c, if that is no farther than `reach` and c lies in the edge's normal
+// cone.
+SCREE_HD bool in_cone_of_edge(const MeshView& mesh, const MeshFeature& edge, Vec3 c, Real reach, Vec3& from) {
   const Vec3 a = mesh.vertices[edge.a], b = mesh.vertices[edge.b], d = c - a, e = b - a;
   const Real along = dot(d, e);
   if (!(along > 0 && dot(c - b, a - b) > 0)) return false;
+  from = d - (along / dot(e, e)) * e;
+  if (dot(from, from) > reach * reach) return false;
   for (Index i = edge.first_test; i < edge.first_test + edge.tests; ++i) {
     const Index test = mesh.tests[i];
     const Real left = left_of_edge(d, e, mesh.parts[test < 0 ? ~test : test].normal);
     if ((test < 0 ? -left : left) > 0) return false;
   }
-  from = d - (along / dot(e, e)) * e;
   return true;
 }
 
@@ -153,20 +155,6 @@ SCREE_HD Real mesh_skin(Real radius, Real skin) {
   return skin > kLeastShare * radius ? skin : kLeastShare * radius;
 }
 
-// How many contacts, at most kMeshSlots, could come of these triangles.
-SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index count) {
-  int needed = 0, parts = 0;
-  Index part[kMeshSlots];
-  for (Index i = 0; i < count && needed < kMeshSlots; ++i) {
-    const MeshTriangle& triangle = mesh.triangles[triangles[i]];
-    int seen = 0;
-    while (seen < parts && part[seen] != triangle.part) ++seen;
-    if (seen == parts) part[parts++] = triangle.part, ++needed;
-    needed += triangle.features;
-  }
-  return needed < kMeshSlots ? needed : kMeshSlots;
-}
-
 // Whether c, less than `reach` away, is well over this triangle, -1 for none, from outside: `face` is then
 // the contact with its plane, and no other triangle of that plane tells more.
 SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real reach, MeshContact& face) {
@@ -180,18 +168,119 @@ SCREE_HD bool stays_over(const MeshView& mesh, Index t, Vec3 c, Real reach, Mesh
   return true;
 }
 
+// Looks at triangles for what a sphere may touch there. Search: gets the candidates by add(), says by known()
+// which triangles could tell nothing new of their part, and by reach_at() how far away what counts of a
+// triangle may be.
+template <class Search>
+class TriangleLook {
+ protected:
+  SCREE_HD TriangleLook(const MeshView& mesh, Vec3 c, Real reach)
+      : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), depth_(reach) {}
+
+  SCREE_HD void look_at(Index t) {
+    const MeshTriangle& triangle = mesh_.triangles[t];
+    if (triangle.features == 0 && (weak_pass_ || triangle.part == well_over_)) return;
+    const MeshPart& part = mesh_.parts[triangle.part];
+    const Real height = dot(c_ - part.point, part.normal);
+    const Real reach = search().reach_at(part, height);
+    if (!(std::abs(height) < reach + mesh_.flatness)) return;
+    if (triangle.features == 0) {
+      if (std::abs(height) < reach && !search().known(triangle.part, t) &&
+          mesh_detail::is_over(mesh_, triangle, part.normal, c_))
+        add_face(t, triangle.part, part, height);
+      return;
+    }
+    const unsigned passed = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
+    if (passed != 0) return look_at_features(t, triangle, passed, reach);
+    // Over a triangle no cone of its edges and vertices can be.
+    if (!weak_pass_ && std::abs(height) < reach) add_face(t, triangle.part, part, height);
+  }
+
+  // The centre is in a closed mesh, nearer to a face than to anything in front: that face alone pushes it out.
+  SCREE_HD bool is_inside(Real nearest) const { return behind_ >= 0 && depth_ < nearest; }
+  SCREE_HD MeshContact inside() const {
+    const MeshPart& part = mesh_.parts[behind_];
+    return {behind_, behind_triangle_, -depth_, part.point, part.normal};
+  }
+
+  const MeshView& mesh_;
+  Vec3 c_;
+  Real reach_;
+  Real nearest_weak_;      // of the vertices that hold but for round-off [m]
+  Index well_over_ = -1;   // part of the triangle that c is well over, as far as that is known
+  bool weak_pass_ = false;
+
+ private:
+  SCREE_HD Search& search() { return static_cast<Search&>(*this); }
+
+  SCREE_HD void add_face(Index t, Index id, const MeshPart& part, Real height) {
+    if (height >= 0) return search().add({id, t, height, part.point, part.normal});
+    if (mesh_.sheet) return search().add({id, t, -height, part.point, opposite(part.normal)});
+    if (-height < depth_ || (-height == depth_ && id < behind_))
+      depth_ = -height, behind_ = id, behind_triangle_ = t;
+    else if (id == behind_ && t < behind_triangle_)
+      behind_triangle_ = t;
+  }
+
+  // passed: the triangle's edges that c lies past; in the cones of others it is not.
+  SCREE_HD void look_at_features(Index t, const MeshTriangle& triangle, unsigned passed, Real reach) {
+    Index row = triangle.first_feature;
+    for (int k = 0; k < 3; ++k) {
+      if (!(triangle.flags & (kOwnsEdge << k))) continue;
+      if (!weak_pass_ && passed & (1u << k)) look_at_edge(t, row, reach);
+      ++row;
+    }
+    for (const Index end = triangle.first_feature + triangle.features; row < end; ++row)
+      look_at_vertex(t, row, reach);
+  }
+
+  SCREE_HD void look_at_edge(Index t, Index row, Real reach) {
+    Vec3 from;
+    if (mesh_detail::in_cone_of_edge(mesh_, mesh_.features[row], c_, reach + mesh_.round_off, from))
+      add_feature(t, row, from, false);
+  }
+
+  SCREE_HD void look_at_vertex(Index t, Index row, Real reach) {
+    using mesh_detail::Cone;
+    const MeshFeature& feature = mesh_.features[row];
+    const Vec3 from = c_ - mesh_.vertices[feature.a];
+    if (!(dot(from, from) < reach * reach)) return;
+    const Cone cone = mesh_detail::cone_of_vertex(mesh_, feature, from);
+    if (cone == Cone::outside || (cone == Cone::inside && weak_pass_)) return;
+    add_feature(t, row, from, cone == Cone::weak && !weak_pass_);
+  }
+
+  // wait: until it is known whether anything else counts.
+  SCREE_HD void add_feature(Index t, Index row, Vec3 from, bool wait) {
+    if (!mesh_.sheet && dot(from, in_double(mesh_.features[row].outward)) < 0) return;
+    MeshContact contact = mesh_detail::contact_from(mesh_, row, c_, from);
+    contact.triangle = t;
+    if (!(contact.distance < reach_)) return;
+    if (!wait) return search().add(contact);
+    if (contact.distance < nearest_weak_) nearest_weak_ = contact.distance;
+  }
+
+  Real depth_;  // of c behind the nearest face of a closed mesh that it is over from behind [m]
+  Index behind_ = -1, behind_triangle_ = -1;
+};
+
 // Looks at the triangles of a row once or, where there are more contacts than slots, several times.
-class MeshContactSearch {
+class MeshContactSearch : TriangleLook<MeshContactSearch> {
+  friend TriangleLook<MeshContactSearch>;
+
  public:
   SCREE_HD MeshContactSearch(const MeshView& mesh, Vec3 c, Real reach, MeshContact* out)
-      : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), depth_(reach), out_(out) {}
+      : TriangleLook(mesh, c, reach), out_(out) {}
 
   // likely: a triangle that c may be over; -1: unknown.
   SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely) {
     if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face)) well_over_ = face.feature, add(face);
     look(triangles, count);
     const Real nearest = found_ > 0 && out_[0].distance < nearest_weak_ ? out_[0].distance : nearest_weak_;
-    if (behind_ >= 0 && depth_ < nearest) return inside();
+    if (is_inside(nearest)) {
+      out_[0] = inside();
+      return 1;
+    }
     const bool any_weak = nearest_weak_ < reach_;
     keep();
     well_over_ = -1;  // its face may be among those that were left out
@@ -207,75 +296,11 @@ class MeshContactSearch {
     for (Index i = 0; i < count; ++i) look_at(triangles[i]);
   }
 
-  SCREE_HD void look_at(Index t) {
-    const MeshTriangle& triangle = mesh_.triangles[t];
-    if (triangle.features == 0 && (weak_pass_ || triangle.part == well_over_)) return;
-    const MeshPart& part = mesh_.parts[triangle.part];
-    const Real height = dot(c_ - part.point, part.normal);
-    if (!(std::abs(height) < reach_ + mesh_.flatness)) return;
-    if (triangle.features == 0) {
-      if (std::abs(height) < reach_ && !known(triangle.part, t) &&
-          mesh_detail::is_over(mesh_, triangle, part.normal, c_))
-        add_face(t, triangle.part, part, height);
-      return;
-    }
-    const unsigned passed = mesh_detail::edges_passed(mesh_, triangle, part.normal, c_);
-    if (passed != 0) return look_at_features(t, triangle, passed);
-    // Over a triangle no cone of its edges and vertices can be.
-    if (!weak_pass_ && std::abs(height) < reach_) add_face(t, triangle.part, part, height);
-  }
-
-  // Whether this triangle could tell nothing new of its part.
+  SCREE_HD Real reach_at(const MeshPart&, Real) const { return reach_; }
   SCREE_HD bool known(Index part, Index t) const {
     for (int i = 0; i < found_; ++i)
       if (out_[i].feature == part && out_[i].triangle <= t) return true;
     return false;
-  }
-
-  SCREE_HD void add_face(Index t, Index id, const MeshPart& part, Real height) {
-    if (height >= 0) return add({id, t, height, part.point, part.normal});
-    if (mesh_.sheet) return add({id, t, -height, part.point, opposite(part.normal)});
-    if (-height < depth_ || (-height == depth_ && id < behind_))
-      depth_ = -height, behind_ = id, behind_triangle_ = t;
-    else if (id == behind_ && t < behind_triangle_)
-      behind_triangle_ = t;
-  }
-
-  // passed: the triangle's edges that c lies past; in the cones of others it is not.
-  SCREE_HD void look_at_features(Index t, const MeshTriangle& triangle, unsigned passed) {
-    Index row = triangle.first_feature;
-    for (int k = 0; k < 3; ++k) {
-      if (!(triangle.flags & (kOwnsEdge << k))) continue;
-      if (!weak_pass_ && passed & (1u << k)) look_at_edge(t, row);
-      ++row;
-    }
-    for (const Index end = triangle.first_feature + triangle.features; row < end; ++row)
-      look_at_vertex(t, row);
-  }
-
-  SCREE_HD void look_at_edge(Index t, Index row) {
-    Vec3 from;
-    if (mesh_detail::in_cone_of_edge(mesh_, mesh_.features[row], c_, from)) add_feature(t, row, from, false);
-  }
-
-  SCREE_HD void look_at_vertex(Index t, Index row) {
-    using mesh_detail::Cone;
-    const MeshFeature& feature = mesh_.features[row];
-    const Vec3 from = c_ - mesh_.vertices[feature.a];
-    if (!(dot(from, from) < reach_ * reach_)) return;
-    const Cone cone = mesh_detail::cone_of_vertex(mesh_, feature, from);
-    if (cone == Cone::outside || (cone == Cone::inside && weak_pass_)) return;
-    add_feature(t, row, from, cone == Cone::weak && !weak_pass_);
-  }
-
-  // wait: until it is known whether anything else counts.
-  SCREE_HD void add_feature(Index t, Index row, Vec3 from, bool wait) {
-    if (!mesh_.sheet && dot(from, in_double(mesh_.features[row].outward)) < 0) return;
-    MeshContact contact = mesh_detail::contact_from(mesh_, row, c_, from);
-    contact.triangle = t;
-    if (!(contact.distance < reach_)) return;
-    if (!wait) return add(contact);
-    if (contact.distance < nearest_weak_) nearest_weak_ = contact.distance;
   }
 
   SCREE_HD void add(const MeshContact& contact) {
@@ -325,24 +350,9 @@ class MeshContactSearch {
     }
   }
 
-  // The centre is in a closed mesh: the nearest face alone pushes it out.
-  SCREE_HD int inside() {
-    const MeshPart& part = mesh_.parts[behind_];
-    out_[0] = {behind_, behind_triangle_, -depth_, part.point, part.normal};
-    return 1;
-  }
-
-  const MeshView& mesh_;
-  Vec3 c_;
-  Real reach_;
-  Real nearest_weak_;  // of the vertices that hold but for round-off [m]
-  Real depth_;         // of c behind the nearest face of a closed mesh that it is over from behind [m]
-  Index behind_ = -1, behind_triangle_ = -1;
-  Index well_over_ = -1;  // part of the triangle that c is well over, as far as that is known
-  MeshContact* out_;      // kept ones, then candidates, each in order
+  MeshContact* out_;  // kept ones, then candidates, each in order
   int kept_ = 0, found_ = 0;
   bool left_out_ = false;  // candidates, for want of slots
-  bool weak_pass_ = false;
 };
 
 // The contacts less than `reach` from c [m], in order of distance, type (face, edge, vertex) and feature; the

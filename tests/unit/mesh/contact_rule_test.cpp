@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/mesh_contacts.hpp"
+#include "mesh/row_kinds.hpp"
 #include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -92,7 +93,7 @@ std::vector<MeshContact> contacts_by_rule(const SurfaceMesh& mesh, Vec3 c, Real 
       const MeshFeature& feature = mesh.features[row];
       Vec3 from = c - mesh.vertices[feature.a];
       if (feature.b < 0 ? cone_of_vertex(view, feature, from) == Cone::inside
-                        : in_cone_of_edge(view, feature, c, from))
+                        : in_cone_of_edge(view, feature, c, kInfinity, from))
         add(contact_from(view, row, c, from), t);
     }
   }
@@ -137,7 +138,7 @@ TEST_CASE("where a face was touched last changes no contact") {
       const Vec3 c = place_near(surface, 0.2, random);
       const auto row = triangles_near(surface, c, 0.25);
       const auto n = static_cast<Index>(row.size());
-      const bool one_plane = slots_needed(view, row.data(), n) == 1;
+      const bool one_plane = kind_of_row(view, row.data(), n) == RowKind::plane;
       in_one_plane += one_plane;
       const auto contacts = contacts_of_row(surface, c, 0.25, row);
       for (Index likely = -1; likely <= view.triangle_count; likely += 1 + view.triangle_count / 40) {
@@ -152,6 +153,41 @@ TEST_CASE("where a face was touched last changes no contact") {
     CHECK(wrong == 0);
     CHECK((in_one_plane > 100 || view.part_count > 6));
   }
+}
+
+TEST_CASE("on smooth rows the search for the nearest contact finds what the search for all does") {
+  constexpr Real kRadius = 0.1;
+  MeshRandom random(44);
+  int all_smooth = 0, all_unclear = 0;
+  TriangleMesh folded = hills(12, 0.01, 9);  // two layers of one patch, a sphere between them touches both
+  for (Vec3& v : folded.vertices) v = v.x > 0.5 ? Vec3{1 - v.x, v.y, v.z + 0.17} : v;
+  for (const SurfaceMesh& surface :
+       {sheet_mesh(hills(12, 0, 1)), sheet_mesh(hills(12, 0.005, 2)), sheet_mesh(hills(12, 0.02, 3)),
+        sheet_mesh(folded), closed_mesh(drum_shell(60, 0.5, 1, 3)), closed_mesh(potato(3, 0, 4)),
+        closed_mesh(potato(4, 0.002, 5)), closed_mesh(block({0, 0, 0}, {1, 1, 1}, 6))}) {
+    const MeshView view = surface.view();
+    int wrong = 0;
+    for (int i = 0; i < 10000; ++i) {
+      const Vec3 c = place_near(surface, 1.2 * kRadius, random);
+      const auto row = triangles_near(surface, c, 1.2 * kRadius);
+      const auto n = static_cast<Index>(row.size());
+      const RowKind kind = kind_of_row(view, row.data(), n);
+      if (kind == RowKind::any) continue;
+      ++all_smooth;
+      const auto contacts = contacts_of_row(surface, c, kRadius, row);
+      wrong += static_cast<int>(contacts.size()) > slots_needed(view, kind, row.data(), n);
+      const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
+      MeshContact nearest;
+      const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, nearest);
+      all_unclear += found == Nearest::unclear;
+      if (found == Nearest::none) wrong += !contacts.empty();
+      if (found == Nearest::one) wrong += !same_contacts({nearest}, contacts);
+    }
+    CHECK(wrong == 0);
+  }
+  CHECK(all_smooth > 20000);
+  CHECK(all_unclear > 0);
+  CHECK(all_unclear < all_smooth / 50);
 }
 
 // What reaches beyond touch must leave what is touched as it is.
@@ -322,7 +358,9 @@ TEST_CASE("where a sphere touches more than there are slots the nearest count") 
 TEST_CASE("a row needs at least as many slots as contacts come of it") {
   MeshRandom random(46);
   const auto needed = [](const SurfaceMesh& mesh, const std::vector<Index>& row) {
-    return slots_needed(mesh.view(), row.data(), static_cast<Index>(row.size()));
+    const MeshView view = mesh.view();
+    const auto n = static_cast<Index>(row.size());
+    return slots_needed(view, kind_of_row(view, row.data(), n), row.data(), n);
   };
   const SurfaceMesh mesh = sheet_mesh(hills(6, 0.3, 7));
   bool enough = true;

@@ -1,0 +1,112 @@
+// What rows of triangles near a particle look like, for how many contacts there must be room, and the search
+// where there can hardly be more than one. Host and device.
+#pragma once
+
+#include "mesh/mesh_contacts.hpp"
+#include "mesh/sheet_sides.hpp"
+
+namespace scree {
+
+// plane: one part without edges and vertices. smooth: one patch whose faces, and so all that a sphere may
+// touch there, differ in direction by no more than the feature angle: what is touched from one side is one
+// contact.
+enum class RowKind : std::uint8_t { any, smooth, plane };
+
+namespace mesh_detail {
+
+inline constexpr Real kCosineRoundOff = 0x1p-20;  // of weak vertices' directions, with plenty to spare
+
+SCREE_HD bool owns_open_feature(const MeshView& mesh, const MeshTriangle& triangle) {
+  for (Index row = triangle.first_feature; row < triangle.first_feature + triangle.features; ++row)
+    if (is_open(mesh, mesh.part_count + row)) return true;
+  return false;
+}
+
+}  // namespace mesh_detail
+
+SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index count) {
+  if (count == 0) return RowKind::any;
+  const Index first = mesh.triangles[triangles[0]].part;
+  const MeshPart& part = mesh.parts[first];
+  bool is_plane = true;
+  for (Index i = 0; i < count; ++i) {
+    const MeshTriangle& triangle = mesh.triangles[triangles[i]];
+    is_plane = is_plane && triangle.part == first && triangle.features == 0;
+    if (is_plane) continue;
+    const MeshPart& other = mesh.parts[triangle.part];
+    // Directions within half the feature angle of one differ by no more than it among each other.
+    const Real c = dot(other.normal, part.normal), of_twice = 2 * c * c - 1;
+    if (other.patch != part.patch || !(c > 0) || !(of_twice > mesh.cosine + mesh_detail::kCosineRoundOff) ||
+        mesh_detail::owns_open_feature(mesh, triangle))
+      return RowKind::any;
+  }
+  return is_plane ? RowKind::plane : RowKind::smooth;
+}
+
+// How many contacts, at most kMeshSlots, could come of these triangles.
+SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, const Index* triangles, Index count) {
+  if (kind == RowKind::plane) return 1;
+  if (kind == RowKind::smooth) return mesh.sheet ? 2 : 1;  // from both sides where it turns back
+  int needed = 0, parts = 0;
+  Index part[kMeshSlots];
+  for (Index i = 0; i < count && needed < kMeshSlots; ++i) {
+    const MeshTriangle& triangle = mesh.triangles[triangles[i]];
+    int seen = 0;
+    while (seen < parts && part[seen] != triangle.part) ++seen;
+    if (seen == parts) part[parts++] = triangle.part, ++needed;
+    needed += triangle.features;
+  }
+  return needed < kMeshSlots ? needed : kMeshSlots;
+}
+
+// Of a search: no contact, one, or a case for find_mesh_contacts().
+enum class Nearest { none, one, unclear };
+
+// What find_mesh_contacts() finds of rows that are smooth or plane: as all that is touched from one side is
+// one contact the nearest is all, and needs no room for others. Unclear: touched from both sides, or where
+// round-off decides.
+class NearestContact : TriangleLook<NearestContact> {
+  friend TriangleLook<NearestContact>;
+
+ public:
+  SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real reach) : TriangleLook(mesh, c, reach) {}
+
+  // likely: as there.
+  SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, MeshContact& out) {
+    if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face)) well_over_ = face.feature, best_ = face;
+    for (Index i = 0; i < count; ++i) look_at(triangles[i]);
+    // A vertex that holds but for round-off is one contact with the nearest, if it is on the same side.
+    const bool is_found = best_.feature >= 0;
+    if (both_sides_ || (nearest_weak_ < reach_ && (mesh_.sheet || !is_found))) return Nearest::unclear;
+    if (is_inside(is_found && best_.distance < nearest_weak_ ? best_.distance : nearest_weak_))
+      return out = inside(), Nearest::one;
+    if (!is_found) return Nearest::none;
+    return out = best_, Nearest::one;
+  }
+
+ private:
+  SCREE_HD bool known(Index part, Index t) const { return best_.feature == part && best_.triangle <= t; }
+  // What lies on the side that is touched is the same contact, and counts if it is nearer.
+  SCREE_HD Real reach_at(const MeshPart& part, Real height) const {
+    if (best_.feature < 0 || (mesh_.sheet && (height < 0) != (dot(best_.normal, part.normal) < 0)))
+      return reach_;
+    const Real nearer = best_.distance + mesh_.round_off;
+    return nearer < reach_ ? nearer : reach_;
+  }
+  SCREE_HD void add(const MeshContact& contact) {
+    if (best_.feature < 0) {
+      best_ = contact;
+    } else if (!(dot(contact.normal, best_.normal) > 0)) {
+      both_sides_ = true;
+    } else if (contact.feature == best_.feature) {
+      if (contact.triangle < best_.triangle) best_.triangle = contact.triangle;
+    } else if (mesh_detail::comes_before(mesh_, contact, best_)) {
+      best_ = contact;
+    }
+  }
+
+  MeshContact best_{-1, -1, 0, {}, {}};
+  bool both_sides_ = false;
+};
+
+}  // namespace scree
