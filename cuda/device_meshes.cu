@@ -105,12 +105,14 @@ struct GroupItem {
   const Index *offsets, *surfaces;
   const std::int8_t* images;
   MeshGroup* groups;
+  Standing* standings;
 
   __device__ void operator()(Index g) const {
     const NearMesh& of = near[g];
     Index entry = offsets[of.particle];
     while (surfaces[entry] != of.surface || images[entry] != of.image) ++entry;
     groups[g].entry = entry;
+    standings[g] = kNoStanding;
   }
 };
 
@@ -123,41 +125,43 @@ struct StateLook {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
-// A thread looks for the one contact that most groups have; what is left of a block its first threads then
-// look at in full, so that no warp waits for the few of its lanes that must.
+// Most particles stay where they were; of those of a block that must look at triangles its first threads take
+// one each, so that no warp waits for the few of its lanes that must.
 template <bool kReaches, bool kSheets, class Look>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
-                 MeshTouch* touches) {
+                 MeshTouch* touches, Standing* standings) {
   __shared__ TouchRecords::Shared shared;
-  __shared__ Index left[kTouchThreads], left_count;
+  __shared__ Index looking[kTouchThreads], looking_count;
   SurfaceViews now = views;
   if (!look.open(now)) return;
-  if (threadIdx.x == 0) left_count = 0;
+  if (threadIdx.x == 0) looking_count = 0;
   __syncthreads();
-  const MeshTouchItem<kReaches, kSheets> item{now, touches};
+  const MeshTouchItem<kReaches, kSheets> item{now, touches, standings};
   const TouchRecords records(shared);
   const Index g = thread_index();
   Index entry = -1;
   if (g < groups) {
-    const Nearest found = item.quick(g, records.own());
+    const Nearest found = item.stay(g, records.own());
     if (found == Nearest::one) entry = now.meshes.groups[g].entry;
-    if (found == Nearest::unclear) left[atomicAdd(&left_count, 1)] = g;
+    if (found == Nearest::unclear) looking[atomicAdd(&looking_count, 1)] = g;
   }
   records.store(touches, entry);
   __syncthreads();
-  for (auto k = static_cast<Index>(threadIdx.x); k < left_count; k += kTouchThreads) item.in_full(left[k]);
+  if (const auto k = static_cast<Index>(threadIdx.x); k < looking_count) item.look(looking[k]);
 }
 
 template <bool kSheets, class Look>
 void queue_touches(Device device, Index groups, const SurfaceViews& views, const Look& look,
-                   MeshTouch* touches) {
+                   MeshTouch* touches, Standing* standings) {
   if (groups == 0) return;
   const unsigned blocks = blocks_for(groups, kTouchThreads);
   if (views.reach > 0)
-    touch_kernel<true, kSheets><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
+    touch_kernel<true, kSheets>
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches, standings);
   else
-    touch_kernel<false, kSheets><<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches);
+    touch_kernel<false, kSheets>
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches, standings);
   require_cuda(cudaGetLastError(), "contacts with meshes");
 }
 
@@ -257,7 +261,8 @@ bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const st
   const auto groups = static_cast<std::size_t>(count_),
              triangles = static_cast<std::size_t>(h_counts_[kTriangles]);
   const bool complete = groups <= room && triangles <= triangles_.capacity();
-  near_.resize_with_spare(groups), groups_.resize_with_spare(groups), triangles_.resize_with_spare(triangles);
+  near_.resize_with_spare(groups), groups_.resize_with_spare(groups), standings_.resize_with_spare(groups);
+  triangles_.resize_with_spare(triangles);
   return complete;
 }
 
@@ -267,7 +272,8 @@ void DeviceMeshes::fill(Device device, Index* next, Index* surfaces, std::int8_t
 
 void DeviceMeshes::group(Device device, const Index* offsets, const Index* surfaces,
                          const std::int8_t* images) {
-  for_each(device, count_, GroupItem{near_.data(), offsets, surfaces, images, groups_.data()});
+  for_each(device, count_,
+           GroupItem{near_.data(), offsets, surfaces, images, groups_.data(), standings_.data()});
 }
 
 void DeviceMeshes::make_room(Index entries) {
@@ -280,16 +286,16 @@ void DeviceMeshes::make_room_over_step(Index entries) {
 
 void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
   if (sheets_)
-    queue_touches<true>(device, count_, views, StateLook{}, touches_.data());
+    queue_touches<true>(device, count_, views, StateLook{}, touches_.data(), standings_.data());
   else
-    queue_touches<false>(device, count_, views, StateLook{}, touches_.data());
+    queue_touches<false>(device, count_, views, StateLook{}, touches_.data(), standings_.data());
 }
 
 void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look) {
   if (sheets_)
-    queue_touches<true>(device, count_, views, look, touches_.data());
+    queue_touches<true>(device, count_, views, look, touches_.data(), standings_.data());
   else
-    queue_touches<false>(device, count_, views, look, touches_.data());
+    queue_touches<false>(device, count_, views, look, touches_.data(), standings_.data());
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

@@ -11,6 +11,7 @@
 #include "dem/surface_rows.hpp"
 #include "dem/surfaces.hpp"
 #include "device.cuh"
+#include "mesh/standing.hpp"
 #include "model/model.hpp"
 
 namespace scree {
@@ -113,6 +114,7 @@ class DeviceMeshes {
   DeviceArray<std::int64_t> first_cell_;
   DeviceArray<NearMesh> near_;
   DeviceArray<MeshGroup> groups_;
+  DeviceArray<Standing> standings_;
   DeviceArray<Index> triangles_, cursors_;
   PinnedArray<Index> h_counts_{2};
   DeviceArray<MeshTouch> touches_;

@@ -196,7 +196,8 @@ class TriangleLook {
     if (!weak_pass_ && std::abs(height) < reach) add_face(t, triangle.part, part, height);
   }
 
-  // The centre is in a closed mesh, nearer to a face than to anything in front: that face alone pushes it out.
+  // The centre is in a closed mesh, nearer to a face than to anything in front: that face alone pushes it
+  // out.
   SCREE_HD bool is_inside(Real nearest) const { return behind_ >= 0 && depth_ < nearest; }
   SCREE_HD MeshContact inside() const {
     const MeshPart& part = mesh_.parts[behind_];
@@ -206,8 +207,8 @@ class TriangleLook {
   const MeshView& mesh_;
   Vec3 c_;
   Real reach_;
-  Real nearest_weak_;      // of the vertices that hold but for round-off [m]
-  Index well_over_ = -1;   // part of the triangle that c is well over, as far as that is known
+  Real nearest_weak_;     // of the vertices that hold but for round-off [m]
+  Index well_over_ = -1;  // part of the triangle that c is well over, as far as that is known
   bool weak_pass_ = false;
 
  private:

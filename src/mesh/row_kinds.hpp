@@ -73,7 +73,8 @@ class NearestContact : TriangleLook<NearestContact> {
 
   // likely: as there.
   SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, MeshContact& out) {
-    if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face)) well_over_ = face.feature, best_ = face;
+    if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face))
+      well_over_ = face.feature, best_ = face;
     for (Index i = 0; i < count; ++i) look_at(triangles[i]);
     // A vertex that holds but for round-off is one contact with the nearest, if it is on the same side.
     const bool is_found = best_.feature >= 0;

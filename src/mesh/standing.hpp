@@ -26,8 +26,7 @@ namespace mesh_detail {
 
 SCREE_HD Real distance_to(const MeshView& mesh, const MeshTriangle& triangle, Vec3 c) {
   const Vec3* const v = mesh.vertices;
-  return std::sqrt(
-      squared_distance(v[triangle.vertex[0]], v[triangle.vertex[1]], v[triangle.vertex[2]], c));
+  return std::sqrt(squared_distance(v[triangle.vertex[0]], v[triangle.vertex[1]], v[triangle.vertex[2]], c));
 }
 
 // What round-off and vertices beside their plane make of a distance, with some to spare.
@@ -53,7 +52,8 @@ struct StandingRow {
     Real room = distance;
     for (int k = 0; k < 3; ++k) {
       const Vec3 e = mesh.vertices[triangle.vertex[(k + 1) % 3]] - mesh.vertices[triangle.vertex[k]];
-      shrink(room, mesh_detail::side_of_edge(mesh, triangle, k, part.normal, c).inside / std::sqrt(dot(e, e)));
+      shrink(room,
+             mesh_detail::side_of_edge(mesh, triangle, k, part.normal, c).inside / std::sqrt(dot(e, e)));
     }
     for (Index i = 0; i < count && room > 0; ++i) {
       const MeshTriangle& other = mesh.triangles[triangles[i]];
