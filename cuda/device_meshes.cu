@@ -116,61 +116,52 @@ struct GroupItem {
   }
 };
 
-// Contacts are found by two kernels. Where a particle has stayed where it was, as most have, the first is
-// done; it is so light that two of its blocks have room beside a step's rows where one of these ends. Those
-// that must look at triangles are gathered for the second, so that no warp waits for the few of its lanes
-// that do.
-constexpr int kStayThreads = 128, kStayBlocks = 8, kLookThreads = 64;
-using TouchRecords = WarpRecords<MeshTouch, kStayThreads>;
+constexpr int kTouchThreads = 128;
+constexpr int kTouchBlocks = 4;  // on a multiprocessor: with more, registers spill
+using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
 // The contacts now.
 struct StateLook {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
-// Groups whose triangles must be looked at.
-struct LookingGroups {
-  Index* groups;
-  Index* count;
-};
-
+// Most particles stay where they were; of those of a block that must look at triangles its first threads take
+// one each, so that no warp waits for the few of its lanes that must.
 template <bool kReaches, bool kSheets, class Look>
-__global__ void __launch_bounds__(kStayThreads, kStayBlocks)
-    stay_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look, MeshTouch* touches,
-                Standing* standings, const LookingGroups looking) {
+__global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
+    touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
+                 MeshTouch* touches, Standing* standings) {
   __shared__ TouchRecords::Shared shared;
+  __shared__ Index looking[kTouchThreads], looking_count;
   SurfaceViews now = views;
   if (!look.open(now)) return;
+  if (threadIdx.x == 0) looking_count = 0;
+  __syncthreads();
+  const MeshTouchItem<kReaches, kSheets> item{now, touches, standings};
   const TouchRecords records(shared);
   const Index g = thread_index();
   Index entry = -1;
   if (g < groups) {
-    const Nearest found = MeshTouchItem<kReaches, kSheets>{now, touches, standings}.stay(g, records.own());
+    const Nearest found = item.stay(g, records.own());
     if (found == Nearest::one) entry = now.meshes.groups[g].entry;
-    if (found == Nearest::unclear) looking.groups[atomicAdd(looking.count, 1)] = g;
+    if (found == Nearest::unclear) looking[atomicAdd(&looking_count, 1)] = g;
   }
   records.store(touches, entry);
+  __syncthreads();
+  if (const auto k = static_cast<Index>(threadIdx.x); k < looking_count) item.look(looking[k]);
 }
 
-template <bool kReaches, bool kSheets, class Look>
-__global__ void __launch_bounds__(kLookThreads)
-    look_kernel(const __grid_constant__ SurfaceViews views, const Look look, MeshTouch* touches,
-                Standing* standings, const LookingGroups looking) {
-  const Index k = thread_index();
-  if (k >= *looking.count) return;
-  SurfaceViews now = views;
-  if (look.open(now)) MeshTouchItem<kReaches, kSheets>{now, touches, standings}.look(looking.groups[k]);
-}
-
-template <bool kReaches, bool kSheets, class Look>
+template <bool kSheets, class Look>
 void queue_touches(Device device, Index groups, const SurfaceViews& views, const Look& look,
-                   MeshTouch* touches, Standing* standings, const LookingGroups& looking) {
+                   MeshTouch* touches, Standing* standings) {
   if (groups == 0) return;
-  require_cuda(cudaMemsetAsync(looking.count, 0, sizeof(Index), device.stream), "cudaMemsetAsync");
-  stay_kernel<kReaches, kSheets><<<blocks_for(groups, kStayThreads), kStayThreads, 0, device.stream>>>(
-      groups, views, look, touches, standings, looking);
-  look_kernel<kReaches, kSheets><<<blocks_for(groups, kLookThreads), kLookThreads, 0, device.stream>>>(
-      views, look, touches, standings, looking);
+  const unsigned blocks = blocks_for(groups, kTouchThreads);
+  if (views.reach > 0)
+    touch_kernel<true, kSheets>
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches, standings);
+  else
+    touch_kernel<false, kSheets>
+        <<<blocks, kTouchThreads, 0, device.stream>>>(groups, views, look, touches, standings);
   require_cuda(cudaGetLastError(), "contacts with meshes");
 }
 
@@ -271,7 +262,6 @@ bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const st
              triangles = static_cast<std::size_t>(h_counts_[kTriangles]);
   const bool complete = groups <= room && triangles <= triangles_.capacity();
   near_.resize_with_spare(groups), groups_.resize_with_spare(groups), standings_.resize_with_spare(groups);
-  looking_.resize_with_spare(groups);
   triangles_.resize_with_spare(triangles);
   return complete;
 }
@@ -294,22 +284,18 @@ void DeviceMeshes::make_room_over_step(Index entries) {
   if (exist()) before_.resize_with_spare(static_cast<std::size_t>(entries));
 }
 
-template <class Look>
-void DeviceMeshes::queue(Device device, const SurfaceViews& views, const Look& look) {
-  const auto with = [&](auto reaches, auto sheets) {
-    queue_touches<reaches.value, sheets.value>(device, count_, views, look, touches_.data(),
-                                               standings_.data(), {looking_.data(), looking_count_.data()});
-  };
-  const auto reaching = [&](auto reaches) {
-    sheets_ ? with(reaches, std::true_type{}) : with(reaches, std::false_type{});
-  };
-  views.reach > 0 ? reaching(std::true_type{}) : reaching(std::false_type{});
+void DeviceMeshes::touch(Device device, const SurfaceViews& views) {
+  if (sheets_)
+    queue_touches<true>(device, count_, views, StateLook{}, touches_.data(), standings_.data());
+  else
+    queue_touches<false>(device, count_, views, StateLook{}, touches_.data(), standings_.data());
 }
 
-void DeviceMeshes::touch(Device device, const SurfaceViews& views) { queue(device, views, StateLook{}); }
-
 void DeviceMeshes::touch_in_run(Device device, const SurfaceViews& views, const OpenStepLook& look) {
-  queue(device, views, look);
+  if (sheets_)
+    queue_touches<true>(device, count_, views, look, touches_.data(), standings_.data());
+  else
+    queue_touches<false>(device, count_, views, look, touches_.data(), standings_.data());
 }
 
 void DeviceMeshes::touch_over_step(Device device, const SurfaceViews& views, const Vec4* start_position,

@@ -100,9 +100,6 @@ class DeviceMeshes {
     DeviceArray<MeshBox> boxes;
   };
 
-  // Of what the look opens: StateLook, or that of a run.
-  template <class Look>
-  void queue(Device device, const SurfaceViews& views, const Look& look);
   std::vector<CellsNear> cells_near_meshes(const MeshSearch& search, const SurfacePlaces& places,
                                            Real largest_radius) const;
   bool find_groups(Device device, const MeshSearch& search, const std::vector<CellsNear>& near);
@@ -118,7 +115,6 @@ class DeviceMeshes {
   DeviceArray<NearMesh> near_;
   DeviceArray<MeshGroup> groups_;
   DeviceArray<Standing> standings_;
-  DeviceArray<Index> looking_, looking_count_{1};  // groups whose triangles a step looks at
   DeviceArray<Index> triangles_, cursors_;
   PinnedArray<Index> h_counts_{2};
   DeviceArray<MeshTouch> touches_;

@@ -51,7 +51,7 @@ constexpr double kEntryArrays = 2 * sizeof(Index) + sizeof(std::int8_t) + 4 * si
 constexpr double kRubbingArraysPerEntry = sizeof(SurfaceRub) + kRubbingArraysPerSlot;
 // And where there are meshes: DeviceMeshes.
 constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof(MeshTouchBefore);
-constexpr double kGroupArrays = 4 * sizeof(Index) + sizeof(MeshGroup) + sizeof(Standing),
+constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(Standing),
                  kRowOfTriangle = sizeof(Index);
 constexpr double kSpareRoom = 1.125;  // of arrays that may grow with every list
 constexpr double kCellBytes = sizeof(Index);
