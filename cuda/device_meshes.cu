@@ -4,7 +4,6 @@
 #include "dem/mesh_touches.hpp"
 #include "device_meshes.cuh"
 #include "for_each.cuh"
-#include "mesh/mesh_tree.hpp"
 #include "staging.cuh"
 
 namespace scree {
@@ -12,19 +11,6 @@ namespace {
 
 // How many groups and triangles there are so far.
 enum Cursor { kGroups, kTriangles, kCursors };
-
-// Calls visit(t) for the triangles of a placed mesh that the particle at p may touch.
-template <class Visit>
-__device__ void visit_near(const MeshSearch& in, const MeshView& mesh, const CellsNear& cells, Vec4 p,
-                           const Visit& visit) {
-  const PlacedSurface& surface = in.placed[cells.placed];
-  const SurfaceFrame& frame = in.frames[surface.frame];
-  const Real past = mesh_skin(p.w, cells.skin);
-  for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
-    for_each_triangle_near(mesh, transposed_times(frame.axes, (place - cells.shift) - surface.point),
-                           p.w + past, visit);
-  });
-}
 
 // The cells near meshes, one after the other: those of cells[k] are first[k] ... first[k + 1] - 1.
 struct SearchedCells {
@@ -60,21 +46,23 @@ struct FindNearItem {
     const std::int64_t c = first_cell + k;
     const Index owner = searched.owner(c);
     const CellsNear& cells = searched.cells[owner];
-    const MeshView& mesh = meshes[in.frames[in.placed[cells.placed].frame].mesh];
+    const PlacedSurface& surface = in.placed[cells.placed];
+    const SurfaceFrame& frame = in.frames[surface.frame];
     cells.for_each_particle(in, static_cast<Index>(c - searched.first[owner]), [&](Index i) {
       const Vec4 p = in.position[i];
+      const MeshSight sight{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
       Index found = 0;
-      visit_near(in, mesh, cells, p, [&](Index) { ++found; });
+      sight.for_each_triangle([&](Index) { ++found; });
       if (found == 0) return;
       const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
       if (g < 0 || static_cast<std::size_t>(g) >= room[kGroups]) return;
       if (first < 0 || static_cast<std::size_t>(first) + static_cast<std::size_t>(found) > room[kTriangles])
         return;
       Index* to = triangles + first;
-      visit_near(in, mesh, cells, p, [&](Index t) { *to++ = t; });
+      sight.for_each_triangle([&](Index t) { *to++ = t; });
       near[g] = {i, cells.number, cells.image};
-      const RowKind kind = kind_of_row(mesh, triangles + first, found);
-      groups[g] = {0, slots_needed(mesh, kind, triangles + first, found), first, found, kind};
+      const RowKind kind = sight.kind_of(triangles + first, found);
+      groups[g] = {0, slots_needed(sight.mesh, kind, triangles + first, found), first, found, kind};
     });
   }
 };

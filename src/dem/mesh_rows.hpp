@@ -4,11 +4,46 @@
 
 #include "base/types.hpp"
 #include "base/vec3.hpp"
+#include "dem/surfaces.hpp"
+#include "mesh/mesh_tree.hpp"
 #include "mesh/mesh_view.hpp"
 #include "mesh/row_kinds.hpp"
 #include "physics/contact_geometry.hpp"
 
 namespace scree {
+
+// A particle and a placed mesh that is moved by `shift`, when a list is built.
+struct MeshSight {
+  const PlacedSurface& surface;
+  const SurfaceFrame& frame;
+  const MeshView& mesh;
+  Vec4 p;  // x, y, z, radius
+  Vec3 shift;
+  Real past;  // how far past touch triangles are looked for, and as far as the two may move [m]
+
+  // Calls visit(triangle) for those of the row.
+  SCREE_HD_CALLER template <class Visit>
+  SCREE_HD void for_each_triangle(const Visit& visit) const {
+    for_each_centre([&](Vec3 c) { for_each_triangle_near(mesh, c, p.w + past, visit); });
+  }
+  SCREE_HD RowKind kind_of(const Index* triangles, Index count) const {
+    const RowKind kind = kind_of_row(mesh, triangles, count);
+    if (kind != RowKind::two_sided) return kind;
+    bool one_sided = true;
+    for_each_centre(
+        [&](Vec3 c) { one_sided = one_sided && is_one_sided(mesh, triangles, count, c, past); });
+    return one_sided ? RowKind::smooth : kind;
+  }
+
+ private:
+  // In the frame of the mesh.
+  SCREE_HD_CALLER template <class Visit>
+  SCREE_HD void for_each_centre(const Visit& visit) const {
+    for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
+      visit(transposed_times(frame.axes, (place - shift) - surface.point));
+    });
+  }
+};
 
 // A particle near a mesh: the entries of its row that stand for that mesh, one for each contact that it may
 // have there, and the triangles that it may touch.

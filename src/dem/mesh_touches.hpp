@@ -5,8 +5,6 @@
 #include "dem/mesh_rows.hpp"
 #include "dem/surface_items.hpp"
 #include "mesh/mesh_contacts.hpp"
-#include "mesh/mesh_tree.hpp"
-#include "mesh/row_kinds.hpp"
 #include "mesh/sheet_sides.hpp"
 #include "mesh/standing.hpp"
 #include "physics/contact_geometry.hpp"

@@ -6,8 +6,6 @@
 
 #include "base/countable.hpp"
 #include "mesh/mesh_contacts.hpp"
-#include "mesh/mesh_tree.hpp"
-#include "mesh/row_kinds.hpp"
 #include "partition/halo_plan.hpp"
 
 namespace scree {
@@ -77,10 +75,11 @@ class EntryFinder {
     for_each_in(sorted_, cells_near(sorted_.grid, box), [&](Index i) {
       if (!may_touch(i, s)) return;
       triangles_.clear();
-      const MeshView& mesh = triangles_near(search_.places, s, position(i), shift, skin, triangles_);
+      const MeshSight sight = sight_of(search_.places, s, position(i), shift, skin);
+      sight.for_each_triangle([&](Index t) { triangles_.push_back(t); });
       const auto count = static_cast<Index>(triangles_.size());
-      const RowKind kind = kind_of_row(mesh, triangles_.data(), count);
-      if (count > 0) add(entry, i, slots_needed(mesh, kind, triangles_.data(), count));
+      const RowKind kind = sight.kind_of(triangles_.data(), count);
+      if (count > 0) add(entry, i, slots_needed(sight.mesh, kind, triangles_.data(), count));
     });
   }
   void add(Entry entry, Index particle, int times) {
@@ -135,11 +134,12 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
            rows.images[end] == rows.images[entry])
       ++end;
     const auto first = static_cast<Index>(rows.triangles.size());
-    const MeshView& mesh = triangles_near(search.places, s, sorted.position[static_cast<std::size_t>(i)],
-                                          image_shift(rows.images[entry], search.period),
-                                          search.surfaces.skin_of(s, search.skin), rows.triangles);
+    const MeshSight sight = sight_of(search.places, s, sorted.position[static_cast<std::size_t>(i)],
+                                     image_shift(rows.images[entry], search.period),
+                                     search.surfaces.skin_of(s, search.skin));
+    sight.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
-    const RowKind kind = kind_of_row(mesh, rows.triangles.data() + first, last - first);
+    const RowKind kind = sight.kind_of(rows.triangles.data() + first, last - first);
     rows.groups.push_back({entry, end - entry, first, last - first, kind});
   }
   rows.standings.assign(rows.groups.size(), kNoStanding);
@@ -166,17 +166,11 @@ Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real
   return {middle - to_sides, middle + to_sides};
 }
 
-const MeshView& triangles_near(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin,
-                               std::vector<Index>& triangles) {
+MeshSight sight_of(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin) {
   const PlacedSurface& surface = places.placed[static_cast<std::size_t>(s)];
   const SurfaceFrame& frame = places.frames[static_cast<std::size_t>(surface.frame)];
   const MeshView& mesh = places.meshes[static_cast<std::size_t>(frame.mesh)];
-  const Real past = mesh_skin(p.w, skin);
-  for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
-    const Vec3 c = transposed_times(frame.axes, (place - shift) - surface.point);
-    for_each_triangle_near(mesh, c, p.w + past, [&](Index t) { triangles.push_back(t); });
-  });
-  return mesh;
+  return {surface, frame, mesh, p, shift, mesh_skin(p.w, skin)};
 }
 
 void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch& search, SurfaceRows& rows) {

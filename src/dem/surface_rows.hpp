@@ -74,10 +74,8 @@ struct SurfaceSearch {
   std::function<bool(Index particle, Index placed)> may_touch{};
 };
 
-// Adds the triangles of the mesh of the placed surface s, moved by the shift, that come within skin of the
-// particle at p (x, y, z, radius). Returns the mesh.
-const MeshView& triangles_near(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin,
-                               std::vector<Index>& triangles);
+// Of a particle at p (x, y, z, radius) and the mesh of the placed surface s, which is looked for within skin.
+MeshSight sight_of(const SurfacePlaces& places, Index s, Vec4 p, Vec3 shift, Real skin);
 
 // owned: particles that have a row, of which the first `active` are in the search.
 void build_rows(const SortedParticles& sorted, Index owned, const SurfaceSearch& search, SurfaceRows& rows);

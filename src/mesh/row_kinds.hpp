@@ -7,10 +7,10 @@
 
 namespace scree {
 
-// plane: one part without edges and vertices. smooth: one patch whose faces, and so all that a sphere may
-// touch there, differ in direction by no more than the feature angle: what is touched from one side is one
-// contact.
-enum class RowKind : std::uint8_t { any, smooth, plane };
+// smooth: one patch whose faces, and so all that a sphere may touch there, differ in direction by no more than
+// the feature angle: what is touched from one side is one contact. two_sided: the same of a sheet that may be
+// touched from both. plane: one part without edges and vertices.
+enum class RowKind : std::uint8_t { any, two_sided, smooth, plane };
 
 namespace mesh_detail {
 
@@ -24,6 +24,7 @@ SCREE_HD bool owns_open_feature(const MeshView& mesh, const MeshTriangle& triang
 
 }  // namespace mesh_detail
 
+// two_sided where a sheet is smooth.
 SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index count) {
   if (count == 0) return RowKind::any;
   const Index first = mesh.triangles[triangles[0]].part;
@@ -40,13 +41,25 @@ SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index
         mesh_detail::owns_open_feature(mesh, triangle))
       return RowKind::any;
   }
-  return is_plane ? RowKind::plane : RowKind::smooth;
+  return is_plane ? RowKind::plane : mesh.sheet ? RowKind::two_sided : RowKind::smooth;
+}
+
+// Whether c is on one side of all planes of a row, wherever it moves by no more than `past` [m].
+SCREE_HD bool is_one_sided(const MeshView& mesh, const Index* triangles, Index count, Vec3 c, Real past) {
+  const Real margin = past + mesh.flatness + mesh.round_off;
+  bool above = true, below = true;
+  for (Index i = 0; i < count && (above || below); ++i) {
+    const MeshPart& part = mesh.parts[mesh.triangles[triangles[i]].part];
+    const Real height = dot(c - part.point, part.normal);
+    above = above && height > margin, below = below && height < -margin;
+  }
+  return above || below;
 }
 
 // How many contacts, at most kMeshSlots, could come of these triangles.
 SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, const Index* triangles, Index count) {
-  if (kind == RowKind::plane) return 1;
-  if (kind == RowKind::smooth) return mesh.sheet ? 2 : 1;  // from both sides where it turns back
+  if (kind == RowKind::plane || kind == RowKind::smooth) return 1;
+  if (kind == RowKind::two_sided) return 2;
   int needed = 0, parts = 0;
   Index part[kMeshSlots];
   for (Index i = 0; i < count && needed < kMeshSlots; ++i) {
@@ -62,7 +75,7 @@ SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, const Index* trian
 // Of a search: no contact, one, or a case for find_mesh_contacts().
 enum class Nearest { none, one, unclear };
 
-// What find_mesh_contacts() finds of rows that are smooth or plane: as all that is touched from one side is
+// What find_mesh_contacts() finds of rows of a kind: as all that is touched from one side is
 // one contact the nearest is all, and needs no room for others. Unclear: touched from both sides, or where
 // round-off decides.
 class NearestContact : TriangleLook<NearestContact> {

@@ -158,7 +158,7 @@ TEST_CASE("where a face was touched last changes no contact") {
 TEST_CASE("on smooth rows the search for the nearest contact finds what the search for all does") {
   constexpr Real kRadius = 0.1;
   MeshRandom random(44);
-  int all_smooth = 0, all_unclear = 0;
+  int all_smooth = 0, all_unclear = 0, one_sided = 0;
   TriangleMesh folded = hills(12, 0.01, 9);  // two layers of one patch, a sphere between them touches both
   for (Vec3& v : folded.vertices) v = v.x > 0.5 ? Vec3{1 - v.x, v.y, v.z + 0.17} : v;
   for (const SurfaceMesh& surface :
@@ -176,6 +176,7 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
       ++all_smooth;
       const auto contacts = contacts_of_row(surface, c, kRadius, row);
       wrong += static_cast<int>(contacts.size()) > slots_needed(view, kind, row.data(), n);
+      if (is_one_sided(view, row.data(), n, c, 0)) wrong += contacts.size() > 1, ++one_sided;
       const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
       MeshContact nearest;
       const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, nearest);
@@ -186,6 +187,8 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
     CHECK(wrong == 0);
   }
   CHECK(all_smooth > 20000);
+  CHECK(one_sided > all_smooth / 2);
+  CHECK(one_sided < all_smooth);
   CHECK(all_unclear > 0);
   CHECK(all_unclear < all_smooth / 50);
 }
