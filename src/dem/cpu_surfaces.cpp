@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/for_each.hpp"
-#include "dem/mesh_touches.hpp"
+#include "dem/mesh_step_touches.hpp"
 
 namespace scree {
 namespace {

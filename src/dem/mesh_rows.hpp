@@ -30,8 +30,7 @@ struct MeshSight {
     const RowKind kind = kind_of_row(mesh, triangles, count);
     if (kind != RowKind::two_sided) return kind;
     bool one_sided = true;
-    for_each_centre(
-        [&](Vec3 c) { one_sided = one_sided && is_one_sided(mesh, triangles, count, c, past); });
+    for_each_centre([&](Vec3 c) { one_sided = one_sided && is_one_sided(mesh, triangles, count, c, past); });
     return one_sided ? RowKind::smooth : kind;
   }
 

@@ -134,9 +134,9 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
            rows.images[end] == rows.images[entry])
       ++end;
     const auto first = static_cast<Index>(rows.triangles.size());
-    const MeshSight sight = sight_of(search.places, s, sorted.position[static_cast<std::size_t>(i)],
-                                     image_shift(rows.images[entry], search.period),
-                                     search.surfaces.skin_of(s, search.skin));
+    const MeshSight sight =
+        sight_of(search.places, s, sorted.position[static_cast<std::size_t>(i)],
+                 image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin));
     sight.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
     const RowKind kind = sight.kind_of(rows.triangles.data() + first, last - first);

@@ -7,9 +7,9 @@
 
 namespace scree {
 
-// smooth: one patch whose faces, and so all that a sphere may touch there, differ in direction by no more than
-// the feature angle: what is touched from one side is one contact. two_sided: the same of a sheet that may be
-// touched from both. plane: one part without edges and vertices.
+// smooth: one patch whose faces, and so all that a sphere may touch there, differ in direction by no more
+// than the feature angle: what is touched from one side is one contact. two_sided: the same of a sheet that
+// may be touched from both. plane: one part without edges and vertices.
 enum class RowKind : std::uint8_t { any, two_sided, smooth, plane };
 
 namespace mesh_detail {

@@ -14,6 +14,7 @@
 #include "mesh/surface_mesh.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "mesh/weld.hpp"
+#include "support/bits.hpp"
 
 namespace scree {
 
@@ -180,6 +181,42 @@ inline Vec3 push_on(const SurfaceMesh& mesh, Vec3 c, Real radius) {
   for (const MeshContact& contact : contacts_at(mesh, c, radius))
     sum += (radius - contact.distance) * contact.normal;
   return sum;
+}
+
+// Hills and pits of this height on a unit grid of n by n.
+inline TriangleMesh hills(int n, Real height, unsigned seed) {
+  MeshRandom random(seed);
+  return mapped(jittered_grid(n, seed), [&](Vec3 v) { return Vec3{v.x, v.y, random.in(0, height)}; });
+}
+
+// A ball whose radius varies from vertex to vertex, so that every ray from its centre meets it once.
+inline TriangleMesh potato(int level, Real variation, unsigned seed) {
+  MeshRandom random(seed);
+  return mapped(icosphere(level, 1), [&](Vec3 v) { return (1 + random.in(-variation, variation)) * v; });
+}
+
+// At random near a mesh, or where regions meet: over a vertex or a point of an edge along the normal of one
+// of the faces there.
+inline Vec3 place_near(const SurfaceMesh& mesh, Real height, MeshRandom& random) {
+  const MeshTriangle& triangle = mesh.triangles[random.below(static_cast<Index>(mesh.triangles.size()))];
+  const Vec3 a = mesh.vertices[triangle.vertex[0]], b = mesh.vertices[triangle.vertex[1]];
+  const Vec3 normal = mesh.parts[triangle.part].normal;
+  const Real h = random.in(-height, height);
+  switch (random.below(3)) {
+    case 0:
+      return a + h * normal;
+    case 1:
+      return a + random.in(0, 1) * (b - a) + h * normal;
+    default:
+      return a + h * random.direction();
+  }
+}
+
+inline bool same_contacts(const std::vector<MeshContact>& a, const std::vector<MeshContact>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const MeshContact& p, const MeshContact& q) {
+    return p.feature == q.feature && p.triangle == q.triangle && same_bits(p.distance, q.distance) &&
+           same_bits(p.point, q.point) && same_bits(p.normal, q.normal);
+  });
 }
 
 }  // namespace scree

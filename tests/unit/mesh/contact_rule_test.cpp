@@ -7,7 +7,6 @@
 
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/row_kinds.hpp"
-#include "support/bits.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
 #include "support/test_meshes.hpp"
@@ -15,18 +14,6 @@
 namespace scree {
 
 namespace {
-
-// Hills and pits of this height on a unit grid of n by n.
-TriangleMesh hills(int n, Real height, unsigned seed) {
-  MeshRandom random(seed);
-  return mapped(jittered_grid(n, seed), [&](Vec3 v) { return Vec3{v.x, v.y, random.in(0, height)}; });
-}
-
-// A ball whose radius varies from vertex to vertex, so that every ray from its centre meets it once.
-TriangleMesh potato(int level, Real variation, unsigned seed) {
-  MeshRandom random(seed);
-  return mapped(icosphere(level, 1), [&](Vec3 v) { return (1 + random.in(-variation, variation)) * v; });
-}
 
 bool inside_potato(const SurfaceMesh& mesh, Vec3 c) {
   for (const MeshTriangle& triangle : mesh.triangles) {
@@ -45,30 +32,6 @@ Real distance_from(const SurfaceMesh& mesh, Vec3 c) {
         std::min(least, squared_distance(mesh.vertices[triangle.vertex[0]], mesh.vertices[triangle.vertex[1]],
                                          mesh.vertices[triangle.vertex[2]], c));
   return std::sqrt(least);
-}
-
-// At random near a mesh, or where regions meet: over a vertex or a point of an edge along the normal of one
-// of the faces there.
-Vec3 place_near(const SurfaceMesh& mesh, Real height, MeshRandom& random) {
-  const MeshTriangle& triangle = mesh.triangles[random.below(static_cast<Index>(mesh.triangles.size()))];
-  const Vec3 a = mesh.vertices[triangle.vertex[0]], b = mesh.vertices[triangle.vertex[1]];
-  const Vec3 normal = mesh.parts[triangle.part].normal;
-  const Real h = random.in(-height, height);
-  switch (random.below(3)) {
-    case 0:
-      return a + h * normal;
-    case 1:
-      return a + random.in(0, 1) * (b - a) + h * normal;
-    default:
-      return a + h * random.direction();
-  }
-}
-
-bool same_contacts(const std::vector<MeshContact>& a, const std::vector<MeshContact>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const MeshContact& p, const MeshContact& q) {
-    return p.feature == q.feature && p.triangle == q.triangle && same_bits(p.distance, q.distance) &&
-           same_bits(p.point, q.point) && same_bits(p.normal, q.normal);
-  });
 }
 
 // The rule on a sheet word for word, with all candidates at once.
@@ -153,44 +116,6 @@ TEST_CASE("where a face was touched last changes no contact") {
     CHECK(wrong == 0);
     CHECK((in_one_plane > 100 || view.part_count > 6));
   }
-}
-
-TEST_CASE("on smooth rows the search for the nearest contact finds what the search for all does") {
-  constexpr Real kRadius = 0.1;
-  MeshRandom random(44);
-  int all_smooth = 0, all_unclear = 0, one_sided = 0;
-  TriangleMesh folded = hills(12, 0.01, 9);  // two layers of one patch, a sphere between them touches both
-  for (Vec3& v : folded.vertices) v = v.x > 0.5 ? Vec3{1 - v.x, v.y, v.z + 0.17} : v;
-  for (const SurfaceMesh& surface :
-       {sheet_mesh(hills(12, 0, 1)), sheet_mesh(hills(12, 0.005, 2)), sheet_mesh(hills(12, 0.02, 3)),
-        sheet_mesh(folded), closed_mesh(drum_shell(60, 0.5, 1, 3)), closed_mesh(potato(3, 0, 4)),
-        closed_mesh(potato(4, 0.002, 5)), closed_mesh(block({0, 0, 0}, {1, 1, 1}, 6))}) {
-    const MeshView view = surface.view();
-    int wrong = 0;
-    for (int i = 0; i < 10000; ++i) {
-      const Vec3 c = place_near(surface, 1.2 * kRadius, random);
-      const auto row = triangles_near(surface, c, 1.2 * kRadius);
-      const auto n = static_cast<Index>(row.size());
-      const RowKind kind = kind_of_row(view, row.data(), n);
-      if (kind == RowKind::any) continue;
-      ++all_smooth;
-      const auto contacts = contacts_of_row(surface, c, kRadius, row);
-      wrong += static_cast<int>(contacts.size()) > slots_needed(view, kind, row.data(), n);
-      if (is_one_sided(view, row.data(), n, c, 0)) wrong += contacts.size() > 1, ++one_sided;
-      const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
-      MeshContact nearest;
-      const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, nearest);
-      all_unclear += found == Nearest::unclear;
-      if (found == Nearest::none) wrong += !contacts.empty();
-      if (found == Nearest::one) wrong += !same_contacts({nearest}, contacts);
-    }
-    CHECK(wrong == 0);
-  }
-  CHECK(all_smooth > 20000);
-  CHECK(one_sided > all_smooth / 2);
-  CHECK(one_sided < all_smooth);
-  CHECK(all_unclear > 0);
-  CHECK(all_unclear < all_smooth / 50);
 }
 
 // What reaches beyond touch must leave what is touched as it is.

@@ -1,0 +1,101 @@
+// Rows on which the nearest contact is all there is, and how long a sphere may stay where it is on a mesh.
+#include "mesh/row_kinds.hpp"
+
+#include "mesh/standing.hpp"
+#include "support/catch.hpp"
+#include "support/test_meshes.hpp"
+
+namespace scree {
+
+namespace {
+
+// Sheets that are plane, nearly plane, rough, and folded so that a sphere between two layers of one patch
+// touches both; curved walls and solids.
+std::vector<SurfaceMesh> meshes() {
+  TriangleMesh folded = hills(12, 0.01, 9);
+  for (Vec3& v : folded.vertices) v = v.x > 0.5 ? Vec3{1 - v.x, v.y, v.z + 0.17} : v;
+  return {sheet_mesh(hills(12, 0, 1)),
+          sheet_mesh(hills(12, 0.005, 2)),
+          sheet_mesh(hills(12, 0.02, 3)),
+          sheet_mesh(hills(6, 0.3, 4)),
+          sheet_mesh(folded),
+          closed_mesh(drum_shell(60, 0.5, 1, 3)),
+          closed_mesh(potato(3, 0, 4)),
+          closed_mesh(potato(4, 0.002, 5)),
+          closed_mesh(block({0, 0, 0}, {1, 1, 1}, 6))};
+}
+
+constexpr Real kRadius = 0.1;
+
+}  // namespace
+
+TEST_CASE("on smooth rows the search for the nearest contact finds what the search for all does") {
+  MeshRandom random(44);
+  int all_smooth = 0, all_unclear = 0, one_sided = 0;
+  for (const SurfaceMesh& surface : meshes()) {
+    const MeshView view = surface.view();
+    int wrong = 0;
+    for (int i = 0; i < 10000; ++i) {
+      const Vec3 c = place_near(surface, 1.2 * kRadius, random);
+      const auto row = triangles_near(surface, c, 1.2 * kRadius);
+      const auto n = static_cast<Index>(row.size());
+      const RowKind kind = kind_of_row(view, row.data(), n);
+      if (kind == RowKind::any) continue;
+      ++all_smooth;
+      const auto contacts = contacts_of_row(surface, c, kRadius, row);
+      wrong += static_cast<int>(contacts.size()) > slots_needed(view, kind, row.data(), n);
+      if (is_one_sided(view, row.data(), n, c, 0)) wrong += contacts.size() > 1, ++one_sided;
+      const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
+      MeshContact nearest;
+      const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, nearest);
+      all_unclear += found == Nearest::unclear;
+      if (found == Nearest::none) wrong += !contacts.empty();
+      if (found == Nearest::one) wrong += !same_contacts({nearest}, contacts);
+    }
+    CHECK(wrong == 0);
+  }
+  CHECK(all_smooth > 20000);
+  CHECK(one_sided > all_smooth / 2);
+  CHECK(one_sided < all_smooth);
+  CHECK(all_unclear > 0);
+  CHECK(all_unclear < all_smooth / 50);
+}
+
+TEST_CASE("as long as a sphere stays it touches the face that it was over, or nothing") {
+  MeshRandom random(48);
+  int over = 0, clear = 0;
+  for (const SurfaceMesh& surface : meshes()) {
+    const MeshView view = surface.view();
+    int wrong = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const Vec3 c = place_near(surface, 1.2 * kRadius, random);
+      const auto row = triangles_near(surface, c, 1.4 * kRadius);
+      const auto n = static_cast<Index>(row.size());
+      const auto contacts = contacts_of_row(surface, c, kRadius, row);
+      const StandingRow at{view, kind_of_row(view, row.data(), n), row.data(), n, c, kRadius};
+      Standing standing = kNoStanding;
+      if (contacts.empty())
+        standing = at.clear();
+      else if (contacts.size() == 1 && contacts[0].feature < view.part_count)
+        standing = at.over(contacts[0].triangle);
+      for (int k = 0; k < 10 && standing.room > 0; ++k) {
+        const Vec3 moved = c + random.in(0, 1) * standing.room * random.direction();
+        if (!standing.holds(moved)) continue;
+        const auto found = contacts_of_row(surface, moved, kRadius, row);
+        if (standing.triangle < 0) {
+          ++clear, wrong += !found.empty();
+          continue;
+        }
+        const Index part = view.triangles[standing.triangle].part;
+        const bool touches = std::abs(dot(moved - view.parts[part].point, view.parts[part].normal)) < kRadius;
+        ++over, wrong += found.size() != touches ||
+                         (touches && (found[0].feature != part || found[0].triangle != standing.triangle));
+      }
+    }
+    CHECK(wrong == 0);
+  }
+  CHECK(over > 20000);
+  CHECK(clear > 2000);
+}
+
+}  // namespace scree
