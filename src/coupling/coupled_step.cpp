@@ -21,7 +21,7 @@ constexpr Real kSkinPerMotion = 5;
 constexpr Real kMostSkin = 4;
 
 // Newton iterations of a step whose limits of friction follow the normal forces. Steps that resolve their
-// contacts need 3 to 5.
+// contacts need 4 to 7.
 constexpr int kMostFollowing = 12;
 
 // A residual that moves no particle by more than this part of its radius is round-off, though it be no small

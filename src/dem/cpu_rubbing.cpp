@@ -176,6 +176,12 @@ Real CpuRubbingStep::right_hand_side() {
   return largest;
 }
 
+Real CpuRubbingStep::tolerance_for(Real right_hand_side) {
+  const Real residual = items_.model.integrator.residual_tolerance;
+  return is_consistent() ? consistent_.next(residual, force_scale_, right_hand_side)
+                         : solver_tolerance(residual, force_scale_, right_hand_side);
+}
+
 int CpuRubbingStep::solve(Real tolerance) {
   const Index n = items_.layout.owned;
   std::vector<Vec4>&move = rubbing_.move, &turn = rubbing_.turn;
@@ -210,9 +216,7 @@ ParticleCorrection CpuRubbingStep::particle_correct() {
   search_ = {};
   const Real largest = right_hand_side();
   if (largest > 0) {
-    const Real tolerance =
-        solver_tolerance(items_.model.integrator.residual_tolerance, force_scale_, largest);
-    out.iterations = solve(tolerance);
+    out.iterations = solve(tolerance_for(largest));
     out.correction = items_.ranks.max(max_over(Serial{}, items_.layout.owned, correct_item(1)));
     search_.open(std::max(scaled_residual_, largest / force_scale_));
   }

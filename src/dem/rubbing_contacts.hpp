@@ -34,6 +34,7 @@ struct RubbingPath : ContactPath {
   static constexpr Index kWall = -1;
   ContactMotion motion;
   Real leverage0;
+  Real curvature = 0;         // how far the normal turns by the way of i's centre across it [1/m]
   Vec3 velocity0, velocity1;  // of i relative to j [m/s]
   Vec3 turning;               // R_i times i's turn over the step, and j's likewise; even [m]
   Vec3 slide;                 // velocity of j's surface where that runs along itself [m/s]
@@ -70,6 +71,7 @@ struct OverRubbingStep {
     const TurningPartner one = partner(self.p, self.mean_spin), other = partner(q, start.mean_spin[j]);
     out.motion = sphere_motion(end, out.travel, one, other, start.step.h);
     out.leverage0 = out.motion.leverage * end.distance / (self.p.w + q.w - out.step.overlap0);
+    out.curvature = end.scale;
     return finish(in, out, one, other, self.i, j);
   }
   template <class Rows>
@@ -113,6 +115,7 @@ struct RubbingContact {
   StepRub rub;
   Vec3 normal0;
   Real leverage0, leverage;
+  Real curvature;  // RubbingPath
   std::int64_t slot;
   bool acts;   // else nothing above has a meaning
   bool lasts;  // at the end of the step: the history is that of a contact
@@ -131,6 +134,7 @@ SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, co
   const auto normal = law.normal.of_pair(c.size);
   out.normal = StepContactOf{resolve_events}.of(normal, c);
   out.normal0 = c.normal0, out.leverage0 = c.leverage0, out.leverage = c.motion.leverage;
+  out.curvature = c.curvature;
   const Real start_force =
       c.step.overlap0 > 0 ? contact_force(normal, c.step.overlap0, c.step.rate0).force : 0;
   RubbingStep step{c.step,

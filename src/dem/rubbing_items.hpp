@@ -96,7 +96,7 @@ struct RubbingSystemItem {
     walk.surfaces(self, contact_of(), [&](const RubbingContact& c, Index surface) {
       sums += RubbingSums::of(c), sharpen(c, i, total.sharpest);
       const Index placed = walk.in.numbers.at_rest(surface) ? RubbingPath::kWall : static_cast<Index>(c.slot);
-      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = entry_of(c, placed);
+      matrix.surface_entries[walk.in.surface_offsets[i] + surfaces++] = RubbingEntry::of(c, weights, placed);
     });
     const Real radius = walk.in.position[i].w;
     matrix.count[i] = total.entries, matrix.surface_count[i] = surfaces;
@@ -127,21 +127,13 @@ struct RubbingSystemItem {
       matrix.entries.put_none(slot);
       return RubbingSums::nothing();
     }
-    matrix.entries.put(slot, entry_of(c, j)), sharpen(c, i, sharpest);
+    matrix.entries.put(slot, RubbingEntry::of(c, weights, j)), sharpen(c, i, sharpest);
     return RubbingSums::of(c);
   }
   SCREE_HD void sharpen(const RubbingContact& c, Index i, Real& sharpest) const {
     const Real h = walk.look.start.step.h;
     const Real sharp = 2 * c.normal.step.stiffness * h * h / walk.in.velocity[i].w;
     sharpest = sharp > sharpest ? sharp : sharpest;
-  }
-  SCREE_HD RubbingEntry entry_of(const RubbingContact& c, Index j) const {
-    const auto single = [](Real x) { return static_cast<float>(x); };
-    const Vec3 n = c.normal.normal, t = c.rub.direction;
-    const Real along = weights.of(c.normal.step);
-    return {{single(n.x), single(n.y), single(n.z), j},
-            {single(t.x), single(t.y), single(t.z), single(along)},
-            {single(weights.stiffness * c.rub.stiffness), single(c.rub.grip * along)}};
   }
 };
 

@@ -19,26 +19,46 @@ struct RubbingEntry {
     float x, y, z;  // its direction, or zero
     float along;    // of the overlap [kg]
   };
-  struct alignas(8) Shear {
-    float across;  // of the slip across the direction [kg]
-    float grip;    // along the direction, of the overlap [kg]
+  struct alignas(16) Shear {
+    float x, y, z;  // the growth of the force across the normal with the overlap; along the normal, which is
+                    // free, minus what the normal's turn makes of its force by the way across it [kg]
+    float across;   // of the slip across the direction [kg]
   };
   Normal normal;
   Slide slide;
   Shear shear;
+
+  // j: as `neighbor`.
+  SCREE_HD static RubbingEntry of(const RubbingContact& c, const NewtonWeights& weights, Index j) {
+    const auto single = [](Real x) { return static_cast<float>(x); };
+    const Vec3 n = c.normal.normal, t = c.rub.direction;
+    const Real along = weights.of(c.normal.step);
+    const Vec3 growth = (c.rub.grip * along) * t + weights.stiffness * c.rub.growth -
+                        (weights.stiffness * c.normal.step.force * c.curvature) * n;
+    return {
+        {single(n.x), single(n.y), single(n.z), j},
+        {single(t.x), single(t.y), single(t.z), single(along)},
+        {single(growth.x), single(growth.y), single(growth.z), single(weights.stiffness * c.rub.stiffness)}};
+  }
 
   // What was found for an entry turned out to be no contact.
   static constexpr Index kNone = -2;
   SCREE_HD bool is_contact() const { return normal.neighbor != kNone; }
 
   // Force on i, and its torque over the radius, by how the partners move against each other and both turn.
-  SCREE_HD Twist pull(Vec3 apart, Vec3 turning, bool with_grip) const {
+  // consistent: with the growth, too, for which the matrix is neither symmetric nor quite positive, and the
+  // derivative but for terms of the order of overlap over radius and of the turn in a step.
+  SCREE_HD Twist pull(Vec3 apart, Vec3 turning, bool consistent) const {
     const Vec3 n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
     const Real approach = dot(n, apart);
     const Vec3 slip = apart - approach * n - cross(turning, n);
     Vec3 force = Real(shear.across) * (slip - dot(t, slip) * t);
-    if (with_grip) force -= (Real(shear.grip) * approach) * t;
-    return {(Real(slide.along) * approach) * n + force, -cross(n, force)};
+    Vec3 along = (Real(slide.along) * approach) * n;
+    if (consistent) {
+      const Vec3 growth{shear.x, shear.y, shear.z};
+      force -= approach * growth, along += dot(n, growth) * apart;
+    }
+    return {along + force, -cross(n, force)};
   }
   // Its symmetric part in the block of i.
   SCREE_HD void add_to(Block6& block) const {

@@ -112,6 +112,7 @@ struct SurfaceRubItem {
     if (!is_sphere && in.frames[surface.frame].runs()) run_along(in.frames[surface.frame], out);
     const Real reach = p.w + arm;
     out.leverage0 = way.now.is_face ? 1 : out.motion.leverage * end.distance / (reach - out.step.overlap0);
+    out.curvature = way.now.is_face ? 0 : out.motion.leverage / reach;
     out.turning = h * (one.arm * one.spin + other.arm * other.spin);
     out.i = i, out.j = RubbingPath::kWall;
     OverRubbingStep{start}.at_entry(out, entry);
@@ -126,7 +127,7 @@ struct RubbingShiftItem {
   SurfaceNumbers numbers;
   const SurfaceRub* rubs;
   NewtonWeights weights;
-  bool with_grip;
+  bool consistent;
   SurfaceMoves moves;
   Twist* residual;  // [N]
 
@@ -138,8 +139,8 @@ struct RubbingShiftItem {
       const SurfaceRub& rub = rubs[of.normal.neighbor];
       const Index surface = numbers.placed(surfaces[of.normal.neighbor]);
       const Vec3 move = moves.move[surface], turn = moves.turn[surface];
-      residual[i] -= rub.radius > 0 ? of.pull(-scale * move, scale * turn, with_grip)
-                                    : of.pull(-scale * (move + cross(turn, rub.contact_arm)), {}, with_grip);
+      residual[i] -= rub.radius > 0 ? of.pull(-scale * move, scale * turn, consistent)
+                                    : of.pull(-scale * (move + cross(turn, rub.contact_arm)), {}, consistent);
     }
   }
 };

@@ -121,7 +121,7 @@ struct SubtractRubbingItem {
   Rows rows;
   const Index* surface_offsets;
   const ScaledMass* mass;
-  bool with_grip;           // the limits' growth with the normal forces, too: not symmetric
+  bool consistent;          // RubbingEntry::pull
   const Vec4 *move, *turn;  // d of all items
   Twist* residual;
 
@@ -130,17 +130,17 @@ struct SubtractRubbingItem {
     Twist sum{mass[i].move * u, mass[i].turn * w};
     matrix.for_each_entry(rows, i, [&](const RubbingEntry& entry) {
       const Index j = entry.normal.neighbor;
-      sum += entry.pull(u - xyz(move[j]), w + xyz(turn[j]), with_grip);
+      sum += entry.pull(u - xyz(move[j]), w + xyz(turn[j]), consistent);
     });
     for (Index k = 0; k < matrix.surface_count[i]; ++k)
-      sum += matrix.surface_entries[surface_offsets[i] + k].pull(u, w, with_grip);
+      sum += matrix.surface_entries[surface_offsets[i] + k].pull(u, w, consistent);
     residual[i] -= sum;
   }
 };
 
-// Whether the Newton matrix takes the limits' growth in, from the largest 2 K h^2 / m: Newton's method then
-// needs hardly more iterations than without friction. But the matrix is not symmetric, and where contacts are
-// much shorter than the step the linear iteration would not converge.
+// Whether the Newton matrix takes in how friction grows with the overlap, from the largest 2 K h^2 / m:
+// Newton's method then needs no more iterations than without friction. But the matrix is not symmetric, and
+// where contacts are much shorter than the step the linear iteration would not converge.
 SCREE_HD bool is_consistent(Real sharpness) { return sharpness <= Real(2.5) * Real(2.5); }
 
 struct TwistDirectionItem {

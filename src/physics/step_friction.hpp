@@ -1,6 +1,8 @@
 // The friction of a contact over an implicit step: what its law along the normal has in step_contact.hpp.
 #pragma once
 
+#include <cmath>
+
 #include "base/hd.hpp"
 #include "physics/contact_law.hpp"
 #include "physics/step_contact.hpp"
@@ -28,9 +30,10 @@ struct StepRub {
       end;     // acting at both ends, and what the step's end must hold [N]; across normal0, normal1
   Real limit;  // of the mean force over the step [N]
   // Derivatives of `step`: stiffness across `direction` by the slip [N/m], grip along it by step_force;
-  // direction: unit, while it slides, else zero.
+  // direction: unit, while it slides, else zero; growth by the overlap at the end beside grip's, because a
+  // contact that opens or closes rubs for longer, or less long [N/m].
   Real stiffness, grip;
-  Vec3 direction;
+  Vec3 direction, growth;
   Vec3 spring;  // what is remembered; zero where the contact has ended
   SpringLosses losses;
   Real stored0, stored1;  // energy of the spring at both ends [J]
@@ -42,6 +45,13 @@ SCREE_HD Real closed_share(const ContactStep& c) {
   return c.overlap0 > 0 ? c.overlap0 / (c.overlap0 - c.overlap1) : 0;
 }
 
+// By the overlap at the end [1/m].
+SCREE_HD Real closed_share_slope(const ContactStep& c) {
+  if ((c.overlap0 > 0) == (c.overlap1 > 0)) return 0;
+  const Real travel = c.overlap1 - c.overlap0;
+  return std::abs(c.overlap0) / (travel * travel);
+}
+
 // Spring and slider at one instant, where the contact is closed; d: its overlap there [m].
 template <class Law>
 SCREE_HD SpringSlider slider_at(const Law& law, const RubbingStep& c, Real normal_force, Real d,
@@ -50,6 +60,13 @@ SCREE_HD SpringSlider slider_at(const Law& law, const RubbingStep& c, Real norma
   at.leverage = leverage;
   return law.tangential.slider(c.size, at,
                                normal_contact(law.normal.of_pair(c.size), c.size, normal_force, d, d));
+}
+
+// share times the mean force, by the share: while the contact sticks it acts for longer, and its spring is
+// drawn farther; in a slide the limit is that of the same impulse of the normal force. way: over the share.
+SCREE_HD Vec3 by_share(const StepSpring& over, Vec3 way) {
+  const Vec3 drawn = over.elastic * (way - dot(over.direction, way) * over.direction);
+  return over.grip > 0 ? drawn : over.mean + drawn;
 }
 
 // The mean of the force over the step is right, and with it work and impulse: step_spring() over the share of
@@ -82,6 +99,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   out.limit = share * slider.limit;
   out.step = (2 * share) * over.mean - turned_across(c.motion, out.start);
   out.stiffness = 2 * share * share * over.stiffness;
+  if (!frozen) out.growth = (2 * closed_share_slope(c.step)) * by_share(over, share * c.motion.slip);
   if (over.grip > 0)
     out.direction = over.direction,
     out.grip = frozen ? 0 : law.tangential.friction * reciprocal(c.motion.leverage);

@@ -15,6 +15,7 @@ struct StepSpring {
   Vec3 spring;     // the spring's force at the end of the step: what is remembered
   Vec3 mean;       // with the dashpot's, over the step
   Real stiffness;  // [N/m]
+  Real elastic;    // of it the spring's, without the dashpot's [N/m]
   Vec3 direction;  // unit, while it slides
   Real grip;       // 1 while it slides, else 0
   SpringLosses losses;
@@ -34,12 +35,12 @@ SCREE_HD StepSpring step_spring(const SpringSlider& p, Vec3 old, Vec3 way, Real 
   const Vec3 pull = Real(0.5) * (start + trial) + rate * way;
   out.spring = shortened(trial, end_limit);
   out.mean = shortened(pull, p.limit);
-  out.stiffness = k.of_way / 2 + rate;
+  out.elastic = k.of_way / 2, out.stiffness = out.elastic + rate;
   const Real square = dot(pull, pull);
   if (square > p.limit * p.limit && square >= kNoSquare) {
     const Real inverse = root_and_inverse(square).inverse;
     out.direction = inverse * pull, out.grip = 1;
-    out.stiffness *= p.limit * inverse;
+    out.stiffness *= p.limit * inverse, out.elastic *= p.limit * inverse;
   }
   const Real stored = spring_energy(out.spring, k.of_way) - spring_energy(kept, k.of_way);
   out.losses.dashpot = out.grip > 0 ? 0 : rate * dot(way, way);

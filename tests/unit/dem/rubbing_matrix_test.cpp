@@ -1,6 +1,8 @@
-// The Newton matrix of contacts that rub: its blocks against its products, its bounds, the blocks' inverse.
+// The Newton matrix of contacts that rub: its products against differences of forces, its blocks against its
+// products, its bounds, the blocks' inverse.
 #include "dem/rubbing_matrix.hpp"
 
+#include "dem/rubbing_items.hpp"
 #include "model/random.hpp"
 #include "support/catch.hpp"
 #include "support/near.hpp"
@@ -23,7 +25,7 @@ RubbingEntry entry_of(Vec3 n, Vec3 t, Real along, Real across) {
   const auto single = [](Real x) { return static_cast<float>(x); };
   return {{single(n.x), single(n.y), single(n.z), 1},
           {single(t.x), single(t.y), single(t.z), single(along)},
-          {single(across), 0}};
+          {0, 0, 0, single(across)}};
 }
 
 struct RandomEntry {
@@ -39,11 +41,77 @@ RandomEntry random_entry(RandomNumbers& random, bool slides) {
   return {entry_of(n, t, along, across), entry_of(-n, -t, along, across)};
 }
 
+// Two spheres of radius 1 over a step of 1 s, without damping; i has yet to move and turn by small amounts.
+struct Pair {
+  ContactLaw<LinearLaw, LinearSlider> law;
+  Vec3 r0, r1, spin;      // from j to i at the start and the end; i's over the step
+  ContactHistory before;  // across the normal at the start
+
+  RubbingContact moved(const Twist& by) const {
+    const PairSize size{1, 1, 1, 1};
+    const ContactGeometry begin = sphere_pair(r0, Real(2)), end = sphere_pair(r1 + by.move, Real(2));
+    const Vec3 travel = r1 + by.move - r0;
+    RubbingPath path{};
+    static_cast<ContactPath&>(path) =
+        OverStep{{nullptr, nullptr, 1, true}}.path(end, travel, begin, travel, travel, size);
+    path.motion = sphere_motion(end, travel, {spin + by.turn, 1, Real(0.4)}, {{}, 1, Real(0.4)}, 1);
+    path.leverage0 = 2 / begin.distance, path.curvature = end.scale;
+    return rubbing_contact(law, path, before, true, [](bool) { return Vec3{}; });
+  }
+  // On i, and its torque.
+  Twist load(const Twist& by) const {
+    const RubbingContact c = moved(by);
+    const RubbingSums sums = RubbingSums::of(c);
+    return {sums.step_force, sums.step_turn};
+  }
+};
+
+// Overlaps at both ends, one of which may be a gap, of the order of `size`, as slip and spring.
+Pair random_pair(RandomNumbers& random, Real size, Real friction) {
+  Pair out{{LinearLaw(2, 0, false), {Real(0.7), friction, 0}}, {}, {}, {}, {}};
+  Vec3 n = vector(random);
+  n = (1 / norm(n)) * n;
+  const Real overlap0 = size * random.uniform(-1, 1),
+             overlap1 = overlap0 > 0 ? size * random.uniform(-1, 1) : size * random.uniform();
+  out.r0 = (2 - overlap0) * n;
+  const Vec3 r1 = n + size * vector(random);
+  out.r1 = ((2 - overlap1) / norm(r1)) * r1, out.spin = size * vector(random);
+  if (overlap0 > 0) out.before.spring = shortened(size * across(vector(random), n), 2 * friction * overlap0);
+  return out;
+}
+
 Twist product(const Block6& a, Twist v) {
   return {a.move * v.move + a.mixed * v.turn, transposed_times(a.mixed, v.move) + a.turn * v.turn};
 }
 
 }  // namespace
+
+TEST_CASE("a contact's matrix is the derivative of its force") {
+  struct Case {
+    Real size, friction, error;  // without friction only the normal force and its turn, at any overlap
+  };
+  RandomNumbers random(2);
+  for (const Case& of : {Case{1e-5, 2, 3e-4}, Case{0.2, 0, 3e-5}}) {
+    int opens = 0, slides = 0, looks = 0;
+    for (int k = 0; k < 2000; ++k) {
+      const Pair pair = random_pair(random, of.size, of.friction);
+      const Twist way{vector(random), vector(random)};
+      const Real little = 1e-5 * of.size;
+      const Twist forth = little * way, back = -little * way;
+      const RubbingContact at = pair.moved({}), after = pair.moved(forth), before = pair.moved(back);
+      if (!at.acts || (after.rub.grip > 0) != (before.rub.grip > 0) || after.lasts != before.lasts)
+        continue;  // a kink
+      const Twist change = (1 / (2 * little)) * (pair.load(forth) - pair.load(back));
+      const Twist pull = RubbingEntry::of(at, {1, 0}, 1).pull(way.move, way.turn, true);
+      REQUIRE(near(pull.move, -change.move, {.absolute = of.error}));
+      REQUIRE(near(pull.turn, -change.turn, {.absolute = of.error}));
+      ++looks, opens += at.lasts != (norm(pair.r0) < 2), slides += at.rub.grip > 0;
+    }
+    CAPTURE(looks, opens, slides);
+    CHECK((looks > 1500 && opens > looks / 3));
+    if (of.friction > 0) CHECK((slides > looks / 5 && slides < 4 * looks / 5));
+  }
+}
 
 TEST_CASE("a contact's block is what it does to its own particle") {
   RandomNumbers random(3);
