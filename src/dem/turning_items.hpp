@@ -139,8 +139,8 @@ struct SubtractRubbingItem {
 };
 
 // Whether the Newton matrix takes in how friction grows with the overlap, from the largest 2 K h^2 / m:
-// Newton's method then needs no more iterations than without friction. But the matrix is not symmetric, and
-// where contacts are much shorter than the step the linear iteration would not converge.
+// Newton's method then needs hardly more iterations than without friction. But the matrix is not symmetric,
+// and where contacts are much shorter than the step the linear iteration would not converge.
 SCREE_HD bool is_consistent(Real sharpness) { return sharpness <= Real(2.5) * Real(2.5); }
 
 struct TwistDirectionItem {
