@@ -58,10 +58,13 @@ __global__ void __launch_bounds__(kSystemThreads)
   block_max(norms.stiffening, &r.largest->stiffening);
 }
 
+// On a multiprocessor: registers are rationed for so many, though a few spill.
+inline constexpr int kRubbingSystemBlocks = 3;
+
 // Forces, torques and entries of the Newton matrix; what else a particle has in the solve, items find that
 // read the entries. The walk needs the registers by itself. r.first: a multiple of kSlice.
 template <class Laws>
-__global__ void __launch_bounds__(kSystemThreads)
+__global__ void __launch_bounds__(kSystemThreads, kRubbingSystemBlocks)
     rubbing_kernel(const __grid_constant__ DeviceRubbingRequest r, const Laws laws) {
   constexpr int kWords = sizeof(RubbingSums) / sizeof(double);
   __shared__ WarpContacts<double, kWords> contacts[kSystemThreads / kSlice];

@@ -160,7 +160,7 @@ struct CountUpItem {
 };
 
 // Room over what was needed where an array had to grow: one in so many.
-constexpr std::size_t kKeptSpare = 32, kSlotsSpare = 32;
+constexpr std::size_t kKeptSpare = 32, kEntriesSpare = 32;
 
 template <class Rows>
 KeptViews kept_views(Rows& rows) {
@@ -259,8 +259,8 @@ void DeviceHistory::leave_slots(const Listed& at) {
 void DeviceHistory::take_slots(const Listed& at) {
   if (!exists()) return;
   const auto records = static_cast<std::size_t>(records_of(width()));
-  if (const auto needed = static_cast<std::size_t>(at.list.used()) * records; needed > neighbors_.size())
-    neighbors_.resize(needed + needed / kSlotsSpare);
+  if (const auto needed = static_cast<std::size_t>(at.list.entries()) * records; needed > neighbors_.size())
+    neighbors_.resize(needed + needed / kEntriesSpare);
   for (DeviceArray<Vec4>* of_surfaces : {&ground_, &bodies_, &ahead_})
     of_surfaces->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()) * records);
   for (DeviceArray<Index>* of_meshes : {&features_, &features_ahead_})

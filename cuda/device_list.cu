@@ -1,6 +1,7 @@
 #include <limits>
 #include <string>
 
+#include "base/countable.hpp"
 #include "dem/device.hpp"
 #include "device_list.cuh"
 #include "for_each.cuh"
@@ -11,6 +12,7 @@ namespace scree {
 struct RowOutputs {
   std::int64_t* slice_start;
   Index *counts, *neighbors;
+  Index* first_entry;           // null where nobody asks for it
   unsigned long long capacity;  // slots
   DeviceList::Totals* totals;
 };
@@ -107,6 +109,17 @@ __device__ Index find_row(const ListInput& in, Index i, RowBuffer<kEntries>& buf
   return found;
 }
 
+// Of the lanes before this one.
+__device__ Index sum_before(Index value) {
+  const auto lane = static_cast<int>(threadIdx.x) % kSlice;
+  Index sum = value;
+  for (int step = 1; step < kSlice; step *= 2) {
+    const Index other = __shfl_up_sync(~0u, sum, step);
+    if (lane >= step) sum += other;
+  }
+  return sum - value;
+}
+
 template <int kEntries>
 __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
     find_rows_kernel(const __grid_constant__ ListInput in, RowOutputs out) {
@@ -116,14 +129,18 @@ __global__ void __launch_bounds__(RowBuffer<kEntries>::kThreads)
 
   const auto width = static_cast<Index>(__reduce_max_sync(~0u, static_cast<unsigned>(found)));
   const auto sum = __reduce_add_sync(~0u, static_cast<unsigned>(found));
-  unsigned long long start = 0;
+  unsigned long long start = 0, entries = 0;
   if (lane == 0) {
     start = atomicAdd(&out.totals->used, static_cast<unsigned long long>(width) * kSlice);
-    atomicAdd(&out.totals->entries, static_cast<unsigned long long>(sum));
+    entries = atomicAdd(&out.totals->entries, static_cast<unsigned long long>(sum));
     if (width > *static_cast<volatile Index*>(&out.totals->longest)) atomicMax(&out.totals->longest, width);
     if (i < in.owned) out.slice_start[i / kSlice] = static_cast<std::int64_t>(start);
   }
   start = __shfl_sync(~0u, start, 0);
+  if (out.first_entry != nullptr) {
+    const Index first = static_cast<Index>(__shfl_sync(~0u, entries, 0)) + sum_before(found);
+    if (i < in.owned) out.first_entry[i] = first;
+  }
   if (i >= in.owned) return;
   out.counts[i] = found;
   if (start + static_cast<unsigned long long>(width) * kSlice > out.capacity)
@@ -161,8 +178,8 @@ PrunedRows<0> DeviceList::pruned_rows() {
 void DeviceList::search(Device device, const ListInput& in) {
   const bool long_rows = h_totals_[0].longest > kShortRow;
   totals_.zero(device.stream);
-  const RowOutputs out{slice_start_.data(), counts_.data(), neighbors_.data(), neighbors_.size(),
-                       totals_.data()};
+  const RowOutputs out{slice_start_.data(), counts_.data(),     neighbors_.data(),
+                       first_entry_.data(), neighbors_.size(), totals_.data()};
   if (long_rows)
     find_rows_kernel<kLongRow><<<blocks_for(in.owned, 64), 64, 0, device.stream>>>(in, out);
   else
@@ -174,7 +191,7 @@ void DeviceList::search(Device device, const ListInput& in) {
 void DeviceList::build(Device device, const ListInput& in) {
   const auto owned = static_cast<std::size_t>(in.owned);
   const bool first = slice_start_.size() == 0;
-  slice_start_.resize(owned / kSlice + 1), counts_.resize(owned);
+  slice_start_.resize(owned / kSlice + 1), counts_.resize(owned), first_entry_.resize(remembers_ ? owned : 0);
   if (first) take_room(static_cast<std::size_t>(slots_at_start_ * static_cast<double>(owned)) + kSlice);
   h_totals_[0].entries = h_totals_[0].used = 0;
   if (in.owned == 0) return;
@@ -185,7 +202,9 @@ void DeviceList::build(Device device, const ListInput& in) {
     search(device, in);
     wait_for(device.stream);
   }
-  if (remembers_ && h_totals_[0].longest > std::numeric_limits<RowPlace>::max())
+  if (!remembers_) return;
+  countable(h_totals_[0].entries, "stage neighbors: more neighbours");
+  if (h_totals_[0].longest > std::numeric_limits<RowPlace>::max())
     throw SimulationError("stage neighbors: a particle with " + std::to_string(h_totals_[0].longest) +
                           " neighbours; contacts that remember can be at most " +
                           std::to_string(std::numeric_limits<RowPlace>::max()) + " of one particle");

@@ -16,24 +16,41 @@ struct SlicedRows {
   const std::int64_t* slice_start;  // [slices]
   const Index* counts;              // [items]
   const Index* neighbors;           // [slots]
+  // Number of a row's first entry, one row after the other, nothing left free in between: where contacts
+  // remember. Null where none does.
+  const Index* first_entry{};  // [items]
 
   SCREE_HD std::int64_t first(Index i) const { return slice_start[i / kSlice] + i % kSlice; }
   SCREE_HD static constexpr int stride() { return kSlice; }
 
-  // As PackedRows::for_each_contact. Two entries are tested at once while the next two are under way: loads
-  // that do not wait for each other.
+  // As PackedRows::for_each_contact, with the number of an entry as its slot.
   template <class Touches, class Evaluate, class Add>
   SCREE_HD void for_each_contact(Index i, const Touches& touches, const Evaluate& evaluate,
                                  const Add& add) const {
+    if constexpr (kAsksForSlot<Evaluate>) {
+      const std::int64_t number = first_entry[i];
+      const auto at_place = [&](Index j, std::int64_t place) { return evaluate(j, number + place); };
+      for_each_place(i, touches, at_place, add);
+    } else {
+      for_each_place(i, touches, evaluate, add);
+    }
+  }
+
+  // The same with the place of an entry in its row. Two are tested at once while the next two are under way:
+  // loads that do not wait for each other.
+  template <class Touches, class Evaluate, class Add>
+  SCREE_HD void for_each_place(Index i, const Touches& touches, const Evaluate& evaluate,
+                               const Add& add) const {
     const Index* row = neighbors + first(i);
-    Index left = counts[i];
+    const Index count = counts[i];
+    Index left = count;
     const auto entry = [&](Index k) { return k < left ? row[k * kSlice] : i; };
     Index j[2] = {entry(0), entry(1)};
     while (left > 0) {
       const Index next[2] = {entry(2), entry(3)};
       const bool first_touches = touches(j[0]), second_touches = touches(j[1]) & (left > 1);
-      if (first_touches) add(evaluate_entry(evaluate, j[0], row - neighbors));
-      if (second_touches) add(evaluate_entry(evaluate, j[1], row - neighbors + kSlice));
+      if (first_touches) add(evaluate_entry(evaluate, j[0], count - left));
+      if (second_touches) add(evaluate_entry(evaluate, j[1], count - left + 1));
       j[0] = next[0], j[1] = next[1];
       left -= 2, row += 2 * kSlice;
     }
@@ -42,10 +59,11 @@ struct SlicedRows {
   // The same for launches of so few threads that nothing else hides the loads: so many entries are tested and
   // evaluated at once, whether they touch or not.
   template <int kAtOnce, class Touches, class Evaluate, class Add>
-  SCREE_HD void for_each_contact_eagerly(Index i, const Touches& touches, const Evaluate& evaluate,
-                                         const Add& add) const {
+  SCREE_HD void for_each_place_eagerly(Index i, const Touches& touches, const Evaluate& evaluate,
+                                       const Add& add) const {
     const Index* row = neighbors + first(i);
-    Index left = counts[i];
+    const Index count = counts[i];
+    Index left = count;
     Index j[kAtOnce];
     const auto fetch = [&] {
       for (int k = 0; k < kAtOnce; ++k) j[k] = k < left ? row[k * kSlice] : i;
@@ -56,7 +74,7 @@ struct SlicedRows {
       decltype(evaluate_entry(evaluate, i, 0)) contact[kAtOnce];
       for (int k = 0; k < kAtOnce; ++k) touching[k] = touches(j[k]) & (k < left);
       for (int k = 0; k < kAtOnce; ++k)
-        contact[k] = evaluate_entry(evaluate, j[k], row - neighbors + (k < left ? k * kSlice : 0));
+        contact[k] = evaluate_entry(evaluate, j[k], count - left + (k < left ? k : 0));
       left -= kAtOnce, row += kAtOnce * kSlice;
       fetch();
       for (int k = 0; k < kAtOnce; ++k)
@@ -97,10 +115,11 @@ struct PrunedRows {
     const bool all = use == RowUse::all;
     const SlicedRows walked{rows.slice_start, all ? rows.counts : counts, all ? rows.neighbors : neighbors};
     if constexpr (kAsksForSlot<Evaluate>) {
-      const auto at_slot = [&](Index j, std::int64_t slot) {
-        return evaluate(j, all ? slot : rows.first(i) + kSlice * static_cast<std::int64_t>(places[slot]));
+      const std::int64_t number = rows.first_entry[i], start = rows.first(i);
+      const auto at_place = [&](Index j, std::int64_t place) {
+        return evaluate(j, number + (all ? place : places[start + kSlice * place]));
       };
-      walk(walked, i, test, at_slot, add);
+      walk(walked, i, test, at_place, add);
     } else {
       walk(walked, i, test, evaluate, add);
     }
@@ -111,22 +130,24 @@ struct PrunedRows {
   SCREE_HD static void walk(const SlicedRows& walked, Index i, const Test& test, const Evaluate& evaluate,
                             const Add& add) {
     if constexpr (kAtOnce > 0)
-      walked.for_each_contact_eagerly<kAtOnce>(i, test, evaluate, add);
+      walked.for_each_place_eagerly<kAtOnce>(i, test, evaluate, add);
     else
-      walked.for_each_contact(i, test, evaluate, add);
+      walked.for_each_place(i, test, evaluate, add);
   }
   template <class Test, class Evaluate, class Add>
   SCREE_HD void prune(Index i, const Test& test, const Evaluate& evaluate, const Add& add) const {
     const Index* row = rows.neighbors + rows.first(i);
     Index *const first_kept = neighbors + rows.first(i), *kept = first_kept;
-    for (Index left = rows.counts[i]; left > 0; --left, row += kSlice) {
+    std::int64_t number = 0;
+    if constexpr (kAsksForSlot<Evaluate>) number = rows.first_entry[i];
+    for (Index left = rows.counts[i]; left > 0; --left, row += kSlice, ++number) {
       const Index j = *row;
       if (test.near(j, margin)) {
         if constexpr (kAsksForSlot<Evaluate>)
           places[kept - neighbors] = static_cast<RowPlace>(rows.counts[i] - left);
         *kept = j, kept += kSlice;
       }
-      if (test(j)) add(evaluate_entry(evaluate, j, row - rows.neighbors));
+      if (test(j)) add(evaluate_entry(evaluate, j, number));
     }
     counts[i] = static_cast<Index>((kept - first_kept) / kSlice);
   }
@@ -151,10 +172,13 @@ class DeviceList {
   DeviceList(bool remembers, double slots);
 
   // Fills the list. Waits for the device once, to know whether the memory sufficed, and repeats with more if
-  // not. Throws DeviceError where there is none, and SimulationError where a row is too long for RowPlace.
+  // not. Throws DeviceError where there is none, and SimulationError where contacts remember and a row is too
+  // long for RowPlace, or there are more entries than an Index counts.
   void build(Device device, const ListInput& in);
 
-  SlicedRows rows() const { return {slice_start_.data(), counts_.data(), neighbors_.data()}; }
+  SlicedRows rows() const {
+    return {slice_start_.data(), counts_.data(), neighbors_.data(), first_entry_.data()};
+  }
   // Where the list is not needed any more: room for n values.
   Index* take_room(std::size_t n);
   // What the pruned rows need beside the list. After a build they hold nothing of use until a step with
@@ -164,11 +188,10 @@ class DeviceList {
   PrunedRows<0> pruned_rows();
   std::int64_t slots() const { return static_cast<std::int64_t>(neighbors_.size()); }
   std::size_t bytes() const {
-    return slice_start_.bytes() + counts_.bytes() + neighbors_.bytes() + pruned_counts_.bytes();
+    return slice_start_.bytes() + counts_.bytes() + first_entry_.bytes() + neighbors_.bytes() +
+           pruned_counts_.bytes();
   }
   std::int64_t entries() const { return h_totals_[0].entries; }
-  // Slots from the first to the last that is filled.
-  std::int64_t used() const { return static_cast<std::int64_t>(h_totals_[0].used); }
 
  private:
   struct Totals {
@@ -181,7 +204,7 @@ class DeviceList {
   const bool remembers_;
   const double slots_at_start_;  // per particle
   DeviceArray<std::int64_t> slice_start_;
-  DeviceArray<Index> counts_, neighbors_, pruned_counts_, pruned_;
+  DeviceArray<Index> counts_, first_entry_, neighbors_, pruned_counts_, pruned_;
   DeviceArray<RowPlace> places_;
   DeviceArray<Totals> totals_;
   PinnedArray<Totals> h_totals_;

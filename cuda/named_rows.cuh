@@ -24,9 +24,10 @@ struct NamedRows {
   __device__ void visit(Index i, const Visit& visit) const {
     if (records == 0) return;
     const Vec3 p = xyz(position[i]);
+    Vec4* record = history.neighbors + std::int64_t{rows.first_entry[i]} * records;
     std::int64_t slot = rows.first(i);
-    for (Index left = rows.counts[i]; left > 0; --left, slot += kSlice)
-      visit(history.neighbors + slot * records, [&] {
+    for (Index left = rows.counts[i]; left > 0; --left, slot += kSlice, record += records)
+      visit(record, [&] {
         const Index j = rows.neighbors[slot];
         return row_key(id_of(row_keys[j]), box.image_beside(p, xyz(position[j])));
       });

@@ -37,15 +37,16 @@ struct WarpRows {
   __device__ static constexpr int stride() { return SlicedRows::stride(); }
 
   // Adds evaluate(i, j, slot), a structure of kWords Words, of the entries j of row i of which test(j) holds
-  // to sum, a structure of as many doubles. It is called once for each, by any lane; one that asks for it
-  // gets the number of the entry among these, too. Returns how many they are. test: as in PrunedRows; one
-  // without near() is for whole rows.
+  // to sum, a structure of as many doubles; slot: the entry's number. It is called once for each, by any lane;
+  // one that asks for it gets the place of the entry among these, too. Returns how many they are. test: as in
+  // PrunedRows; one without near() is for whole rows.
   template <class Test, class Evaluate, class Sum>
   __device__ Index sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
     static_assert(sizeof(Sum) == kWords * sizeof(double));
     const Index lane = lane_of_warp();
     reinterpret_cast<Sum&>(shared->sum[lane]) = sum;
-    const std::int64_t slice = rows.rows.slice_start[i / kSlice], start = slice + lane;
+    const std::int64_t start = rows.rows.slice_start[i / kSlice] + lane;
+    const Index number = idle ? 0 : rows.rows.first_entry[i];
     constexpr bool kPrunes = requires { test.near(Index{}, Real{}); };
     const RowUse use = kPrunes ? rows.use : RowUse::all;
     const bool whole = use != RowUse::pruned;
@@ -82,13 +83,13 @@ struct WarpRows {
         for (Index k = 0; k < kAtOnce; ++k) {
           if (!touches[k]) continue;
           shared->neighbor[lane][found] = at.j[k];
-          evaluate.prepare(start + kSlice * at.place[k]);
+          evaluate.prepare(std::int64_t{number} + at.place[k]);
           shared->place[lane][found] = at.place[k];
           ++found;
         }
         at = ahead;
       }
-      share({found, earlier}, i - lane, slice, evaluate);
+      share({found, earlier}, i - lane, number, evaluate);
       earlier += found;
     } while (__any_sync(~0u, next < count));
     if (use == RowUse::prune && !idle) rows.counts[i] = kept;
@@ -113,9 +114,9 @@ struct WarpRows {
     Index now, earlier;
   };
 
-  // first: the warp's first row.
+  // first: the warp's first row. first_entry: of the lane's.
   template <class Evaluate>
-  __device__ void share(Found found, Index first, std::int64_t slice, const Evaluate& evaluate) const {
+  __device__ void share(Found found, Index first, Index first_entry, const Evaluate& evaluate) const {
     const Index lane = lane_of_warp();
     Index after = found.now;  // entries of all lanes up to this one
     for (int step = 1; step < kSlice; step *= 2) {
@@ -131,13 +132,12 @@ struct WarpRows {
       for (int step = kSlice / 2; step > 0; step /= 2)
         if (__shfl_sync(~0u, before, owner + step) <= turn) owner += step;
       const Index k = turn - __shfl_sync(~0u, before, owner);
-      const auto slot = [&] {
-        return slice + owner + kSlice * static_cast<std::int64_t>(shared->place[owner][k]);
-      };
+      const std::int64_t number_of_first = __shfl_sync(~0u, first_entry, owner);
+      const auto slot = [&] { return number_of_first + shared->place[owner][k]; };
       if constexpr (std::is_invocable_v<const Evaluate&, Index, Index, std::int64_t, Index>) {
-        const Index number = k + __shfl_sync(~0u, found.earlier, owner);
+        const Index among = k + __shfl_sync(~0u, found.earlier, owner);
         if (turn < all)
-          put(shared->result[lane], evaluate(first + owner, shared->neighbor[owner][k], slot(), number));
+          put(shared->result[lane], evaluate(first + owner, shared->neighbor[owner][k], slot(), among));
       } else {
         if (turn < all)
           put(shared->result[lane], evaluate(first + owner, shared->neighbor[owner][k], slot()));

@@ -222,6 +222,7 @@ struct ContactWalk {
   template <bool kAccepts, class Test, class Of, class Visit>
   SCREE_HD void walk_reaching(const Self& self, const Test& test, const Of& of, const Visit& visit) const {
     using Pair = decltype(look.pair(in, self, 0));
+    constexpr bool kSeesHistory = sees_history<Of, Pair>();
     struct Place {
       Index j;
       std::int64_t slot;
@@ -229,7 +230,7 @@ struct ContactWalk {
     const auto add = [&](const Place& at) {
       const Law& law = laws.get(self.material, in.material[at.j]);
       const auto pair = look.pair(in, self, at.j);
-      if constexpr (sees_history<Of, Pair>()) {
+      if constexpr (kSeesHistory) {
         const auto history = in.history.template read<Law>(in.history.neighbors, at.slot);
         const bool closed = found_closed(law, pair, history);
         if (!closed && !found_breaking(pair, history)) return;
@@ -241,12 +242,20 @@ struct ContactWalk {
         visit(of(law, pair), at.j);
       }
     };
-    in.rows.for_each_contact(
-        self.i, test,
-        [](Index j, std::int64_t slot) {
-          return Place{j, slot};
-        },
-        add);
+    if constexpr (kSeesHistory)
+      in.rows.for_each_contact(
+          self.i, test,
+          [](Index j, std::int64_t slot) {
+            return Place{j, slot};
+          },
+          add);
+    else
+      in.rows.for_each_contact(
+          self.i, test,
+          [](Index j) {
+            return Place{j, 0};
+          },
+          add);
   }
 };
 
