@@ -62,6 +62,22 @@ struct GhostKeyItem {
   }
 };
 
+// Keeps where a particle is, and the square of the distance from there [m^2].
+struct BuiltAtItem {
+  const Vec4* position;
+  Vec3* built_at;
+  SCREE_HD void operator()(Index i) const { built_at[i] = xyz(position[i]); }
+};
+
+struct MovedItem {
+  const Vec3* from;
+  const Vec4* to;
+  SCREE_HD Real operator()(Index i) const {
+    const Vec3 d = xyz(to[i]) - from[i];
+    return dot(d, d);
+  }
+};
+
 struct GhostItem {
   const Index* order;
   Index first;
@@ -221,7 +237,8 @@ void CudaList::find_rows(Real skin) {
                         RoomFor{mixed.spin_rest, items_.model.rotates() ? in_mixed : 0});
     items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
   }
-  copy_async(built_at_.data(), items_.now.position.data(), active, items_.stream);
+  for_each(items_.device(), items_.layout.active,
+           BuiltAtItem{items_.now.position.data(), built_at_.data()});
 }
 
 // Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:
@@ -258,7 +275,7 @@ void CudaList::build(Real skin, StageTimers& timers) {
 Real CudaList::displacement() {
   if (!current_) return 2;
   settle();
-  const DisplacementItem moved{built_at_.data(), items_.now.position.data()};
+  const MovedItem moved{built_at_.data(), items_.now.position.data()};
   DeviceResults& results = items_.results;
   max_over(items_.device(), items_.layout.active, moved, results.at(&Results::largest));
   Real largest[2] = {std::sqrt(results.fetch(&Results::largest)), bodies_.side().list_displacement()};

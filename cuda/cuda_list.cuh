@@ -58,7 +58,7 @@ class CudaList : public RankList {
   CellSort particle_sort_, ghost_sort_;
   BrickGrid grid_;
   DeviceArray<Index> ghost_items_;
-  DeviceArray<Vec4> built_at_;  // positions of the particles in the search when the list was built
+  DeviceArray<Vec3> built_at_;  // positions of the particles in the search when the list was built
   bool current_ = false;
   Real skin_ = 0, bound_ = 0;
   std::int64_t builds_ = 0;
