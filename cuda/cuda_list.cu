@@ -218,23 +218,32 @@ void CudaList::search(Real skin) {
   items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
 }
 
+// What explicit steps need beside the list. No step reads the forces, which are of the state at rest, and the
+// last one of a run writes them all: until then the places of pruned entries stand there, unless rows are
+// long.
+void CudaList::make_room_for_steps() {
+  MixedArrays& mixed = items_.mixed;
+  const auto in_mixed = static_cast<std::size_t>(items_.in_mixed ? items_.owned : 0);
+  const RoomFor<RowPlace> places = items_.list.room_for_places();
+  const bool in_forces = places.fits(items_.now.force);
+  items_.room.lay_out(RoomFor{built_at_, static_cast<std::size_t>(items_.layout.active)},
+                      items_.list.room_for_pruned(), RoomFor{places.array, in_forces ? 0 : places.size},
+                      RoomFor{mixed.fraction, in_mixed}, RoomFor{mixed.rest, in_mixed},
+                      RoomFor{mixed.spin_rest, items_.model.rotates() ? in_mixed : 0});
+  if (in_forces) places.stand_in(items_.now.force);
+}
+
 // What of the list each rank makes alone: what takes most of the memory.
 void CudaList::find_rows(Real skin) {
   index_ghosts();
   search(skin);
   owners_.note_rows();
-  const auto active = static_cast<std::size_t>(items_.layout.active);
-  DeviceList& list = items_.list;
   if (items_.model.integrator.particles == ParticleIntegrator::hht) {
-    built_at_.resize(active), step_arrays_.resize(items_);
+    built_at_.resize(static_cast<std::size_t>(items_.layout.active)), step_arrays_.resize(items_);
     items_.history.take_slots(items_.listed());
   } else {
     items_.history.take_slots(items_.listed());  // what was kept leaves the room
-    MixedArrays& mixed = items_.mixed;
-    const auto in_mixed = static_cast<std::size_t>(items_.in_mixed ? items_.owned : 0);
-    items_.room.lay_out(RoomFor{built_at_, active}, list.room_for_pruned(), list.room_for_places(),
-                        RoomFor{mixed.fraction, in_mixed}, RoomFor{mixed.rest, in_mixed},
-                        RoomFor{mixed.spin_rest, items_.model.rotates() ? in_mixed : 0});
+    make_room_for_steps();
     items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
   }
   for_each(items_.device(), items_.layout.active,

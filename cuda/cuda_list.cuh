@@ -47,6 +47,7 @@ class CudaList : public RankList {
   void find_ghosts(Real width);
   void name_ghosts();
   void find_rows(Real skin);
+  void make_room_for_steps();
   void index_ghosts();
   void search(Real skin);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cub/device/device_select.cuh>
 #include <numeric>
+#include <stdexcept>
 
 #include "cuda_particles.cuh"
 #include "dem/device.hpp"
@@ -90,6 +91,7 @@ RecordItem CudaParticles::record_item(Index first) {
 
 std::vector<Particle> CudaParticles::records() {
   if (list_.owners().migrating()) throw DeviceError("particles were on their way between ranks");
+  if (items_.open_run != nullptr) throw std::logic_error("CudaParticles: within a run there are no forces");
   std::vector<Particle> out(static_cast<std::size_t>(items_.owned));
   const auto at_once = static_cast<Index>(records_.size());
   for (Index first = 0; first < items_.owned; first += at_once) {

@@ -17,6 +17,15 @@ struct RoomFor {
     constexpr std::size_t kAligned = 256;  // as memory of its own is
     return (size * sizeof(T) + kAligned - 1) / kAligned * kAligned;
   }
+  // In the memory of another array, of whose values nothing is left then.
+  template <class U>
+  bool fits(const DeviceArray<U>& other) const {
+    return size * sizeof(T) <= other.size() * sizeof(U);
+  }
+  template <class U>
+  void stand_in(DeviceArray<U>& other) const {
+    array.borrow(reinterpret_cast<T*>(other.data()), size);
+  }
 };
 
 class DeviceRoom {
