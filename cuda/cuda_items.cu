@@ -22,7 +22,8 @@ CudaItems::CudaItems(const Model& of, const Ranks& on, const std::function<void(
       surfaces(of, subdomain.period(), stream),
       lane(on, of.parallel.transport),
       list(kernels->history() > 0, slots_per_particle(of)),
-      history(kept_numbers(of, kernels->history()), {of.space.min, subdomain.period()}, stream, room),
+      history(kept_numbers(of, kernels->history()), {of.space.min, subdomain.period()}, stream,
+              {other, room}),
       results(on, stream) {
   static_cast<FieldsThere&>(now) = fields_there(of);
   other.rotates = now.rotates, other.implicit = of.integrator.particles == ParticleIntegrator::hht;

@@ -1,150 +1,19 @@
 #include <cub/device/device_scan.cuh>
+#include <stdexcept>
 
 #include "base/countable.hpp"
 #include "dem/device.hpp"
 #include "dem/particle_fields.hpp"
 #include "device_history.cuh"
 #include "for_each.cuh"
-#include "named_rows.cuh"
+#include "kept_rows.cuh"
 
 namespace scree {
 namespace {
 
-struct KeptViews {
-  const Index* offsets;
-  std::int64_t* keys;
-  Real* values;
-};
-
-// Of the rows from the first on.
-struct CountClosedItem {
-  NamedRows names;
-  Index first;
-  Index* counts;
-  __device__ void operator()(Index k) const {
-    Index count = 0;
-    names.visit(first + k,
-                [&](const Vec4* record, const auto&) { count += record->w == names.history.step; });
-    names.visit_meshes(first + k, [&](Index entry) { count += names.is_closed(entry); });
-    counts[k] = count;
-  }
-};
-
-struct KeepItem {
-  NamedRows names;
-  Index first;
-  KeptViews kept;
-  __device__ void operator()(Index k) const {
-    const Index i = first + k;
-    Index at = kept.offsets[k];
-    const auto add = [&](const Vec4* record, std::int64_t key) {
-      kept.keys[at] = key;
-      Real* const to = kept.values + std::int64_t{at} * names.numbers;
-      for (int n = 0; n < names.numbers; ++n) to[n] = number_of(record, n);
-      ++at;
-    };
-    names.visit(i, [&](const Vec4* record, const auto& key) {
-      if (record->w == names.history.step) add(record, key());
-    });
-    const Vec3 p = xyz(names.position[i]);
-    names.visit_meshes(i, [&](Index entry) {
-      if (!names.is_closed(entry)) return;
-      const GlobalId name =
-          names.beside_mesh(entry, p).name(names.surfaces.surfaces[entry], names.feature(entry));
-      add(names.record_of(entry), names.mesh_key(entry, p, name));
-    });
-    order(kept.offsets[k], at);
-  }
-
- private:
-  // Contacts with meshes may stand out of order: by distance, not by feature.
-  __device__ void order(Index first, Index end) const {
-    for (Index k = first + 1; k < end; ++k)
-      for (Index at = k; at > first && kept.keys[at - 1] > kept.keys[at]; --at) {
-        exchange(kept.keys[at - 1], kept.keys[at]);
-        for (int v = 0; v < names.numbers; ++v)
-          exchange(kept.values[std::int64_t{at - 1} * names.numbers + v],
-                   kept.values[std::int64_t{at} * names.numbers + v]);
-      }
-  }
-  template <class T>
-  __device__ static void exchange(T& a, T& b) {
-    const T was = a;
-    a = b, b = was;
-  }
-};
-
-// Both the row and what was kept are ordered by key: one pass over both. Meshes come after.
-struct TakeItem {
-  NamedRows names;
-  KeptViews kept;
-  const Index* row_of;
-  __device__ void operator()(Index i) const {
-    Index at = kept.offsets[row_of[i]];
-    const Index end = kept.offsets[row_of[i] + 1];
-    names.visit(i, [&](Vec4* record, const auto& key) {
-      for (int r = 0; r < names.records; ++r) record[r] = {};
-      if (at == end) return;
-      const std::int64_t wanted = key();
-      while (at < end && kept.keys[at] < wanted) ++at;
-      if (at < end && kept.keys[at] == wanted) put(record, at);
-    });
-    names.visit_meshes(i, [&](Index entry) {
-      if (entry == names.surfaces.offsets[i] || !names.alike(entry - 1, entry)) take_mesh(i, entry);
-    });
-  }
-
- private:
-  __device__ void put(Vec4* record, Index contact) const {
-    const Real* const from = kept.values + std::int64_t{contact} * names.numbers;
-    for (int k = 0; k < names.numbers; ++k) number_of(record, k) = from[k];
-    if (names.records > 0) record->w = names.history.step;
-  }
-  // What the particle remembers of a mesh goes to the entries of their group, the first of which is given.
-  __device__ void take_mesh(Index i, Index entry) const {
-    const Vec3 p = xyz(names.position[i]);
-    const BesideMesh beside = names.beside_mesh(entry, p);
-    const std::int64_t wanted = names.mesh_key(entry, p, surface_id(names.surfaces.surfaces[entry]));
-    Index slot = entry;
-    for (; slot < names.surfaces.offsets[i + 1] && names.alike(entry, slot); ++slot)
-      for (int r = 0; r < names.records; ++r) names.record_of(slot)[r] = {};
-    const Index last = slot;
-    slot = entry;
-    for (Index k = kept.offsets[row_of[i]]; k < kept.offsets[row_of[i] + 1] && slot < last; ++k) {
-      const std::int64_t key = kept.keys[k];
-      if (!is_surface(key) || without_feature(key) != wanted) continue;
-      names.feature(slot) = beside.remembered(key);
-      put(names.record_of(slot++), k);
-    }
-  }
-};
-
 struct NoFeatureItem {
   Index *now, *ahead;
   SCREE_HD void operator()(Index entry) const { now[entry] = ahead[entry] = kNoFeature; }
-};
-
-struct RowLengthItem {
-  const Index *offsets, *row_of, *particles;
-  Index* counts;
-  SCREE_HD void operator()(Index k) const {
-    const Index row = row_of[particles[k]];
-    counts[k] = offsets[row + 1] - offsets[row];
-  }
-};
-
-struct CopyRowItem {
-  KeptViews from;
-  const Index *row_of, *particles;
-  int numbers;
-  KeptViews to;
-  SCREE_HD void operator()(Index k) const {
-    const Index row = row_of[particles[k]], count = from.offsets[row + 1] - from.offsets[row];
-    const std::int64_t old = from.offsets[row], at = to.offsets[k];
-    for (Index c = 0; c < count; ++c) to.keys[at + c] = from.keys[old + c];
-    for (std::int64_t v = 0; v < std::int64_t{count} * numbers; ++v)
-      to.values[at * numbers + v] = from.values[old * numbers + v];
-  }
 };
 
 struct RowOfItem {
@@ -162,9 +31,32 @@ struct CountUpItem {
 // Room over what was needed where an array had to grow: one in so many.
 constexpr std::size_t kKeptSpare = 32, kEntriesSpare = 32;
 
+// In one piece.
 template <class Rows>
-KeptViews kept_views(Rows& rows) {
-  return {rows.offsets.data(), rows.keys.data(), rows.values.data()};
+KeptViews views_of_rows(Rows& rows, int numbers) {
+  KeptViews views{rows.offsets.data(), numbers, {}};
+  views.part[0] = {rows.keys.data(), rows.values.data(), 0, static_cast<Index>(rows.keys.size())};
+  return views;
+}
+
+// Queues the copies of all contacts from their parts into one piece, and back.
+void join_parts(const KeptViews& parts, std::int64_t* keys, Real* values, cudaStream_t stream) {
+  const auto numbers = static_cast<std::size_t>(parts.numbers);
+  for (const KeptViews::Part& part : parts.part) {
+    if (part.size() == 0) continue;
+    copy_async(keys + part.first, part.keys, part.size(), stream);
+    copy_async(values + static_cast<std::size_t>(part.first) * numbers, part.values, part.size() * numbers,
+               stream);
+  }
+}
+void fill_parts(const KeptViews& parts, const std::int64_t* keys, const Real* values, cudaStream_t stream) {
+  const auto numbers = static_cast<std::size_t>(parts.numbers);
+  for (const KeptViews::Part& part : parts.part) {
+    if (part.size() == 0) continue;
+    copy_async(part.keys, keys + part.first, part.size(), stream);
+    copy_async(part.values, values + static_cast<std::size_t>(part.first) * numbers, part.size() * numbers,
+               stream);
+  }
 }
 
 NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box, const HistoryViews& history,
@@ -175,8 +67,8 @@ NamedRows names_of(const DeviceHistory::Listed& at, const PeriodicBox& box, cons
 
 }  // namespace
 
-DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, DeviceRoom& room)
-    : numbers_(numbers), box_(box), stream_(stream), room_(room) {
+DeviceHistory::DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, const Rooms& rooms)
+    : numbers_(numbers), box_(box), stream_(stream), rooms_(rooms) {
   if (width() > 0) first_step_.resize(1), h_first_step_.resize(1);
 }
 
@@ -239,25 +131,80 @@ std::size_t DeviceHistory::count_rows(Rows& rows, const Listed& at, Index first,
   return add_up(rows, count);
 }
 
-void DeviceHistory::fill_rows(Rows& rows, const Listed& at, Index first, Index count) {
-  for_each({stream_}, count, KeepItem{names_of(at, box_, views(), width()), first, kept_views(rows)});
+void DeviceHistory::fill_rows(const KeptViews& rows, const Listed& at, Index first, Index count) {
+  for_each({stream_}, count, KeepItem{names_of(at, box_, views(), width()), first, rows});
 }
 
+KeptViews DeviceHistory::kept_views() {
+  return parts_ ? *parts_ : views_of_rows(kept_, width());
+}
+
+// Room for so many contacts in parts, beside the records: where nothing is needed before the sort, and after it.
+KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
+  constexpr std::size_t kWhole = 4;  // of so many the numbers begin with whole sectors
+  const auto numbers = static_cast<std::size_t>(width());
+  KeptViews parts{kept_.offsets.data(), width(), {}};
+  std::size_t first = 0, next = 0;
+  const auto add = [&](std::int64_t* keys, Real* values, std::size_t size) {
+    parts.part[next++] = {keys, values, static_cast<Index>(first), static_cast<Index>(first + size)};
+    first += size;
+  };
+  for (DeviceArray<Vec4>* array : rooms_.second.motion()) {
+    const std::size_t fit = array->size() * sizeof(Vec4) /
+                            (sizeof(std::int64_t) + numbers * sizeof(Real)) / kWhole * kWhole;
+    auto* const keys = reinterpret_cast<std::int64_t*>(array->data());
+    add(keys, reinterpret_cast<Real*>(keys + fit), std::min(fit, contacts - first));
+  }
+  const std::size_t rest = contacts - first;
+  rooms_.of_steps.lay_out(RoomFor{rest_keys_, rest}, RoomFor{rest_values_, rest * numbers});
+  add(rest_keys_.data(), rest_values_.data(), rest);
+  return parts;
+}
+
+// Room for so many contacts in one piece: where the records are, which then must not be needed any more.
+// False where that does not suffice.
+bool DeviceHistory::lay_out_in_records(std::size_t contacts) {
+  const auto numbers = static_cast<std::size_t>(width());
+  const RoomFor keys{kept_.keys, contacts};
+  const RoomFor values{kept_.values, contacts * numbers};
+  if (keys.bytes() + values.bytes() > neighbors_.size() * sizeof(Vec4)) return false;
+  auto* const at = reinterpret_cast<std::byte*>(neighbors_.data());
+  kept_.keys.borrow(reinterpret_cast<std::int64_t*>(at), keys.size);
+  kept_.values.borrow(reinterpret_cast<Real*>(at + keys.bytes()), values.size);
+  return true;
+}
+
+// The contacts of packings have room in the place of the records, from when these are not needed any more until
+// they are made again; before and after that they stand in parts. Few neighbours beside many surfaces leave no
+// such room.
 void DeviceHistory::leave_slots(const Listed& at) {
   if (!at_slots_) return;
   row_of_.resize(static_cast<std::size_t>(at.owned));
   const std::size_t contacts = count_rows(kept_, at, 0, at.owned),
                     numbers = static_cast<std::size_t>(width()),
                     room = contacts + contacts / kKeptSpare;  // for those that come with particles
-  room_.lay_out(RoomFor{kept_.keys, room}, RoomFor{kept_.values, room * numbers});
+  in_records_ = lay_out_in_records(room);
+  if (!in_records_) rooms_.of_steps.lay_out(RoomFor{kept_.keys, room}, RoomFor{kept_.values, room * numbers});
   kept_.keys.resize(contacts), kept_.values.resize(contacts * numbers);
-  fill_rows(kept_, at, 0, at.owned);
+  const KeptViews parts = in_records_ ? lay_out_parts(contacts) : kept_views();
+  fill_rows(parts, at, 0, at.owned);
+  if (in_records_) join_parts(parts, kept_.keys.data(), kept_.values.data(), stream_);
   for_each({stream_}, at.owned, CountUpItem{row_of_.data(), 0});
   at_slots_ = false;
 }
 
+// What is kept where the records come gets out of their way.
+void DeviceHistory::clear_records() {
+  if (!in_records_) return;
+  const KeptViews parts = lay_out_parts(kept_.keys.size());
+  fill_parts(parts, kept_.keys.data(), kept_.values.data(), stream_);
+  parts_ = parts, in_records_ = false;
+  kept_.keys.release(), kept_.values.release();
+}
+
 void DeviceHistory::take_slots(const Listed& at) {
   if (!exists()) return;
+  clear_records();
   const auto records = static_cast<std::size_t>(records_of(width()));
   if (const auto needed = static_cast<std::size_t>(at.list.entries()) * records; needed > neighbors_.size())
     neighbors_.resize(needed + needed / kEntriesSpare);
@@ -268,15 +215,16 @@ void DeviceHistory::take_slots(const Listed& at) {
   ahead_.zero(stream_);
   for_each({stream_}, at.surfaces.entries(), NoFeatureItem{features_.data(), features_ahead_.data()});
   for_each({stream_}, at.owned,
-           TakeItem{names_of(at, box_, views(), width()), kept_views(kept_), row_of_.data()});
-  kept_.keys.release(), kept_.values.release();
+           TakeItem{names_of(at, box_, views(), width()), kept_views(), row_of_.data()});
+  parts_.reset(), kept_.keys.release(), kept_.values.release();
   at_slots_ = true;
 }
 
 void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
   if (!exists()) return;
   at_slots_ = false;
-  kept_.offsets.resize(1), kept_.offsets.zero(stream_), kept_.keys.resize(0), kept_.values.resize(0);
+  kept_.offsets.resize(1), kept_.offsets.zero(stream_);
+  in_records_ = false, parts_.reset(), kept_.keys.release(), kept_.values.release();
   row_of_.resize(0);
   const auto at_once = static_cast<std::size_t>(std::min(owned, kRowsAtOnce));
   packed_.offsets.resize(at_once + 1), make_room(packed_, at_once * kRoomInRows);
@@ -285,6 +233,7 @@ void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
 
 void DeviceHistory::reorder(const Index* order, Index n, Index* numbers) {
   if (!exists()) return;
+  if (parts_) throw std::logic_error("DeviceHistory: the sort would take the room of what is kept");
   for_each({stream_}, n, RowOfItem{row_of_.data(), order, numbers});
   row_of_.resize(static_cast<std::size_t>(n));
   copy_async(row_of_.data(), numbers, row_of_.size(), stream_);
@@ -310,12 +259,15 @@ void DeviceHistory::append(const KeptContacts& arriving, Index owned) {
   wait_for(stream_);  // before the vectors above go
 }
 
-KeptContacts DeviceHistory::download(const Rows& rows) const {
+KeptContacts DeviceHistory::download(const Rows& rows, const KeptViews& parts) const {
   KeptContacts out;
   out.numbers = numbers_;
   const std::vector<Index> offsets = rows.offsets.download(stream_);
   out.offsets.assign(offsets.begin(), offsets.end());
-  out.keys = rows.keys.download(stream_), out.values = rows.values.download(stream_);
+  out.keys.resize(static_cast<std::size_t>(offsets.back()));
+  out.values.resize(out.keys.size() * static_cast<std::size_t>(width()));
+  join_parts(parts, out.keys.data(), out.values.data(), stream_);
+  wait_for(stream_);
   return out;
 }
 
@@ -327,20 +279,20 @@ KeptContacts DeviceHistory::rows(const Index* particles, Index n) {
            RowLengthItem{kept_.offsets.data(), row_of_.data(), particles, packed_.offsets.data()});
   make_room(packed_, add_up(packed_, n));
   for_each({stream_}, n,
-           CopyRowItem{kept_views(kept_), row_of_.data(), particles, width(), kept_views(packed_)});
-  return download(packed_);
+           CopyRowItem{kept_views(), row_of_.data(), particles, views_of_rows(packed_, width())});
+  return download(packed_, views_of_rows(packed_, width()));
 }
 
 KeptContacts DeviceHistory::contacts(const Listed& at) {
   if (!exists()) return {};
-  if (!at_slots_) return download(kept_).rows(row_of_.download(stream_));
+  if (!at_slots_) return download(kept_, kept_views()).rows(row_of_.download(stream_));
   // Some rows after the other: steps need the room of what is kept.
   KeptContacts out = no_contacts(numbers_, 0);
   for (Index first = 0; first < at.owned; first += kRowsAtOnce) {
     const Index count = std::min(kRowsAtOnce, at.owned - first);
     make_room(packed_, count_rows(packed_, at, first, count));
-    fill_rows(packed_, at, first, count);
-    out.append(download(packed_));
+    fill_rows(views_of_rows(packed_, width()), at, first, count);
+    out.append(download(packed_, views_of_rows(packed_, width())));
   }
   return out;
 }

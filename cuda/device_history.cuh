@@ -1,6 +1,7 @@
 // What the contacts of a rank's particles remember, on its GPU: src/dem/cpu_history.hpp for device memory.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "dem/history_slots.hpp"
@@ -8,14 +9,22 @@
 #include "device.cuh"
 #include "device_list.cuh"
 #include "device_surfaces.cuh"
+#include "kept_rows.cuh"
+#include "particle_arrays.cuh"
 
 namespace scree {
 
 class DeviceHistory {
  public:
+  // Memory that is free while a list is built: the second arrays but for the sort, the room of explicit steps
+  // all the time.
+  struct Rooms {
+    SecondArrays& second;
+    DeviceRoom& of_steps;
+  };
   // numbers: per contact, or kSidesAlone; 0: nothing below does anything. What is queued without a device
-  // goes to the stream. room: what is kept from one list to the next stands there.
-  DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, DeviceRoom& room);
+  // goes to the stream.
+  DeviceHistory(int numbers, const PeriodicBox& box, cudaStream_t stream, const Rooms& rooms);
 
   bool exists() const { return numbers_ != 0; }
   bool at_slots() const { return at_slots_; }
@@ -76,24 +85,33 @@ class DeviceHistory {
   int width() const { return is_alone() ? 0 : numbers_; }
   // What rows of so many particles from the first on hold: the offsets; with room for them, the contacts.
   std::size_t count_rows(Rows& rows, const Listed& at, Index first, Index count);
-  void fill_rows(Rows& rows, const Listed& at, Index first, Index count);
+  void fill_rows(const KeptViews& rows, const Listed& at, Index first, Index count);
   // Lengths of rows become their offsets; returns how many contacts there are. Waits.
   std::size_t add_up(Rows& rows, Index count);
   void make_room(Rows& rows, std::size_t contacts) const;
-  KeptContacts download(const Rows& rows) const;
+  KeptContacts download(const Rows& rows, const KeptViews& parts) const;
+  KeptViews kept_views();
+  KeptViews lay_out_parts(std::size_t contacts);
+  bool lay_out_in_records(std::size_t contacts);
+  void clear_records();
 
   const int numbers_;
   const PeriodicBox box_;
   const cudaStream_t stream_;
-  DeviceRoom& room_;
+  const Rooms rooms_;
   bool at_slots_ = false;
   DeviceArray<Vec4> neighbors_, ground_, bodies_, ahead_;  // HistoryViews; empty if kSidesAlone
   DeviceArray<Index> features_, features_ahead_;
   Real step_ = 2, run_start_ = 2;  // there is one before the first
   DeviceArray<Real> first_step_;
   PinnedArray<Real> h_first_step_;
-  // Unless at the slots: what is kept, and which row of it is that of each particle.
+  // Unless at the slots: what is kept, and which row of it is that of each particle. It stands in the memory of
+  // the records, or, while they are made of it, in parts.
   Rows kept_;
+  bool in_records_ = false;
+  std::optional<KeptViews> parts_;
+  DeviceArray<std::int64_t> rest_keys_;  // of the last part
+  DeviceArray<Real> rest_values_;
   DeviceArray<Index> row_of_;
   Rows packed_;                       // on its way to the host
   DeviceArray<unsigned char> space_;  // of library calls

@@ -13,9 +13,7 @@ class WaitingRoom {
 
   void clear() {
     for (std::size_t k = 0; k < 3; ++k) {
-      DeviceArray<Vec4>& array = k == 0   ? second_.position
-                                 : k == 1 ? second_.velocity
-                                          : second_.angular_velocity;
+      DeviceArray<Vec4>& array = *second_.motion()[k];
       free_[k] = {reinterpret_cast<std::byte*>(array.data()), array.size() * sizeof(Vec4)};
     }
   }

@@ -1,6 +1,8 @@
 // Particles on the device: the arrays of ParticleStore, and second ones of what steps read and write.
 #pragma once
 
+#include <array>
+
 #include "dem/mixed_items.hpp"
 #include "dem/particle_fields.hpp"
 #include "device_room.cuh"
@@ -30,6 +32,7 @@ struct SecondArrays {
   DeviceArray<Vec4> position, velocity, angular_velocity;  // all items
   DeviceArray<Vec3> acceleration, angular_acceleration;    // particles, of implicit steps
 
+  std::array<DeviceArray<Vec4>*, 3> motion() { return {&position, &velocity, &angular_velocity}; }
   // Room for so many; what is there may be lost.
   void grow(std::size_t items, std::size_t owned) {
     position.resize(whole(items)), velocity.resize(whole(items));

@@ -54,6 +54,7 @@ constexpr double kTouchArrays = sizeof(MeshTouch), kTouchArraysOverStep = sizeof
 constexpr double kGroupArrays = 3 * sizeof(Index) + sizeof(MeshGroup) + sizeof(Standing),
                  kRowOfTriangle = sizeof(Index);
 constexpr double kSpareRoom = 1.125;  // of arrays that may grow with every list
+constexpr double kFilledSlots = 0.8;  // of a list of a settled bed; contacts remember at these alone
 constexpr double kCellBytes = sizeof(Index);
 constexpr double kBrickMargin = 1.1;  // cells that fill up the last bricks
 
@@ -147,25 +148,34 @@ Sizes sizes_of(const Model& model) {
   return sizes;
 }
 
-// The list, what contacts remember at its slots, and the room that explicit steps share with what is kept
-// from one list to the next.
-double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
-  const int numbers = history_of(model.contact);
-  double bytes = n.particles * kRowArrays + n.slots * sizeof(Index) +
-                 n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
-  const double kept = n.particles * bytes_remembered(numbers, 0), places = n.particles * sizeof(Vec4);
-  if (numbers > 0) {
-    const double at_once = std::min<double>(n.particles, kRowsAtOnce) * kRoomInRows;
-    bytes += n.slots * records_of(numbers) * sizeof(Vec4) + 2 * n.particles * sizeof(Index) +
-             at_once * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
-  }
-  if (!explicit_steps) return bytes + kept + places;
-  double of_steps = places + n.slots * (sizeof(Index) + (numbers > 0 ? sizeof(std::uint16_t) : 0));
+// What explicit steps need beside the list: DeviceRoom.
+double bytes_of_steps(const Model& model, const Sizes& n) {
+  // Of pruned entries; they stand in the forces' place if they fit.
+  const double places = history_of(model.contact) > 0 ? n.slots * sizeof(std::uint16_t) : 0;
+  double of_steps = n.particles * sizeof(Vec3) + n.slots * sizeof(Index);
+  if (places > n.particles * sizeof(Vec3)) of_steps += places;
   if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
     of_steps += n.particles * kMixedArrays;
     if (model.rotates()) of_steps += n.particles * sizeof(MixedSpinRest);
   }
-  return bytes + n.particles * sizeof(Index) + std::max(kept, of_steps);
+  return of_steps;
+}
+
+// The list, what contacts remember at its entries, and the room that explicit steps share with what is kept
+// from one list to the next and has no room in the second arrays.
+double list_bytes(const Model& model, const Sizes& n, bool explicit_steps) {
+  const int numbers = history_of(model.contact);
+  double bytes = n.particles * kRowArrays + n.slots * sizeof(Index) +
+                 n.cells * kCellBytes * (n.items > n.particles ? 2 : 1);
+  if (numbers > 0) {
+    const double at_once = std::min<double>(n.particles, kRowsAtOnce) * kRoomInRows;
+    bytes += kFilledSlots * n.slots * records_of(numbers) * sizeof(Vec4) + 3 * n.particles * sizeof(Index) +
+             at_once * (sizeof(std::int64_t) + static_cast<double>(numbers) * sizeof(Real));
+  }
+  const double second = n.items * (kSecondMotion + (model.rotates() ? kSpinFields : 0)),
+               kept = std::max(0.0, n.particles * bytes_remembered(numbers, 0) - second);
+  if (!explicit_steps) return bytes + kept + n.particles * sizeof(Vec3);
+  return bytes + n.particles * sizeof(Index) + std::max(kept, bytes_of_steps(model, n));
 }
 
 double field_bytes(const Model& model, const Sizes& n, bool explicit_steps) {

@@ -41,6 +41,20 @@ void check_ledgers(const RememberingBox& cpu, const RememberingBox& cuda) {
   CHECK(a.cohesion == b.cohesion);
 }
 
+// Spheres that slide down a plane, pressed to it by their weight, apart from each other.
+Model sliding_box(const BoxCase& c) {
+  Model model = random_box(c, 5, 33);
+  const Vec3 normal = model.walls[0].normal, down{normal.y, -normal.x, 0};
+  ParticleSet& set = model.particles;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const Real overlap = -set.mass[i] * dot(model.gravity, normal) / model.contact.laws[0].normal_stiffness;
+    set.position[i] = model.walls[0].point + (set.radius[i] - overlap) * normal - Real(0.5) * down;
+    set.position[i].z = model.space.min.z + kLargestRadius * (1 + 2.4 * static_cast<Real>(i));
+    set.velocity[i] = (1 + 0.1 * static_cast<Real>(i)) * down;
+  }
+  return model;
+}
+
 }  // namespace
 
 TEST_CASE("particles rub the same on both backends, and each goes on from what the other has") {
@@ -82,6 +96,27 @@ TEST_CASE("particles rub the same on both backends in implicit steps") {
       for (int step = 0; step < 10; ++step)
         for (RememberingBox* box : {&on_cpu, &on_cuda}) rubbing_hht_step(*box, kHhtStep, freeze_after);
       check_equal(kRubbingKinds[0], on_cpu, on_cuda);
+    }
+}
+
+// What is kept has more than the room of the records with walls alone, and has all the rooms in turn where each
+// particle touches many. Lists that are built at rest leave the forces as they are.
+TEST_CASE("contacts with walls alone, and very many of each particle, go from list to list on both backends") {
+  const BoxCase& c = kRubbingBoxes[3];
+  for (const RubbingKind& kind : kRubbingKinds)
+    for (const bool crowded : {false, true}) {
+      CAPTURE(kind.name, crowded);
+      Model model = kind.of(rubbing(crowded ? random_box(c, 2000, 33) : sliding_box(c)));
+      model.contact.skin = 0.02;
+      RememberingBox cpu(model, {}, make_cpu), cuda(model, {}, make_cuda);
+      for (RememberingBox* box : {&cpu, &cuda}) box->start();
+      for (int part = 0; part < 8; ++part) {
+        for (RememberingBox* box : {&cpu, &cuda})
+          box->take_steps(25, crowded ? 5e-5 : kMovingStep), box->backend->list().build(0.02, box->timers);
+        check_equal(kind, cpu, cuda);
+      }
+      const std::size_t contacts = cuda.state().contacts.keys.size();
+      CHECK((crowded ? contacts > 3 * model.particles.size() : contacts == model.particles.size()));
     }
 }
 
