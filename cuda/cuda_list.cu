@@ -218,19 +218,26 @@ void CudaList::search(Real skin) {
   items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
 }
 
-// What explicit steps need beside the list. No step reads the forces, which are of the state at rest, and the
-// last one of a run writes them all: until then the places of pruned entries stand there, unless rows are
-// long.
+// What explicit steps need beside the list. Forces, and where particles rotate all else that is of an instant,
+// are of the state at rest: no step reads them, and the last one of a run writes them all. Until then others
+// stand in their place.
 void CudaList::make_room_for_steps() {
-  MixedArrays& mixed = items_.mixed;
+  ParticleArrays& now = items_.now;
   const auto in_mixed = static_cast<std::size_t>(items_.in_mixed ? items_.owned : 0);
+  const bool rotates = items_.model.rotates();
   const RoomFor<RowPlace> places = items_.list.room_for_places();
-  const bool in_forces = places.fits(items_.now.force);
+  const RoomFor fraction{items_.mixed.fraction, in_mixed};
+  const RoomFor rest{items_.mixed.rest, in_mixed};
+  const RoomFor spin_rest{items_.mixed.spin_rest, rotates ? in_mixed : 0};
+  const bool in_forces = places.fits(now.force);  // but for long rows
   items_.room.lay_out(RoomFor{built_at_, static_cast<std::size_t>(items_.layout.active)},
-                      items_.list.room_for_pruned(), RoomFor{places.array, in_forces ? 0 : places.size},
-                      RoomFor{mixed.fraction, in_mixed}, RoomFor{mixed.rest, in_mixed},
-                      RoomFor{mixed.spin_rest, items_.model.rotates() ? in_mixed : 0});
-  if (in_forces) places.stand_in(items_.now.force);
+                      items_.list.room_for_pruned(), places.unless(in_forces), fraction.unless(rotates),
+                      rest.unless(rotates), spin_rest.unless(rotates));
+  if (in_forces) places.stand_in(now.force);
+  if (rotates) {
+    fraction.stand_in(now.loss_power), rest.stand_in(now.acceleration);
+    spin_rest.stand_in(now.angular_acceleration);
+  }
 }
 
 // What of the list each rank makes alone: what takes most of the memory.

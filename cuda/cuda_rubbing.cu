@@ -321,7 +321,7 @@ void CudaRubbingStep::freeze_limits() {
     const std::size_t bytes = static_cast<std::size_t>(n) * sizeof(Real);
     if (n > 0) require_cuda(cudaMemsetAsync(limits.data(), 0xff, bytes, items_.stream), "cudaMemsetAsync");
   };
-  clear(rubbing_.neighbor_limits, items_.list.slots());
+  clear(rubbing_.neighbor_limits, items_.list.entries());
   clear(rubbing_.surface_limits, items_.surfaces.entries());
   const FrozenLimits to{rubbing_.neighbor_limits.data(), rubbing_.surface_limits.data()};
   if (ghosts_stale_) {  // on the stream of the halo, as in a pass over the rows

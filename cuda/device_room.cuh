@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <stdexcept>
 
 #include "device.cuh"
 
@@ -17,13 +18,15 @@ struct RoomFor {
     constexpr std::size_t kAligned = 256;  // as memory of its own is
     return (size * sizeof(T) + kAligned - 1) / kAligned * kAligned;
   }
-  // In the memory of another array, of whose values nothing is left then.
+  RoomFor unless(bool elsewhere) const { return {array, elsewhere ? 0 : size}; }
+  // In the memory of another array, of whose values nothing is left once the first is written.
   template <class U>
   bool fits(const DeviceArray<U>& other) const {
     return size * sizeof(T) <= other.size() * sizeof(U);
   }
   template <class U>
   void stand_in(DeviceArray<U>& other) const {
+    if (!fits(other)) throw std::logic_error("RoomFor: an array in place of a shorter one");
     array.borrow(reinterpret_cast<T*>(other.data()), size);
   }
 };

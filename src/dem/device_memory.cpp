@@ -154,10 +154,9 @@ double bytes_of_steps(const Model& model, const Sizes& n) {
   const double places = history_of(model.contact) > 0 ? n.slots * sizeof(std::uint16_t) : 0;
   double of_steps = n.particles * sizeof(Vec3) + n.slots * sizeof(Index);
   if (places > n.particles * sizeof(Vec3)) of_steps += places;
-  if (model.integrator.precision == Precision::mixed && !n.on_bodies) {
+  // Where particles rotate these stand in the place of what is of an instant.
+  if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates())
     of_steps += n.particles * kMixedArrays;
-    if (model.rotates()) of_steps += n.particles * sizeof(MixedSpinRest);
-  }
   return of_steps;
 }
 

@@ -1,5 +1,5 @@
-// Where contacts remember: records at the slots of a list, read by every walk and written by the items that
-// accept a step. One text for the CPU and CUDA.
+// Where contacts remember: records at the slots of a list, which are its entries' numbers, read by every walk
+// and written by the items that accept a step. One text for the CPU and CUDA.
 #pragma once
 
 #include <cstdint>

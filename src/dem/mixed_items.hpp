@@ -175,8 +175,8 @@ struct FromMixedItem {
   int parity;
   QuantumGrid grid;
   Vec4 *position, *velocity, *spin;  // null unless particles rotate
-  Vec3* acceleration;
-  Real *contact_loss, *friction_loss;  // the second: null likewise
+  Vec3* acceleration;                  // not where they do
+  Real *contact_loss, *friction_loss;  // the second: null unless particles rotate
   const std::uint8_t* drifting;
   Vec3 gravity;
   Real h;
@@ -217,7 +217,7 @@ struct FromMixedItem {
     const Vec3 last = verlet_middle_after(steps, h, first, gravity);
     position[i] = vec4(xyz(p) + verlet_displacement_of(steps, h, first, gravity), p.w);
     velocity[i] = vec4(spin != nullptr ? last : verlet_predicted_from_middle(h, last, gravity), v.w);
-    acceleration[i] = gravity;
+    if (spin == nullptr) acceleration[i] = gravity;
   }
 };
 
