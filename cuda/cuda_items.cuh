@@ -104,7 +104,7 @@ struct CudaItems {
   StepParts parts;     // of explicit steps
   HaloLane lane;
   DeviceList list;
-  // Of explicit steps: what they know of their list, or what contacts remember from one list to the next.
+  // Of explicit steps: what they know of their list, or, while one is built, what has no other room.
   DeviceRoom room;
   DeviceHistory history;
   LoadBalance balance;

@@ -218,9 +218,9 @@ void CudaList::search(Real skin) {
   items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
 }
 
-// What explicit steps need beside the list. Forces, and where particles rotate all else that is of an instant,
-// are of the state at rest: no step reads them, and the last one of a run writes them all. Until then others
-// stand in their place.
+// What explicit steps need beside the list. Forces, and where particles rotate all else that is of an
+// instant, are of the state at rest: no step reads them, and the last one of a run writes them all. Until
+// then others stand in their place.
 void CudaList::make_room_for_steps() {
   ParticleArrays& now = items_.now;
   const auto in_mixed = static_cast<std::size_t>(items_.in_mixed ? items_.owned : 0);
@@ -253,8 +253,7 @@ void CudaList::find_rows(Real skin) {
     make_room_for_steps();
     items_.parts.find(items_.device(), items_.surfaces, items_.owned, items_.interior, items_.ranks.alone());
   }
-  for_each(items_.device(), items_.layout.active,
-           BuiltAtItem{items_.now.position.data(), built_at_.data()});
+  for_each(items_.device(), items_.layout.active, BuiltAtItem{items_.now.position.data(), built_at_.data()});
 }
 
 // Where an allocation fails the particles stay what they were. Phases in which that is likely end `together`:

@@ -135,11 +135,10 @@ void DeviceHistory::fill_rows(const KeptViews& rows, const Listed& at, Index fir
   for_each({stream_}, count, KeepItem{names_of(at, box_, views(), width()), first, rows});
 }
 
-KeptViews DeviceHistory::kept_views() {
-  return parts_ ? *parts_ : views_of_rows(kept_, width());
-}
+KeptViews DeviceHistory::kept_views() { return parts_ ? *parts_ : views_of_rows(kept_, width()); }
 
-// Room for so many contacts in parts, beside the records: where nothing is needed before the sort, and after it.
+// Room for so many contacts in parts, beside the records: where nothing is needed before the sort, and after
+// it.
 KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
   constexpr std::size_t kWhole = 4;  // of so many the numbers begin with whole sectors
   const auto numbers = static_cast<std::size_t>(width());
@@ -150,8 +149,8 @@ KeptViews DeviceHistory::lay_out_parts(std::size_t contacts) {
     first += size;
   };
   for (DeviceArray<Vec4>* array : rooms_.second.motion()) {
-    const std::size_t fit = array->size() * sizeof(Vec4) /
-                            (sizeof(std::int64_t) + numbers * sizeof(Real)) / kWhole * kWhole;
+    const std::size_t fit =
+        array->size() * sizeof(Vec4) / (sizeof(std::int64_t) + numbers * sizeof(Real)) / kWhole * kWhole;
     auto* const keys = reinterpret_cast<std::int64_t*>(array->data());
     add(keys, reinterpret_cast<Real*>(keys + fit), std::min(fit, contacts - first));
   }
@@ -174,9 +173,9 @@ bool DeviceHistory::lay_out_in_records(std::size_t contacts) {
   return true;
 }
 
-// The contacts of packings have room in the place of the records, from when these are not needed any more until
-// they are made again; before and after that they stand in parts. Few neighbours beside many surfaces leave no
-// such room.
+// The contacts of packings have room in the place of the records, from when these are not needed any more
+// until they are made again; before and after that they stand in parts. Few neighbours beside many surfaces
+// leave no such room.
 void DeviceHistory::leave_slots(const Listed& at) {
   if (!at_slots_) return;
   row_of_.resize(static_cast<std::size_t>(at.owned));
@@ -214,8 +213,7 @@ void DeviceHistory::take_slots(const Listed& at) {
     of_meshes->resize_with_spare(static_cast<std::size_t>(at.surfaces.entries()));
   ahead_.zero(stream_);
   for_each({stream_}, at.surfaces.entries(), NoFeatureItem{features_.data(), features_ahead_.data()});
-  for_each({stream_}, at.owned,
-           TakeItem{names_of(at, box_, views(), width()), kept_views(), row_of_.data()});
+  for_each({stream_}, at.owned, TakeItem{names_of(at, box_, views(), width()), kept_views(), row_of_.data()});
   parts_.reset(), kept_.keys.release(), kept_.values.release();
   at_slots_ = true;
 }

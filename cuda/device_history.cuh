@@ -105,8 +105,8 @@ class DeviceHistory {
   Real step_ = 2, run_start_ = 2;  // there is one before the first
   DeviceArray<Real> first_step_;
   PinnedArray<Real> h_first_step_;
-  // Unless at the slots: what is kept, and which row of it is that of each particle. It stands in the memory of
-  // the records, or, while they are made of it, in parts.
+  // Unless at the slots: what is kept, and which row of it is that of each particle. It stands in the memory
+  // of the records, or, while they are made of it, in parts.
   Rows kept_;
   bool in_records_ = false;
   std::optional<KeptViews> parts_;

@@ -178,7 +178,7 @@ PrunedRows<0> DeviceList::pruned_rows() {
 void DeviceList::search(Device device, const ListInput& in) {
   const bool long_rows = h_totals_[0].longest > kShortRow;
   totals_.zero(device.stream);
-  const RowOutputs out{slice_start_.data(), counts_.data(),     neighbors_.data(),
+  const RowOutputs out{slice_start_.data(), counts_.data(),    neighbors_.data(),
                        first_entry_.data(), neighbors_.size(), totals_.data()};
   if (long_rows)
     find_rows_kernel<kLongRow><<<blocks_for(in.owned, 64), 64, 0, device.stream>>>(in, out);

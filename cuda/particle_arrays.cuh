@@ -26,7 +26,8 @@ struct ParticleArrays : FieldArrays<DeviceArray>, FieldsThere {
 };
 
 // An explicit step reads one array and writes the other, an implicit one keeps its start here. While a list
-// is built nobody reads them, and their room is free.
+// is built nobody reads them, and their room is free: for the sort, and before and after that for what is
+// kept of contacts.
 struct SecondArrays {
   bool rotates = false, implicit = false;
   DeviceArray<Vec4> position, velocity, angular_velocity;  // all items
@@ -49,8 +50,9 @@ struct SecondArrays {
   static constexpr std::size_t whole(std::size_t n) { return (n + 31) / 32 * 32; }
 };
 
-// Particles in mixed precision, between two lists: what they alone read. What steps read of one array and
-// write to another stands in the room of the second arrays of the state, which are not needed meanwhile.
+// Particles in mixed precision, between two lists: what they alone read, in the DeviceRoom or, where they
+// rotate, in place of what is of an instant. What steps read of one array and write to another stands in the
+// room of the second arrays of the state, which are not needed meanwhile.
 struct MixedArrays {
   DeviceArray<MixedFraction> fraction;
   DeviceArray<MixedRest> rest;

@@ -37,9 +37,9 @@ struct WarpRows {
   __device__ static constexpr int stride() { return SlicedRows::stride(); }
 
   // Adds evaluate(i, j, slot), a structure of kWords Words, of the entries j of row i of which test(j) holds
-  // to sum, a structure of as many doubles; slot: the entry's number. It is called once for each, by any lane;
-  // one that asks for it gets the place of the entry among these, too. Returns how many they are. test: as in
-  // PrunedRows; one without near() is for whole rows.
+  // to sum, a structure of as many doubles; slot: the entry's number. It is called once for each, by any
+  // lane; one that asks for it gets the place of the entry among these, too. Returns how many they are. test:
+  // as in PrunedRows; one without near() is for whole rows.
   template <class Test, class Evaluate, class Sum>
   __device__ Index sum_contacts(Index i, const Test& test, const Evaluate& evaluate, Sum& sum) const {
     static_assert(sizeof(Sum) == kWords * sizeof(double));

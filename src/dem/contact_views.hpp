@@ -29,8 +29,8 @@ struct LawTable {
   SCREE_HD const Law& get(int i, int j) const { return laws[i * materials + j]; }
 };
 
-// evaluate(j) of an entry of a row, or evaluate(j, slot) where that wants to know the entry's number among those
-// of the list, too: the slot in packed rows, where contacts remember in all rows.
+// evaluate(j) of an entry of a row, or evaluate(j, slot) where that wants to know the entry's number among
+// those of the list, too: the slot in packed rows, where contacts remember in all rows.
 template <class Evaluate>
 inline constexpr bool kAsksForSlot = std::is_invocable_v<const Evaluate&, Index, std::int64_t>;
 template <class Evaluate>

@@ -174,7 +174,7 @@ struct FromMixedItem {
   MixedViews in;
   int parity;
   QuantumGrid grid;
-  Vec4 *position, *velocity, *spin;  // null unless particles rotate
+  Vec4 *position, *velocity, *spin;    // null unless particles rotate
   Vec3* acceleration;                  // not where they do
   Real *contact_loss, *friction_loss;  // the second: null unless particles rotate
   const std::uint8_t* drifting;

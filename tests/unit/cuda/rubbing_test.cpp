@@ -99,9 +99,10 @@ TEST_CASE("particles rub the same on both backends in implicit steps") {
     }
 }
 
-// What is kept has more than the room of the records with walls alone, and has all the rooms in turn where each
-// particle touches many. Lists that are built at rest leave the forces as they are.
-TEST_CASE("contacts with walls alone, and very many of each particle, go from list to list on both backends") {
+// What is kept has more than the room of the records with walls alone, and has all the rooms in turn where
+// each particle touches many. Lists that are built at rest leave the forces as they are.
+TEST_CASE(
+    "contacts with walls alone, and very many of each particle, go from list to list on both backends") {
   const BoxCase& c = kRubbingBoxes[3];
   for (const RubbingKind& kind : kRubbingKinds)
     for (const bool crowded : {false, true}) {
