@@ -84,4 +84,29 @@ TEST_CASE("the same of settled spheres that rub") {
   }
 }
 
+// But for the rooms through which records leave the device, which do not grow with the particles.
+TEST_CASE("settled spheres that rub take at most 800 bytes each, in steps and while lists are built") {
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    CAPTURE(static_cast<int>(precision));
+    Model model = rubbing_bed();
+    model.integrator.precision = precision;
+    const std::size_t before = device_memory_in_use();
+    const std::unique_ptr<Backend> backend = make_cuda_backend(model);
+    StageTimers timers;
+    backend->particles().load(initial_records(model.particles, Subdomain(model.space)), {});
+    backend->list().build(model.contact.skin, timers);
+    backend->particles().initial_forces();
+    const std::unique_ptr<ExplicitRun> run = backend->start_run(1e-4);
+    run->take_steps(50, true, timers);
+    backend->list().build(model.contact.skin, timers);  // with what contacts remember
+    run->take_steps(50, false, timers);
+    CHECK(backend->particles().contacts().keys.size() > 3 * model.particles.size());
+    constexpr std::size_t kPerContact = sizeof(std::int64_t) + 3 * sizeof(Real);
+    const std::size_t rooms =
+        kRecordsAtOnce * sizeof(Particle) +
+        static_cast<std::size_t>(kRowsAtOnce) * (kRoomInRows * kPerContact + sizeof(Index));
+    CHECK(device_memory_in_use() - before - rooms <= 800 * model.particles.size());
+  }
+}
+
 }  // namespace scree
