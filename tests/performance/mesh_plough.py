@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Blades of triangles that plunge into a bed of spheres, and the same bed without them: time per step.
+"""Blades of triangles that plunge into a bed of spheres, the same bed without them, and with one sphere that flies above
+it as fast as the blades hit those of the bed: time per step. Lists last as long as the fastest lets them, so that the
+first two differ by more than what the blades' contacts take.
 Usage: mesh_plough.py SCREE [--backend cuda] [--side 200] [--steps 400] [--edge 0.011]"""
 
 import argparse
@@ -10,6 +12,16 @@ from mesh_bed import measured
 COLUMNS, ROWS = 5, 4
 SIZE = (0.4, 0.02, 0.4)  # of a blade [m]
 MESH = '[[meshes]]\nname = "blade"\nkind = "box"\nsize = {size}\nrefine = {edge}\n'
+FLYING = """[[particles]]
+name = "flying"
+kind = "lattice"
+origin = [0.5, 0.5, {z}]
+spacing = [1.0, 1.0, 1.0]
+size = [1, 1, 1]
+radius = 0.01
+velocity = [0.7071, 0.0, 0.0]
+material = "grain"
+"""
 BLADE = """[[bodies]]
 name = "blade{number}"
 kind = "spatial"
@@ -37,7 +49,8 @@ def main():
     arguments = parser.parse_args()
     deck = mesh_bed.deck(arguments.side, arguments.side, arguments.steps) + mesh_bed.PLANE
     width, top = mesh_bed.SPACING * arguments.side, mesh_bed.LAYER * (arguments.side - 1) + 0.02
-    for name, extra in ("bed", ""), ("blades", blades(width, top, arguments.edge)):
+    for name, extra in (("bed", ""), ("flying", FLYING.format(z=top + 0.3)),
+                        ("blades", blades(width, top, arguments.edge))):
         record = mesh_bed.run(arguments.scree, arguments.backend, deck + extra)
         size = f"{arguments.backend}, side {arguments.side}, edge {arguments.edge}"
         milliseconds = mesh_bed.milliseconds(record, arguments.steps)
