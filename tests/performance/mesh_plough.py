@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Blades of triangles that plunge into a bed of spheres, the same bed without them, and with one sphere that flies above
-it as fast as the blades hit those of the bed: time per step. Lists last as long as the fastest lets them, so that the
-first two differ by more than what the blades' contacts take.
+"""Blades of triangles that plunge into a bed of spheres, the same bed without them, and with one sphere that flies
+above it as fast as the blades hit those of the bed: time per step. Lists last as long as the fastest sphere lets
+them, so that the first two differ by more than what the blades' contacts take.
 Usage: mesh_plough.py SCREE [--backend cuda] [--side 200] [--steps 400] [--edge 0.011]"""
 
 import argparse
