@@ -22,23 +22,23 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
   return sums;
 }
 
-// The triangles that particles touched last may be anywhere in memory: each is asked for some groups before
-// it is looked at, its corners as soon as it is there.
+// The triangles that particles stand on may be anywhere in memory: each is asked for some groups before it is
+// looked at, and the plane of its part as soon as it is there.
 template <bool kReaches, bool kSheets>
 void touch_ahead(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
   constexpr Index kAhead = 8;
-  const auto last_touched = [&](Index g, const auto& use) {
-    if (g >= groups) return;
-    const SurfaceViews& in = item.in;
-    const Index entry = in.meshes.groups[g].entry, t = item.touches[entry].triangle;
-    const MeshView& mesh = in.meshes.meshes[in.frames[in.placed[in.surface_of(entry)].frame].mesh];
-    if (t >= 0 && t < mesh.triangle_count) use(mesh, mesh.triangles[t]);
+  const SurfaceViews& in = item.in;
+  const auto standing_on = [&](Index g, const auto& use) {
+    if (g >= groups || item.standings[g].triangle < 0) return;
+    const PlacedSurface& surface = in.placed[in.surface_of(in.meshes.groups[g].entry)];
+    const MeshView& mesh = in.meshes.meshes[in.frames[surface.frame].mesh];
+    use(mesh, mesh.triangles[item.standings[g].triangle]);
   };
   for (Index g = 0; g < groups; ++g) {
-    last_touched(g + 2 * kAhead,
-                 [](const MeshView&, const MeshTriangle& triangle) { __builtin_prefetch(&triangle); });
-    last_touched(g + kAhead, [](const MeshView& mesh, const MeshTriangle& triangle) {
-      for (const Index v : triangle.vertex) __builtin_prefetch(&mesh.vertices[v]);
+    standing_on(g + 2 * kAhead,
+                [](const MeshView&, const MeshTriangle& triangle) { __builtin_prefetch(&triangle); });
+    standing_on(g + kAhead, [](const MeshView& mesh, const MeshTriangle& triangle) {
+      __builtin_prefetch(&mesh.parts[triangle.part]);
     });
     item(g);
   }
