@@ -61,8 +61,8 @@ struct FindNearItem {
       Index* to = triangles + first;
       sight.for_each_triangle([&](Index t) { *to++ = t; });
       near[g] = {i, cells.number, cells.image};
-      const RowKind kind = sight.kind_of(triangles + first, found);
-      groups[g] = {0, slots_needed(sight.mesh, kind, triangles + first, found), first, found, kind};
+      const Index entries = slots_needed(sight.mesh, triangles + first, found);
+      groups[g] = {0, entries, first, found, kind_of_row(sight.mesh, triangles + first, found)};
     });
   }
 };

@@ -19,27 +19,14 @@ struct MeshSight {
   const MeshView& mesh;
   Vec4 p;  // x, y, z, radius
   Vec3 shift;
-  Real past;  // how far past touch triangles are looked for, and as far as the two may move [m]
+  Real past;  // how far past touch triangles are looked for [m]
 
   // Calls visit(triangle) for those of the row.
   SCREE_HD_CALLER template <class Visit>
   SCREE_HD void for_each_triangle(const Visit& visit) const {
-    for_each_centre([&](Vec3 c) { for_each_triangle_near(mesh, c, p.w + past, visit); });
-  }
-  SCREE_HD RowKind kind_of(const Index* triangles, Index count) const {
-    const RowKind kind = kind_of_row(mesh, triangles, count);
-    if (kind != RowKind::two_sided) return kind;
-    bool one_sided = true;
-    for_each_centre([&](Vec3 c) { one_sided = one_sided && is_one_sided(mesh, triangles, count, c, past); });
-    return one_sided ? RowKind::smooth : kind;
-  }
-
- private:
-  // In the frame of the mesh.
-  SCREE_HD_CALLER template <class Visit>
-  SCREE_HD void for_each_centre(const Visit& visit) const {
     for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
-      visit(transposed_times(frame.axes, (place - shift) - surface.point));
+      const Vec3 c = transposed_times(frame.axes, (place - shift) - surface.point);
+      for_each_triangle_near(mesh, c, p.w + past, visit);
     });
   }
 };

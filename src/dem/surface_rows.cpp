@@ -78,8 +78,7 @@ class EntryFinder {
       const MeshSight sight = sight_of(search_.places, s, position(i), shift, skin);
       sight.for_each_triangle([&](Index t) { triangles_.push_back(t); });
       const auto count = static_cast<Index>(triangles_.size());
-      const RowKind kind = sight.kind_of(triangles_.data(), count);
-      if (count > 0) add(entry, i, slots_needed(sight.mesh, kind, triangles_.data(), count));
+      if (count > 0) add(entry, i, slots_needed(sight.mesh, triangles_.data(), count));
     });
   }
   void add(Entry entry, Index particle, int times) {
@@ -139,7 +138,7 @@ void find_groups(const SortedParticles& sorted, const SurfaceSearch& search, con
                  image_shift(rows.images[entry], search.period), search.surfaces.skin_of(s, search.skin));
     sight.for_each_triangle([&](Index t) { rows.triangles.push_back(t); });
     const Index last = countable(rows.triangles.size(), "stage neighbors: more triangles near particles");
-    const RowKind kind = sight.kind_of(rows.triangles.data() + first, last - first);
+    const RowKind kind = kind_of_row(sight.mesh, rows.triangles.data() + first, last - first);
     rows.groups.push_back({entry, end - entry, first, last - first, kind});
   }
   rows.standings.assign(rows.groups.size(), kNoStanding);

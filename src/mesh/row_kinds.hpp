@@ -8,9 +8,8 @@
 namespace scree {
 
 // smooth: one patch whose faces, and so all that a sphere may touch there, differ in direction by no more
-// than the feature angle: what is touched from one side is one contact. two_sided: the same of a sheet that
-// may be touched from both. plane: one part without edges and vertices.
-enum class RowKind : std::uint8_t { any, two_sided, smooth, plane };
+// than the feature angle: what is touched from one side is one contact.
+enum class RowKind : std::uint8_t { any, smooth };
 
 namespace mesh_detail {
 
@@ -24,16 +23,11 @@ SCREE_HD bool owns_open_feature(const MeshView& mesh, const MeshTriangle& triang
 
 }  // namespace mesh_detail
 
-// two_sided where a sheet is smooth.
 SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index count) {
   if (count == 0) return RowKind::any;
-  const Index first = mesh.triangles[triangles[0]].part;
-  const MeshPart& part = mesh.parts[first];
-  bool is_plane = true;
+  const MeshPart& part = mesh.parts[mesh.triangles[triangles[0]].part];
   for (Index i = 0; i < count; ++i) {
     const MeshTriangle& triangle = mesh.triangles[triangles[i]];
-    is_plane = is_plane && triangle.part == first && triangle.features == 0;
-    if (is_plane) continue;
     const MeshPart& other = mesh.parts[triangle.part];
     // Directions within half the feature angle of one differ by no more than it among each other.
     const Real c = dot(other.normal, part.normal), of_twice = 2 * c * c - 1;
@@ -41,25 +35,12 @@ SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index
         mesh_detail::owns_open_feature(mesh, triangle))
       return RowKind::any;
   }
-  return is_plane ? RowKind::plane : mesh.sheet ? RowKind::two_sided : RowKind::smooth;
+  return RowKind::smooth;
 }
 
-// Whether c is on one side of all planes of a row, wherever it moves by no more than `past` [m].
-SCREE_HD bool is_one_sided(const MeshView& mesh, const Index* triangles, Index count, Vec3 c, Real past) {
-  const Real margin = past + mesh.flatness + mesh.round_off;
-  bool above = true, below = true;
-  for (Index i = 0; i < count && (above || below); ++i) {
-    const MeshPart& part = mesh.parts[mesh.triangles[triangles[i]].part];
-    const Real height = dot(c - part.point, part.normal);
-    above = above && height > margin, below = below && height < -margin;
-  }
-  return above || below;
-}
-
-// How many contacts, at most kMeshSlots, could come of these triangles.
-SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, const Index* triangles, Index count) {
-  if (kind == RowKind::plane || kind == RowKind::smooth) return 1;
-  if (kind == RowKind::two_sided) return 2;
+// How many contacts, at most kMeshSlots, could come of these triangles. A smooth row has fewer at a time, but
+// those of the step before have to be remembered, too.
+SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index count) {
   int needed = 0, parts = 0;
   Index part[kMeshSlots];
   for (Index i = 0; i < count && needed < kMeshSlots; ++i) {
@@ -75,7 +56,7 @@ SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, const Index* trian
 // Of a search: no contact, one, or a case for find_mesh_contacts().
 enum class Nearest { none, one, unclear };
 
-// What find_mesh_contacts() finds of rows of a kind: as all that is touched from one side is
+// What find_mesh_contacts() finds of smooth rows: as all that is touched from one side is
 // one contact the nearest is all, and needs no room for others. Unclear: touched from both sides, or where
 // round-off decides.
 class NearestContact : TriangleLook<NearestContact> {
