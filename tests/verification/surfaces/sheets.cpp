@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "support/near.hpp"
 #include "support/simulation_run.hpp"
 #include "support/state_bits.hpp"
+#include "unit/output/scratch.hpp"
 
 namespace scree {
 
@@ -43,6 +45,24 @@ struct SheetDeck {
         carrier, kRadius, kMass, grain));
   }
 };
+
+// A strip that is wound up about the y axis, with turns as far apart as a grain is wide.
+void write_spiral(const std::string& file) {
+  constexpr int kAlong = 80, kAcross = 6;
+  std::ofstream out(file);
+  out.precision(17);
+  for (int i = 0; i <= kAlong; ++i) {
+    const Real angle = 5 * M_PI * i / kAlong, radius = 0.02 + 0.05 * i / kAlong;
+    for (int j = 0; j <= kAcross; ++j)
+      out << "v " << radius * std::cos(angle) << ' ' << 0.3 * (Real(j) / kAcross - 0.5) << ' '
+          << radius * std::sin(angle) << '\n';
+  }
+  for (int i = 0; i < kAlong; ++i)
+    for (int j = 0; j < kAcross; ++j) {
+      const int a = (kAcross + 1) * i + j + 1, b = a + kAcross + 1;
+      out << "f " << a << ' ' << b << ' ' << b + 1 << "\nf " << a << ' ' << b + 1 << ' ' << a + 1 << '\n';
+    }
+}
 
 Vec3 force_on_sheet(SimulationRun& run) {
   const std::vector<Real> values = run.contact_values();
@@ -104,6 +124,35 @@ TEST_CASE("lists, restarts and a carrier that moves do not change on which side 
       CHECK(state_hash(listed.complete_state(), true) == state_hash(whole.complete_state(), true));
       CHECK(listed.particles()[0].velocity.z > 1.4);
     }
+}
+
+// They go 0.3 of their radius in a step, farther than the row of triangles of the step before reaches, and
+// touch both turns between which they are.
+TEST_CASE("what fast grains remember of a sheet does not depend on lists") {
+  const ScratchDirectory folder;
+  const std::string file = folder.path() + "/spiral.obj";
+  write_spiral(file);
+  const auto hash = [&](Real skin, Real friction) {
+    SimulationRun run(model_of(fmt::format(
+        "[space]\ndimension = 3\nmin = [-0.2, -0.2, -0.2]\nmax = [0.2, 0.2, 0.2]\nx_min = "
+        "\"periodic\"\nx_max = "
+        "\"periodic\"\ny_min = \"periodic\"\ny_max = \"periodic\"\nz_min = \"periodic\"\nz_max = "
+        "\"periodic\"\n"
+        "[time]\nend = 0.6\nstep = 3e-3\n[integrator]\nparticles = \"velocity-verlet\"\n[contact]\nskin = "
+        "{}\n"
+        "[[contact.pairs]]\nstiffness = 10.0\n{}[[meshes]]\nname = \"spiral\"\nkind = \"file\"\nfile = "
+        "\"{}\"\n"
+        "sheet = true\nfeature_angle = 1.0\n[[walls]]\nname = \"spiral\"\nmesh = \"spiral\"\n[[particles]]\n"
+        "name = \"grains\"\nkind = \"random\"\ncount = 200\nmin = [-0.1, -0.15, -0.1]\nmax = [0.1, 0.15, "
+        "0.1]\n"
+        "radius = {{ kind = \"uniform\", min = 0.006, max = 0.012 }}\ndensity = 2500.0\nrandom_velocity = "
+        "1.0\n"
+        "seed = 1\n[output]\nhistory_interval = 0.6\n",
+        skin, friction > 0 ? fmt::format("friction = {}\n", friction) : "", file)));
+    run.run();
+    return state_hash(run.complete_state(), true);
+  };
+  for (const Real friction : {0.0, 0.3}) CHECK(hash(1e-4, friction) == hash(8e-3, friction));
 }
 
 TEST_CASE("shapes and sheets of bodies keep their sides: momentum and energy are those of a rebound") {
