@@ -56,9 +56,8 @@ SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index co
 // Of a search: no contact, one, or a case for find_mesh_contacts().
 enum class Nearest { none, one, unclear };
 
-// What find_mesh_contacts() finds of smooth rows: as all that is touched from one side is
-// one contact the nearest is all, and needs no room for others. Unclear: touched from both sides, or where
-// round-off decides.
+// What find_mesh_contacts() finds of smooth rows: as all that is touched from one side is one contact the
+// nearest is all, and needs no room for others. Unclear: touched from both sides, or where round-off decides.
 class NearestContact : TriangleLook<NearestContact> {
   friend TriangleLook<NearestContact>;
 
