@@ -214,7 +214,8 @@ void CudaList::search(Real skin) {
                                             &grid_,
                                             particle_sort_.starts(),
                                             builder_.largest_radius(),
-                                            items_.numbers_while_listing()};
+                                            items_.numbers_while_listing(),
+                                            items_.history.remembered()};
   items_.surfaces.build(items_.device(), particles, bodies_.side().places(), builder_.past_touch(skin));
 }
 

@@ -218,6 +218,11 @@ void DeviceHistory::take_slots(const Listed& at) {
   at_slots_ = true;
 }
 
+RememberedRows DeviceHistory::remembered() {
+  if (!exists()) return {};
+  return {kept_views(), row_of_.data()};
+}
+
 void DeviceHistory::load(const KeptContacts& contacts, Index owned) {
   if (!exists()) return;
   at_slots_ = false;

@@ -58,7 +58,9 @@ class DeviceHistory {
   // Before a list goes, for which it waits, and after another was built.
   void leave_slots(const Listed& at);
   void take_slots(const Listed& at);
-  // In between, like the particles: new ones, another order of them, some more behind. numbers: room for one
+  // In between, of the particles in their order; for kernels that run before take_slots().
+  RememberedRows remembered();
+  // Then, like the particles: new ones, another order of them, some more behind. numbers: room for one
   // per particle.
   void load(const KeptContacts& contacts, Index owned);
   void reorder(const Index* order, Index n, Index* numbers);

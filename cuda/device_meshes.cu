@@ -61,8 +61,9 @@ struct FindNearItem {
       Index* to = triangles + first;
       sight.for_each_triangle([&](Index t) { *to++ = t; });
       near[g] = {i, cells.number, cells.image};
-      const Index entries = slots_needed(sight.mesh, triangles + first, found);
-      groups[g] = {0, entries, first, found, kind_of_row(sight.mesh, triangles + first, found)};
+      const RowKind kind = kind_of_row(sight.mesh, triangles + first, found);
+      const Index remembered = in.remembered.contacts_with(i, cells.number);
+      groups[g] = {0, sight.entries(kind, triangles + first, found, remembered), first, found, kind};
     });
   }
 };

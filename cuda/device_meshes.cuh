@@ -11,6 +11,7 @@
 #include "dem/surface_rows.hpp"
 #include "dem/surfaces.hpp"
 #include "device.cuh"
+#include "kept_views.cuh"
 #include "mesh/standing.hpp"
 #include "model/model.hpp"
 
@@ -31,6 +32,7 @@ struct MeshSearch {
   Vec3 period;
   const PlacedSurface* placed;
   const SurfaceFrame* frames;
+  RememberedRows remembered;
 };
 
 // Cells in which particles may be near a mesh that is moved by the shift.

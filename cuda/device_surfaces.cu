@@ -198,8 +198,10 @@ void DeviceSurfaces::find_entries(Device device, const Particles& p, const Surfa
     count_near_kernel<<<blocks, kSearchThreads, 0, device.stream>>>(in, counts);
   require_cuda(cudaGetLastError(), "surfaces near particles");
   for (const Index s : placed_planes_) for_each(device, p.active, PlaneCountItem{in, s, counts});
-  meshes_.find(device, {p.position, *p.grid, p.starts, skin, box_.period, places_.data(), frames_.data()},
-               places, p.largest_radius, counts);
+  meshes_.find(
+      device,
+      {p.position, *p.grid, p.starts, skin, box_.period, places_.data(), frames_.data(), p.remembered},
+      places, p.largest_radius, counts);
   with_space(space_, [&](void* at, std::size_t& bytes) {
     require_cuda(cub::DeviceScan::ExclusiveSum(at, bytes, offsets_.data(), p.owned + 1, device.stream),
                  "scan");

@@ -39,6 +39,7 @@ class DeviceSurfaces {
     const Index* starts;  // [cells + 1] into the active ones
     Real largest_radius;  // [m]
     Index* numbers;       // room for one per owned particle
+    RememberedRows remembered;
   };
 
   // period: of the space [m].

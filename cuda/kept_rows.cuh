@@ -2,45 +2,10 @@
 // slots and back.
 #pragma once
 
-#include <limits>
-
+#include "kept_views.cuh"
 #include "named_rows.cuh"
 
 namespace scree {
-
-// Rows of contacts: those of all rows in one piece of memory, or in parts here and there.
-struct KeptViews {
-  static constexpr int kParts = 4;
-  struct Part {
-    std::int64_t* keys = nullptr;
-    Real* values = nullptr;
-    // Contacts; none of one that is not there.
-    Index first = std::numeric_limits<Index>::max(), end = std::numeric_limits<Index>::max();
-
-    std::size_t size() const { return static_cast<std::size_t>(end - first); }
-  };
-  const Index* offsets;  // [rows + 1]
-  int numbers;           // per contact
-  Part part[kParts];     // one after the other
-
-  __device__ std::int64_t& key(Index contact) const {
-    const Part at = part_of(contact);
-    return at.keys[contact - at.first];
-  }
-  __device__ Real* values(Index contact) const {
-    const Part at = part_of(contact);
-    return at.values + std::int64_t{contact - at.first} * numbers;
-  }
-
- private:
-  __device__ Part part_of(Index contact) const {
-    Part at = part[0];
-#pragma unroll
-    for (int k = 1; k < kParts; ++k)
-      if (contact >= part[k].first) at = part[k];
-    return at;
-  }
-};
 
 // Of the rows from the first on.
 struct CountClosedItem {

@@ -114,8 +114,9 @@ void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const s
     return surfaces_.at(s).kind != SurfaceKind::sphere &&
            rule_.may_touch(surfaces_.at(shapes[i]).carrier, surfaces_.at(s).carrier);
   };
+  const auto remembered = [&](Index i, Index surface) { return kept_.contacts_with(shapes[i], surface); };
   build_rows({grid, start, items, position, n, largest}, n,
-             {surfaces_, planes_, places, period_, skin, may_touch}, rows);
+             {surfaces_, planes_, places, period_, skin, remembered, may_touch}, rows);
 }
 
 // These shapes, then the copies of partners that they have across periodic sides.

@@ -159,6 +159,11 @@ void CpuHistory::take_slots(const Listed& at) {
   at_slots_ = true;
 }
 
+RememberedCount CpuHistory::remembered() const {
+  if (!exists()) return {};
+  return [this](Index i, Index surface) { return kept_.contacts_with(i, surface); };
+}
+
 void CpuHistory::load(const KeptContacts& contacts, Index owned) {
   if (!exists()) return;
   kept_ = contacts.numbers == numbers_ ? contacts : no_contacts(numbers_, owned);

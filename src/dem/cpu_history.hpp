@@ -43,7 +43,9 @@ class CpuHistory {
   // Before a list goes, and after another was built.
   void leave_slots(const Listed& at);
   void take_slots(const Listed& at);
-  // In between, like the particles: new ones, another order of them, some that go to other ranks.
+  // In between: how many contacts a particle has with the surface of a number.
+  RememberedCount remembered() const;
+  // Then, like the particles: new ones, another order of them, some that go to other ranks.
   void load(const KeptContacts& contacts, Index owned);
   void reorder(const std::vector<Index>& from);
   // leaving[r]: particles for rank r; `staying` keep their order, and what arrives comes behind. Collective.

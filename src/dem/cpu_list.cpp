@@ -156,7 +156,8 @@ void CpuList::build(Real skin, StageTimers& timers) {
   }
   const auto scope = timers.time(Stage::neighbors);
   const ParticleStore& store = items_.store;
-  builder_.build(store, items_.layout, cells_, items_.side.places(), skin, items_.list);
+  builder_.build(store, items_.layout, cells_, {items_.side.places(), items_.history.remembered()}, skin,
+                 items_.list);
   items_.pairs.is_current = items_.pairs.keeps_records = false;
   items_.side.build_list(skin);
   items_.history.take_slots(items_.listed());

@@ -104,7 +104,7 @@ SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const 
   side.set_motion(motion);
   side.bring_into_box(), side.place();
   SurfaceRows rows;
-  builder.build_surfaces(store, layout, builder.cells(model.contact.skin, layout.owned), side.places(),
+  builder.build_surfaces(store, layout, builder.cells(model.contact.skin, layout.owned), {side.places()},
                          model.contact.skin, rows);
   return rows;
 }

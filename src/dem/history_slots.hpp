@@ -114,6 +114,10 @@ SCREE_HD bool is_past(std::int64_t contact_key) { return contact_key >= 27 * kFi
 SCREE_HD Index feature_of(std::int64_t contact_key) {
   return static_cast<Index>((contact_key / 27 % kFirstSurfaceId) >> kSurfaceBits);
 }
+// The number of the surface.
+SCREE_HD Index surface_of(std::int64_t contact_key) {
+  return static_cast<Index>(contact_key / 27 % kFirstSurfaceId & ((GlobalId{1} << kSurfaceBits) - 1));
+}
 // And on this side of it.
 SCREE_HD std::int64_t without_feature(std::int64_t contact_key) {
   const GlobalId of_feature = GlobalId{feature_of(contact_key)} << kSurfaceBits;

@@ -4,12 +4,34 @@
 #include <utility>
 
 #include "dem/history_slots.hpp"
+#include "dem/shape_contacts.hpp"
 #include "dem/surfaces.hpp"
 
 namespace scree {
 
 int kept_numbers(const Model& model, int of_law) {
   return of_law == 0 && has_sheets(model) ? kSidesAlone : of_law;
+}
+
+namespace {
+
+// Of these contacts those with the surface of this number.
+Index count_with(std::span<const std::int64_t> keys, Index surface) {
+  return static_cast<Index>(std::ranges::count_if(
+      keys, [&](std::int64_t key) { return is_surface(key) && surface_of(key) == surface; }));
+}
+
+}  // namespace
+
+Index KeptContacts::contacts_with(std::int64_t particle, Index surface) const {
+  const auto first = static_cast<std::size_t>(offsets[static_cast<std::size_t>(particle)]);
+  return count_with({keys.data() + first, static_cast<std::size_t>(contacts(particle))}, surface);
+}
+
+Index ShapeContacts::contacts_with(std::int64_t shape, Index surface) const {
+  const auto of_shape = std::ranges::equal_range(shapes, shape);
+  const auto first = static_cast<std::size_t>(of_shape.begin() - shapes.begin());
+  return count_with({keys.data() + first, of_shape.size()}, surface);
 }
 
 void KeptContacts::add_row(const KeptContacts& from, std::int64_t particle) {

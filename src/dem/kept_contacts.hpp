@@ -32,6 +32,8 @@ struct KeptContacts {
   std::int64_t contacts(std::int64_t particle) const {
     return offsets[static_cast<std::size_t>(particle) + 1] - offsets[static_cast<std::size_t>(particle)];
   }
+  // Of these, with the surface of this number.
+  Index contacts_with(std::int64_t particle, Index surface) const;
   std::span<const Real> values_of(std::int64_t contact) const {
     const auto n = static_cast<std::size_t>(width());
     return {values.data() + static_cast<std::size_t>(contact) * n, n};

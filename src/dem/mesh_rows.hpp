@@ -19,20 +19,35 @@ struct MeshSight {
   const MeshView& mesh;
   Vec4 p;  // x, y, z, radius
   Vec3 shift;
-  Real past;  // how far past touch triangles are looked for [m]
+  Real past;  // how far past touch triangles are looked for, and as far as the two may move [m]
 
   // Calls visit(triangle) for those of the row.
   SCREE_HD_CALLER template <class Visit>
   SCREE_HD void for_each_triangle(const Visit& visit) const {
+    for_each_centre([&](Vec3 c) { for_each_triangle_near(mesh, c, p.w + past, visit); });
+  }
+  // How many entries the row needs for the mesh, of whose contacts the particle remembers so many.
+  SCREE_HD Index entries(RowKind kind, const Index* triangles, Index count, Index remembered) const {
+    bool one_sided = mesh.sheet && kind == RowKind::smooth;
+    if (one_sided)
+      for_each_centre(
+          [&](Vec3 c) { one_sided = one_sided && is_one_sided(mesh, triangles, count, c, past); });
+    const Index slots = slots_needed(mesh, kind, one_sided, triangles, count);
+    return slots > remembered ? slots : remembered < kMeshSlots ? remembered : kMeshSlots;
+  }
+
+ private:
+  // In the frame of the mesh.
+  SCREE_HD_CALLER template <class Visit>
+  SCREE_HD void for_each_centre(const Visit& visit) const {
     for_each_place_beside(surface, frame, xyz(p), past, [&](Vec3 place) {
-      const Vec3 c = transposed_times(frame.axes, (place - shift) - surface.point);
-      for_each_triangle_near(mesh, c, p.w + past, visit);
+      visit(transposed_times(frame.axes, (place - shift) - surface.point));
     });
   }
 };
 
 // A particle near a mesh: the entries of its row that stand for that mesh, one for each contact that it may
-// have there, and the triangles that it may touch.
+// have there or remembers, and the triangles that it may touch.
 struct MeshGroup {
   Index entry, entries;
   Index first_triangle, triangles;
@@ -56,6 +71,9 @@ struct MeshTouch {
   Index feature;   // on a sheet with the side (mesh/sheet_sides.hpp)
   Index triangle;  // over a step, a contact that ended in it has the triangle of its start
   Index from;      // entry whose memory the contact goes on from; -1: none
+
+  // Both flags: they are read at once.
+  SCREE_HD void set_none() { touches = is_face = false; }
 };
 
 // The same contact where an implicit step began. One that was open then, or is open at the end, has no

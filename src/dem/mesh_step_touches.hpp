@@ -56,7 +56,7 @@ struct MeshStepTouchItem {
           old.entry[k]);
       open(touches[group.entry + next].geometry);
     }
-    for (; next < group.entries; ++next) touches[group.entry + next].touches = false;
+    for (; next < group.entries; ++next) touches[group.entry + next].set_none();
     if (is_sheet<kSheets>(mesh))
       for (Index k = 0; k < group.entries; ++k)
         memory().keep(group.entry + k, k < count ? touches[group.entry + k].feature : kNoFeature);

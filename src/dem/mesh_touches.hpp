@@ -198,7 +198,7 @@ struct MeshTouchItem {
                                           touches[group.entry].triangle),
                        static_cast<int>(group.entries));
     if (is_sheet<kSheets>(mesh)) count = SideKeeper(mesh, sphere.c, memory().of(group)).keep(found, count);
-    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].touches = false;
+    for (Index k = count; k < group.entries; ++k) touches[group.entry + k].set_none();
     for (int k = 0; k < count; ++k) put(touches[group.entry + k], sphere, found[k]);
     if (is_sheet<kSheets>(mesh) && in.h > 0) keep_sides(group, count);
     if (in.history.bodies != nullptr) go_on(group, sphere, {found, count});
@@ -222,7 +222,7 @@ struct MeshTouchItem {
     const Before before = before_of(group);
     const bool is_one = found == Nearest::one;
     if (before.entries > 1 || (is_one && !continues(mesh, before, contact))) return false;
-    for (Index k = is_one ? 1 : 0; k < group.entries; ++k) touches[group.entry + k].touches = false;
+    for (Index k = is_one ? 1 : 0; k < group.entries; ++k) touches[group.entry + k].set_none();
     if (is_one) {
       put(first, sphere, contact);
       if (in.history.bodies != nullptr) go_on_alone(first, sphere, before, contact);

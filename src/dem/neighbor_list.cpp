@@ -88,7 +88,7 @@ void NeighborBuilder::collect_row(const ParticleStore& store, Index i, NeighborL
 }
 
 void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
-                            const SurfacePlaces& places, Real skin, NeighborList& list) {
+                            const ListedSurfaces& surfaces, Real skin, NeighborList& list) {
   list.skin = skin;
   list.neighbors.clear();
   list.offsets.assign(static_cast<std::size_t>(layout.owned) + 1, 0);
@@ -100,14 +100,14 @@ void NeighborBuilder::build(const ParticleStore& store, const ItemLayout& layout
               [&](Index a, Index b) { return store.row_key[a] < store.row_key[b]; });
     list.offsets[i + 1] = countable(list.neighbors.size(), "stage neighbors: more neighbours");
   }
-  find_surfaces(store, layout, places, skin, list.surfaces);
+  find_surfaces(store, layout, surfaces, skin, list.surfaces);
 }
 
 void NeighborBuilder::build_surfaces(const ParticleStore& store, const ItemLayout& layout,
-                                     const SearchCells& cells, const SurfacePlaces& places, Real skin,
+                                     const SearchCells& cells, const ListedSurfaces& surfaces, Real skin,
                                      SurfaceRows& rows) {
   sort(store, layout, cells);
-  find_surfaces(store, layout, places, skin, rows);
+  find_surfaces(store, layout, surfaces, skin, rows);
 }
 
 void NeighborBuilder::sort(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells) {
@@ -118,10 +118,11 @@ void NeighborBuilder::sort(const ParticleStore& store, const ItemLayout& layout,
 }
 
 void NeighborBuilder::find_surfaces(const ParticleStore& store, const ItemLayout& layout,
-                                    const SurfacePlaces& places, Real skin, SurfaceRows& rows) const {
+                                    const ListedSurfaces& surfaces, Real skin, SurfaceRows& rows) const {
   const SortedParticles sorted{near_.grid,     near_.start,   near_.items,
                                store.position, layout.active, largest_radius_};
-  build_rows(sorted, layout.owned, {surfaces_, planes_, places, period_, past_touch(skin)}, rows);
+  build_rows(sorted, layout.owned,
+             {surfaces_, planes_, surfaces.places, period_, past_touch(skin), surfaces.remembered}, rows);
 }
 
 }  // namespace scree

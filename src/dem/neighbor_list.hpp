@@ -48,6 +48,12 @@ struct SearchCells {
   }
 };
 
+// The surfaces that a list is to see.
+struct ListedSurfaces {
+  SurfacePlaces places;
+  RememberedCount remembered{};
+};
+
 class NeighborBuilder {
  public:
   explicit NeighborBuilder(const Model& model);
@@ -66,10 +72,10 @@ class NeighborBuilder {
   Real largest_radius() const { return largest_radius_; }
   // Fills the list from the positions of all items, and of the placed surfaces.
   void build(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
-             const SurfacePlaces& places, Real skin, NeighborList& list);
+             const ListedSurfaces& surfaces, Real skin, NeighborList& list);
   // The rows of surfaces alone.
   void build_surfaces(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells,
-                      const SurfacePlaces& places, Real skin, SurfaceRows& rows);
+                      const ListedSurfaces& surfaces, Real skin, SurfaceRows& rows);
 
  private:
   // Items in the order of their cells.
@@ -83,7 +89,7 @@ class NeighborBuilder {
     void sort(const CellGrid& cells, Index count, const Cell& cell);
   };
   void sort(const ParticleStore& store, const ItemLayout& layout, const SearchCells& cells);
-  void find_surfaces(const ParticleStore& store, const ItemLayout& layout, const SurfacePlaces& places,
+  void find_surfaces(const ParticleStore& store, const ItemLayout& layout, const ListedSurfaces& surfaces,
                      Real skin, SurfaceRows& rows) const;
   // Adds the neighbours of item i.
   void collect_row(const ParticleStore& store, Index i, NeighborList& list) const;

@@ -17,6 +17,8 @@ struct ShapeContacts {
   std::vector<Real> values;          // [contacts][width()]
 
   int width() const { return numbers > 0 ? numbers : 0; }
+  // Of a shape with the surface of this number.
+  Index contacts_with(std::int64_t shape, Index surface) const;
   std::span<const Real> values_of(std::size_t contact) const {
     const auto n = static_cast<std::size_t>(width());
     return {values.data() + contact * n, n};

@@ -78,10 +78,13 @@ class EntryFinder {
       const MeshSight sight = sight_of(search_.places, s, position(i), shift, skin);
       sight.for_each_triangle([&](Index t) { triangles_.push_back(t); });
       const auto count = static_cast<Index>(triangles_.size());
-      if (count > 0) add(entry, i, slots_needed(sight.mesh, triangles_.data(), count));
+      if (count == 0) return;
+      const Index remembered = search_.remembered ? search_.remembered(i, entry.surface) : 0;
+      const RowKind kind = kind_of_row(sight.mesh, triangles_.data(), count);
+      add(entry, i, sight.entries(kind, triangles_.data(), count, remembered));
     });
   }
-  void add(Entry entry, Index particle, int times) {
+  void add(Entry entry, Index particle, Index times) {
     entry.particle = particle;
     entries_.insert(entries_.end(), static_cast<std::size_t>(times), entry);
   }

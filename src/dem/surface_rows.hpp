@@ -17,7 +17,7 @@
 namespace scree {
 
 // Row i has every surface that can touch particle i before the list expires, by number and image; a mesh as
-// often as the particle may have contacts with it.
+// often as the particle may have contacts with it, or remembers them.
 struct SurfaceRows {
   std::vector<Index> offsets;       // [particles + 1]
   std::vector<Index> surfaces;      // [entries]
@@ -63,6 +63,9 @@ inline CellRange cells_near(const CellGrid& grid, const Box& box) {
 // placed surface s, moved by the shift [m]. Along periods that the mesh spans it has no ends.
 Box box_near(const SurfacePlaces& places, Index s, Vec3 shift, Real radius, Real skin);
 
+// How many contacts with the surface of a number a particle remembers; none: no contact remembers.
+using RememberedCount = std::function<Index(Index particle, Index surface)>;
+
 // What a row may hold.
 struct SurfaceSearch {
   const SurfaceSet& surfaces;
@@ -70,6 +73,7 @@ struct SurfaceSearch {
   SurfacePlaces places;
   Vec3 period;  // [m]
   Real skin;    // how far past touch surfaces are looked for [m]
+  RememberedCount remembered{};
   // Whether a particle may touch a placed surface; none: it may touch all.
   std::function<bool(Index particle, Index placed)> may_touch{};
 };

@@ -38,19 +38,33 @@ SCREE_HD RowKind kind_of_row(const MeshView& mesh, const Index* triangles, Index
   return RowKind::smooth;
 }
 
-// How many contacts, at most kMeshSlots, could come of these triangles. A smooth row has fewer at a time, but
-// those of the step before have to be remembered, too.
-SCREE_HD int slots_needed(const MeshView& mesh, const Index* triangles, Index count) {
+// Whether c is on one side of all planes of a row, wherever it moves by no more than `past` [m].
+SCREE_HD bool is_one_sided(const MeshView& mesh, const Index* triangles, Index count, Vec3 c, Real past) {
+  const Real margin = past + mesh.flatness + mesh.round_off;
+  bool above = true, below = true;
+  for (Index i = 0; i < count && (above || below); ++i) {
+    const MeshPart& part = mesh.parts[mesh.triangles[triangles[i]].part];
+    const Real height = dot(c - part.point, part.normal);
+    above = above && height > margin, below = below && height < -margin;
+  }
+  return above || below;
+}
+
+// How many contacts there can be at a time with the triangles of a row, at most kMeshSlots. one_sided: as
+// above, of a smooth one.
+SCREE_HD int slots_needed(const MeshView& mesh, RowKind kind, bool one_sided, const Index* triangles,
+                          Index count) {
+  const int most = kind == RowKind::any ? kMeshSlots : mesh.sheet && !one_sided ? 2 : 1;
   int needed = 0, parts = 0;
   Index part[kMeshSlots];
-  for (Index i = 0; i < count && needed < kMeshSlots; ++i) {
+  for (Index i = 0; i < count && needed < most; ++i) {
     const MeshTriangle& triangle = mesh.triangles[triangles[i]];
     int seen = 0;
     while (seen < parts && part[seen] != triangle.part) ++seen;
     if (seen == parts) part[parts++] = triangle.part, ++needed;
     needed += triangle.features;
   }
-  return needed < kMeshSlots ? needed : kMeshSlots;
+  return needed < most ? needed : most;
 }
 
 // Of a search: no contact, one, or a case for find_mesh_contacts().

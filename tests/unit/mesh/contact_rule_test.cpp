@@ -101,7 +101,7 @@ TEST_CASE("where a face was touched last changes no contact") {
       const Vec3 c = place_near(surface, 0.2, random);
       const auto row = triangles_near(surface, c, 0.25);
       const auto n = static_cast<Index>(row.size());
-      const bool one_plane = slots_needed(view, row.data(), n) == 1;
+      const bool one_plane = slots_needed(view, RowKind::any, false, row.data(), n) == 1;
       in_one_plane += one_plane;
       const auto contacts = contacts_of_row(surface, c, 0.25, row);
       for (Index likely = -1; likely <= view.triangle_count; likely += 1 + view.triangle_count / 40) {
@@ -286,7 +286,9 @@ TEST_CASE("where a sphere touches more than there are slots the nearest count") 
 TEST_CASE("a row needs at least as many slots as contacts come of it") {
   MeshRandom random(46);
   const auto needed = [](const SurfaceMesh& mesh, const std::vector<Index>& row) {
-    return slots_needed(mesh.view(), row.data(), static_cast<Index>(row.size()));
+    const MeshView view = mesh.view();
+    const auto n = static_cast<Index>(row.size());
+    return slots_needed(view, kind_of_row(view, row.data(), n), false, row.data(), n);
   };
   const SurfaceMesh mesh = sheet_mesh(hills(6, 0.3, 7));
   bool enough = true;

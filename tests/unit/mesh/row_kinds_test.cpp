@@ -31,7 +31,7 @@ constexpr Real kRadius = 0.1;
 
 TEST_CASE("on smooth rows the search for the nearest contact finds what the search for all does") {
   MeshRandom random(44);
-  int all_smooth = 0, all_unclear = 0;
+  int all_smooth = 0, all_unclear = 0, one_sided = 0;
   for (const SurfaceMesh& surface : meshes()) {
     const MeshView view = surface.view();
     int wrong = 0;
@@ -43,7 +43,10 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
       if (kind == RowKind::any) continue;
       ++all_smooth;
       const auto contacts = contacts_of_row(surface, c, kRadius, row);
-      wrong += static_cast<int>(contacts.size()) > slots_needed(view, row.data(), n);
+      const bool is_seen_from_one_side = is_one_sided(view, row.data(), n, c, 0);
+      one_sided += is_seen_from_one_side;
+      wrong +=
+          static_cast<int>(contacts.size()) > slots_needed(view, kind, is_seen_from_one_side, row.data(), n);
       const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
       MeshContact nearest;
       const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, nearest);
@@ -54,6 +57,8 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
     CHECK(wrong == 0);
   }
   CHECK(all_smooth > 20000);
+  CHECK(one_sided > all_smooth / 2);
+  CHECK(one_sided < all_smooth);
   CHECK(all_unclear > 0);
   CHECK(all_unclear < all_smooth / 50);
 }
