@@ -4,6 +4,7 @@
 #include "dem/mesh_step_touches.hpp"
 #include "device_meshes.cuh"
 #include "for_each.cuh"
+#include "lane_team.cuh"
 #include "staging.cuh"
 
 namespace scree {
@@ -107,6 +108,7 @@ struct GroupItem {
 
 constexpr int kTouchThreads = 128;
 constexpr int kTouchBlocks = 4;  // on a multiprocessor: with more, registers spill
+constexpr int kTeamLanes = 8;    // rows have some ten triangles
 using TouchRecords = WarpRecords<MeshTouch, kTouchThreads>;
 
 // The contacts now.
@@ -114,8 +116,9 @@ struct StateLook {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
-// Most particles stay where they were; of those of a block that must look at triangles its first threads take
-// one each, so that no warp waits for the few of its lanes that must.
+// Most particles stay where they were; those of a block that must look at triangles are shared out among
+// teams of its lanes, so that no warp waits for the few of its lanes that must, nor these for a row of
+// triangles.
 template <bool kReaches, bool kSheets, class Look>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
@@ -137,7 +140,10 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
   }
   records.store(touches, entry);
   __syncthreads();
-  if (const auto k = static_cast<Index>(threadIdx.x); k < looking_count) item.look(looking[k]);
+  using Team = LaneTeam<kTeamLanes>;
+  for (auto k = static_cast<Index>(threadIdx.x) / kTeamLanes; k < looking_count;
+       k += kTouchThreads / kTeamLanes)
+    item.look(looking[k], Team{});
 }
 
 template <bool kSheets, class Look>

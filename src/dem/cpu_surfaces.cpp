@@ -22,24 +22,17 @@ std::vector<Sums> sums_of(const std::vector<Contact>& contacts, const SurfaceRow
   return sums;
 }
 
-// The triangles that particles stand on may be anywhere in memory: each is asked for some groups before it is
-// looked at, and the plane of its part as soon as it is there.
+// The planes that particles stand on may be anywhere in memory: each is asked for some groups before it is
+// looked at.
 template <bool kReaches, bool kSheets>
 void touch_ahead(const MeshTouchItem<kReaches, kSheets>& item, Index groups) {
   constexpr Index kAhead = 8;
   const SurfaceViews& in = item.in;
-  const auto standing_on = [&](Index g, const auto& use) {
-    if (g >= groups || item.standings[g].triangle < 0) return;
-    const PlacedSurface& surface = in.placed[in.surface_of(in.meshes.groups[g].entry)];
-    const MeshView& mesh = in.meshes.meshes[in.frames[surface.frame].mesh];
-    use(mesh, mesh.triangles[item.standings[g].triangle]);
-  };
   for (Index g = 0; g < groups; ++g) {
-    standing_on(g + 2 * kAhead,
-                [](const MeshView&, const MeshTriangle& triangle) { __builtin_prefetch(&triangle); });
-    standing_on(g + kAhead, [](const MeshView& mesh, const MeshTriangle& triangle) {
-      __builtin_prefetch(&mesh.parts[triangle.part]);
-    });
+    if (const Index ahead = g + kAhead; ahead < groups && item.standings[ahead].part >= 0) {
+      const PlacedSurface& surface = in.placed[in.surface_of(in.meshes.groups[ahead].entry)];
+      __builtin_prefetch(&in.meshes.meshes[in.frames[surface.frame].mesh].parts[item.standings[ahead].part]);
+    }
     item(g);
   }
 }

@@ -113,7 +113,7 @@ struct MeshTouchItem {
   Standing* standings;  // per group; since the list was built
 
   SCREE_HD void operator()(Index g) const {
-    if (stay(g, touches[in.meshes.groups[g].entry]) == Nearest::unclear) look(g);
+    if (stay(g, touches[in.meshes.groups[g].entry]) == Nearest::unclear) look(g, Alone{});
   }
 
   // Where the particle has not moved so far that its triangles must be looked at: writes its contact to
@@ -124,34 +124,44 @@ struct MeshTouchItem {
     const Standing standing = standings[g];
     if (!standing.holds(sphere.c)) return Nearest::unclear;
     MeshContact contact;
-    const Nearest found = standing.triangle >= 0 && is_over_within(sphere, standing.triangle, contact)
-                              ? Nearest::one
-                              : Nearest::none;
+    const Nearest found =
+        standing.triangle >= 0 && is_over_within(sphere, standing, contact) ? Nearest::one : Nearest::none;
     return write(group, sphere, found, contact, first) ? found : Nearest::unclear;
   }
 
   // Of any group, at its triangles.
-  SCREE_HD void look(Index g) const {
+  SCREE_HD_CALLER template <class Team>
+  SCREE_HD void look(Index g, const Team& team) const {
     const MeshGroup group = in.meshes.groups[g];
     const Sphere sphere = sphere_of(group);
     const MeshView& mesh = sphere.mesh;
     const Real reach = searched(sphere.radius);
     const Index* const triangles = in.meshes.triangles + group.first_triangle;
-    MeshContact contact;
-    Nearest found = Nearest::unclear;
+    Seen seen{Nearest::unclear, {}};
     if (group.kind != RowKind::any)
-      found = NearestContact(mesh, sphere.c, reach)
-                  .find(triangles, group.triangles, touches[group.entry].triangle, contact);
-    if (found != Nearest::unclear && !write(group, sphere, found, contact, touches[group.entry]))
-      found = Nearest::unclear;
-    if (found == Nearest::unclear) found = look_in_full(group, sphere, contact);
-    const StandingRow row{mesh, group.kind, triangles, group.triangles, sphere.c, reach};
-    standings[g] = found == Nearest::none                                    ? row.clear()
-                   : found == Nearest::one && is_face(mesh, contact.feature) ? row.over(contact.triangle)
-                                                                             : kNoStanding;
+      seen.found = NearestContact(mesh, sphere.c, reach)
+                       .find(triangles, group.triangles, touches[group.entry].triangle, team, seen.contact);
+    if (team.leads()) {
+      if (seen.found != Nearest::unclear &&
+          !write(group, sphere, seen.found, seen.contact, touches[group.entry]))
+        seen.found = Nearest::unclear;
+      if (seen.found == Nearest::unclear) seen.found = look_in_full(group, sphere, seen.contact);
+    }
+    seen = team.of_leader(seen);
+    const StandingRow<Team> row{mesh, group.kind, triangles, group.triangles, sphere.c, reach, team};
+    const bool on_face = seen.found == Nearest::one && is_face(mesh, seen.contact.feature);
+    const Standing standing = seen.found == Nearest::none ? row.clear()
+                              : on_face                   ? row.over(seen.contact.triangle)
+                                                          : kNoStanding;
+    if (team.leads()) standings[g] = standing;
   }
 
  private:
+  // What a look has found; the contact has a meaning where it is one.
+  struct Seen {
+    Nearest found;
+    MeshContact contact;
+  };
   // How it lies in the frame of the mesh, now and where the step began.
   struct Sphere {
     const MeshView& mesh;
@@ -205,13 +215,12 @@ struct MeshTouchItem {
     if (count == 1) only_one = found[0];
     return count == 0 ? Nearest::none : count == 1 ? Nearest::one : Nearest::unclear;
   }
-  // The contact with the plane of a triangle that c is over, if that is within reach.
-  SCREE_HD bool is_over_within(const Sphere& sphere, Index t, MeshContact& face) const {
-    const MeshView& mesh = sphere.mesh;
-    const Index id = mesh.triangles[t].part;
-    const MeshPart& part = mesh.parts[id];
+  // The contact with the plane of the triangle that c is over, if that is within reach.
+  SCREE_HD bool is_over_within(const Sphere& sphere, const Standing& on, MeshContact& face) const {
+    const MeshPart& part = sphere.mesh.parts[on.part];
     const Real height = dot(sphere.c - part.point, part.normal);
-    face = {id, t, std::abs(height), part.point, height >= 0 ? part.normal : opposite(part.normal)};
+    face = {on.part, on.triangle, std::abs(height), part.point,
+            height >= 0 ? part.normal : opposite(part.normal)};
     return face.distance < searched(sphere.radius);
   }
   // That this contact, or none, is all of a group. False: it goes on from others than itself, and nothing was

@@ -175,7 +175,25 @@ template <class Search>
 class TriangleLook {
  protected:
   SCREE_HD TriangleLook(const MeshView& mesh, Vec3 c, Real reach)
-      : mesh_(mesh), c_(c), reach_(reach), nearest_weak_(reach), depth_(reach) {}
+      : mesh_(mesh), c_(c), reach_(reach), beside_{reach, reach} {}
+
+  // What is found beside candidates.
+  struct Beside {
+    Real nearest_weak;  // of the vertices that hold but for round-off [m]
+    Real depth;         // of c behind the nearest face of a closed mesh that it is over from behind [m]
+    Index behind = -1, behind_triangle = -1;  // that face, the lowest of its triangles
+
+    SCREE_HD void add(const Beside& other) {
+      if (other.nearest_weak < nearest_weak) nearest_weak = other.nearest_weak;
+      if (other.behind >= 0) add_behind(other.behind_triangle, other.behind, other.depth);
+    }
+    SCREE_HD void add_behind(Index t, Index id, Real deep) {
+      if (deep < depth || (deep == depth && id < behind))
+        depth = deep, behind = id, behind_triangle = t;
+      else if (id == behind && t < behind_triangle)
+        behind_triangle = t;
+    }
+  };
 
   SCREE_HD void look_at(Index t) {
     const MeshTriangle& triangle = mesh_.triangles[t];
@@ -198,16 +216,16 @@ class TriangleLook {
 
   // The centre is in a closed mesh, nearer to a face than to anything in front: that face alone pushes it
   // out.
-  SCREE_HD bool is_inside(Real nearest) const { return behind_ >= 0 && depth_ < nearest; }
+  SCREE_HD bool is_inside(Real nearest) const { return beside_.behind >= 0 && beside_.depth < nearest; }
   SCREE_HD MeshContact inside() const {
-    const MeshPart& part = mesh_.parts[behind_];
-    return {behind_, behind_triangle_, -depth_, part.point, part.normal};
+    const MeshPart& part = mesh_.parts[beside_.behind];
+    return {beside_.behind, beside_.behind_triangle, -beside_.depth, part.point, part.normal};
   }
 
   const MeshView& mesh_;
   Vec3 c_;
   Real reach_;
-  Real nearest_weak_;     // of the vertices that hold but for round-off [m]
+  Beside beside_;
   Index well_over_ = -1;  // part of the triangle that c is well over, as far as that is known
   bool weak_pass_ = false;
 
@@ -217,10 +235,7 @@ class TriangleLook {
   SCREE_HD void add_face(Index t, Index id, const MeshPart& part, Real height) {
     if (height >= 0) return search().add({id, t, height, part.point, part.normal});
     if (mesh_.sheet) return search().add({id, t, -height, part.point, opposite(part.normal)});
-    if (-height < depth_ || (-height == depth_ && id < behind_))
-      depth_ = -height, behind_ = id, behind_triangle_ = t;
-    else if (id == behind_ && t < behind_triangle_)
-      behind_triangle_ = t;
+    beside_.add_behind(t, id, -height);
   }
 
   // passed: the triangle's edges that c lies past; in the cones of others it is not.
@@ -258,11 +273,8 @@ class TriangleLook {
     contact.triangle = t;
     if (!(contact.distance < reach_)) return;
     if (!wait) return search().add(contact);
-    if (contact.distance < nearest_weak_) nearest_weak_ = contact.distance;
+    if (contact.distance < beside_.nearest_weak) beside_.nearest_weak = contact.distance;
   }
-
-  Real depth_;  // of c behind the nearest face of a closed mesh that it is over from behind [m]
-  Index behind_ = -1, behind_triangle_ = -1;
 };
 
 // Looks at the triangles of a row once or, where there are more contacts than slots, several times.
@@ -277,12 +289,13 @@ class MeshContactSearch : TriangleLook<MeshContactSearch> {
   SCREE_HD int contacts_of(const Index* triangles, Index count, Index likely) {
     if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face)) well_over_ = face.feature, add(face);
     look(triangles, count);
-    const Real nearest = found_ > 0 && out_[0].distance < nearest_weak_ ? out_[0].distance : nearest_weak_;
+    const Real weak = beside_.nearest_weak;
+    const Real nearest = found_ > 0 && out_[0].distance < weak ? out_[0].distance : weak;
     if (is_inside(nearest)) {
       out_[0] = inside();
       return 1;
     }
-    const bool any_weak = nearest_weak_ < reach_;
+    const bool any_weak = weak < reach_;
     keep();
     well_over_ = -1;  // its face may be among those that were left out
     for (; left_out_ && kept_ < kMeshSlots; keep()) look(triangles, count);

@@ -4,6 +4,7 @@
 
 #include "mesh/mesh_contacts.hpp"
 #include "mesh/sheet_sides.hpp"
+#include "mesh/team.hpp"
 
 namespace scree {
 
@@ -78,21 +79,40 @@ class NearestContact : TriangleLook<NearestContact> {
  public:
   SCREE_HD NearestContact(const MeshView& mesh, Vec3 c, Real reach) : TriangleLook(mesh, c, reach) {}
 
-  // likely: as there.
-  SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, MeshContact& out) {
+  // likely: as there. All of the team get the same.
+  SCREE_HD_CALLER template <class Team>
+  SCREE_HD Nearest find(const Index* triangles, Index count, Index likely, const Team& team,
+                        MeshContact& out) {
     if (MeshContact face; stays_over(mesh_, likely, c_, reach_, face))
       well_over_ = face.feature, best_ = face;
-    for (Index i = 0; i < count; ++i) look_at(triangles[i]);
+    for (Index i = team.first(); i < count; i += team.stride()) look_at(triangles[i]);
+    take(team.agree(Found{best_, beside_, both_sides_}, [&](const Found& a, const Found& b) {
+      take(a), join(b);
+      return Found{best_, beside_, both_sides_};
+    }));
     // A vertex that holds but for round-off is one contact with the nearest, if it is on the same side.
     const bool is_found = best_.feature >= 0;
-    if (both_sides_ || (nearest_weak_ < reach_ && (mesh_.sheet || !is_found))) return Nearest::unclear;
-    if (is_inside(is_found && best_.distance < nearest_weak_ ? best_.distance : nearest_weak_))
+    const Real weak = beside_.nearest_weak;
+    if (both_sides_ != 0 || (weak < reach_ && (mesh_.sheet || !is_found))) return Nearest::unclear;
+    if (is_inside(is_found && best_.distance < weak ? best_.distance : weak))
       return out = inside(), Nearest::one;
     if (!is_found) return Nearest::none;
     return out = best_, Nearest::one;
   }
 
  private:
+  struct Found {
+    MeshContact best;
+    Beside beside;
+    std::int64_t both_sides;
+  };
+  SCREE_HD void take(const Found& found) {
+    best_ = found.best, beside_ = found.beside, both_sides_ = found.both_sides;
+  }
+  SCREE_HD void join(const Found& found) {
+    if (found.best.feature >= 0) add(found.best);
+    beside_.add(found.beside), both_sides_ |= found.both_sides;
+  }
   SCREE_HD bool known(Index part, Index t) const { return best_.feature == part && best_.triangle <= t; }
   // What lies on the side that is touched is the same contact, and counts if it is nearer.
   SCREE_HD Real reach_at(const MeshPart& part, Real height) const {
@@ -105,7 +125,7 @@ class NearestContact : TriangleLook<NearestContact> {
     if (best_.feature < 0) {
       best_ = contact;
     } else if (!(dot(contact.normal, best_.normal) > 0)) {
-      both_sides_ = true;
+      both_sides_ = 1;
     } else if (contact.feature == best_.feature) {
       if (contact.triangle < best_.triangle) best_.triangle = contact.triangle;
     } else if (mesh_detail::comes_before(mesh_, contact, best_)) {
@@ -114,7 +134,7 @@ class NearestContact : TriangleLook<NearestContact> {
   }
 
   MeshContact best_{-1, -1, 0, {}, {}};
-  bool both_sides_ = false;
+  std::int64_t both_sides_ = 0;  // or 1
 };
 
 }  // namespace scree

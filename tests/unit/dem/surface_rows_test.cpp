@@ -36,7 +36,7 @@ struct BuiltRows {
     side.place();
     store.load(initial_records(model.particles, subdomain));
     layout.owned = layout.items = store.owned, layout.active = store.owned - kDrifting;
-    builder.build(store, layout, builder.cells(kSkin, store.owned), side.places(), kSkin, list);
+    builder.build(store, layout, builder.cells(kSkin, store.owned), {side.places()}, kSkin, list);
   }
   std::vector<Entry> row(Index i) const {
     const SurfaceRows& rows = list.surfaces;

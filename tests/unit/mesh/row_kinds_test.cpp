@@ -49,7 +49,7 @@ TEST_CASE("on smooth rows the search for the nearest contact finds what the sear
           static_cast<int>(contacts.size()) > slots_needed(view, kind, is_seen_from_one_side, row.data(), n);
       const Index likely = i % 3 == 0 || row.empty() ? -1 : row[static_cast<std::size_t>(i) % row.size()];
       MeshContact nearest;
-      const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, nearest);
+      const Nearest found = NearestContact(view, c, kRadius).find(row.data(), n, likely, Alone{}, nearest);
       all_unclear += found == Nearest::unclear;
       if (found == Nearest::none) wrong += !contacts.empty();
       if (found == Nearest::one) wrong += !same_contacts({nearest}, contacts);
@@ -74,7 +74,7 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
       const auto row = triangles_near(surface, c, 1.4 * kRadius);
       const auto n = static_cast<Index>(row.size());
       const auto contacts = contacts_of_row(surface, c, kRadius, row);
-      const StandingRow at{view, kind_of_row(view, row.data(), n), row.data(), n, c, kRadius};
+      const StandingRow<Alone> at{view, kind_of_row(view, row.data(), n), row.data(), n, c, kRadius};
       Standing standing = kNoStanding;
       if (contacts.empty())
         standing = at.clear();
