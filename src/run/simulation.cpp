@@ -56,13 +56,15 @@ class Simulation {
     start_or_resume();
     ranks_.on_root([&] { folder_.clear(); });
     recorder_ = std::make_unique<Recorder>(model, *backend_, link_, options.output_directory, state_);
-    if (options.restart.empty()) {
+    if (restart_.changed) recorder_->rebase_balance(state_);
+    // Results are looked for in the folder of a run that is finished, too.
+    const bool is_done = StepClock(model, state_.clock).done() && state_.history_rows == 0;
+    if (options.restart.empty() || is_done) {
       const Reports::Instant now(backend_->reports());
       recorder_->history(state_, 0);
       recorder_->snapshot(state_);
       ranks_.on_root([&] { recorder_->flush_history(); });
     }
-    if (restart_.changed) recorder_->rebase_balance(state_);
   }
 
   ExitCode run();

@@ -262,6 +262,25 @@ class RestartTest(CommandLineTest):
         result = self.run_deck(DONE, "again", "--restart", self.folder / "out/checkpoint_end.h5")
         self.assertIn("nothing left to do: time.end = 0.4 s is reached", result.stdout)
 
+    def test_a_finished_run_in_another_folder_has_the_row_and_the_snapshot_of_its_end(self):
+        for words in ((), EXPLICIT):
+            with self.subTest(words=words):
+                words = (*words, "--set", "output.history_interval=0.1")
+                self.run_deck(DONE, "out", *words)
+                self.run_deck(DONE, "again", *words, "--restart", self.folder / "out/checkpoint_end.h5")
+                (head, last), end = self.history("again"), self.history("out")[-1]
+                step = head.split(",").index("step/length [s]")
+                self.assertEqual(last, ",".join("0" if k == step else x for k, x in enumerate(end.split(","))))
+                record = json.loads((self.folder / "again/run_record.json").read_text())
+                self.assertEqual(record["counts"]["snapshots"], 1)
+                # Later starts go on there.
+                again = ("run", self.deck, "--output", self.folder / "again", *words, "--restart",
+                         self.folder / "again/checkpoint_end.h5", "--set")
+                self.expect(DONE, *again, "time.end=0.4")
+                self.assertEqual(len(self.history("again")), 2)
+                self.expect(DONE, *again, "time.end=0.5")
+                self.assertEqual(len(self.history("again")), 3)
+
     def test_a_checkpoint_past_the_end_by_round_off_is_of_a_finished_run(self):
         end, periodic = ("--set", "time.end=0.009"), ("--set", "output.checkpoint_interval=0.001")
         self.assertGreater(9 * 0.001, 0.009)
