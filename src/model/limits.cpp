@@ -123,21 +123,22 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
       const Real reach = farthest(mesh, shape.offset, model.space.dimension);
       ++use.meshes;
+      use.sheets += mesh.surface->sheet;
       for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
         take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));
     }
   for (const Wall& wall : model.walls) {
     MaterialUse& use = uses[static_cast<std::size_t>(wall.material)];
     ++(wall.mesh < 0 ? use.walls : use.meshes);
+    use.sheets += wall.mesh >= 0 && model.meshes[static_cast<std::size_t>(wall.mesh)].surface->sheet;
   }
   return uses;
 }
 
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
-  const auto moving = [](const MaterialUse& use) { return use.particles + use.shapes; };
-  if (first.walls > 0 && moving(second) > 0) return true;
-  if (second.walls > 0 && moving(first) > 0) return true;
+  if (first.walls > 0 && second.spheres() > 0) return true;
+  if (second.walls > 0 && first.spheres() > 0) return true;
   if (first.particles > 0 && second.shapes + second.meshes > 0) return true;
   if (second.particles > 0 && first.shapes + first.meshes > 0) return true;
   if (a == b ? first.particles > 1 : first.particles > 0 && second.particles > 0) return true;
@@ -150,6 +151,13 @@ bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, i
   if (first.shapes > 0 && second.shapes > 0 && TouchRule(model).bodies_may_touch()) return true;
   return (first.shapes > 0 && second.meshes > 0 && shapes_meet_meshes(model, a, b)) ||
          (second.shapes > 0 && first.meshes > 0 && shapes_meet_meshes(model, b, a));
+}
+
+bool meet_on_sheets_alone(const std::vector<MaterialUse>& uses, int a, int b) {
+  const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
+  const auto has_others = [](const MaterialUse& use) { return use.walls > 0 || use.meshes > use.sheets; };
+  if (a == b ? first.spheres() > 1 : first.spheres() > 0 && second.spheres() > 0) return false;
+  return !(first.spheres() > 0 && has_others(second)) && !(second.spheres() > 0 && has_others(first));
 }
 
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b) {

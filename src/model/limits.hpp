@@ -16,6 +16,7 @@ Real farthest(const ModelMesh& mesh, Vec3 offset, int dimension);
 struct MaterialUse {
   std::int64_t particles = 0;
   int shapes = 0, meshes = 0, walls = 0;  // meshes: of bodies and walls; walls: planes
+  int sheets = 0;                         // of the meshes, those with two sides
   Real smallest_radius = 0;               // [m]
   Real smallest_particle_mass = 0;        // [kg]
   Real smallest_inertia_factor = 0;       // of particles, I / (m R^2)
@@ -24,6 +25,7 @@ struct MaterialUse {
   Real smallest_body_mass = 0, smallest_rubbed_mass = 0;
 
   bool is_of_surfaces() const { return shapes + meshes + walls > 0; }
+  std::int64_t spheres() const { return particles + shapes; }
 };
 
 std::vector<MaterialUse> material_uses(const Model& model);
@@ -32,6 +34,8 @@ std::vector<MaterialUse> material_uses(const Model& model);
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // Whether bodies can that have something of a and of b.
 bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
+// Whether, of these that can meet, spheres meet sheets and nothing else.
+bool meet_on_sheets_alone(const std::vector<MaterialUse>& uses, int a, int b);
 // The smallest and the lightest of each material; infinite where it has walls alone.
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 

@@ -189,6 +189,8 @@ std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
       pair_name(model, limit), stack, weight, overlap, totals.smallest_radius);
 }
 
+// A sheet pushes back to its contact's side until the centre is a radius past it; all else lets through what
+// is past the middle.
 std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
   const std::vector<MaterialUse> uses = material_uses(model);
   Real radius = kInfinity;
@@ -198,7 +200,8 @@ std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
   }
   const Real speed = impact_speed(model, limit);
   const Real overlap = impact_overlap(limit.law, lightest_mass(limit), speed);
-  if (overlap <= radius) return "";
+  const bool sheets = meet_on_sheets_alone(uses, limit.material[0], limit.material[1]);
+  if (overlap <= (sheets ? 2 : 1) * radius) return "";
   return fmt::format(
       "contact {}: the stiffness is too low for impacts at {:.3g} m/s (speeds at t = 0, and a fall through "
       "the "

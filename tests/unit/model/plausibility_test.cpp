@@ -49,6 +49,10 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       "[[walls]]\nname = \"w\"\npoint = [0, -1]\nnormal = [0, 1]\n[[walls.motions]]\ntype = "
       "\"translation\"\ndirection = [0, 1]\ndisplacement = { kind = \"table\", times = [0, 0.5, 1], values = "
       "[0, 0.02, 0.02], interpolation = \"monotone\" }\n";
+  const std::string sheet =
+      spheres +
+      "[[meshes]]\nname = \"m\"\nkind = \"rectangle\"\nsize = [0.5, 0.5]\noffset = [0, 0, "
+      "-0.4]\n[[walls]]\nname = \"w\"\nmesh = \"m\"\n";
   const std::vector<Case> cases = {
       {all, {kFloor, kGravity, "time.step=1e-4"}, ""},
       {spheres, {"gravity=[0, 0, -10]"}, ""},
@@ -106,6 +110,16 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       {all,
        {"contact.pairs.0.stiffness=3e3", kFloor, kGravity, "contact.pairs.0.damping=0"},
        "the stiffness is too low for impacts at 6.32 m/s"},
+      {sheet,
+       {"contact.pairs.0.stiffness=1e3", "particles.d.velocity=[4, 0, 0]", "contact.pairs.0.damping=0"},
+       ""},
+      {sheet,
+       {"contact.pairs.0.stiffness=1e3", "particles.d.velocity=[5, 0, 0]", "contact.pairs.0.damping=0"},
+       "an overlap of 0.112 m at a radius of 0.05 m, and things pass through each other"},
+      {sheet,
+       {"contact.pairs.0.stiffness=1e3", "particles.d.velocity=[4, 0, 0]", "contact.pairs.0.damping=0",
+        "space.z_min=wall"},
+       "an overlap of 0.0894 m at a radius of 0.05 m, and things pass through each other"},
       {all, {"bodies.b.shapes=[{ radius = 0.1 }, { radius = 1.1e-6 }]"}, ""},
       {all, {"bodies.b.shapes=[{ radius = 0.1 }, { radius = 0.9e-6 }]"}, "radii from 9e-07 to 0.1 m"},
       {spheres,
