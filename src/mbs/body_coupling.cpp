@@ -78,10 +78,6 @@ class Pair {
 
 void add_coupling(const PairStiffness& pair, const std::vector<Body>& bodies, const BodyLayout& layout,
                   const BodyPoses& poses, SystemDerivatives& derivatives) {
-  // One of meshes alone has none of its own contacts in the matrix: beside nothing of its own the others
-  // would make it indefinite.
-  for (const int body : {pair.first, pair.second})
-    if (bodies[static_cast<std::size_t>(body)].shapes.empty()) return;
   const Pair to(bodies, layout, poses, derivatives);
   to.add(pair.first, pair.second, pair.stiffness, pair.damping);
   to.add(pair.second, pair.first, transposed(pair.stiffness), transposed(pair.damping));

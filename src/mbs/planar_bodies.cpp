@@ -38,8 +38,13 @@ class PlanarBodies final : public RigidBodies {
     for (int b = 0; b < layout.bodies(); ++b) {
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
       if (body.kind != BodyKind::planar) continue;
-      const Constants constants{body.mass,     body.inertia,          body.position,       body.angle,
-                                body.velocity, body.angular_velocity, !body.shapes.empty()};
+      const Constants constants{body.mass,
+                                body.inertia,
+                                body.position,
+                                body.angle,
+                                body.velocity,
+                                body.angular_velocity,
+                                may_be_stiffened(model, body)};
       bodies_.push_back({constants, {b, layout.position(b), layout.column(b)}});
     }
   }
@@ -129,7 +134,7 @@ class PlanarBodies final : public RigidBodies {
   void add_contact_derivatives(const BodyPoses&, const std::vector<BodyWrench>&,
                                SystemDerivatives& derivatives) const override {
     for (const Placed& b : bodies_) {
-      if (!b.body.has_shapes) continue;
+      if (!b.body.touchable) continue;
       const int coordinate[3] = {b.at.column, b.at.column + 1, b.at.column + 2};
       const ContactBlock& block = contact_of(b.at.body);
       derivatives.stiffness.add_block(
@@ -197,7 +202,7 @@ class PlanarBodies final : public RigidBodies {
     Real angle;
     Vec3 velocity;
     Real angular_velocity;
-    bool has_shapes;
+    bool touchable;  // Newton's matrix has a place for its contacts
   };
   struct Placed {
     Constants body;

@@ -37,6 +37,12 @@ struct BodyPlace {
 // Not a number if one of them is not: no step passes as exact because a comparison was false.
 inline Real larger_error(Real a, Real b) { return std::isnan(a) || a > b ? a : b; }
 
+// Whether Newton's matrix has a place for the stiffness of what touches a body. Explicit steps give none.
+inline bool may_be_stiffened(const Model& model, const Body& body) {
+  const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
+  return !body.shapes.empty() || (implicit && !body.meshes.empty());
+}
+
 // Vectors of positions, velocities and forces are those of the whole system; each kind reads and writes its
 // bodies' places of the layout. Vectors over bodies are in the model's order.
 class RigidBodies {

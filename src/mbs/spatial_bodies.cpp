@@ -54,7 +54,7 @@ class SpatialBodies final : public RigidBodies {
       bodies_.push_back({{b, layout.position(b), layout.column(b)},
                          body.mass,
                          full(body.inertia_tensor),
-                         !body.shapes.empty()});
+                         may_be_stiffened(model, body)});
       given_.push_back(body);
     }
   }
@@ -178,7 +178,7 @@ class SpatialBodies final : public RigidBodies {
                                SystemDerivatives& derivatives) const override {
     static const WrenchStiffness none;
     for (const Placed& b : bodies_) {
-      if (!b.has_shapes) continue;
+      if (!b.touchable) continue;
       const SpatialPose& pose = poses.spatial[b.at.body];
       const auto found = touched_.find(b.at.body);
       const WrenchStiffness& contact = found == touched_.end() ? none : found->second;
@@ -261,8 +261,8 @@ class SpatialBodies final : public RigidBodies {
   struct Placed {
     BodyPlace at;
     Real mass;
-    Mat3 inertia;  // J
-    bool has_shapes;
+    Mat3 inertia;    // J
+    bool touchable;  // Newton's matrix has a place for its contacts
 
     int turning() const { return at.column + 3; }
   };
