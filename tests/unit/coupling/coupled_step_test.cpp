@@ -101,6 +101,37 @@ inertia_tensor = [4e-3, 4e-3, 4e-3, 0.0, 0.0, 0.0]
 shapes = [{ radius = 0.1 }]
 )";
 
+// A board of triangles alone on three balls, with grains on it.
+const std::string kBoard = R"(
+[[meshes]]
+name = "board"
+kind = "box"
+size = [0.6, 0.1, 0.6]
+[[bodies]]
+name = "ball"
+kind = "spatial"
+count = 3
+position = [-0.21, -0.901, 0.05]
+spacing = [0.21, 0.0, -0.03]
+mass = 1.0
+inertia_tensor = [4e-3, 4e-3, 4e-3, 0.0, 0.0, 0.0]
+shapes = [{ radius = 0.1 }]
+[[bodies]]
+name = "board"
+kind = "spatial"
+position = [0.0, -0.752, 0.0]
+mass = 0.5
+inertia_tensor = [0.02, 0.03, 0.02, 0.0, 0.0, 0.0]
+meshes = [{ mesh = "board" }]
+[[particles]]
+kind = "lattice"
+origin = [-0.24, -0.653, -0.24]
+spacing = [0.12, 0.0, 0.12]
+size = [5, 1, 5]
+radius = 0.05
+mass = 0.02
+)";
+
 // Both sides at the start of a run.
 struct Coupled {
   explicit Coupled(const std::vector<std::string>& overrides = {}) {
@@ -262,7 +293,7 @@ TEST_CASE("explicit steps do not depend on how many are asked for at once, nor o
 }
 
 TEST_CASE("Newton's matrix knows that bodies touch each other") {
-  for (const auto& [name, bodies] : {std::pair{"stack", kStack}, {"plate", kPlate}})
+  for (const auto& [name, bodies] : {std::pair{"stack", kStack}, {"plate", kPlate}, {"board", kBoard}})
     for (const Real step : {1e-3, 3e-3})
       for (const std::string friction : {"0.0", "0.5"}) {
         CAPTURE(name, step, friction);
