@@ -1,6 +1,7 @@
 #include "dem/kept_contacts.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "dem/history_slots.hpp"
@@ -8,6 +9,44 @@
 #include "dem/surfaces.hpp"
 
 namespace scree {
+namespace {
+
+// The contacts whose keys are wanted. What they remember is nothing but zeros unless there are as many
+// numbers.
+template <class Wanted>
+KeptContacts only(const KeptContacts& all, int numbers, const Wanted& wanted) {
+  KeptContacts out;
+  out.numbers = numbers;
+  const std::vector<Real> none(static_cast<std::size_t>(out.width()));
+  for (std::int64_t i = 0; i < all.particles(); ++i) {
+    for (std::int64_t c = all.offsets[static_cast<std::size_t>(i)];
+         c < all.offsets[static_cast<std::size_t>(i) + 1]; ++c)
+      if (const std::int64_t key = all.keys[static_cast<std::size_t>(c)]; wanted(key))
+        out.add(key, numbers == all.numbers ? all.values_of(c) : none);
+    out.end_row();
+  }
+  return out;
+}
+
+// Tells contacts with sheets by their keys.
+class SheetKeys {
+ public:
+  explicit SheetKeys(const Model& model) {
+    const SurfaceSet surfaces(model);
+    for (Index s = 0; s < surfaces.placed(); ++s) {
+      const Surface& surface = surfaces.at(s);
+      if (surface.kind == SurfaceKind::mesh &&
+          model.meshes[static_cast<std::size_t>(surface.mesh)].surface->sheet)
+        sheets_.insert(surfaces.number_of(s));
+    }
+  }
+  bool operator()(std::int64_t key) const { return is_surface(key) && sheets_.count(surface_of(key)) > 0; }
+
+ private:
+  std::set<Index> sheets_;
+};
+
+}  // namespace
 
 int kept_numbers(const Model& model, int of_law) {
   return of_law == 0 && has_sheets(model) ? kSidesAlone : of_law;
@@ -93,15 +132,21 @@ double bytes_remembered_with_pairs(int numbers) {
 }
 
 KeptContacts KeptContacts::without_surfaces() const {
-  KeptContacts out;
+  return only(*this, numbers, [](std::int64_t key) { return !is_surface(key); });
+}
+
+KeptContacts sides_of(const KeptContacts& contacts, const Model& model, int numbers) {
+  return only(contacts, numbers, SheetKeys(model));
+}
+
+ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, int numbers) {
+  const SheetKeys is_of_sheet(model);
+  ShapeContacts out;
   out.numbers = numbers;
-  for (std::int64_t i = 0; i < particles(); ++i) {
-    for (std::int64_t c = offsets[static_cast<std::size_t>(i)]; c < offsets[static_cast<std::size_t>(i) + 1];
-         ++c)
-      if (const std::int64_t key = keys[static_cast<std::size_t>(c)]; !is_surface(key))
-        out.add(key, values_of(c));
-    out.end_row();
-  }
+  for (std::size_t k = 0; k < contacts.keys.size(); ++k)
+    if (is_of_sheet(contacts.keys[k]))
+      out.shapes.push_back(contacts.shapes[k]), out.keys.push_back(contacts.keys[k]);
+  out.values.resize(out.keys.size() * static_cast<std::size_t>(out.width()));
   return out;
 }
 

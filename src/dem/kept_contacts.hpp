@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "dem/shape_contacts.hpp"
 #include "model/model.hpp"
 #include "partition/id_order.hpp"
 #include "partition/ranks.hpp"
@@ -67,6 +68,11 @@ double bytes_remembered_with_pairs(int numbers);
 
 // No particle of so many has a contact.
 KeptContacts no_contacts(int numbers, std::int64_t particles);
+
+// Of contacts that remember something of another law, where the model's law remembers `numbers`: those with
+// sheets, which keep their sides and nothing else.
+KeptContacts sides_of(const KeptContacts& contacts, const Model& model, int numbers);
+ShapeContacts sides_of(const ShapeContacts& contacts, const Model& model, int numbers);
 
 // In the order of the ids, like the particles whose rows they are. Collective.
 KeptContacts in_order(const IdOrder& order, KeptContacts contacts);

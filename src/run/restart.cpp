@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "deck/deck.hpp"
 #include "deck/differences.hpp"
+#include "dem/choose_law.hpp"
 #include "model/build_parts.hpp"
 #include "model/joint_coordinates.hpp"
 #include "model/scalar_function.hpp"
@@ -168,6 +169,15 @@ bool renumbers_surfaces(const DeckDifference& difference) {
          names(difference, "shapes");
 }
 
+// Of what contacts remember of the old law, where the new one remembers something else.
+void keep_sides_alone(const Model& model, State& state) {
+  const int numbers = kept_numbers(model, history_of(model.contact));
+  if (state.contacts.numbers != 0 && state.contacts.numbers != numbers)
+    state.contacts = sides_of(state.contacts, model, numbers);
+  if (state.shape_contacts.numbers != 0 && state.shape_contacts.numbers != numbers)
+    state.shape_contacts = sides_of(state.shape_contacts, model, numbers);
+}
+
 // The deck's values hold from now on. What the state carries on from the steps before belongs to the old
 // ones, forces and accelerations to the old model.
 void apply(const Differences& differences, const Model& model, Restart& restart) {
@@ -186,6 +196,7 @@ void apply(const Differences& differences, const Model& model, Restart& restart)
     ShapeContacts& of_shapes = restart.state.shape_contacts;
     of_shapes.shapes.clear(), of_shapes.keys.clear(), of_shapes.values.clear();
   }
+  keep_sides_alone(model, restart.state);
   if (new_steps) restart.state.clock = with_new_steps(restart.state.clock, model.time);
 }
 

@@ -46,6 +46,35 @@ radius = 0.02
 mass = 0.05
 """
 
+# A soft grain whose centre goes through a sheet comes back.
+SHEET = """[space]
+dimension = 3
+min = [-1, -1, -1]
+max = [1, 1, 1]
+[time]
+end = 0.05
+step = 1e-4
+control = "fixed"
+[[contact.pairs]]
+stiffness = 7.0
+[[meshes]]
+name = "sheet"
+kind = "rectangle"
+size = [0.5, 0.5]
+[[walls]]
+name = "sheet"
+mesh = "sheet"
+[[particles]]
+kind = "list"
+positions = [[0, 0, 0.06]]
+radius = 0.05
+mass = 0.01
+velocity = [0, 0, -2]
+[output]
+history_csv = true
+history_particles = [0]
+"""
+
 
 class ChangesTest(CommandLineTest):
     def test_a_failed_run_goes_on_with_half_the_step(self):
@@ -68,6 +97,24 @@ class ChangesTest(CommandLineTest):
                 self.expect(DONE, *words, self.folder / "out")
                 self.expect(DONE, *words, self.folder / "other", "--restart", checkpoint, "--allow-changes", "--set",
                             "meshes.funnel.segments=12", "--set", "time.end=0.22")
+
+    def test_a_grain_past_a_sheet_keeps_its_side_where_the_law_remembers_something_else(self):
+        deck = self.write("sheet.toml", SHEET)
+
+        def height(output, *words):
+            """Of the grain at the end, over the sheet."""
+            self.expect(DONE, "run", deck, "--overwrite", "--output", self.folder / output, *words)
+            head, *_, last = self.history(output)
+            return float(last.split(",")[head.split(",").index("particles/0/z [m]")])
+
+        rough = ("--set", "contact.pairs.0.friction=0.3")
+        for method in ("hht", "velocity-verlet"):
+            for before, after in (((), rough), (rough, ())):
+                with self.subTest(method=method, before=before):
+                    words = ("--set", f"integrator.particles={method}")
+                    self.assertLess(height("out", *words, *before), 0)
+                    restart = ("--restart", self.folder / "out/checkpoint_end.h5", "--allow-changes")
+                    self.assertGreater(height("other", *words, *after, "--set", "time.end=0.2", *restart), 0.05)
 
     def test_allow_changes_is_for_restarts(self):
         self.assertIn("--restart", self.run_deck(BAD_INPUT, "out", "--allow-changes").stderr)
