@@ -190,14 +190,13 @@ struct MeshTouchItem {
   }
   SCREE_HD void put(MeshTouch& to, const Sphere& of, const MeshContact& found) const {
     const FeaturePair pair = feature_pair<kSheets>(of.mesh, found, of.axes, of.c, of.radius);
-    to = {pair.geometry.overlap > (kReaches ? -in.reach : 0),
-          acts_as_face<kSheets>(of.mesh, found),
-          pair.geometry,
-          pair.contact,
-          pair.geometry.normal(),
-          remembered_feature<kSheets>(of.mesh, found),
-          found.triangle,
-          -1};
+    // One by one: what is stored piecemeal and loaded whole at once waits for the stores.
+    to.touches = pair.geometry.overlap > (kReaches ? -in.reach : 0);
+    to.is_face = acts_as_face<kSheets>(of.mesh, found);
+    to.geometry = pair.geometry, to.contact = pair.contact;
+    to.normal0 = pair.geometry.normal();
+    to.feature = remembered_feature<kSheets>(of.mesh, found), to.triangle = found.triangle;
+    to.from = -1;
   }
   // For several contacts. Where there is one alone: that.
   SCREE_HD Nearest look_in_full(const MeshGroup& group, const Sphere& sphere, MeshContact& only_one) const {

@@ -24,6 +24,7 @@ SCREE_HD Vec3 moved_by_periods(Vec3 p, const ImageCount& count, Vec3 period) {
 SCREE_HD Vec3 wrap(Vec3 min, Vec3 period, Vec3 p, ImageCount& image) {
   constexpr Real kMostPeriods = 1e6;
   const auto axis = [](Real& x, Real start, Real length, std::int32_t& count) {
+    if (x >= start && x < start + length) return;
     if (length == 0 || !(std::abs(x - start) < kMostPeriods * length)) return;
     const Real periods = std::floor((x - start) / length);
     x = std::fma(-periods, length, x);
