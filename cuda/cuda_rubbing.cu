@@ -266,12 +266,6 @@ Real CudaRubbingStep::right_hand_side() {
   return largest;
 }
 
-Real CudaRubbingStep::tolerance_for(Real right_hand_side) {
-  const Real residual = items_.model.integrator.residual_tolerance;
-  return is_consistent() ? consistent_.next(residual, force_scale_, right_hand_side)
-                         : solver_tolerance(residual, force_scale_, right_hand_side);
-}
-
 int CudaRubbingStep::solve(Real tolerance) {
   DeviceHalo& halo = items_.lane.halo;
   Twist *residual = rubbing_.residual.data(), *correction = rubbing_.correction.data();
@@ -306,7 +300,8 @@ ParticleCorrection CudaRubbingStep::particle_correct() {
   search_ = {};
   const Real largest = right_hand_side();
   if (largest > 0) {
-    out.iterations = solve(tolerance_for(largest));
+    out.iterations = solve(
+        tolerance_.next(is_consistent(), items_.model.integrator.residual_tolerance, force_scale_, largest));
     max_over(items_.device(), items_.owned, correct_item(1), items_.results.at(&Results::largest));
     search_.open(std::max(scaled_residual_, largest / force_scale_));
   }

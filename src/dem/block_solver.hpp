@@ -47,13 +47,14 @@ inline Real solver_tolerance(Real residual_tolerance, Real force_scale, Real rig
   return std::max(Real(0.1) * residual_tolerance * force_scale, Real(0.01) * right_hand_side);
 }
 
-// The same for a matrix that is the derivative but for small terms: what a correction leaves is then as small
-// as what the linear solve leaves, once the contacts have found whether they stick, and the more the last one
-// has gained, the further the solve goes (Eisenstat and Walker, SIAM J. Sci. Comput. 17, 1996, choice 2 with
-// the exponent 3/2). Of one step.
-class ConsistentTolerance {
+// The same where contacts rub. consistent: the matrix is the derivative but for small terms. What a
+// correction leaves is then as small as what the linear solve leaves, once the contacts have found whether
+// they stick, and the more the last one has gained, the further the solve goes (Eisenstat and Walker, SIAM J.
+// Sci. Comput. 17, 1996, choice 2 with the exponent 3/2). Of one step.
+class RubbingTolerance {
  public:
-  Real next(Real residual_tolerance, Real force_scale, Real right_hand_side) {
+  Real next(bool consistent, Real residual_tolerance, Real force_scale, Real right_hand_side) {
+    if (!consistent) return solver_tolerance(residual_tolerance, force_scale, right_hand_side);
     const Real ratio = last_ > 0 ? right_hand_side / last_ : 1, gained = ratio * std::sqrt(ratio);
     last_ = right_hand_side;
     return std::max(Real(0.1) * residual_tolerance * force_scale,

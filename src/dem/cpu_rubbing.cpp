@@ -176,12 +176,6 @@ Real CpuRubbingStep::right_hand_side() {
   return largest;
 }
 
-Real CpuRubbingStep::tolerance_for(Real right_hand_side) {
-  const Real residual = items_.model.integrator.residual_tolerance;
-  return is_consistent() ? consistent_.next(residual, force_scale_, right_hand_side)
-                         : solver_tolerance(residual, force_scale_, right_hand_side);
-}
-
 int CpuRubbingStep::solve(Real tolerance) {
   const Index n = items_.layout.owned;
   std::vector<Vec4>&move = rubbing_.move, &turn = rubbing_.turn;
@@ -216,7 +210,8 @@ ParticleCorrection CpuRubbingStep::particle_correct() {
   search_ = {};
   const Real largest = right_hand_side();
   if (largest > 0) {
-    out.iterations = solve(tolerance_for(largest));
+    out.iterations = solve(
+        tolerance_.next(is_consistent(), items_.model.integrator.residual_tolerance, force_scale_, largest));
     out.correction = items_.ranks.max(max_over(Serial{}, items_.layout.owned, correct_item(1)));
     search_.open(std::max(scaled_residual_, largest / force_scale_));
   }

@@ -57,7 +57,6 @@ class CpuRubbingStep : public CpuImplicitStep {
   bool is_consistent() const;
   Real right_hand_side();
   void report_not_finite();  // throws, as that of the items
-  Real tolerance_for(Real right_hand_side);
   int solve(Real tolerance);
 
   CpuRubbingArrays& rubbing_;
@@ -66,7 +65,7 @@ class CpuRubbingStep : public CpuImplicitStep {
   Real scaled_residual_ = 0;                       // of the last contact_force
   Real largest_stiffening_ = 0, force_scale_ = 0;  // likewise
   Real sharpness_ = 0;
-  ConsistentTolerance consistent_;
+  RubbingTolerance tolerance_;
 };
 
 }  // namespace scree
