@@ -1,0 +1,111 @@
+// A row of triangles that several look at together.
+#include "mesh/team.hpp"
+
+#include <array>
+#include <barrier>
+#include <thread>
+
+#include "mesh/standing.hpp"
+#include "support/catch.hpp"
+#include "support/test_meshes.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr int kLanes = 4;
+constexpr Real kRadius = 0.1;
+
+// Threads in the place of a GPU's lanes.
+class ThreadLane {
+ public:
+  struct Shared {
+    std::barrier<> all{kLanes};
+    std::array<const void*, kLanes> value{};
+  };
+  ThreadLane(Shared& shared, int lane) : shared_(&shared), lane_(lane) {}
+
+  Index first() const { return lane_; }
+  static constexpr Index stride() { return kLanes; }
+  template <class T, class Merge>
+  T agree(T value, const Merge& merge) const {
+    for (int across = kLanes / 2; across > 0; across /= 2) {
+      shared_->value[static_cast<std::size_t>(lane_)] = &value;
+      shared_->all.arrive_and_wait();
+      const T other = *static_cast<const T*>(shared_->value[static_cast<std::size_t>(lane_ ^ across)]);
+      shared_->all.arrive_and_wait();
+      value = merge(value, other);
+    }
+    return value;
+  }
+
+ private:
+  Shared* shared_;
+  int lane_;
+};
+
+struct Looked {
+  Nearest found;
+  MeshContact contact{-1, -1, 0, {}, {}};
+  Standing standing = kNoStanding;
+
+  friend bool operator==(const Looked& a, const Looked& b) {
+    return a.found == b.found && (a.found != Nearest::one || same_contacts({a.contact}, {b.contact})) &&
+           a.standing.room == b.standing.room && a.standing.triangle == b.standing.triangle;
+  }
+};
+
+struct Place {
+  Vec3 c;
+  std::vector<Index> row;
+};
+
+template <class Team>
+std::vector<Looked> looks(const MeshView& view, const std::vector<Place>& places, const Team& team) {
+  std::vector<Looked> all;
+  for (const Place& at : places) {
+    const auto n = static_cast<Index>(at.row.size());
+    Looked look{};
+    look.found = NearestContact(view, at.c, kRadius).find(at.row.data(), n, -1, team, look.contact);
+    const StandingRow<Team> row{view, kind_of_row(view, at.row.data(), n), at.row.data(), n, at.c, kRadius,
+                                team};
+    if (look.found == Nearest::none) look.standing = row.clear();
+    if (look.found == Nearest::one) look.standing = row.over(look.contact.triangle);
+    all.push_back(look);
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a team finds at the triangles of a row what one alone does, and all of it the same") {
+  MeshRandom random(50);
+  int touching = 0, unclear = 0;
+  for (const SurfaceMesh& surface : {sheet_mesh(hills(12, 0.005, 2)), closed_mesh(drum_shell(60, 0.5, 1, 3)),
+                                     closed_mesh(potato(4, 0.002, 5))}) {
+    const MeshView view = surface.view();
+    std::vector<Place> places;
+    while (places.size() < 2000) {
+      const Vec3 c = place_near(surface, 1.2 * kRadius, random);
+      const auto row = triangles_near(surface, c, 1.2 * kRadius);
+      if (kind_of_row(view, row.data(), static_cast<Index>(row.size())) == RowKind::smooth)
+        places.push_back({c, row});
+    }
+    ThreadLane::Shared shared;
+    std::array<std::vector<Looked>, kLanes> of_lane;
+    std::vector<std::thread> threads;
+    for (int lane = 0; lane < kLanes; ++lane)
+      threads.emplace_back([&, lane] {
+        of_lane[static_cast<std::size_t>(lane)] = looks(view, places, ThreadLane(shared, lane));
+      });
+    for (std::thread& thread : threads) thread.join();
+    const std::vector<Looked> alone = looks(view, places, Alone{});
+    for (const std::vector<Looked>& of_one : of_lane) CHECK(of_one == alone);
+    for (const Looked& look : alone)
+      touching += look.found == Nearest::one, unclear += look.found == Nearest::unclear;
+  }
+  CHECK(touching > 1000);
+  CHECK(unclear > 0);
+}
+
+}  // namespace scree
