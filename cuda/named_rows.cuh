@@ -64,8 +64,9 @@ struct NamedRows {
   }
   __device__ std::int64_t mesh_key(Index entry, Vec3 p, GlobalId name) const {
     const PlacedSurface& surface = placed(entry);
-    const PeriodicBox of = box.without(surfaces.frames[surface.frame].spanned);
-    return row_key(name, of.image_beside(p, surface.point, surfaces.images[entry]));
+    const SurfaceFrame& frame = surfaces.frames[surface.frame];
+    const PeriodicBox of = box.without(frame.spanned);
+    return row_key(name, of.image_beside(p, surface.point + frame.to_middle, surfaces.images[entry]));
   }
   __device__ BesideMesh beside_mesh(Index entry, Vec3 p) const {
     const SurfaceFrame& frame = surfaces.frames[placed(entry).frame];

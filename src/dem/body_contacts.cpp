@@ -30,14 +30,6 @@ SortedBins bins_of(std::span<const PlacedSurface> placed, Real skin) {
   return SortedBins(PointCells(min, max, 2 * radius + skin, points.size()), points);
 }
 
-// Bodies neither attract each other nor are they attracted by walls: these contacts follow the laws without
-// attraction, with tension as the dampers of laws with it have.
-Contact without_attraction(Contact contact) {
-  for (KelvinVoigt& law : contact.laws)
-    if (law.attracts()) law = law.without_attraction(), law.tension = true;
-  return contact;
-}
-
 // As the damping of Hertz's law sees them, per placed surface [kg].
 std::vector<Real> masses_of_carriers(const Model& model, const SurfaceSet& surfaces) {
   std::vector<Real> masses;
@@ -49,6 +41,12 @@ std::vector<Real> masses_of_carriers(const Model& model, const SurfaceSet& surfa
 }
 
 }  // namespace
+
+Contact without_attraction(Contact contact) {
+  for (KelvinVoigt& law : contact.laws)
+    if (law.attracts()) law = law.without_attraction(), law.tension = true;
+  return contact;
+}
 
 ContactSum make_wall_contact(const Real* sums) {
   const auto vector = [&](int first) { return Vec3{sums[first], sums[first + 1], sums[first + 2]}; };

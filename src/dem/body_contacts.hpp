@@ -46,6 +46,10 @@ struct BodyContactTotals {
   Real pairs = 0;           // number
 };
 
+// The laws of bodies' contacts: bodies neither attract each other nor are they attracted by walls. Theirs are
+// those without attraction, with tension as the dampers of laws with it have.
+Contact without_attraction(Contact contact);
+
 class BodyContacts {
  public:
   BodyContacts(const Model& model, const SurfaceSet& surfaces, const Subdomain& subdomain);

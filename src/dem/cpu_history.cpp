@@ -22,8 +22,9 @@ std::int64_t CpuHistory::mesh_key(const Listed& at, Vec3 p, Index entry, GlobalI
   const SurfaceRows& rows = at.list.surfaces;
   const PlacedSurface& surface =
       at.places.placed[static_cast<std::size_t>(at.numbers.placed(rows.surfaces[entry]))];
-  const PeriodicBox box = box_.without(at.places.frames[static_cast<std::size_t>(surface.frame)].spanned);
-  return row_key(name, box.image_beside(p, surface.point, rows.images[entry]));
+  const SurfaceFrame& frame = at.places.frames[static_cast<std::size_t>(surface.frame)];
+  const PeriodicBox box = box_.without(frame.spanned);
+  return row_key(name, box.image_beside(p, surface.point + frame.to_middle, rows.images[entry]));
 }
 
 BesideMesh CpuHistory::beside_mesh(const Listed& at, Vec3 p, Index entry) const {

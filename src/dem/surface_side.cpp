@@ -66,9 +66,15 @@ void SurfaceSide::bring_into_box() {
     const Surface& surface = surfaces_.at(s);
     image_[s] = {};
     if (surface.kind == SurfaceKind::plane) continue;  // it has no images
-    const Vec3 p = point_motion(motion_[surface.carrier], surface.point).position;
-    subdomain_.wrap(snap(p, subdomain_.snap_constant()), image_[s]);
+    subdomain_.wrap(point_with(motion_, s) + to_middle(s), image_[s]);
   }
+}
+
+Vec3 SurfaceSide::to_middle(Index s) const {
+  if (placed_[s].kind != SurfaceKind::mesh) return {};
+  const SurfaceFrame& frame = frames_[static_cast<std::size_t>(placed_[s].frame)];
+  const Mat3 axes = rotation_matrix(orientation(motion_[surfaces_.at(s).carrier]));
+  return snap(axes * frame.middle, subdomain_.snap_constant());
 }
 
 void SurfaceSide::build_list(Real skin) {
@@ -95,7 +101,7 @@ void SurfaceSide::turn_frames() {
     const int carrier = surfaces_.at(s).carrier;
     frame.axes = rotation_matrix(orientation(motion_[carrier]));
     frame.before = rotation_matrix(orientation(step_start_[carrier]));
-    placed_[s].normal = frame.axes * frame.normal;
+    placed_[s].normal = frame.axes * frame.normal, frame.to_middle = to_middle(s);
   }
 }
 

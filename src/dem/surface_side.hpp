@@ -110,6 +110,7 @@ class SurfaceSide {
  private:
   // Of its point, on the grid of the periodic box, but with the body, however far that has gone [m].
   Vec3 point_with(const std::vector<BodyMotion>& motion, Index surface) const;
+  Vec3 to_middle(Index surface) const;  // SurfaceFrame::to_middle, of a mesh
   // Of any place on a surface, on meshes times of_mesh [m].
   // moved: of the surfaces' points; from: the axes of the frames before.
   Real largest_displacement(std::span<const Vec3> moved, std::span<const Mat3> from, Real of_mesh) const;
@@ -132,7 +133,7 @@ class SurfaceSide {
   BodyContacts bodies_;
   // Of the carriers as last set, where the explicit step began, and the one before it.
   std::vector<BodyMotion> motion_, step_start_, start_before_;
-  std::vector<ImageCount> image_;  // of each surface when it was brought into the box
+  std::vector<ImageCount> image_;  // of each surface's middle when it was brought into the box
   std::vector<PlacedSurface> placed_, start_, listed_;
   std::vector<MeshView> meshes_;
   std::vector<MeshBox> boxes_;  // of the meshes

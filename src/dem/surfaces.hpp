@@ -115,7 +115,10 @@ struct SurfaceFrame {
   // Of a mesh: the periods along which it goes on past its ends, as the space does. There it has no images,
   // and particles are where they are beside its middle.
   Vec3 spanned{}, middle{};  // [m], the latter in the carrier's frame
-  Vec3 slide{};              // velocity of a surface that runs along itself, in the carrier's frame [m/s]
+  // From the surface's point to its middle, on the space's quanta: what is beside what is told by the middle,
+  // as the point may be anywhere [m].
+  Vec3 to_middle{};
+  Vec3 slide{};  // velocity of a surface that runs along itself, in the carrier's frame [m/s]
 
   // How far the place at `from_point` from the surface's point has come since, beside that.
   SCREE_HD Vec3 travel_about(Vec3 from_point) const {
@@ -132,7 +135,7 @@ SCREE_HD Vec3 place_beside(const PlacedSurface& surface, const SurfaceFrame& fra
   const Vec3 period = frame.spanned;
   if (period == Vec3{}) return p;
   ImageCount unused;
-  return wrap(surface.point + frame.axes * frame.middle - Real(0.5) * period, period, p, unused);
+  return wrap(surface.point + frame.to_middle - Real(0.5) * period, period, p, unused);
 }
 
 // Calls visit(place) for all that this may be while the particle moves by less than the margin [m].
@@ -142,7 +145,7 @@ SCREE_HD void for_each_place_beside(const PlacedSurface& surface, const SurfaceF
   const Vec3 period = frame.spanned, place = place_beside(surface, frame, p);
   visit(place);
   if (period == Vec3{}) return;
-  const Vec3 from_middle = place - (surface.point + frame.axes * frame.middle);
+  const Vec3 from_middle = place - (surface.point + frame.to_middle);
   const auto beyond = [&](Real x, Real length) { return std::abs(x) > length / 2 + margin; };
   for_each_shift(period, [&](Vec3 shift, std::int8_t image) {
     const Vec3 x = from_middle + shift;

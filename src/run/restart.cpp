@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "deck/deck.hpp"
 #include "deck/differences.hpp"
+#include "dem/body_contacts.hpp"
 #include "dem/choose_law.hpp"
 #include "model/build_parts.hpp"
 #include "model/joint_coordinates.hpp"
@@ -171,11 +172,14 @@ bool renumbers_surfaces(const DeckDifference& difference) {
 
 // Of what contacts remember of the old law, where the new one remembers something else.
 void keep_sides_alone(const Model& model, State& state) {
-  const int numbers = kept_numbers(model, history_of(model.contact));
-  if (state.contacts.numbers != 0 && state.contacts.numbers != numbers)
-    state.contacts = sides_of(state.contacts, model, numbers);
-  if (state.shape_contacts.numbers != 0 && state.shape_contacts.numbers != numbers)
-    state.shape_contacts = sides_of(state.shape_contacts, model, numbers);
+  const auto differs = [](const auto& contacts, int numbers) {
+    return contacts.numbers != 0 && contacts.numbers != numbers;
+  };
+  const int numbers = kept_numbers(model, history_of(model.contact)),
+            of_shapes = kept_numbers(model, history_of(without_attraction(model.contact)));
+  if (differs(state.contacts, numbers)) state.contacts = sides_of(state.contacts, model, numbers);
+  if (differs(state.shape_contacts, of_shapes))
+    state.shape_contacts = sides_of(state.shape_contacts, model, of_shapes);
 }
 
 // The deck's values hold from now on. What the state carries on from the steps before belongs to the old

@@ -116,6 +116,21 @@ class ChangesTest(CommandLineTest):
                     restart = ("--restart", self.folder / "out/checkpoint_end.h5", "--allow-changes")
                     self.assertGreater(height("other", *words, *after, "--set", "time.end=0.2", *restart), 0.05)
 
+    def test_a_shape_past_a_sheet_keeps_its_side_where_particles_attract_each_other(self):
+        ball = ('[[bodies]]\nname = "ball"\nkind = "spatial"\nposition = [0, 0, 0.06]\nvelocity = [0, 0, -2]\n'
+                'mass = 0.01\ninertia_tensor = [1e-5, 1e-5, 1e-5, 0, 0, 0]\nshapes = [{ radius = 0.05 }]\n')
+        deck = self.write("ball.toml", SHEET.replace("[[0, 0, 0.06]]", "[[0.8, 0.8, 0.8]]").replace(
+            "stiffness = 7.0\n", "stiffness = 7.0\nfriction = 0.3\nattraction = 0.001\n") + ball)
+        heights = {}
+        for output, more in (("out", ()), ("other", ("--restart", self.folder / "out/checkpoint_end.h5",
+                                                     "--allow-changes", "--set", "contact.skin=2e-3",
+                                                     "--set", "time.end=0.2"))):
+            self.expect(DONE, "run", deck, "--overwrite", "--output", self.folder / output, *more)
+            head, *_, last = self.history(output)
+            heights[output] = float(last.split(",")[head.split(",").index("bodies/ball/z [m]")])
+        self.assertLess(heights["out"], 0)
+        self.assertGreater(heights["other"], 0.05)
+
     def test_allow_changes_is_for_restarts(self):
         self.assertIn("--restart", self.run_deck(BAD_INPUT, "out", "--allow-changes").stderr)
 

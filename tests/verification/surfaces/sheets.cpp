@@ -167,6 +167,26 @@ TEST_CASE("what fast grains remember of a sheet does not depend on lists") {
   }
 }
 
+// From whose point its middle is as far as the sheet reaches over a side of the space; the least motion takes
+// the point over the other side.
+TEST_CASE("a sheet that moves acts across the sides of a periodic space wherever its point is") {
+  for (const Real rate : {0.0, 1e-9, -1e-9}) {
+    CAPTURE(rate);
+    SimulationRun run(model_of(fmt::format(
+        "gravity = [0, 0, -9]\n[space]\ndimension = 3\nmin = [0, 0, -0.1]\nmax = [0.6, 0.4, 0.4]\nx_min = "
+        "\"periodic\"\nx_max = \"periodic\"\n[time]\nend = 0.15\nstep = 1e-4\n[integrator]\nparticles = "
+        "\"velocity-verlet\"\n[[contact.pairs]]\nstiffness = 1000.0\n[[meshes]]\nname = \"sheet\"\nkind = "
+        "\"rectangle\"\nsize = [0.5, 0.3]\noffset = [0.38, 0.2, 0.1]\nrefine = 0.05\n[[walls]]\nname = "
+        "\"sheet\"\nmesh = \"sheet\"\nmotions = [{{ type = \"translation\", direction = [1, 0, 0], "
+        "displacement = {{ kind = \"ramp\", rate = {} }} }}]\n[[particles]]\nkind = \"list\"\npositions = "
+        "[[0.02, 0.2, 0.112]]\nradius = 0.01\ndensity = 2500.0\nvelocity = [0, 0, -0.3]\n[output]\n"
+        "history_interval = 1.0\n",
+        rate)));
+    run.run();
+    CHECK(near(run.particles()[0].position.z, 0.1169, {.absolute = 1e-4}));
+  }
+}
+
 TEST_CASE("shapes and sheets of bodies keep their sides: momentum and energy are those of a rebound") {
   const std::string body =
       "[[bodies]]\nname = \"{}\"\nkind = \"spatial\"\nmass = 1.0\ninertia_tensor = [9, 9, 9, "
