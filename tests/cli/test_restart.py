@@ -120,12 +120,13 @@ class ChangesTest(CommandLineTest):
         ball = ('[[bodies]]\nname = "ball"\nkind = "spatial"\nposition = [0, 0, 0.06]\nvelocity = [0, 0, -2]\n'
                 'mass = 0.01\ninertia_tensor = [1e-5, 1e-5, 1e-5, 0, 0, 0]\nshapes = [{ radius = 0.05 }]\n')
         deck = self.write("ball.toml", SHEET.replace("[[0, 0, 0.06]]", "[[0.8, 0.8, 0.8]]").replace(
-            "stiffness = 7.0\n", "stiffness = 7.0\nfriction = 0.3\nattraction = 0.001\n") + ball)
+            "stiffness = 7.0\n", "stiffness = 7.0\nfriction = 0.3\nattraction = 0.001\n").replace(
+                "history_particles = [0]", 'history_bodies = ["ball"]') + ball)
         heights = {}
         for output, more in (("out", ()), ("other", ("--restart", self.folder / "out/checkpoint_end.h5",
                                                      "--allow-changes", "--set", "contact.skin=2e-3",
                                                      "--set", "time.end=0.2"))):
-            self.expect(DONE, "run", deck, "--overwrite", "--output", self.folder / output, *more)
+            self.expect(DONE, "run", deck, "--overwrite", *EXPLICIT, "--output", self.folder / output, *more)
             head, *_, last = self.history(output)
             heights[output] = float(last.split(",")[head.split(",").index("bodies/ball/z [m]")])
         self.assertLess(heights["out"], 0)
