@@ -96,6 +96,7 @@ struct GroupItem {
   const std::int8_t* images;
   MeshGroup* groups;
   Standing* standings;
+  MeshTouch* touches;
 
   __device__ void operator()(Index g) const {
     const NearMesh& of = near[g];
@@ -103,6 +104,7 @@ struct GroupItem {
     while (surfaces[entry] != of.surface || images[entry] != of.image) ++entry;
     groups[g].entry = entry;
     standings[g] = kNoStanding;
+    touches[entry].triangle = -1;  // where a first look begins
   }
 };
 
@@ -267,8 +269,9 @@ void DeviceMeshes::fill(Device device, Index* next, Index* surfaces, std::int8_t
 
 void DeviceMeshes::group(Device device, const Index* offsets, const Index* surfaces,
                          const std::int8_t* images) {
-  for_each(device, count_,
-           GroupItem{near_.data(), offsets, surfaces, images, groups_.data(), standings_.data()});
+  for_each(
+      device, count_,
+      GroupItem{near_.data(), offsets, surfaces, images, groups_.data(), standings_.data(), touches_.data()});
 }
 
 void DeviceMeshes::make_room(Index entries) {
