@@ -70,6 +70,7 @@ SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface&
                                     Real reach) {
   if (surface.kind == SurfaceKind::mesh) {
     const MeshTouch& touch = in.touches[entry];
+    if (!touch.touches) return {};
     return {{touch.geometry, touch.contact}, false, touch.is_face, touch.touches};
   }
   const bool is_sphere = surface.kind == SurfaceKind::sphere;

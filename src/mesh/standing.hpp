@@ -52,17 +52,14 @@ struct StandingRow {
     const MeshPart& part = mesh.parts[triangle.part];
     const Real height = dot(c - part.point, part.normal), distance = std::abs(height);
     if (height < 0 && !mesh.sheet) return kNoStanding;
+    const Below below{triangle, part.point, height < 0 ? opposite(part.normal) : part.normal, distance};
     Real room = distance;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 e = mesh.vertices[triangle.vertex[(k + 1) % 3]] - mesh.vertices[triangle.vertex[k]];
-      shrink(room,
-             mesh_detail::side_of_edge(mesh, triangle, k, part.normal, c).inside / std::sqrt(dot(e, e)));
-    }
+    for (int k = 0; k < 3; ++k) shrink(room, edge_of(below, k).inside);
     for (Index i = team.first(); i < count && room > 0; i += team.stride()) {
       const MeshTriangle& other = mesh.triangles[triangles[i]];
       // Of the same plane it is the same contact.
       if (triangles[i] == t || (other.part == triangle.part && other.features == 0)) continue;
-      shrink(room, beside(other, height < 0, distance));
+      shrink(room, beside(other, below, room));
     }
     return standing(team.agree(room, [](Real a, Real b) { return b < a ? b : a; }), t);
   }
@@ -98,18 +95,72 @@ struct StandingRow {
     const Real sure = room - mesh_detail::uncertainty(mesh);
     return {c, sure > 0 ? sure : 0, t, t < 0 ? -1 : mesh.triangles[t].part};
   }
-  // What another triangle leaves. from_below: c is under the sheet.
-  SCREE_HD Real beside(const MeshTriangle& other, bool from_below, Real distance) const {
+  // The triangle that c is over, as seen from there.
+  struct Below {
+    const MeshTriangle& triangle;
+    Vec3 point, normal;  // of its plane, towards c
+    Real distance;       // of c from it [m]
+  };
+  // One of its edges: a vertex, the direction in the plane from the edge to the inside, and how far inside c
+  // is [m].
+  struct Edge {
+    Vec3 from, inward;
+    Real inside;
+  };
+  SCREE_HD Edge edge_of(const Below& below, int k) const {
+    const Index* const vertex = below.triangle.vertex;
+    const Vec3 from = mesh.vertices[vertex[k]], e = mesh.vertices[vertex[k < 2 ? k + 1 : 0]] - from;
+    const Vec3 across = cross(mesh.parts[below.triangle.part].normal, e);
+    const Vec3 inward = (1 / std::sqrt(dot(e, e))) * across;
+    return {from, inward, dot(c - from, inward)};
+  }
+  // What another triangle leaves, or more than `enough` if it leaves that.
+  SCREE_HD Real beside(const MeshTriangle& other, const Below& below, Real enough) const {
+    Real farther = 0, same_side = kInfinity;
+    if (kind == RowKind::smooth) {
+      if (mesh.sheet) {
+        const MeshPart& part = mesh.parts[other.part];
+        const Real height = dot(c - part.point, part.normal);
+        same_side = dot(part.normal, below.normal) < 0 ? -height : height;
+      }
+      farther = past_an_edge(other, below);
+      if (!(farther < enough) && !(same_side < enough)) return farther;
+    }
     const Real away = mesh_detail::distance_to(mesh, other, c), beyond_reach = away - reach;
     if (kind == RowKind::any) return beyond_reach;
-    Real farther = Real(0.5) * (away - distance);
-    if (mesh.sheet) {  // and on the same side
-      const MeshPart& part = mesh.parts[other.part];
-      const Real height = dot(c - part.point, part.normal);
-      shrink(farther, from_below ? -height : height);
-    }
+    const Real nearer_by = Real(0.5) * (away - below.distance);
+    if (farther < nearer_by) farther = nearer_by;
+    shrink(farther, same_side);
     return farther > beyond_reach ? farther : beyond_reach;
   }
+  // How far c may move until a triangle that lies past an edge could be as near as the plane below; 0: it
+  // lies past none. With s [m] inside the edge and h over the plane, all that rises past the edge by no more
+  // than `slope` is farther than h while slope h < s. (src/mesh/README.md, "Looks that can be spared")
+  SCREE_HD Real past_an_edge(const MeshTriangle& other, const Below& below) const {
+    const Real u = mesh_detail::uncertainty(mesh);
+    Real most = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Edge edge = edge_of(below, k);
+      Real slope = 0;
+      bool past = true;
+      for (int corner = 0; corner < 3; ++corner) {
+        const Vec3 v = mesh.vertices[other.vertex[corner]];
+        const Real out = -dot(v - edge.from, edge.inward), up = dot(v - below.point, below.normal);
+        if (up < u)
+          past = past && out > -u;
+        else if (out > kClear * u)
+          slope = slope < up / out ? up / out : slope;
+        else
+          past = false;
+      }
+      slope *= 1 + 2 / kClear;  // what u makes of it
+      if (!past || slope > 1) continue;
+      const Real room = (edge.inside - u - slope * below.distance) / (1 + slope);
+      if (most < room) most = room;
+    }
+    return most - 2 * std::sqrt(2 * u * below.distance);
+  }
+  static constexpr Real kClear = 1024;  // times the uncertainty
 };
 
 }  // namespace scree
