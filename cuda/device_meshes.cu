@@ -118,18 +118,20 @@ struct StateLook {
   __device__ bool open(SurfaceViews&) const { return true; }
 };
 
-// Most particles stay where they were; those of a block that must look at triangles are shared out among
-// teams of its lanes, so that no warp waits for the few of its lanes that must, nor these for a row of
-// triangles.
+// Most particles stay where they were; those of a block that must look at triangles are shared out among its
+// lanes, so that no warp waits for the few of its lanes that must: smooth rows among teams, so that these do
+// not wait for a row of triangles. The full search of other rows is one lane's work.
 template <bool kReaches, bool kSheets, class Look>
 __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
     touch_kernel(Index groups, const __grid_constant__ SurfaceViews views, const Look look,
                  MeshTouch* touches, Standing* standings) {
   __shared__ TouchRecords::Shared shared;
-  __shared__ Index looking[kTouchThreads], looking_count;
+  // Groups whose triangles must be looked at: those of teams from the start, those of single lanes from the
+  // end.
+  __shared__ Index looking[kTouchThreads], of_teams, of_lanes;
   SurfaceViews now = views;
   if (!look.open(now)) return;
-  if (threadIdx.x == 0) looking_count = 0;
+  if (threadIdx.x == 0) of_teams = of_lanes = 0;
   __syncthreads();
   const MeshTouchItem<kReaches, kSheets> item{now, touches, standings};
   const TouchRecords records(shared);
@@ -137,14 +139,19 @@ __global__ void __launch_bounds__(kTouchThreads, kTouchBlocks)
   Index entry = -1;
   if (g < groups) {
     const Nearest found = item.stay(g, records.own());
-    if (found == Nearest::one) entry = now.meshes.groups[g].entry;
-    if (found == Nearest::unclear) looking[atomicAdd(&looking_count, 1)] = g;
+    const MeshGroup& group = now.meshes.groups[g];
+    if (found == Nearest::one) entry = group.entry;
+    if (found == Nearest::unclear) {
+      const bool smooth = group.kind == RowKind::smooth;
+      looking[smooth ? atomicAdd(&of_teams, 1) : kTouchThreads - 1 - atomicAdd(&of_lanes, 1)] = g;
+    }
   }
   records.store(touches, entry);
   __syncthreads();
+  const auto thread = static_cast<Index>(threadIdx.x);
+  if (thread < of_lanes) item.look(looking[kTouchThreads - 1 - thread], Alone{});
   using Team = LaneTeam<kTeamLanes>;
-  for (auto k = static_cast<Index>(threadIdx.x) / kTeamLanes; k < looking_count;
-       k += kTouchThreads / kTeamLanes)
+  for (Index k = thread / kTeamLanes; k < of_teams; k += kTouchThreads / kTeamLanes)
     item.look(looking[k], Team{});
 }
 

@@ -52,9 +52,14 @@ struct StandingRow {
     const MeshPart& part = mesh.parts[triangle.part];
     const Real height = dot(c - part.point, part.normal), distance = std::abs(height);
     if (height < 0 && !mesh.sheet) return kNoStanding;
-    const Below below{triangle, part.point, height < 0 ? opposite(part.normal) : part.normal, distance};
+    const Vec3 up = height < 0 ? opposite(part.normal) : part.normal;
+    const Below below{part.point,
+                      up,
+                      distance,
+                      {edge_of(triangle, part.normal, 0), edge_of(triangle, part.normal, 1),
+                       edge_of(triangle, part.normal, 2)}};
     Real room = distance;
-    for (int k = 0; k < 3; ++k) shrink(room, edge_of(below, k).inside);
+    for (const Edge& edge : below.edges) shrink(room, edge.inside);
     for (Index i = team.first(); i < count && room > 0; i += team.stride()) {
       const MeshTriangle& other = mesh.triangles[triangles[i]];
       // Of the same plane it is the same contact.
@@ -95,72 +100,68 @@ struct StandingRow {
     const Real sure = room - mesh_detail::uncertainty(mesh);
     return {c, sure > 0 ? sure : 0, t, t < 0 ? -1 : mesh.triangles[t].part};
   }
-  // The triangle that c is over, as seen from there.
-  struct Below {
-    const MeshTriangle& triangle;
-    Vec3 point, normal;  // of its plane, towards c
-    Real distance;       // of c from it [m]
-  };
-  // One of its edges: a vertex, the direction in the plane from the edge to the inside, and how far inside c
-  // is [m].
+  // An edge of the triangle that c is over: a vertex, the direction in the plane from the edge to the inside,
+  // and how far inside c is [m].
   struct Edge {
     Vec3 from, inward;
     Real inside;
   };
-  SCREE_HD Edge edge_of(const Below& below, int k) const {
-    const Index* const vertex = below.triangle.vertex;
-    const Vec3 from = mesh.vertices[vertex[k]], e = mesh.vertices[vertex[k < 2 ? k + 1 : 0]] - from;
-    const Vec3 across = cross(mesh.parts[below.triangle.part].normal, e);
-    const Vec3 inward = (1 / std::sqrt(dot(e, e))) * across;
+  // That triangle as seen from c.
+  struct Below {
+    Vec3 point, up;  // of its plane; unit, towards c
+    Real distance;   // of c from the plane [m]
+    Edge edges[3];
+  };
+  SCREE_HD Edge edge_of(const MeshTriangle& triangle, Vec3 normal, int k) const {
+    const Vec3 from = mesh.vertices[triangle.vertex[k]],
+               e = mesh.vertices[triangle.vertex[k < 2 ? k + 1 : 0]] - from;
+    const Vec3 inward = (1 / std::sqrt(dot(e, e))) * cross(normal, e);
     return {from, inward, dot(c - from, inward)};
   }
-  // What another triangle leaves, or more than `enough` if it leaves that.
+  // What another triangle leaves; or at least `enough`, if it leaves that.
   SCREE_HD Real beside(const MeshTriangle& other, const Below& below, Real enough) const {
     Real farther = 0, same_side = kInfinity;
     if (kind == RowKind::smooth) {
+      const MeshPart& part = mesh.parts[other.part];
       if (mesh.sheet) {
-        const MeshPart& part = mesh.parts[other.part];
         const Real height = dot(c - part.point, part.normal);
-        same_side = dot(part.normal, below.normal) < 0 ? -height : height;
+        same_side = dot(part.normal, below.up) < 0 ? -height : height;
       }
-      farther = past_an_edge(other, below);
+      farther = past_an_edge(other, part, below);
       if (!(farther < enough) && !(same_side < enough)) return farther;
     }
     const Real away = mesh_detail::distance_to(mesh, other, c), beyond_reach = away - reach;
     if (kind == RowKind::any) return beyond_reach;
-    const Real nearer_by = Real(0.5) * (away - below.distance);
-    if (farther < nearer_by) farther = nearer_by;
+    const Real by_distance = Real(0.5) * (away - below.distance);
+    if (farther < by_distance) farther = by_distance;
     shrink(farther, same_side);
     return farther > beyond_reach ? farther : beyond_reach;
   }
-  // How far c may move until a triangle that lies past an edge could be as near as the plane below; 0: it
-  // lies past none. With s [m] inside the edge and h over the plane, all that rises past the edge by no more
-  // than `slope` is farther than h while slope h < s. (src/mesh/README.md, "Looks that can be spared")
-  SCREE_HD Real past_an_edge(const MeshTriangle& other, const Below& below) const {
+  // How far c may move so that a triangle that lies past an edge stays farther than the plane below; 0: it
+  // lies past none, or not in the plane that a search takes for its own. Derived in src/mesh/README.md,
+  // "Looks that can be spared".
+  SCREE_HD Real past_an_edge(const MeshTriangle& other, const MeshPart& part, const Below& below) const {
     const Real u = mesh_detail::uncertainty(mesh);
+    const Vec3 corners[] = {mesh.vertices[other.vertex[0]], mesh.vertices[other.vertex[1]],
+                            mesh.vertices[other.vertex[2]]};
+    for (const Vec3& v : corners)
+      if (!(std::abs(dot(v - part.point, part.normal)) < u)) return 0;
     Real most = 0;
-    for (int k = 0; k < 3; ++k) {
-      const Edge edge = edge_of(below, k);
+    for (const Edge& edge : below.edges) {
       Real slope = 0;
-      bool past = true;
-      for (int corner = 0; corner < 3; ++corner) {
-        const Vec3 v = mesh.vertices[other.vertex[corner]];
-        const Real out = -dot(v - edge.from, edge.inward), up = dot(v - below.point, below.normal);
-        if (up < u)
-          past = past && out > -u;
-        else if (out > kClear * u)
-          slope = slope < up / out ? up / out : slope;
-        else
-          past = false;
+      bool is_past = true;
+      for (const Vec3& v : corners) {
+        const Real out = -dot(v - edge.from, edge.inward), up = dot(v - below.point, below.up);
+        is_past = is_past && out > -u && (up < u || up < out);
+        if (is_past && up > slope * out && !(up < u)) slope = up / out;
       }
-      slope *= 1 + 2 / kClear;  // what u makes of it
-      if (!past || slope > 1) continue;
+      if (!is_past) continue;
       const Real room = (edge.inside - u - slope * below.distance) / (1 + slope);
       if (most < room) most = room;
     }
-    return most - 2 * std::sqrt(2 * u * below.distance);
+    most -= 2 * std::sqrt(2 * u * below.distance);
+    return most > 0 ? most : 0;
   }
-  static constexpr Real kClear = 1024;  // times the uncertainty
 };
 
 }  // namespace scree

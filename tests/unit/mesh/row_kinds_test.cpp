@@ -1,6 +1,8 @@
 // Rows on which the nearest contact is all there is, and how long a sphere may stay where it is on a mesh.
 #include "mesh/row_kinds.hpp"
 
+#include <cmath>
+
 #include "mesh/standing.hpp"
 #include "support/catch.hpp"
 #include "support/test_meshes.hpp"
@@ -100,6 +102,35 @@ TEST_CASE("as long as a sphere stays it touches the face that it was over, or no
   }
   CHECK(over > 20000);
   CHECK(clear > 2000);
+}
+
+// The other triangle lies past the edge from (0, 0, 0) to (1, 0, 0) and rises from there, or is higher by
+// less than the uncertainty.
+TEST_CASE("beside an edge a sphere stays over a triangle while what lies past the edge is farther") {
+  int stands = 0, wrong = 0;
+  for (const Real slope : {0.0, 1e-6, 1e-3, 0.2, 1.0})
+    for (const Real higher : {0.0, 2e-15})
+      for (const Real height : {1e-3, 0.1, 2.0})
+        for (const Real inside : {1e-8, 1e-5, 1e-3, 0.1}) {
+          const SurfaceMesh surface = sheet_mesh(
+              {{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0, 0, higher}, {1, 0, higher}, {0.5, -1, slope + higher}},
+               {{0, 1, 2}, {3, 5, 4}}});
+          const MeshView view = surface.view();
+          REQUIRE(higher < mesh_detail::uncertainty(view));
+          const Index row[] = {0, 1}, below = view.vertices[view.triangles[0].vertex[2]].y > 0 ? 0 : 1;
+          const Vec3 c{0.5, inside, height};
+          const StandingRow<Alone> at{view, RowKind::smooth, row, 2, c, 2 * height};
+          const Standing standing = at.over(below);
+          stands += standing.room > 0;
+          for (int k = 0; k <= 8; ++k) {
+            const Real turn = M_PI * k / 16;
+            const Vec3 moved = c + 0.999999 * standing.room * Vec3{0, -std::cos(turn), std::sin(turn)};
+            wrong += standing.room > 0 &&
+                     !(mesh_detail::distance_to(view, view.triangles[1 - below], moved) > moved.z);
+          }
+        }
+  CHECK(stands > 50);
+  CHECK(wrong == 0);
 }
 
 }  // namespace scree
