@@ -52,6 +52,19 @@ void build_tree(SurfaceMesh& mesh) {
 
 Real largest(Vec3 a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
+// Of a vertex from the plane of its part [m]. The plane of a triangle alone is only as good as its normal,
+// and that of a sliver may be off by more than parts are given.
+Real farthest_from_plane(const TriangleMesh& mesh, const MeshParts& parts) {
+  Real farthest = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const MeshPart& part = parts.parts[static_cast<std::size_t>(parts.part_of[t])];
+    for (const Index v : mesh.triangles[t])
+      farthest = std::max(
+          farthest, std::abs(dot(mesh.vertices[static_cast<std::size_t>(v)] - part.point, part.normal)));
+  }
+  return farthest;
+}
+
 }  // namespace
 
 MeshView SurfaceMesh::view() const {
@@ -87,6 +100,7 @@ SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, Real feature_angle, boo
       kUnits * std::numeric_limits<Real>::epsilon() * std::max(largest(box.min), largest(box.max));
   result.flatness = kFlatness * largest(box.max - box.min) + result.round_off;
   MeshParts parts = mesh_parts(topology, result.flatness, result.cosine);
+  result.flatness = std::max(result.flatness, farthest_from_plane(topology.mesh, parts));
   result.curvature = mesh_curvature(topology, parts, result.cosine, sheet);
   MeshFeatures features = mesh_features(topology, parts, sheet);
   result.triangles = std::move(features.triangles);

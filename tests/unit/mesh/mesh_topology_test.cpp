@@ -101,6 +101,23 @@ TEST_CASE("slivers join the plane of their neighbours, whatever their own normal
   CHECK(sheet_mesh(turned(unit_grid(1, 30000), random.turn())).parts.size() == 1);
 }
 
+// What a search and all bounds on it take for the plane of a triangle is that of its part.
+TEST_CASE("vertices lie as near to the plane of their part as the mesh says, slivers' own, too") {
+  MeshRandom random(53);
+  int off = 0;
+  for (int i = 0; i < 100; ++i) {
+    const SurfaceMesh mesh =
+        sheet_mesh(turned({{{0, 0, 0}, {0.33, 0, 0}, {0.17, 7e-10, 0}}, {{0, 1, 2}}}, random.turn()));
+    REQUIRE(mesh.parts.size() == 1);
+    for (const Vec3& v : mesh.vertices) {
+      const Real distance = std::abs(dot(v - mesh.parts[0].point, mesh.parts[0].normal));
+      CHECK(distance <= mesh.flatness);
+      off += distance > 1e-11;
+    }
+  }
+  CHECK(off > 10);
+}
+
 TEST_CASE("a flat that folds back on itself is two parts") {
   const auto second_corner_at = [](Vec3 p) {
     return TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, p}, {{0, 1, 2}, {2, 1, 3}}};
