@@ -122,12 +122,12 @@ struct StandingRow {
   SCREE_HD Real beside(const MeshTriangle& other, const Below& below, Real enough) const {
     Real farther = 0, same_side = kInfinity;
     if (kind == RowKind::smooth) {
-      const MeshPart& part = mesh.parts[other.part];
       if (mesh.sheet) {
+        const MeshPart& part = mesh.parts[other.part];
         const Real height = dot(c - part.point, part.normal);
         same_side = dot(part.normal, below.up) < 0 ? -height : height;
       }
-      farther = past_an_edge(other, part, below);
+      farther = past_an_edge(other, below);
       if (!(farther < enough) && !(same_side < enough)) return farther;
     }
     const Real away = mesh_detail::distance_to(mesh, other, c), beyond_reach = away - reach;
@@ -138,14 +138,11 @@ struct StandingRow {
     return farther > beyond_reach ? farther : beyond_reach;
   }
   // How far c may move so that a triangle that lies past an edge stays farther than the plane below; 0: it
-  // lies past none, or not in the plane that a search takes for its own. Derived in src/mesh/README.md,
-  // "Looks that can be spared".
-  SCREE_HD Real past_an_edge(const MeshTriangle& other, const MeshPart& part, const Below& below) const {
+  // lies past none. Derived in src/mesh/README.md, "Looks that can be spared".
+  SCREE_HD Real past_an_edge(const MeshTriangle& other, const Below& below) const {
     const Real u = mesh_detail::uncertainty(mesh);
     const Vec3 corners[] = {mesh.vertices[other.vertex[0]], mesh.vertices[other.vertex[1]],
                             mesh.vertices[other.vertex[2]]};
-    for (const Vec3& v : corners)
-      if (!(std::abs(dot(v - part.point, part.normal)) < u)) return 0;
     Real most = 0;
     for (const Edge& edge : below.edges) {
       Real slope = 0;
