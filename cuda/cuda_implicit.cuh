@@ -20,12 +20,13 @@ struct CudaRubbingArrays {
   RubbingEntryArrays<DeviceArray> entries;
   DeviceArray<RubbingEntry> surface_entries;
   DeviceArray<ScaledMass> mass;
-  DeviceArray<Block6f> inverse_block;
-  DeviceArray<Twist> residual, correction;
+  DeviceArray<float> inverse_block;  // BlockSlices
+  DeviceArray<Twist> residual;
+  DeviceArray<Twistf> correction;
   DeviceArray<Real> neighbor_limits, surface_limits;  // while they are frozen
   DeviceArray<RubbingNorms> norms{1};
   PinnedArray<RubbingNorms> h_norms{1};
-  DeviceArray<Vec4> move[2], turn[2];  // directions of all items
+  DeviceArray<Twistf> direction[2];  // all items
 
   void resize(const CudaItems& items);
 };

@@ -23,37 +23,27 @@ struct SumOfPartsItem {
 
 struct TwistGhostItem {
   const Ghost* ghosts;
-  GhostField<Vec4> move, turn;
-  SCREE_HD void operator()(Index entry) const {
-    const Index source = ghosts[entry].source;
-    move.put(entry, move.field[source]), turn.put(entry, turn.field[source]);
-  }
+  GhostField<Twistf> twist;
+  SCREE_HD void operator()(Index entry) const { twist.put(entry, twist.field[ghosts[entry].source]); }
 };
 
 struct FirstTwistItem {
   TwistDirectionItem direction;
-  Vec4 *move, *turn;
-  Twist* solution;
-  SCREE_HD void operator()(Index i) const {
-    const Twist first = direction.next(i, {});
-    move[i] = vec4(first.move, 0), turn[i] = vec4(first.turn, 0);
-    solution[i] = {};
-  }
+  Twistf *first, *solution;
+  SCREE_HD void operator()(Index i) const { first[i] = direction.next(i, {}), solution[i] = {}; }
 };
 
 // One step of the solve: takes the direction into the solution and the residual, and finds the next.
 struct RubbingSolverItem {
   SubtractRubbingItem<SlicedRows> subtract;
   TwistDirectionItem direction;  // weights of the next one
-  Vec4 *next_move, *next_turn;
-  Twist* solution;
+  Twistf *next, *solution;
 
   SCREE_HD Real operator()(Index i) const {
-    const Twist d{xyz(subtract.move[i]), xyz(subtract.turn[i])};
+    const Twistf d = subtract.d[i];
     solution[i] += d;
     subtract(i);
-    const Twist next = direction.next(i, d);
-    next_move[i] = vec4(next.move, 0), next_turn[i] = vec4(next.turn, 0);
+    next[i] = direction.next(i, d);
     const Twist left = subtract.residual[i];
     const Real move = dot(left.move, left.move), turn = dot(left.turn, left.turn);
     return move > turn ? move : turn;
@@ -86,12 +76,13 @@ void CudaRubbingArrays::resize(const CudaItems& items) {
   const auto owned = static_cast<std::size_t>(items.owned),
              all = static_cast<std::size_t>(items.layout.items);
   mean_spin.resize(all);
-  for (int k = 0; k < 2; ++k) move[k].resize(all), turn[k].resize(all);
+  for (DeviceArray<Twistf>& of : direction) of.resize(all);
   entries.resize(static_cast<std::size_t>(items.list.slots()));
   surface_entries.resize(static_cast<std::size_t>(items.surfaces.entries()));
   start_torque.resize(owned), step_torque.resize(owned), end_torque.resize(owned);
   sharpness.resize(owned), surface_count.resize(owned);
-  mass.resize(owned), inverse_block.resize(owned), residual.resize(owned), correction.resize(owned);
+  mass.resize(owned), inverse_block.resize(BlockSlices::size(owned)), residual.resize(owned),
+      correction.resize(owned);
 }
 
 // The state is put aside by a swap.
@@ -180,7 +171,7 @@ void CudaRubbingStep::queue_system() {
                                      step_torques(),
                                      rubbing_.residual.data(),
                                      rubbing_.mass.data(),
-                                     rubbing_.inverse_block.data(),
+                                     {rubbing_.inverse_block.data()},
                                      arrays_.stiffening.data()};
   const RubbingNormsItem norms{step_views(),
                                rubbing_.residual.data(),
@@ -234,11 +225,9 @@ GlobalId CudaRubbingStep::worst_particle() {
 }
 
 RubbingCorrectItem CudaRubbingStep::correct_item(Real share) {
-  return {items_.now.acceleration.data(),
-          items_.now.angular_acceleration.data(),
-          rubbing_.correction.data(),
-          items_.now.position.data(),
-          share,
+  return {items_.now.acceleration.data(),       items_.now.angular_acceleration.data(),
+          rubbing_.correction.data(),           unit_,
+          items_.now.position.data(),           share,
           newmark_position_gain(items_.hht, h_)};
 }
 
@@ -268,28 +257,26 @@ Real CudaRubbingStep::right_hand_side() {
 
 int CudaRubbingStep::solve(Real tolerance) {
   DeviceHalo& halo = items_.lane.halo;
-  Twist *residual = rubbing_.residual.data(), *correction = rubbing_.correction.data();
+  Twist* residual = rubbing_.residual.data();
+  Twistf* correction = rubbing_.correction.data();
   const auto direction = [&](const ChebyshevWeights& weights) {
-    return TwistDirectionItem{rubbing_.inverse_block.data(), residual, weights.from_last,
-                              weights.from_residual};
+    return TwistDirectionItem{
+        {rubbing_.inverse_block.data()}, residual, weights.from_last, weights.from_residual / unit_};
   };
-  const auto move = [&](int k) { return rubbing_.move[k % 2].data(); };
-  const auto turn = [&](int k) { return rubbing_.turn[k % 2].data(); };
+  const auto twist = [&](int k) { return rubbing_.direction[k % 2].data(); };
   const auto begin = [&](const ChebyshevWeights& weights) {
-    for_each(items_.device(), items_.owned, FirstTwistItem{direction(weights), move(0), turn(0), correction});
+    for_each(items_.device(), items_.owned, FirstTwistItem{direction(weights), twist(0), correction});
   };
   const auto ghosts = [&](Device on, int product) {
-    const TwistGhostItem item{halo.ghosts(), halo.field(0, move(product), items_.owned),
-                              halo.field(1, turn(product), items_.owned)};
+    const TwistGhostItem item{halo.ghosts(), halo.field(0, twist(product), items_.owned)};
     for_each(on, halo.entries(), item);
-    halo.exchange(on, item.move, item.turn);
+    halo.exchange(on, item.twist);
   };
   const auto item = [&](int product, const ChebyshevWeights& weights) {
     return RubbingSolverItem{{matrix(), items_.list.rows(), items_.surfaces.list().offsets,
-                              rubbing_.mass.data(), is_consistent(), move(product), turn(product), residual},
+                              rubbing_.mass.data(), is_consistent(), twist(product), unit_, residual},
                              direction(weights),
-                             move(product + 1),
-                             turn(product + 1),
+                             twist(product + 1),
                              correction};
   };
   return solve_on_device(items_, arrays_.solver, largest_stiffening_, tolerance, begin, ghosts, item);
@@ -300,6 +287,7 @@ ParticleCorrection CudaRubbingStep::particle_correct() {
   search_ = {};
   const Real largest = right_hand_side();
   if (largest > 0) {
+    unit_ = direction_unit(largest);
     out.iterations = solve(
         tolerance_.next(is_consistent(), items_.model.integrator.residual_tolerance, force_scale_, largest));
     max_over(items_.device(), items_.owned, correct_item(1), items_.results.at(&Results::largest));

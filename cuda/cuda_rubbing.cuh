@@ -40,6 +40,7 @@ class CudaRubbingStep : public CudaImplicitStep {
   Real scaled_residual_ = 0;                       // of the last contact_force
   Real largest_stiffening_ = 0, force_scale_ = 0;  // likewise
   Real sharpness_ = 0;
+  Real unit_ = 0;  // of rubbing_.correction [N]
   RubbingTolerance tolerance_;
 };
 

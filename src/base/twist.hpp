@@ -7,7 +7,7 @@
 namespace scree {
 
 // Of one unit: what belongs to the rotation is scaled by the radius.
-struct Twist {
+struct alignas(16) Twist {
   Vec3 move, turn;
 };
 
@@ -16,6 +16,25 @@ SCREE_HD Twist operator-(Twist a, Twist b) { return {a.move - b.move, a.turn - b
 SCREE_HD Twist operator*(Real s, Twist a) { return {s * a.move, s * a.turn}; }
 SCREE_HD Twist& operator+=(Twist& a, Twist b) { return a = a + b; }
 SCREE_HD Twist& operator-=(Twist& a, Twist b) { return a = a - b; }
+
+// In single precision: what a linear solve goes along. A spare number behind each part: compilers move
+// structures with padding byte by byte.
+struct alignas(16) Twistf {
+  Vec3f move;
+  float spare = 0;
+  Vec3f turn;
+  float spare_too = 0;
+
+  Twistf() = default;
+  SCREE_HD Twistf(Vec3f m, Vec3f t) : move(m), turn(t) {}
+};
+
+SCREE_HD Twist in_double(Twistf a) { return {in_double(a.move), in_double(a.turn)}; }
+SCREE_HD Twistf in_single(Twist a) { return {in_single(a.move), in_single(a.turn)}; }
+SCREE_HD Twistf operator*(float s, Twistf a) { return {s * a.move, s * a.turn}; }
+SCREE_HD Twistf operator+(Twistf a, Twistf b) { return {a.move + b.move, a.turn + b.turn}; }
+SCREE_HD Twistf& operator+=(Twistf& a, Twistf b) { return a = a + b; }
+
 // The larger of the two parts.
 SCREE_HD Real largest_part(Twist a) {
   const Real move = norm(a.move), turn = norm(a.turn);
@@ -62,7 +81,8 @@ SCREE_HD Real largest_row(const Block6& a, Real mass, Real inertia) {
 
 // The same in single precision: for preconditioners.
 struct Block6f {
-  float value[21];
+  static constexpr int kNumbers = 21;
+  float value[kNumbers];
 
   // Its inverse, of a positive definite block, through the Schur complement of `move`.
   SCREE_HD static Block6f inverse_of(const Block6& a) {
@@ -80,37 +100,41 @@ struct Block6f {
     // mixed = -t turn, and move = first + t turn t^T, by rows of t.
     const Vec3 rows[3] = {{t0.x, t1.x, t2.x}, {t0.y, t1.y, t2.y}, {t0.z, t1.z, t2.z}};
     const Vec3 m[3] = {turn * rows[0], turn * rows[1], turn * rows[2]};
-    const Real entries[21] = {first.xx + dot(m[0], rows[0]),
-                              first.xy + dot(m[0], rows[1]),
-                              first.xz + dot(m[0], rows[2]),
-                              first.yy + dot(m[1], rows[1]),
-                              first.yz + dot(m[1], rows[2]),
-                              first.zz + dot(m[2], rows[2]),
-                              turn.xx,
-                              turn.xy,
-                              turn.xz,
-                              turn.yy,
-                              turn.yz,
-                              turn.zz,
-                              -m[0].x,
-                              -m[0].y,
-                              -m[0].z,
-                              -m[1].x,
-                              -m[1].y,
-                              -m[1].z,
-                              -m[2].x,
-                              -m[2].y,
-                              -m[2].z};
+    const Real entries[kNumbers] = {first.xx + dot(m[0], rows[0]),
+                                    first.xy + dot(m[0], rows[1]),
+                                    first.xz + dot(m[0], rows[2]),
+                                    first.yy + dot(m[1], rows[1]),
+                                    first.yz + dot(m[1], rows[2]),
+                                    first.zz + dot(m[2], rows[2]),
+                                    turn.xx,
+                                    turn.xy,
+                                    turn.xz,
+                                    turn.yy,
+                                    turn.yz,
+                                    turn.zz,
+                                    -m[0].x,
+                                    -m[0].y,
+                                    -m[0].z,
+                                    -m[1].x,
+                                    -m[1].y,
+                                    -m[1].z,
+                                    -m[2].x,
+                                    -m[2].y,
+                                    -m[2].z};
     Block6f out;
-    for (int k = 0; k < 21; ++k) out.value[k] = static_cast<float>(entries[k]);
+    for (int k = 0; k < kNumbers; ++k) out.value[k] = static_cast<float>(entries[k]);
     return out;
   }
 
-  SCREE_HD Twist operator*(Twist v) const {
+  SCREE_HD Twistf operator*(Twistf v) const {
     const float* a = value;
-    const Sym3 move{a[0], a[1], a[2], a[3], a[4], a[5]}, turn{a[6], a[7], a[8], a[9], a[10], a[11]};
-    const Mat3 mixed{{a[12], a[13], a[14]}, {a[15], a[16], a[17]}, {a[18], a[19], a[20]}};
-    return {move * v.move + mixed * v.turn, transposed_times(mixed, v.move) + turn * v.turn};
+    const auto symmetric = [](const float* s, Vec3f w) -> Vec3f {
+      return {s[0] * w.x + s[1] * w.y + s[2] * w.z, s[1] * w.x + s[3] * w.y + s[4] * w.z,
+              s[2] * w.x + s[4] * w.y + s[5] * w.z};
+    };
+    const Vec3f x{a[12], a[13], a[14]}, y{a[15], a[16], a[17]}, z{a[18], a[19], a[20]};
+    return {symmetric(a, v.move) + Vec3f{dot(x, v.turn), dot(y, v.turn), dot(z, v.turn)},
+            v.move.x * x + v.move.y * y + v.move.z * z + symmetric(a + 6, v.turn)};
   }
 };
 

@@ -43,6 +43,7 @@ struct Vec3f {
 
   friend SCREE_HD Vec3f operator+(Vec3f a, Vec3f b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend SCREE_HD Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend SCREE_HD Vec3f operator-(Vec3f a) { return {-a.x, -a.y, -a.z}; }
   friend SCREE_HD Vec3f operator*(float s, Vec3f a) { return {s * a.x, s * a.y, s * a.z}; }
   friend SCREE_HD float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
   friend SCREE_HD Vec3f cross(Vec3f a, Vec3f b) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -64,6 +65,12 @@ class RubbingTolerance {
  private:
   Real last_ = 0;  // right-hand side of the last solve [N]
 };
+
+// What directions in single precision, and their sum, are in units of [N]: that of the right-hand side, so
+// that they do not vanish where all forces are very small, as of a particle that flies off.
+inline Real direction_unit(Real right_hand_side) {
+  return std::max(right_hand_side, std::numeric_limits<Real>::min());
+}
 
 struct DirectionItem {
   const Sym3* inverse_block;

@@ -10,11 +10,12 @@ namespace scree {
 void CpuRubbingArrays::resize(const CpuItems& items) {
   const auto owned = static_cast<std::size_t>(items.layout.owned),
              all = static_cast<std::size_t>(items.layout.items);
-  mean_spin.resize(all), move.resize(all), turn.resize(all);
+  mean_spin.resize(all), direction.resize(all);
   entries.resize(items.list.neighbors.size()), surface_entries.resize(items.list.surfaces.surfaces.size());
   start_torque.resize(owned), step_torque.resize(owned), end_torque.resize(owned);
   sharpness.resize(owned), surface_count.resize(owned);
-  mass.resize(owned), inverse_block.resize(owned), residual.resize(owned), correction.resize(owned);
+  mass.resize(owned), inverse_block.resize(BlockSlices::size(owned)), residual.resize(owned),
+      correction.resize(owned);
 }
 
 CpuRubbingStep::CpuRubbingStep(CpuItems& items, CpuImplicitArrays& motion, CpuRubbingArrays& arrays, Real h)
@@ -115,7 +116,7 @@ ParticleNorms CpuRubbingStep::contact_force() {
                                      step_torques(),
                                      rubbing_.residual.data(),
                                      rubbing_.mass.data(),
-                                     rubbing_.inverse_block.data(),
+                                     {rubbing_.inverse_block.data()},
                                      arrays_.stiffening.data()};
   const PackedRows rows{items_.list.offsets.data(), items_.list.neighbors.data()};
   for (Index i = 0; i < n; ++i)
@@ -140,11 +141,9 @@ GlobalId CpuRubbingStep::worst_particle() {
 }
 
 RubbingCorrectItem CpuRubbingStep::correct_item(Real share) {
-  return {items_.store.acceleration.data(),
-          items_.store.angular_acceleration.data(),
-          rubbing_.correction.data(),
-          items_.store.position.data(),
-          share,
+  return {items_.store.acceleration.data(),     items_.store.angular_acceleration.data(),
+          rubbing_.correction.data(),           unit_,
+          items_.store.position.data(),         share,
           newmark_position_gain(items_.hht, h_)};
 }
 
@@ -178,26 +177,27 @@ Real CpuRubbingStep::right_hand_side() {
 
 int CpuRubbingStep::solve(Real tolerance) {
   const Index n = items_.layout.owned;
-  std::vector<Vec4>&move = rubbing_.move, &turn = rubbing_.turn;
-  std::fill_n(move.begin(), n, Vec4{}), std::fill_n(turn.begin(), n, Vec4{});
-  std::fill(rubbing_.correction.begin(), rubbing_.correction.end(), Twist{});
+  std::vector<Twistf>& d = rubbing_.direction;
+  std::fill_n(d.begin(), n, Twistf{});
+  std::fill(rubbing_.correction.begin(), rubbing_.correction.end(), Twistf{});
   const SubtractRubbingItem<PackedRows> subtract{matrix(),
                                                  {items_.list.offsets.data(), items_.list.neighbors.data()},
                                                  items_.list.surfaces.offsets.data(),
                                                  rubbing_.mass.data(),
                                                  is_consistent(),
-                                                 move.data(),
-                                                 turn.data(),
+                                                 d.data(),
+                                                 unit_,
                                                  rubbing_.residual.data()};
   return iterate_chebyshev(largest_stiffening_, tolerance, [&](const ChebyshevWeights& weights) {
-    const TwistDirectionItem direction{rubbing_.inverse_block.data(), rubbing_.residual.data(),
-                                       weights.from_last, weights.from_residual};
+    const TwistDirectionItem direction{{rubbing_.inverse_block.data()},
+                                       rubbing_.residual.data(),
+                                       weights.from_last,
+                                       weights.from_residual / unit_};
     for (Index i = 0; i < n; ++i) {
-      const Twist step = direction.next(i, {xyz(move[i]), xyz(turn[i])});
-      move[i] = vec4(step.move, 0), turn[i] = vec4(step.turn, 0);
-      rubbing_.correction[i] += step;
+      d[i] = direction.next(i, d[i]);
+      rubbing_.correction[i] += d[i];
     }
-    items_.halo.update(std::span<Vec4>(move), n), items_.halo.update(std::span<Vec4>(turn), n);
+    items_.halo.update(std::span<Twistf>(d), n);
     for_each(Serial{}, n, subtract);
     Real largest = 0;
     for (const Twist& r : rubbing_.residual) largest = std::max(largest, largest_part(r));
@@ -210,6 +210,7 @@ ParticleCorrection CpuRubbingStep::particle_correct() {
   search_ = {};
   const Real largest = right_hand_side();
   if (largest > 0) {
+    unit_ = direction_unit(largest);
     out.iterations = solve(
         tolerance_.next(is_consistent(), items_.model.integrator.residual_tolerance, force_scale_, largest));
     out.correction = items_.ranks.max(max_over(Serial{}, items_.layout.owned, correct_item(1)));

@@ -21,12 +21,12 @@ struct CpuRubbingArrays {
   RubbingEntryArrays<std::vector> entries;
   std::vector<RubbingEntry> surface_entries;
   std::vector<ScaledMass> mass;
-  std::vector<Block6f> inverse_block;
+  std::vector<float> inverse_block;  // BlockSlices
   std::vector<Twist> residual;
   std::vector<Real> neighbor_limits, surface_limits;  // while they are frozen
   // particle_correct
-  std::vector<Twist> correction;
-  std::vector<Vec4> move, turn;  // directions of all items
+  std::vector<Twistf> correction;
+  std::vector<Twistf> direction;  // all items
 
   void resize(const CpuItems& items);
 };
@@ -65,6 +65,7 @@ class CpuRubbingStep : public CpuImplicitStep {
   Real scaled_residual_ = 0;                       // of the last contact_force
   Real largest_stiffening_ = 0, force_scale_ = 0;  // likewise
   Real sharpness_ = 0;
+  Real unit_ = 0;  // of rubbing_.correction [N]
   RubbingTolerance tolerance_;
 };
 

@@ -33,8 +33,8 @@ constexpr double kGhostArrays = sizeof(Ghost) + 4 * sizeof(Index) + sizeof(Index
 constexpr double kStepArrays =
     5 * sizeof(Vec3) + 2 * sizeof(Real) + sizeof(Index) + 2 * sizeof(Sym3) + 2 * sizeof(Vec4);
 // The same where contacts rub: CudaRubbingArrays in place of the matrix and the solve.
-constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + 5 * sizeof(Vec4) +
-                                  sizeof(ScaledMass) + sizeof(Block6f) + 2 * sizeof(Twist);
+constexpr double kRubbingArrays = 6 * sizeof(Vec3) + 3 * sizeof(Real) + 2 * sizeof(Index) + sizeof(Vec4) +
+                                  sizeof(ScaledMass) + sizeof(Block6f) + sizeof(Twist) + 3 * sizeof(Twistf);
 constexpr double kMixedArrays = sizeof(MixedFraction) + sizeof(MixedRest);
 constexpr double kStepArraysPerSlot = sizeof(ContactEntry);
 constexpr double kRubbingArraysPerSlot = sizeof(RubbingEntry::Normal) + sizeof(RubbingEntry::Slide) +

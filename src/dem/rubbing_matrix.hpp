@@ -48,15 +48,15 @@ struct RubbingEntry {
   // Force on i, and its torque over the radius, by how the partners move against each other and both turn.
   // consistent: with the growth, too, for which the matrix is neither symmetric nor quite positive, and the
   // derivative but for terms of the order of overlap over radius and of the turn in a step.
-  SCREE_HD Twist pull(Vec3 apart, Vec3 turning, bool consistent) const {
-    const Vec3 n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
-    const Real approach = dot(n, apart);
-    const Vec3 slip = apart - approach * n - cross(turning, n);
-    Vec3 force = Real(shear.across) * (slip - dot(t, slip) * t);
-    Vec3 along = (Real(slide.along) * approach) * n;
+  SCREE_HD Twistf pull(Vec3f apart, Vec3f turning, bool consistent) const {
+    const Vec3f n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
+    const float approach = dot(n, apart);
+    const Vec3f slip = apart - approach * n - cross(turning, n);
+    Vec3f force = shear.across * (slip - dot(t, slip) * t);
+    Vec3f along = (slide.along * approach) * n;
     if (consistent) {
-      const Vec3 growth{shear.x, shear.y, shear.z};
-      force -= approach * growth, along += dot(n, growth) * apart;
+      const Vec3f growth{shear.x, shear.y, shear.z};
+      force = force - approach * growth, along = along + dot(n, growth) * apart;
     }
     return {along + force, -cross(n, force)};
   }
@@ -122,6 +122,29 @@ struct RubbingMatrix {
       if (--left > 0) next = entries[slot];
       if (entry.is_contact()) take(entry);
     }
+  }
+};
+
+// A block per particle, each number of 32 of them side by side: a warp reads and writes whole lines.
+struct BlockSlices {
+  static constexpr Index kRows = 32;
+  float* numbers;
+
+  static std::size_t size(std::size_t particles) {
+    return (particles + kRows - 1) / kRows * kRows * Block6f::kNumbers;
+  }
+  SCREE_HD Block6f operator[](Index i) const {
+    Block6f block;
+    for (int k = 0; k < Block6f::kNumbers; ++k) block.value[k] = numbers[place(i, k)];
+    return block;
+  }
+  SCREE_HD void put(Index i, const Block6f& block) const {
+    for (int k = 0; k < Block6f::kNumbers; ++k) numbers[place(i, k)] = block.value[k];
+  }
+
+ private:
+  SCREE_HD static std::int64_t place(Index i, int k) {
+    return (std::int64_t{i / kRows} * Block6f::kNumbers + k) * kRows + i % kRows;
   }
 };
 

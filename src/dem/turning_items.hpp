@@ -41,7 +41,7 @@ struct RubbingResidualItem {
   StepTorques torques;
   Twist* residual;  // [N]
   ScaledMass* mass;
-  Block6f* inverse_block;
+  BlockSlices inverse_block;
   Real* stiffening;  // bound of the contacts' part of the block over the mass part
 
   template <class Rows>
@@ -63,7 +63,7 @@ struct RubbingResidualItem {
     stiffening[i] = largest_row(block, masses.move, masses.turn);
     block.move += Sym3{masses.move, 0, 0, masses.move, 0, masses.move};
     block.turn += Sym3{masses.turn, 0, 0, masses.turn, 0, masses.turn};
-    inverse_block[i] = Block6f::inverse_of(block);
+    inverse_block.put(i, Block6f::inverse_of(block));
   }
 };
 
@@ -101,40 +101,45 @@ struct TwistSizeItem {
 // size of the whole correction of position or turn over the radius.
 struct RubbingCorrectItem {
   Vec3 *acceleration, *angular_acceleration;
-  const Twist* correction;
+  const Twistf* correction;
+  Real unit;             // of the correction, direction_unit [N]
   const Vec4* position;  // radius in w
   Real share;
   Real weight;  // newmark_position_gain [s^2]
 
   SCREE_HD Real operator()(Index i) const {
     const Real radius = position[i].w;
-    acceleration[i] += share * correction[i].move;
-    angular_acceleration[i] += (share / radius) * correction[i].turn;
-    return weight * largest_part(correction[i]) / radius;
+    const Twist by = unit * in_double(correction[i]);
+    acceleration[i] += share * by.move;
+    angular_acceleration[i] += (share / radius) * by.turn;
+    return weight * largest_part(by) / radius;
   }
 };
 
-// residual_i -= (A d)_i for the Newton matrix A = masses + contacts.
+// residual_i -= (A d)_i for the Newton matrix A = masses + contacts. Directions and what contacts make of
+// them are in single precision: they are most of what a product reads beside the entries.
 template <class Rows>
 struct SubtractRubbingItem {
   RubbingMatrix matrix;
   Rows rows;
   const Index* surface_offsets;
   const ScaledMass* mass;
-  bool consistent;          // RubbingEntry::pull
-  const Vec4 *move, *turn;  // d of all items
+  bool consistent;  // RubbingEntry::pull
+  const Twistf* d;  // of all items
+  Real unit;        // of d, direction_unit [N]
   Twist* residual;
 
   SCREE_HD void operator()(Index i) const {
-    const Vec3 u = xyz(move[i]), w = xyz(turn[i]);
-    Twist sum{mass[i].move * u, mass[i].turn * w};
+    const Twistf own = d[i];
+    Twistf pulls{};
     matrix.for_each_entry(rows, i, [&](const RubbingEntry& entry) {
-      const Index j = entry.normal.neighbor;
-      sum += entry.pull(u - xyz(move[j]), w + xyz(turn[j]), consistent);
+      const Twistf other = d[entry.normal.neighbor];
+      pulls += entry.pull(own.move - other.move, own.turn + other.turn, consistent);
     });
     for (Index k = 0; k < matrix.surface_count[i]; ++k)
-      sum += matrix.surface_entries[surface_offsets[i] + k].pull(u, w, consistent);
-    residual[i] -= sum;
+      pulls += matrix.surface_entries[surface_offsets[i] + k].pull(own.move, own.turn, consistent);
+    const Twist of_mass{mass[i].move * in_double(own.move), mass[i].turn * in_double(own.turn)};
+    residual[i] -= unit * (of_mass + in_double(pulls));
   }
 };
 
@@ -144,12 +149,12 @@ struct SubtractRubbingItem {
 SCREE_HD bool is_consistent(Real sharpness) { return sharpness <= Real(2.5) * Real(2.5); }
 
 struct TwistDirectionItem {
-  const Block6f* inverse_block;
+  BlockSlices inverse_block;
   const Twist* residual;
-  Real from_last, from_residual;
+  Real from_last, from_residual;  // ChebyshevWeights, the latter over the unit of d
 
-  SCREE_HD Twist next(Index i, Twist d) const {
-    return from_last * d + from_residual * (inverse_block[i] * residual[i]);
+  SCREE_HD Twistf next(Index i, Twistf d) const {
+    return static_cast<float>(from_last) * d + inverse_block[i] * in_single(from_residual * residual[i]);
   }
 };
 
