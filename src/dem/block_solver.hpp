@@ -66,10 +66,11 @@ class RubbingTolerance {
   Real last_ = 0;  // right-hand side of the last solve [N]
 };
 
-// What directions in single precision, and their sum, are in units of [N]: that of the right-hand side, so
-// that they do not vanish where all forces are very small, as of a particle that flies off.
+// What directions in single precision, and their sum, are in units of [N]: about the right-hand side, so that
+// they do not vanish where all forces are very small, as of a particle that flies off. A power of two: no
+// bits of a result depend on which.
 inline Real direction_unit(Real right_hand_side) {
-  return std::max(right_hand_side, std::numeric_limits<Real>::min());
+  return std::ldexp(1.0, std::ilogb(std::max(right_hand_side, std::numeric_limits<Real>::min())));
 }
 
 struct DirectionItem {
