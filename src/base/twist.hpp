@@ -1,12 +1,14 @@
 // Six numbers of a particle that moves and turns, and symmetric 6 x 6 blocks.
 #pragma once
 
+#include <type_traits>
+
 #include "base/hd.hpp"
 #include "base/vec3.hpp"
 
 namespace scree {
 
-// Of one unit: what belongs to the rotation is scaled by the radius.
+// Of one unit: what belongs to the rotation is scaled by the radius. Aligned for loads of two numbers each.
 struct alignas(16) Twist {
   Vec3 move, turn;
 };
@@ -34,6 +36,10 @@ SCREE_HD Twistf in_single(Twist a) { return {in_single(a.move), in_single(a.turn
 SCREE_HD Twistf operator*(float s, Twistf a) { return {s * a.move, s * a.turn}; }
 SCREE_HD Twistf operator+(Twistf a, Twistf b) { return {a.move + b.move, a.turn + b.turn}; }
 SCREE_HD Twistf& operator+=(Twistf& a, Twistf b) { return a = a + b; }
+
+// Of parts that are such vectors, Vec3 or Vec3f.
+template <class Vector>
+using TwistOf = std::conditional_t<std::is_same_v<Vector, Vec3>, Twist, Twistf>;
 
 // The larger of the two parts.
 SCREE_HD Real largest_part(Twist a) {

@@ -47,15 +47,17 @@ struct RubbingEntry {
 
   // Force on i, and its torque over the radius, by how the partners move against each other and both turn.
   // consistent: with the growth, too, for which the matrix is neither symmetric nor quite positive, and the
-  // derivative but for terms of the order of overlap over radius and of the turn in a step.
-  SCREE_HD Twistf pull(Vec3f apart, Vec3f turning, bool consistent) const {
-    const Vec3f n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
-    const float approach = dot(n, apart);
-    const Vec3f slip = apart - approach * n - cross(turning, n);
-    Vec3f force = shear.across * (slip - dot(t, slip) * t);
-    Vec3f along = (slide.along * approach) * n;
+  // derivative but for terms of the order of overlap over radius and of the turn in a step. Vector: Vec3, or
+  // Vec3f of a solve, whose directions are about 1.
+  template <class Vector>
+  SCREE_HD TwistOf<Vector> pull(Vector apart, Vector turning, bool consistent) const {
+    const Vector n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
+    const auto approach = dot(n, apart);
+    const Vector slip = apart - approach * n - cross(turning, n);
+    Vector force = shear.across * (slip - dot(t, slip) * t);
+    Vector along = (slide.along * approach) * n;
     if (consistent) {
-      const Vec3f growth{shear.x, shear.y, shear.z};
+      const Vector growth{shear.x, shear.y, shear.z};
       force = force - approach * growth, along = along + dot(n, growth) * apart;
     }
     return {along + force, -cross(n, force)};

@@ -139,10 +139,9 @@ struct RubbingShiftItem {
       const SurfaceRub& rub = rubs[of.normal.neighbor];
       const Index surface = numbers.placed(surfaces[of.normal.neighbor]);
       const Vec3 move = moves.move[surface], turn = moves.turn[surface];
-      const Twistf pull =
-          rub.radius > 0 ? of.pull(in_single(-scale * move), in_single(scale * turn), consistent)
-                         : of.pull(in_single(-scale * (move + cross(turn, rub.contact_arm))), {}, consistent);
-      residual[i] -= in_double(pull);
+      residual[i] -= rub.radius > 0
+                         ? of.pull(-scale * move, scale * turn, consistent)
+                         : of.pull(-scale * (move + cross(turn, rub.contact_arm)), Vec3{}, consistent);
     }
   }
 };

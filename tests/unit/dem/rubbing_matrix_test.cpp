@@ -130,6 +130,18 @@ TEST_CASE("a contact's block is what it does to its own particle") {
   }
 }
 
+TEST_CASE(
+    "what a body's correction does through a contact's matrix is in double: accelerations of any size") {
+  RandomNumbers random(5);
+  const RubbingEntry entry = random_entry(random, true).from_i;
+  const Twist v{vector(random), vector(random)}, expected = entry.pull(v.move, v.turn, true);
+  for (const Real size : {1e-50, 1e50}) {
+    const Twist found = (1 / size) * entry.pull(size * v.move, size * v.turn, true);
+    CHECK(near(found.move, expected.move, {.absolute = 1e-14}));
+    CHECK(near(found.turn, expected.turn, {.absolute = 1e-14}));
+  }
+}
+
 TEST_CASE("a contact's matrix is positive, and no larger than twice its diagonal blocks") {
   RandomNumbers random(4);
   for (int k = 0; k < 1000; ++k) {

@@ -94,7 +94,7 @@ TEST_CASE("Newton iterations of a pack that rubs") {
 }
 
 // What flies off has ever smaller accelerations, at last beyond the range of single precision.
-TEST_CASE("a sphere that has rubbed on a wall flies off in as few products as it came") {
+TEST_CASE("a sphere that has rubbed on a wall and flies off asks for few products") {
   SimulationRun run(model_of(R"(
 [space]
 dimension = 3
@@ -124,7 +124,7 @@ density = 2500
   run.run();
   const StepCounts counts = run.counts();
   CHECK(counts.steps > 1000);
-  CHECK(counts.linear_iterations <= 10 * counts.newton_iterations);
+  CHECK(counts.linear_iterations < counts.newton_iterations);
 }
 
 }  // namespace scree
