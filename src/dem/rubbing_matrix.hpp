@@ -48,7 +48,7 @@ struct RubbingEntry {
   // Force on i, and its torque over the radius, by how the partners move against each other and both turn.
   // consistent: with the growth, too, for which the matrix is neither symmetric nor quite positive, and the
   // derivative but for terms of the order of overlap over radius and of the turn in a step. Vector: Vec3, or
-  // Vec3f of a solve, whose directions are about 1.
+  // Vec3f in a solve, whose directions have units of their own.
   template <class Vector>
   SCREE_HD TwistOf<Vector> pull(Vector apart, Vector turning, bool consistent) const {
     const Vector n{normal.x, normal.y, normal.z}, t{slide.x, slide.y, slide.z};
