@@ -6,8 +6,7 @@
 namespace scree {
 namespace {
 
-// Steps queued before the host looks at how far they came: long enough to hide the look, short enough that
-// little is queued in vain where the list expires.
+// The most steps queued before the host looks at how far they came: enough to hide the look.
 constexpr Index kQueuedSteps = 128;
 // A list whose exact displacement is past this share of what it covers is built anew at once.
 constexpr Real kWornList = 0.9;
@@ -69,10 +68,9 @@ bool CudaExplicitRun::renew_list(StageTimers& timers) {
   return true;
 }
 
-// Steps to queue before the host looks again. On one rank those behind a stop cost nothing; on several each
-// of them has its halo, so that there are not many more than the list is likely to cover.
+// Steps to queue before the host looks again: not many more than the list is likely to cover. Those behind a
+// stop do nothing, but take their launches, and on several ranks their halos.
 Index CudaExplicitRun::steps_ahead(const VerletControl& control) const {
-  if (items_.ranks.alone()) return kQueuedSteps;
   if (items_.lane.halo.waits()) return 1;
   const Real covered = (control.half_skin - control.bound) / control.displacement;
   return covered < kQueuedSteps - 1 ? static_cast<Index>(covered) + 1 : kQueuedSteps;

@@ -24,12 +24,17 @@ class StepGraph {
   StepGraph& operator=(const StepGraph&) = delete;
 
   // Queues `steps` calls of queue_one(), which queues one step on the stream. key: all that the launches
-  // depend on; a batch of a key that was seen before is launched without capturing it again.
+  // depend on; a batch of a key that was seen before is launched without capturing it again. Steps of a new
+  // key are queued one by one first, so that the GPU has work while the host makes the graph.
   template <class QueueOne>
   void queue(cudaStream_t stream, const std::string& key, int steps, const QueueOne& queue_one) {
     if (steps >= kSteps) {
       cudaGraphExec_t graph = find(key);
-      if (graph == nullptr) graph = capture(stream, key, queue_one);
+      if (graph == nullptr) {
+        for (int step = 0; step < kSteps; ++step) queue_one();
+        steps -= kSteps;
+        graph = capture(stream, key, queue_one);
+      }
       for (; steps >= kSteps; steps -= kSteps)
         require_cuda(cudaGraphLaunch(graph, stream), "cudaGraphLaunch");
     }
