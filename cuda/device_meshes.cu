@@ -52,15 +52,22 @@ struct FindNearItem {
     cells.for_each_particle(in, static_cast<Index>(c - searched.first[owner]), [&](Index i) {
       const Vec4 p = in.position[i];
       const MeshSight sight{surface, frame, meshes[frame.mesh], p, cells.shift, mesh_skin(p.w, cells.skin)};
-      Index found = 0;
-      sight.for_each_triangle([&](Index) { ++found; });
+      constexpr Index kKept = 24;  // so that few rows are searched for twice
+      Index kept[kKept], found = 0;
+      sight.for_each_triangle([&](Index t) {
+        if (found < kKept) kept[found] = t;
+        ++found;
+      });
       if (found == 0) return;
       const Index g = atomicAdd(&cursors[kGroups], 1), first = atomicAdd(&cursors[kTriangles], found);
       if (g < 0 || static_cast<std::size_t>(g) >= room[kGroups]) return;
       if (first < 0 || static_cast<std::size_t>(first) + static_cast<std::size_t>(found) > room[kTriangles])
         return;
       Index* to = triangles + first;
-      sight.for_each_triangle([&](Index t) { *to++ = t; });
+      if (found <= kKept)
+        for (Index t = 0; t < found; ++t) to[t] = kept[t];
+      else
+        sight.for_each_triangle([&](Index t) { *to++ = t; });
       near[g] = {i, cells.number, cells.image};
       const RowKind kind = kind_of_row(sight.mesh, triangles + first, found);
       const Index remembered = in.remembered.contacts_with(i, cells.number);
@@ -68,6 +75,15 @@ struct FindNearItem {
     });
   }
 };
+
+constexpr int kFindThreads = 64;
+constexpr int kFindBlocks = 8;  // on a multiprocessor: a search waits for one box after the other
+
+__global__ void __launch_bounds__(kFindThreads, kFindBlocks)
+    find_near_kernel(Index cells, const __grid_constant__ FindNearItem item) {
+  const Index k = thread_index();
+  if (k < cells) item(k);
+}
 
 struct CountItem {
   const NearMesh* near;
@@ -246,17 +262,20 @@ bool DeviceMeshes::find_groups(Device device, const MeshSearch& search, const st
   cursors_.zero(device.stream);
   const std::size_t room = std::min(near_.capacity(), groups_.capacity());
   constexpr std::int64_t kAtOnce = 1 << 30;
-  for (std::int64_t c = 0; c < first.back(); c += kAtOnce)
-    for_each(device, static_cast<Index>(std::min(kAtOnce, first.back() - c)),
-             FindNearItem{search,
-                          views_.data(),
-                          searched,
-                          c,
-                          cursors_.data(),
-                          near_.data(),
-                          groups_.data(),
-                          triangles_.data(),
-                          {room, triangles_.capacity()}});
+  for (std::int64_t c = 0; c < first.back(); c += kAtOnce) {
+    const auto cells = static_cast<Index>(std::min(kAtOnce, first.back() - c));
+    const FindNearItem item{search,
+                            views_.data(),
+                            searched,
+                            c,
+                            cursors_.data(),
+                            near_.data(),
+                            groups_.data(),
+                            triangles_.data(),
+                            {room, triangles_.capacity()}};
+    find_near_kernel<<<blocks_for(cells, kFindThreads), kFindThreads, 0, device.stream>>>(cells, item);
+    require_cuda(cudaGetLastError(), "triangles near particles");
+  }
   copy_async(h_counts_.data(), cursors_.data(), kCursors, device.stream);
   wait_for(device.stream);
   if (h_counts_[kTriangles] < 0)
