@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <span>
 
 #include "base/types.hpp"
 
@@ -31,6 +32,10 @@ inline constexpr std::array<const char*, static_cast<int>(Stage::count)> kStageN
     "update_halo",      "broadcast_motion", "contact_force", "reduce_wrench", "mbs_correct",
     "particle_correct", "accept",           "output"};
 
+// Those of a neighbour list.
+inline constexpr std::array kListStages = {Stage::migrate, Stage::sort_cells, Stage::exchange_halo,
+                                           Stage::neighbors};
+
 class StageTimers {
  public:
   struct Entry {
@@ -57,6 +62,13 @@ class StageTimers {
 
   Scope time(Stage stage) { return Scope(entries_[static_cast<int>(stage)]); }
   const Entry& operator[](Stage stage) const { return entries_[static_cast<int>(stage)]; }
+  // What part of the time of all stages these took.
+  double share(std::span<const Stage> stages) const {
+    double all = 0, these = 0;
+    for (const Entry& entry : entries_) all += entry.seconds;
+    for (const Stage stage : stages) these += (*this)[stage].seconds;
+    return all > 0 ? these / all : 0;
+  }
 
  private:
   std::array<Entry, static_cast<int>(Stage::count)> entries_{};

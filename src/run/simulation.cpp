@@ -367,9 +367,10 @@ void Simulation::summarize() const {
   const StepCounts& n = step_.counts();
   const BalanceState& b = state_.balance;
   log_.info(fmt::format(
-      "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds",
+      "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds ({:.0f} % "
+      "of the time)",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
-      n.linear_iterations, backend_->list().builds()));
+      n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages)));
   if (n.frozen_steps > 0)
     log_.info(fmt::format("friction's limits were frozen in {} of the steps: shorter ones would resolve it",
                           n.frozen_steps));

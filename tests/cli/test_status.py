@@ -35,6 +35,14 @@ class StatusTest(CommandLineTest):
         self.assertRegex(text, rf"\Astate          killed: process {run.pid} on host \S+ last told of itself")
         self.assertNotIn("time left", text)
 
+    def test_a_run_tells_what_its_lists_took(self):
+        told = re.search(r" (\d+) list builds \((\d+) % of the time\)\n", self.run_deck(DONE, "out").stdout)
+        record = json.loads((self.folder / "out/run_record.json").read_text())
+        seconds = {stage["stage"]: stage["seconds"] for stage in record["stages"]}
+        of_lists = sum(seconds[stage] for stage in ("migrate", "sort_cells", "exchange_halo", "neighbors"))
+        self.assertEqual(int(told[1]), record["counts"]["list_builds"])
+        self.assertAlmostEqual(int(told[2]), 100 * of_lists / sum(seconds.values()), delta=2)
+
     def test_a_run_that_was_stopped(self):
         run = self.start_long_run()
         run.send_signal(signal.SIGTERM)
