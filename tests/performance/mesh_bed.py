@@ -20,6 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import measured  # noqa: E402
 
 SPACING, LAYER = 0.021, 0.01995  # of the lattice [m]
+RADIUS, SKIN = 0.01, 0.2  # of the spheres [m]; the skin that a deck gets without a word, in radii
 DECK = """gravity = [0.0, 0.0, -9.81]
 [space]
 dimension = 3
@@ -37,6 +38,8 @@ particles = "velocity-verlet"
 [[materials]]
 name = "grain"
 density = 2500.0
+[contact]
+skin = {skin}
 [[contact.pairs]]
 stiffness = 1e4
 restitution = 0.6
@@ -49,7 +52,7 @@ origin = [0.0105, 0.0105, 0.00999]
 spacing = [{spacing}, {spacing}, {layer}]
 size = [{along}, {side}, {layers}]
 radius = 0.01
-random_velocity = 0.05
+random_velocity = {speed}
 material = "grain"
 [output]
 history_interval = 0.01
@@ -62,10 +65,11 @@ MESH = ('[[meshes]]\nname = "floor"\nkind = "rectangle"\nsize = [{length}, {widt
         'refine = {edge}\n[[walls]]\nname = "floor"\nmesh = "floor"\n')
 
 
-def deck(side, layers, steps, ranks=1):
-    """The bed without a floor."""
+def deck(side, layers, steps, ranks=1, speed=0.05, skin=SKIN):
+    """The bed without a floor. speed: up to which each sphere has one along each axis [m/s]; skin: in radii."""
     return DECK.format(length=SPACING * side * ranks, width=SPACING * side, height=0.5 + 1.2 * LAYER * layers,
-                       end=2e-5 * steps, along=side * ranks, side=side, layers=layers, spacing=SPACING, layer=LAYER)
+                       end=2e-5 * steps, along=side * ranks, side=side, layers=layers, spacing=SPACING, layer=LAYER,
+                       speed=speed, skin=f"{skin * RADIUS:.9g}")
 
 
 def mesh(side, edge, ranks=1):

@@ -2,7 +2,8 @@
 """Blades of triangles that plunge into a bed of spheres, the same bed without them, and with one sphere that flies
 above it as fast as the blades hit those of the bed: time per step. Lists last as long as the fastest sphere lets
 them, so that the first two differ by more than what the blades' contacts take.
-Usage: mesh_plough.py SCREE [--backend cuda] [--side 200] [--steps 400] [--edge 0.011]"""
+Usage: mesh_plough.py SCREE [--backend cuda] [--side 200] [--steps 400] [--edge 0.011] [--skin 0.3]
+--skin: of the lists, in radii, the same for all three."""
 
 import argparse
 
@@ -46,13 +47,14 @@ def main():
     parser.add_argument("--side", type=int, default=200)
     parser.add_argument("--steps", type=int, default=400)
     parser.add_argument("--edge", type=float, default=0.011)
+    parser.add_argument("--skin", type=float, default=0.3)
     arguments = parser.parse_args()
-    deck = mesh_bed.deck(arguments.side, arguments.side, arguments.steps) + mesh_bed.PLANE
+    deck = mesh_bed.deck(arguments.side, arguments.side, arguments.steps, skin=arguments.skin) + mesh_bed.PLANE
     width, top = mesh_bed.SPACING * arguments.side, mesh_bed.LAYER * (arguments.side - 1) + 0.02
     for name, extra in (("bed", ""), ("flying", FLYING.format(z=top + 0.3)),
                         ("blades", blades(width, top, arguments.edge))):
         record = mesh_bed.run(arguments.scree, arguments.backend, deck + extra)
-        size = f"{arguments.backend}, side {arguments.side}, edge {arguments.edge}"
+        size = f"{arguments.backend}, side {arguments.side}, edge {arguments.edge}, skin {arguments.skin}"
         milliseconds = mesh_bed.milliseconds(record, arguments.steps)
         measured.note(f"mesh_plough/{size}/{name} step", float(milliseconds), "ms", record=record)
         measured.note(f"mesh_plough/{size}/{name} lists", record["counts"]["list_builds"], "lists", record=record)
