@@ -23,9 +23,9 @@ def main():
         deck = mesh_bed.deck(arguments.side, arguments.side, arguments.steps, speed=arguments.speed, skin=skin)
         record = mesh_bed.run(arguments.scree, arguments.backend, deck + mesh_bed.PLANE)
         milliseconds, lists = mesh_bed.milliseconds(record, arguments.steps), record["counts"]["list_builds"]
-        name = f"flying_bed/{arguments.backend}, side {arguments.side}, speed {arguments.speed}, skin {skin}"
-        measured.note(f"{name}/step", float(milliseconds), "ms", record=record)
-        measured.note(f"{name}/steps per list", arguments.steps / lists, "", record=record)
+        case = f"{arguments.backend}, side {arguments.side}, speed {arguments.speed}, skin {skin}"
+        measured.note(f"flying_bed/{case}/step", float(milliseconds), "ms", record=record)
+        measured.note(f"flying_bed/{case}/steps per list", arguments.steps / lists, "", record=record)
         print(f"skin {skin} radii: {milliseconds} ms a step in all but output, {lists} lists, "
               f"state {record['run']['state_hash'][:16]}", flush=True)
 
