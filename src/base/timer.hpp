@@ -62,9 +62,9 @@ class StageTimers {
 
   Scope time(Stage stage) { return Scope(entries_[static_cast<int>(stage)]); }
   const Entry& operator[](Stage stage) const { return entries_[static_cast<int>(stage)]; }
-  // What part of the time of all stages these took.
+  // What part of the time of all stages but output these took.
   double share(std::span<const Stage> stages) const {
-    double all = 0, these = 0;
+    double all = -(*this)[Stage::output].seconds, these = 0;
     for (const Entry& entry : entries_) all += entry.seconds;
     for (const Stage stage : stages) these += (*this)[stage].seconds;
     return all > 0 ? these / all : 0;

@@ -368,7 +368,7 @@ void Simulation::summarize() const {
   const BalanceState& b = state_.balance;
   log_.info(fmt::format(
       "t = {:g} s after {} steps ({} rejected), {} Newton and {} linear iterations, {} list builds ({:.0f} % "
-      "of the time)",
+      "of the time beside output)",
       state_.clock.time, n.steps, n.rejected_error + n.rejected_newton, n.newton_iterations,
       n.linear_iterations, backend_->list().builds(), 100 * timers_.share(kListStages)));
   if (n.frozen_steps > 0)

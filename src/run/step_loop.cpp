@@ -13,7 +13,7 @@ namespace {
 // Keeping a good state of an explicit run may take this share of the run's time.
 constexpr double kGoodStateShare = 0.02;
 // Explicit steps are taken in batches of about this length [s], and of no more substeps than this.
-constexpr double kBatchSeconds = 0.5, kMostSubsteps = 1e6;
+constexpr double kBatchSeconds = 0.2, kMostSubsteps = 1e6;
 // The same in mixed precision, as numbers of the deck: substeps times particles in a batch, about 0.07 s on
 // one H200; so many particles more stand for what a substep of few takes; and no fewer substeps than these,
 // 0.6 s where the particles fill its memory.
