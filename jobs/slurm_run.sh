@@ -126,13 +126,16 @@ fi
 
 if ((status == 0)); then printf '%s\n' "$words" >"$done_with" || true; fi # without it Scree looks again
 
+# SLURM ends the job's processes as soon as it has it back: scontrol has to outlive that to tell of it.
+put_back() { (trap '' TERM && exec scontrol requeue "$SLURM_JOB_ID"); }
+
 if ((status != stopped_by_signal)) || "$ended"; then
   say "ends with exit code $status"
 elif ! "$warned"; then
   say "stopped by a signal to the ranks; submitted again, the run continues"
 elif ((restarts >= requeues)); then
   say "stopped by the time limit after $restarts of at most $requeues requeues; submitted again, the run continues"
-elif scontrol requeue "$SLURM_JOB_ID"; then
+elif put_back; then
   say "stopped by the time limit and back in the queue: requeue $((restarts + 1)) of at most $requeues"
 else
   say "stopped by the time limit, and SLURM did not take the job back; submitted again, the run continues"
