@@ -51,7 +51,7 @@ kind = "lattice"
 origin = [0.0105, 0.0105, 0.00999]
 spacing = [{spacing}, {spacing}, {layer}]
 size = [{along}, {side}, {layers}]
-radius = 0.01
+radius = {radius}
 random_velocity = {speed}
 material = "grain"
 [output]
@@ -69,7 +69,7 @@ def deck(side, layers, steps, ranks=1, speed=0.05, skin=SKIN):
     """The bed without a floor. speed: up to which each sphere has one along each axis [m/s]; skin: in radii."""
     return DECK.format(length=SPACING * side * ranks, width=SPACING * side, height=0.5 + 1.2 * LAYER * layers,
                        end=2e-5 * steps, along=side * ranks, side=side, layers=layers, spacing=SPACING, layer=LAYER,
-                       speed=speed, skin=f"{skin * RADIUS:.9g}")
+                       speed=speed, radius=RADIUS, skin=f"{skin * RADIUS:.9g}")
 
 
 def mesh(side, edge, ranks=1):
