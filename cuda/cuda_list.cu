@@ -156,6 +156,8 @@ void CudaList::find_ghosts(Real width) {
     halo.list(items_.device(), now.position.data(), layout.active);
     const auto items = static_cast<std::size_t>(layout.items);
     now.grow(items, owned, owned, items_.stream), items_.other.grow(items, owned);
+    // Those that have left for other ranks, many at the start of a run, had room beside those that came.
+    now.trim(owned, items_.stream), items_.other.trim(items_.stream);
   });
   name_ghosts();
 }

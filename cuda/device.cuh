@@ -176,6 +176,15 @@ class DeviceArray {
     }
     size_ = size;
   }
+  // Gives back what it has beyond twice the room for more; the first `keep` values stay. Waits if it does.
+  void trim(std::size_t keep, cudaStream_t stream) {
+    if (borrowed_ || capacity_ <= size_ + 2 * (size_ / kSpare)) return;
+    DeviceArray smaller(size_ + size_ / kSpare);
+    copy_async(smaller.data_, data_, keep, stream);
+    wait_for(stream);
+    smaller.size_ = size_;
+    swap(smaller);
+  }
   // So many values stand at `data` from now on, in memory that another holds. Where the array has to grow it
   // takes memory of its own.
   void borrow(T* data, std::size_t size) {

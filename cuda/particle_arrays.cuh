@@ -18,6 +18,11 @@ struct ParticleArrays : FieldArrays<DeviceArray>, FieldsThere {
     for_each_array<kOwnedArrays>(
         FieldsThere(*this), [&](auto& array) { array.grow(owned, keep, stream); }, *this);
   }
+  // Gives back what much larger numbers of both have left; the first `keep` items stay.
+  void trim(std::size_t keep, cudaStream_t stream) {
+    for_each_array<kAllArrays | kOptionalArrays>(
+        [&](auto& array) { array.trim(std::min(keep, array.size()), stream); }, *this);
+  }
   std::size_t bytes() const {
     std::size_t sum = 0;
     for_each_array<kAllArrays | kOptionalArrays>([&](const auto& array) { sum += array.bytes(); }, *this);
@@ -41,6 +46,11 @@ struct SecondArrays {
     if (!implicit) return;
     acceleration.resize(owned);
     if (rotates) angular_acceleration.resize(owned);
+  }
+  // The same.
+  void trim(cudaStream_t stream) {
+    for (DeviceArray<Vec4>* array : motion()) array->trim(0, stream);
+    acceleration.trim(0, stream), angular_acceleration.trim(0, stream);
   }
   std::size_t bytes() const {
     return position.bytes() + velocity.bytes() + angular_velocity.bytes() + acceleration.bytes() +

@@ -73,11 +73,14 @@ def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
     steps, particles, loop = counts["steps"], counts["particles"], float(cost["loop_seconds"])
     pace = f", {steps * particles / loop:.3g} particle-steps per second" if loop > 0 and particles and steps else ""
     rejected = counts["rejected_error"] + counts["rejected_newton"]
+    memory, on_gpus = f"{cost['peak_memory_kib'] / 1024:,.0f} MiB", cost.get("device_memory_kib", 0) / 1024
+    if on_gpus:
+        memory += f", {on_gpus:,.0f} MiB of GPUs"
     rows = [
         ("simulated", f"{record['measures']['simulated_time']:.6g} s in {steps:,} steps, {rejected:,} more rejected"),
         ("model", f"{counted(particles, 'particle', 'particles')}, {counted(counts['bodies'], 'body', 'bodies')}, "
                   f"{counted(counts['left'], 'particle has', 'particles have')} left"),
-        ("took", f"{duration(cost['wall_seconds'])} on the wall{pace}; {cost['peak_memory_kib'] / 1024:,.0f} MiB"),
+        ("took", f"{duration(cost['wall_seconds'])} on the wall{pace}; {memory}"),
         ("on", f"{run['ranks']} {'rank' if run['ranks'] == 1 else 'ranks'}, {escaped(run['backend'])}, "
                f"{escaped(record['host']['name'])} ({escaped(record['host']['processor'])})"),
         ("program", f"Scree {escaped(build['version'])}, commit {escaped(build['commit'])}"),

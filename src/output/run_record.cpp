@@ -83,6 +83,7 @@ toml::table cost_table(const RunRecord& record) {
   insert_number(table, "loop_seconds", record.loop_seconds);
   insert_number(table, "cpu_seconds", record.cpu_seconds);
   table.insert_or_assign("peak_memory_kib", static_cast<std::int64_t>(usage.ru_maxrss));
+  table.insert_or_assign("device_memory_kib", record.device_bytes / 1024);
   return table;
 }
 

@@ -24,6 +24,7 @@ struct RunRecord {
   std::string changes;     // lines on the keys that --allow-changes let differ since t = 0
   std::string state_hash;  // of the state in the last checkpoint; empty before the first
   int ranks = 1;
+  std::int64_t device_bytes = 0;  // of GPU memory at the end, all ranks together; 0 on the CPU
   double wall_seconds = 0, cpu_seconds = 0;
   double loop_seconds = 0;  // wall time of the steps, output between them included
   StageTimers timers;

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "base/utc.hpp"
+#include "dem/device.hpp"
 #include "dem/particle_store.hpp"
 #include "dem/triangle_works.hpp"
 #include "model/memory.hpp"
@@ -108,7 +109,7 @@ class Simulation {
   bool body_left_ = false, load_lost_ = false;
   const SurfacesOutside surfaces_outside_;
   std::string state_hash_;
-  std::int64_t list_entries_ = 0, migrated_ = 0;  // of all ranks
+  std::int64_t list_entries_ = 0, migrated_ = 0, device_bytes_ = 0;  // of all ranks
 };
 
 void Simulation::start_or_resume() {
@@ -313,6 +314,7 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
   list_entries_ = ranks_.sum(backend_->list().entries());
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
+  device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));
   summarize();  // what it warns of goes into the record
   ranks_.on_root([&] { write_record(status, code); });
   show_status(status);
@@ -331,10 +333,9 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.redundancy = link_.multibody() ? link_.multibody()->redundancy() : "";
   record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_;
-  record.ranks = ranks_.size();
+  record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
   const LoadBalance balance = backend_->list().balance();
-  record.wall_seconds = live_.wall_seconds();
-  record.loop_seconds = loop_seconds_;
+  record.wall_seconds = live_.wall_seconds(), record.loop_seconds = loop_seconds_;
   record.cpu_seconds = cpu_seconds() - start_cpu_;
   record.timers = timers_;
   const StepCounts& n = step_.counts();

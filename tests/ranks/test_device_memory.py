@@ -57,6 +57,39 @@ checkpoint_interval = 1.0
 """
 
 
+# Spheres that rub. Each rank makes some layers of them and is given others, for the space is cut across its length.
+LONG_BED = """[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [2.6, 0.65, 0.65]
+
+[time]
+end = 5e-4
+step = 1e-5
+
+[integrator]
+particles = "velocity-verlet"
+
+[[materials]]
+name = "grain"
+density = 2500.0
+
+[[contact.pairs]]
+stiffness = 1e4
+friction = 0.4
+
+[[particles]]
+name = "bed"
+kind = "lattice"
+origin = [0.006, 0.006, 0.006]
+spacing = [0.01, 0.01, 0.01]
+size = [255, 63, 63]
+radius = 0.005
+random_velocity = 0.01
+material = "grain"
+"""
+
+
 class DeviceMemoryTest(RanksTest):
     @contextlib.contextmanager
     def no_memory(self, gpu):
@@ -99,6 +132,15 @@ class DeviceMemoryTest(RanksTest):
                 self.run_deck(DONE, 1, deck, "whole", how)
                 self.assertEqual(self.hash("on"), self.hash("whole"),
                                  "the run went on from another state than it was in")
+
+    def test_several_ranks_hold_little_more_than_one(self):
+        deck = self.write("long_bed.toml", LONG_BED)
+        held = {}
+        for ranks in (1, 4):
+            self.run_deck(DONE, ranks, deck, f"{ranks}")
+            held[ranks] = self.record(f"{ranks}")["cost"]["device_memory_kib"]
+        self.assertGreater(held[1], 500_000)
+        self.assertLess(held[4], 1.3 * held[1], "each has some 40 MB for itself, and ghosts")
 
     def test_a_full_gpu_is_refused_before_the_run_starts(self):
         many = LONELY
