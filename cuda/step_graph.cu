@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "step_graph.cuh"
 
 namespace scree {
@@ -7,22 +9,26 @@ StepGraph::~StepGraph() {
     if (entry.graph != nullptr) cudaGraphExecDestroy(entry.graph);
 }
 
-cudaGraphExec_t StepGraph::find(const std::string& key) const {
-  for (const Entry& entry : entries_)
-    if (entry.graph != nullptr && entry.key == key) return entry.graph;
-  return nullptr;
+StepGraph::Entry* StepGraph::find(const std::string& key) {
+  const auto entry =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& of) { return of.key == key; });
+  return entry == entries_.end() ? nullptr : &*entry;
 }
 
-cudaGraphExec_t StepGraph::keep(const std::string& key, cudaGraph_t captured) {
+StepGraph::Entry& StepGraph::remember(const std::string& key) {
   Entry& entry = entries_[oldest_];
   oldest_ = (oldest_ + 1) % entries_.size();
   if (entry.graph != nullptr) cudaGraphExecDestroy(entry.graph);
   entry = {key, nullptr};
-  const cudaError_t status =
-      cudaGraphInstantiate(&entry.graph, captured, cudaGraphInstantiateFlagUseNodePriority);
+  return entry;
+}
+
+cudaGraphExec_t StepGraph::instantiate(cudaGraph_t captured) {
+  cudaGraphExec_t graph = nullptr;
+  const cudaError_t status = cudaGraphInstantiate(&graph, captured, cudaGraphInstantiateFlagUseNodePriority);
   cudaGraphDestroy(captured);
   require_cuda(status, "cudaGraphInstantiate");
-  return entry.graph;
+  return graph;
 }
 
 }  // namespace scree
