@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "step_graph.cuh"
 
 namespace scree {
@@ -9,26 +7,22 @@ StepGraph::~StepGraph() {
     if (entry.graph != nullptr) cudaGraphExecDestroy(entry.graph);
 }
 
-StepGraph::Entry* StepGraph::find(const std::string& key) {
-  const auto entry =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& of) { return of.key == key; });
-  return entry == entries_.end() ? nullptr : &*entry;
+cudaGraphExec_t StepGraph::find(const std::string& key) const {
+  for (const Entry& entry : entries_)
+    if (entry.graph != nullptr && entry.key == key) return entry.graph;
+  return nullptr;
 }
 
-StepGraph::Entry& StepGraph::remember(const std::string& key) {
+cudaGraphExec_t StepGraph::keep(const std::string& key, cudaGraph_t captured) {
   Entry& entry = entries_[oldest_];
   oldest_ = (oldest_ + 1) % entries_.size();
   if (entry.graph != nullptr) cudaGraphExecDestroy(entry.graph);
   entry = {key, nullptr};
-  return entry;
-}
-
-cudaGraphExec_t StepGraph::instantiate(cudaGraph_t captured) {
-  cudaGraphExec_t graph = nullptr;
-  const cudaError_t status = cudaGraphInstantiate(&graph, captured, cudaGraphInstantiateFlagUseNodePriority);
+  const cudaError_t status =
+      cudaGraphInstantiate(&entry.graph, captured, cudaGraphInstantiateFlagUseNodePriority);
   cudaGraphDestroy(captured);
   require_cuda(status, "cudaGraphInstantiate");
-  return graph;
+  return entry.graph;
 }
 
 }  // namespace scree
