@@ -28,7 +28,11 @@ const TableKeys& output_keys() {
                "normal and tangential forces of particles on it at that time over its area. Since t = 0, "
                "added up in each step: impact_work [J], what the damping of normal forces, with the making "
                "of necks, has taken there; sliding_work [J], what friction has; wear_depth [m], the volume "
-               "that Archard's law wears off (wear_coefficient of the pairs) over the area."),
+               "that Archard's law wears off (wear_coefficient of the pairs) over the area. In 2D a segment "
+               "of a "
+               "line is two triangles: both have what there is per length of the segment [N/m], of a line "
+               "that "
+               "is 1 m deep; a work is at one of the two."),
        boolean("contacts")
            .otherwise("false")
            .about("Whether snapshots hold the contacts of particles and of bodies' discs and spheres, a line "

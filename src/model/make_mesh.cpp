@@ -94,7 +94,11 @@ TriangleMesh line_of(const DeckTable& table, Real half_depth) {
   Real length = 0, area = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 a = points[i], b = points[(i + 1) % points.size()];
-    length += closed || i + 1 < points.size() ? norm(b - a) : 0;
+    const bool joined = closed || i + 1 < points.size();
+    if (joined && a == b)
+      table.fail("points", fmt::format("must be apart, one from the next{}: ({:g}, {:g}) stands twice",
+                                       closed ? " and the last from the first" : "", a.x, a.y));
+    length += joined ? norm(b - a) : 0;
     area += cross(a - points[0], b - points[0]).z / 2;
   }
   if (closed && !(area > 0))
@@ -102,12 +106,19 @@ TriangleMesh line_of(const DeckTable& table, Real half_depth) {
         "points",
         fmt::format("enclose an area of {:.4g} m^2; they must run counterclockwise around what is solid",
                     area));
-  if (!table.has("refine")) return upright(extruded_line_mesh(points, closed, half_depth));
+  const auto drawn = [&](const std::vector<Vec3>& corners) {
+    try {
+      return upright(extruded_line_mesh(corners, closed, half_depth));
+    } catch (const InputError& error) {
+      table.fail("points", error.what());
+    }
+  };
+  if (!table.has("refine")) return drawn(points);
   const Real longest = table.real("refine");
   if (!(length / longest < kMostSegments))
     table.fail("refine", fmt::format("must be above the length of the line / {:g} = {:.4g}", kMostSegments,
                                      length / kMostSegments));
-  return upright(extruded_line_mesh(with_points_between(points, closed, longest), closed, half_depth));
+  return drawn(with_points_between(points, closed, longest));
 }
 
 TriangleMesh read(const DeckTable& table) {

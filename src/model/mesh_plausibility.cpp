@@ -117,6 +117,15 @@ std::string too_fine(const Model& model, const ModelMesh& mesh) {
       mesh.name, radius, near);
 }
 
+// Meshes meet neither walls nor each other.
+std::string without_partners(const DeckTable& deck, const Model& model) {
+  const bool meshes = std::ranges::any_of(model.bodies, [](const Body& b) { return !b.meshes.empty(); });
+  const bool shapes = std::ranges::any_of(model.bodies, [](const Body& b) { return !b.shapes.empty(); });
+  if (!meshes || shapes || !deck.tables("particles").empty()) return "";
+  return "bodies have meshes, and the deck has nothing that these touch: particles, or discs and spheres of "
+         "other bodies; meshes pass through walls and through each other";
+}
+
 }  // namespace
 
 Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius) {
@@ -135,6 +144,8 @@ Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius) {
 
 std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& model) {
   std::vector<std::string> findings;
+  if (std::string finding = without_partners(deck, model); !finding.empty())
+    findings.push_back(std::move(finding));
   const std::set<std::string> used = used_meshes(deck);
   const std::vector<std::set<int>> materials = materials_of(model);
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {

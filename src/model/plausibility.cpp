@@ -296,6 +296,14 @@ std::string odd_mass(const DeckTable& deck, const Model& model) {
       lightest < kLightest ? lightest : heaviest);
 }
 
+std::string belt_without_friction(const Model& model) {
+  const auto belt = std::ranges::find_if(model.walls, &Wall::runs);
+  if (belt == model.walls.end() || !model.contact.friction.empty()) return "";
+  return fmt::format(
+      "wall \"{}\": its surface_velocity takes nothing along: no pair in contact.pairs has friction",
+      belt->name);
+}
+
 std::string many_steps(const Model& model) {
   const TimeControl& time = model.time;
   const bool fixed = time.control == StepControl::fixed;
@@ -353,6 +361,7 @@ std::vector<std::string> implausible(const DeckTable& deck, const Model& model) 
                                        wide_attraction(model),
                                        odd_density(deck),
                                        odd_mass(deck, model),
+                                       belt_without_friction(model),
                                        many_steps(model),
                                        same_random_places(deck)};
   for (const PairLimit& limit : pair_limits(model))

@@ -58,12 +58,16 @@ PointSnapshot surface_points(Real time, const SurfaceSnapshot& surfaces) {
   const auto add = [&](const char* name, const DatasetLabel& label, const auto& values) {
     if (!values.empty()) snapshot.fields.push_back(field_of(name, label, values));
   };
-  add("pressure", {"Pa", "normal contact forces on the triangle over its area"}, surfaces.pressure);
-  add("shear", {"Pa", "tangential contact forces on the triangle over its area"}, surfaces.shear);
+  add("pressure",
+      {"Pa (2D: N/m)", "normal contact forces on the triangle over its area (2D: the segment's length)"},
+      surfaces.pressure);
+  add("shear", {"Pa (2D: N/m)", "tangential contact forces on the triangle over its area (2D: likewise)"},
+      surfaces.shear);
   add("impact_work", {"J", "taken by the damping of normal contact forces since t = 0"},
       surfaces.impact_work);
   add("sliding_work", {"J", "taken by friction since t = 0"}, surfaces.sliding_work);
-  add("wear_depth", {"m", "volume worn off since t = 0 after Archard over the triangle's area"},
+  add("wear_depth",
+      {"m", "volume worn off since t = 0 after Archard over the triangle's area (2D: 1 m deep)"},
       surfaces.wear_depth);
   return snapshot;
 }

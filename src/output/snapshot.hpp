@@ -48,8 +48,8 @@ struct BodySnapshot {
 struct SurfaceSnapshot {
   std::span<const Vec3> position;  // of their points [m]
   // Per triangle; empty: left out, of all snapshots of a series.
-  std::span<const Real> pressure;                       // what presses on it [Pa]
-  std::span<const Vec3> shear;                          // what drags it along [Pa]
+  std::span<const Real> pressure;                       // what presses on it [Pa], in 2D [N/m]
+  std::span<const Vec3> shear;                          // what drags it along, likewise
   std::span<const Real> impact_work{}, sliding_work{};  // lost there since t = 0 [J]
   std::span<const Real> wear_depth{};                   // [m]
 };

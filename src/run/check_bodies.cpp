@@ -86,6 +86,11 @@ std::string multibody_lines(const Model& model) {
     lines += fmt::format("               {} no shapes{}: {} through walls and touch{} nothing\n",
                          counted(bare, "body has", "bodies have"), model.meshes.empty() ? "" : " or meshes",
                          bare == 1 ? "it passes" : "they pass", bare == 1 ? "es" : "");
+  if (meshes > 0)
+    lines +=
+        "               their meshes touch particles and the discs and spheres of other bodies, not walls "
+        "and not "
+        "each other\n";
   lines += solid_lines(model);
   lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
   // Of rows that may repeat each other the rank counts, which the bodies' solver reports.

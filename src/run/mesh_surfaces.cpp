@@ -15,6 +15,16 @@ Real area(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
          norm(cross(mesh.vertices[triangle.vertex[1]] - a, mesh.vertices[triangle.vertex[2]] - a));
 }
 
+// Of a segment, from one of its triangles: without the depth along z to which it is drawn.
+Real length(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
+  const auto along = [&](int i, int j) {
+    Vec3 way = mesh.vertices[triangle.vertex[j]] - mesh.vertices[triangle.vertex[i]];
+    way.z = 0;
+    return norm(way);
+  };
+  return std::max(along(0, 1), along(1, 2));
+}
+
 }  // namespace
 
 MeshSurfaces::MeshSurfaces(const Model& model) : model_(model) {
@@ -73,26 +83,39 @@ void MeshSurfaces::place(const Part& part, const BodyMotion& carrier, Vec3* posi
   for (const Vec3 vertex : part.mesh->vertices) *position++ = point + axes * vertex + shift;
 }
 
+// What each triangle has becomes what it has per area. In 2D a segment of a line is two triangles, one after
+// the other: both get what the two have per length.
+template <class T>
+void MeshSurfaces::spread(std::vector<T>& values) const {
+  if (values.empty()) return;
+  for (const Part& part : parts_)
+    for (std::size_t t = 0; t < part.mesh->triangles.size(); ++t) {
+      const MeshTriangle& triangle = part.mesh->triangles[t];
+      const auto number = static_cast<std::size_t>(part.mesh->original[t]);
+      T& value = values[part.first_triangle + number];
+      if (model_.space.dimension == 3)
+        value = 1 / area(*part.mesh, triangle) * value;
+      else if (number % 2 == 0)
+        value = values[part.first_triangle + number + 1] =
+            1 / length(*part.mesh, triangle) * (value + values[part.first_triangle + number + 1]);
+    }
+}
+
 void MeshSurfaces::take_works(const std::vector<std::int64_t>& works, Look& look) const {
   const std::vector<TriangleWorkValues> values = work_values(works);
-  const auto show = [&](SurfaceField field, std::vector<Real>& to, const auto& value) {
+  const auto show = [&](SurfaceField field, std::vector<Real>& to, Real TriangleWorkValues::*value) {
     if (!model_.output.shows(field)) return;
     to.resize(triangles_);
     for (const Part& part : parts_)
       for (std::size_t t = 0; part.surface >= 0 && t < part.mesh->triangles.size(); ++t) {
         const std::size_t row = part.first_triangle + static_cast<std::size_t>(part.mesh->original[t]);
-        to[row] = value(values[row], *part.mesh, part.mesh->triangles[t]);
+        to[row] = values[row].*value;
       }
   };
-  using Values = TriangleWorkValues;
-  show(SurfaceField::impact_work, look.impact_work,
-       [](const Values& of, const SurfaceMesh&, const MeshTriangle&) { return of.impact; });
-  show(SurfaceField::sliding_work, look.sliding_work,
-       [](const Values& of, const SurfaceMesh&, const MeshTriangle&) { return of.sliding; });
-  show(SurfaceField::wear_depth, look.wear_depth,
-       [](const Values& of, const SurfaceMesh& mesh, const MeshTriangle& triangle) {
-         return of.worn / area(mesh, triangle);
-       });
+  show(SurfaceField::impact_work, look.impact_work, &TriangleWorkValues::impact);
+  show(SurfaceField::sliding_work, look.sliding_work, &TriangleWorkValues::sliding);
+  show(SurfaceField::wear_depth, look.wear_depth, &TriangleWorkValues::worn);
+  spread(look.wear_depth);
 }
 
 MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion, std::span<const TriangleLoad> loads,
@@ -109,10 +132,10 @@ MeshSurfaces::Look MeshSurfaces::look(std::span<const BodyMotion> motion, std::s
     const SurfaceMesh& mesh = *part->mesh;
     const auto t = static_cast<std::size_t>(load.triangle);
     const std::size_t row = part->first_triangle + static_cast<std::size_t>(mesh.original[t]);
-    const Real per_area = 1 / area(mesh, mesh.triangles[t]);
-    if (!look.pressure.empty()) look.pressure[row] = per_area * load.normal;
-    if (!look.shear.empty()) look.shear[row] = per_area * load.tangential;
+    if (!look.pressure.empty()) look.pressure[row] = load.normal;
+    if (!look.shear.empty()) look.shear[row] = load.tangential;
   }
+  spread(look.pressure), spread(look.shear);
   return look;
 }
 

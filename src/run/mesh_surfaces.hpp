@@ -21,7 +21,7 @@ class MeshSurfaces {
   struct Look {
     std::vector<Vec3> position;  // of the corners [m]
     // Per triangle, those that the output shows.
-    std::vector<Real> pressure;                   // [Pa]
+    std::vector<Real> pressure;                   // [Pa], in 2D [N/m]
     std::vector<Vec3> shear;                      // likewise
     std::vector<Real> impact_work, sliding_work;  // [J]
     std::vector<Real> wear_depth;                 // [m]
@@ -44,6 +44,8 @@ class MeshSurfaces {
     const SurfaceMesh* mesh;
   };
   void add(Part part, int mesh);
+  template <class T>
+  void spread(std::vector<T>& values) const;
   void take_works(const std::vector<std::int64_t>& works, Look& look) const;
   void place(const Part& part, const BodyMotion& carrier, Vec3* position) const;
 

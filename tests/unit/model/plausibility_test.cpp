@@ -16,6 +16,9 @@ const std::string kBody =
     "[[bodies]]\nname = \"b\"\nmass = 1.0\ninertia = 0.01\nposition = [0.5, 0.5]\nshapes = [{ radius = 0.1 "
     "}]\n";
 const std::string kFloor = "space.y_min=wall", kGravity = "gravity=[0, -10]";
+const std::string kMeshOnBody =
+    "bodies=[{name=\"b\",kind=\"spatial\",mass=1.0,inertia_tensor=[0.1,0.1,0.1,0,0,0],position=[0,0,0.6],"
+    "meshes=[{mesh=\"m\"}]}]";
 const std::string kSpheres = R"([space]
 dimension = 3
 min = [-1, -1, -1]
@@ -137,6 +140,12 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       {random, {"particles.c.seed=2"}, ""},
       {random, {"particles.c.max=[0.5, 0.9]"}, ""},
       {moved, {}, ""},
+      {sheet, {"walls.w.surface_velocity=[1, 0, 0]", "contact.pairs.0.friction=0.1"}, ""},
+      {sheet,
+       {"walls.w.surface_velocity=[1, 0, 0]"},
+       "wall \"w\": its surface_velocity takes nothing along: no pair in contact.pairs has friction"},
+      {sheet, {"particles=[]", kMeshOnBody}, "bodies have meshes, and the deck has nothing that these touch"},
+      {sheet, {kMeshOnBody}, ""},
       {moved,
        {"walls.w.motions.0.displacement.interpolation=natural"},
        "walls.w.motions.0.displacement: between 0.5 s and 1 s the natural spline goes past the values there, "

@@ -1,6 +1,8 @@
 // What snapshots tell of triangles.
 #include "run/mesh_surfaces.hpp"
 
+#include <algorithm>
+
 #include "support/catch.hpp"
 #include "support/models.hpp"
 #include "support/near.hpp"
@@ -48,7 +50,73 @@ velocity = [0.3, 0.0, -0.4]
 surface_fields = ["sliding_work", "wear_depth", "impact_work"]
 )";
 
+// A disc that rests on the second segment of a line, on a belt that wears.
+const std::string kDisc = R"(
+gravity = [0.0, -10.0]
+[space]
+dimension = 2
+min = [-{half}, -{half}]
+max = [{half}, {half}]
+[time]
+step = 1e-4
+control = "fixed"
+end = 0.1
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e4
+damping = 100.0
+friction = 0.1
+tangential_stiffness = 1e4
+wear_coefficient = 2e-9
+[[meshes]]
+name = "line"
+kind = "line"
+points = [[-0.5, 0.0], [-0.1, 0.0], [0.1, 0.0], [0.5, 0.0]]
+[[walls]]
+name = "line"
+mesh = "line"
+surface_velocity = [1.0, 0.0]
+[[particles]]
+name = "disc"
+kind = "list"
+positions = [[0.0, 0.049]]
+radius = 0.05
+mass = 1.0
+[output]
+surface_fields = ["pressure", "shear", "sliding_work", "wear_depth"]
+)";
+
 }  // namespace
+
+TEST_CASE("in 2D a segment has its load and its wear per length, however large the space is") {
+  for (const char* half : {"1.0", "20.0"}) {
+    CAPTURE(half);
+    std::string text = kDisc;
+    for (std::size_t at = text.find("{half}"); at != std::string::npos; at = text.find("{half}"))
+      text.replace(at, 6, half);
+    const Model model = model_of(text);
+    SimulationRun run(model);
+    run.run();
+    const MeshSurfaces surfaces(model);
+    // One of the two triangles of the segment has it all.
+    const std::vector<Index>& numbers = model.meshes[0].surface->original;
+    const auto second = static_cast<Index>(std::ranges::find(numbers, 2) - numbers.begin());
+    const std::vector<TriangleLoad> loads{{0, second, 10, {1, 0, 0}}};
+    const MeshSurfaces::Look look = surfaces.look(std::vector<BodyMotion>(SurfaceSet(model).carriers()),
+                                                  loads, run.complete_state().works);
+    REQUIRE(look.pressure.size() == 6);
+    Real slid = 0;
+    for (const Real work : look.sliding_work) slid += work;
+    CHECK(slid > 0.05);
+    for (std::size_t t = 0; t < 6; ++t) {
+      const bool touched = t == 2 || t == 3;
+      CHECK(near(look.pressure[t], touched ? 50 : 0, {.absolute = 1e-12}));
+      CHECK(near(look.shear[t].x, touched ? 5 : 0, {.absolute = 1e-12}));
+      CHECK(near(look.wear_depth[t], touched ? 2e-9 / 0.1 * slid / 0.2 : 0, {.relative = 1e-12}));
+    }
+  }
+}
 
 TEST_CASE("a snapshot has the works and the wear that the deck asks for, where something touches") {
   const Model model = model_of(kBall);
