@@ -222,7 +222,9 @@ ExitCode status(const std::vector<std::string>& folders) {
 
 void declare_deck(CLI::App& command, Arguments& arguments) {
   command.add_option("deck", arguments.deck, "input deck (TOML)")->required();
-  command.add_option("--set", arguments.overrides, "replace a value of the deck: --set time.step=1e-4")
+  command
+      .add_option("--set", arguments.overrides,
+                  "replace a value of the deck, once for each: --set time.step=1e-4")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->take_all();

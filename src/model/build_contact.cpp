@@ -208,7 +208,8 @@ void check_friction(const DeckTable& deck, const Model& model) {
   if (model.rotates()) return;
   const std::string still = "no particle rotates: no pair in contact.pairs has friction";
   for (const DeckTable& group : deck.tables("particles")) {
-    if (!group.reals("angular_velocity").empty()) group.fail("angular_velocity", still);
+    if (std::ranges::any_of(group.reals("angular_velocity"), [](Real one) { return one != 0; }))
+      group.fail("angular_velocity", still);
     if (group.has("inertia_factor")) group.fail("inertia_factor", still);
   }
 }

@@ -208,13 +208,12 @@ struct MassesOnContact {
   Real pushed = 0, rubbed = 0;
 };
 
-// Of the lightest body of material a on something of material b: a particle or, where contacts rub, another
-// body or a surface, too. What particles give way is left out: they have substeps of their own.
+// Of the lightest body of material a on something of material b: a particle, another body or a surface. What
+// particles give way is left out: they have substeps of their own.
 MassesOnContact masses_on_contact(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &body = uses[static_cast<std::size_t>(a)], &other = uses[static_cast<std::size_t>(b)];
   const MassesOnContact alone{body.smallest_body_mass, body.smallest_rubbed_mass};
   if (alone.pushed == 0 || !can_meet(model, uses, a, b)) return {};
-  if (!model.rotates()) return other.particles > 0 ? alone : MassesOnContact{};
   if (!bodies_can_meet(model, uses, a, b))
     return other.particles > 0 || (body.shapes > 0 && other.is_of_surfaces()) ? alone : MassesOnContact{};
   return {reduced_mass(body.smallest_body_mass, other.smallest_body_mass),

@@ -86,6 +86,7 @@ void judge(StepTrial& trial, const auto& trials) {
   trial.result = trials.with(trial.step);
   trial.good_step = trials.step_within(kGoodRebound);
   trial.any_step_good = trial.good_step == trials.longest_step();
+  if (trial.adaptive_step > 0) trial.adaptive_error = trials.with(trial.adaptive_step).error();
 }
 
 // Far enough from the normal for a slide and near enough for it to end: what slides all the time leaves as
@@ -119,13 +120,14 @@ StepTrial try_pair(const Model& model, const PairLimit& limit) {
   const Partners two = lightest_partners(model, limit);
   const bool implicit = model.integrator.particles == ParticleIntegrator::hht;
   const KelvinVoigt law = model.contact.law(limit.material[0], limit.material[1]).of_size(two.size());
-  StepTrial trial{limit, trial_speed(model, limit, law, two), 0, false, false, 0, {}, 0, false};
+  StepTrial trial{limit, trial_speed(model, limit, law, two), 0, false, false, 0, {}, 0, false, 0, 0};
   const Real touch = impact_time(law, two.mass(), trial.speed);
   trial.is_adaptive = model.time.control == StepControl::adaptive;
   trial.step = model.time.step / (implicit ? 1 : model.integrator.substeps);
-  if (trial.is_adaptive) {
+  if (implicit) {
     const Real fastest = impact_speed(model, limit);
-    trial.step = typical_adaptive_step(model, two, fastest > 0 ? fastest : trial.speed, touch);
+    (trial.is_adaptive ? trial.step : trial.adaptive_step) =
+        typical_adaptive_step(model, two, fastest > 0 ? fastest : trial.speed, touch);
   }
   with_contact_laws(model.contact, [&]<class Law>(const std::vector<Law>& laws) {
     const int at = limit.material[0] * model.contact.materials() + limit.material[1];
@@ -184,6 +186,7 @@ std::string trial_lines(const StepTrial& trial) {
 }
 
 std::string step_warning(const Model& model) {
+  constexpr Real kLeastError = 1e-4;  // that one estimate of the step lets tell
   if (model.time.control == StepControl::adaptive) return "";
   std::vector<StepTrial> bad = try_steps(model);
   std::erase_if(bad, [](const StepTrial& trial) { return trial.result.error() <= kBadRebound; });
@@ -208,7 +211,10 @@ std::string step_warning(const Model& model) {
       worst.step, names[static_cast<std::size_t>(worst.limit.material[0])],
       names[static_cast<std::size_t>(worst.limit.material[1])], others, percent(r.error()), rebound(r.mean),
       rebound(r.exact), worst.rubs ? fmt::format(", at {:.0f} degrees", degrees(worst.incidence)) : "",
-      worst.good_step, percent(kGoodRebound), implicit ? ", time.control = \"adaptive\" within 0.02 %" : "");
+      worst.good_step, percent(kGoodRebound),
+      implicit ? fmt::format(", time.control = \"adaptive\" within {}",
+                             percent(std::max(worst.adaptive_error, kLeastError)))
+               : "");
 }
 
 }  // namespace scree

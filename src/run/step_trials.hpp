@@ -19,8 +19,10 @@ struct StepTrial {
   bool rubs;       // with friction: an impact without spin at `incidence`, else head-on
   Real incidence;  // from the normal [rad]
   TrialResult result;
-  Real good_step;      // up to which errors stay below kGoodRebound [s]
-  bool any_step_good;  // good_step is the longest that was tried
+  Real good_step;       // up to which errors stay below kGoodRebound [s]
+  bool any_step_good;   // good_step is the longest that was tried
+  Real adaptive_step;   // that implicit steps would come to [s]; 0: they adapt already, or are explicit
+  Real adaptive_error;  // of rebounds in such steps
 };
 
 // Errors of rebounds: what is good, and from where on there is a warning.

@@ -214,6 +214,16 @@ TEST_CASE("beside explicit particles the bodies' step must be short against thei
       model_error(deck, with_step("7.1e-4")),
       "a body on a contact oscillates with 1000 rad/s; with velocity-verlet particles the bodies' step "
       "must be at most 0.0007 s"));
+  // Two that meet each other alone, and move against half of the mass.
+  const std::string two = deck + "[[bodies]]\nname = \"other\"\nposition = [-0.5, 0.2]\nmass = 0.01\n" +
+                          "inertia = 1e-5\nshapes = [{ radius = 0.05 }]\n";
+  const auto alone = [&](const std::string& step) {
+    std::vector<std::string> settings = with_step(step);
+    settings.emplace_back("particles=[]");
+    return model_error(two, settings);
+  };
+  CHECK(alone("4.9e-4").empty());
+  CHECK(contains(alone("5e-4"), "a body on a contact oscillates with 1414 rad/s"));
   const std::vector<std::string> warnings =
       model_warnings(deck, {"integrator.particles=velocity-verlet", "time.step=6e-3",
                             "contact.pairs.0.exponent=1.5", "contact.pairs.0.stiffness=1e5"});
