@@ -212,6 +212,11 @@ std::vector<ContactSum> CudaReports::carrier_contacts() {
   return bodies_.side().carrier_contacts();
 }
 
+std::vector<ContactSum> CudaReports::surface_contacts() {
+  need_loads();
+  return bodies_.side().surface_contacts();
+}
+
 std::vector<TriangleLoad> CudaReports::triangle_loads() {
   need_loads();
   const std::vector<WallPlane> planes = wall_planes(items_.model);

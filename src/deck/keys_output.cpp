@@ -65,13 +65,12 @@ const TableKeys& output_keys() {
        texts("history_contacts")
            .otherwise("[]")
            .about(
-               "Bodies, rows of bodies, walls and sides that are walls (\"x_min\") on which the contact "
-               "force is "
-               "recorded, with its torque and the number of contacts. Torques are about a body's centre, a "
-               "wall's "
-               "point, where that has come (a side's: space.min or space.max; a mesh's: its origin), and for "
-               "a row, whose bodies are summed, about the "
-               "origin."),
+               "Bodies, rows of bodies, meshes of bodies (\"bucket.teeth\"), walls and sides that are walls "
+               "(\"x_min\") on which the contact force is recorded, with its torque and the number of "
+               "contacts. "
+               "Torques are about a body's centre, a wall's point, where that has come (a side's: space.min "
+               "or "
+               "space.max; a mesh's: its origin), and for a row, whose bodies are summed, about the origin."),
        integer("history_reactions")
            .at_least(0)
            .otherwise("100")

@@ -102,6 +102,11 @@ std::vector<ContactSum> CpuReports::carrier_contacts() {
   return items_.side.carrier_contacts();
 }
 
+std::vector<ContactSum> CpuReports::surface_contacts() {
+  need_loads();
+  return items_.side.surface_contacts();
+}
+
 std::vector<TriangleLoad> CpuReports::triangle_loads() {
   need_loads();
   return items_.side.triangle_loads(items_.surfaces.triangle_sums(items_.list.surfaces));

@@ -20,6 +20,7 @@ class CpuReports : public Reports {
   ContactLines contact_lines() override;
   std::vector<TracedParticle> traced(std::span<const GlobalId> wanted) override;
   std::vector<ContactSum> carrier_contacts() override;
+  std::vector<ContactSum> surface_contacts() override;
   std::vector<ContactSum> wall_contacts(std::span<const int> walls) override;
   std::vector<TriangleLoad> triangle_loads() override;
 

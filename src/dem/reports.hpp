@@ -98,6 +98,8 @@ class Reports {
   // What touches each carrier (bodies, then placed walls), and each of these planes at rest (indices into
   // Model::walls), where all are now. Complete on rank 0.
   virtual std::vector<ContactSum> carrier_contacts() = 0;
+  // The same of each surface of SurfaceSet, its torque about its carrier's centre.
+  virtual std::vector<ContactSum> surface_contacts() = 0;
   virtual std::vector<ContactSum> wall_contacts(std::span<const int> walls) = 0;
   // What the particles do to the triangles of meshes that they touch, where all are now. Complete on rank 0.
   virtual std::vector<TriangleLoad> triangle_loads() = 0;

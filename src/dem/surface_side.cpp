@@ -247,14 +247,24 @@ void SurfaceSide::reduce(std::vector<BodyWrench>& end) const {
   for (const InstantSums& sums : merged(loads_)) end[surfaces_.at(sums.surface).carrier] += sums.wrench();
 }
 
-std::vector<ContactSum> SurfaceSide::carrier_contacts() const {
-  std::vector<ContactSum> of_carrier(motion_.size());
+// count: of sums; where: the one that a surface's contacts belong to.
+template <class Where>
+std::vector<ContactSum> SurfaceSide::contacts_of(std::size_t count, const Where& where) const {
+  std::vector<ContactSum> contacts(count);
   for (const InstantSums& sums : merged(loads_)) {
-    ContactSum& sum = of_carrier[surfaces_.at(sums.surface).carrier];
+    ContactSum& sum = contacts[static_cast<std::size_t>(where(sums.surface))];
     const BodyWrench wrench = sums.wrench();
     sum.force += wrench.force, sum.torque += wrench.torque, sum.contacts += sums.contacts;
   }
-  return of_carrier;
+  return contacts;
+}
+
+std::vector<ContactSum> SurfaceSide::carrier_contacts() const {
+  return contacts_of(motion_.size(), [this](Index surface) { return surfaces_.at(surface).carrier; });
+}
+
+std::vector<ContactSum> SurfaceSide::surface_contacts() const {
+  return contacts_of(static_cast<std::size_t>(surfaces_.placed()), [](Index surface) { return surface; });
 }
 
 std::vector<TriangleLoad> SurfaceSide::triangle_loads(std::vector<TriangleSums> contacts) const {

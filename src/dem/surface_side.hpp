@@ -98,6 +98,7 @@ class SurfaceSide {
 
   // From the last take_loads(). Collective; complete on rank 0.
   std::vector<ContactSum> carrier_contacts() const;  // bodies, then placed walls
+  std::vector<ContactSum> surface_contacts() const;  // of surfaces()
   ShapePack pack() const;                            // of the spheres
   ContactSum on_wall(int wall) { return bodies_.on_wall(wall); }
   // Of the bodies' shapes, on rank 0.
@@ -123,6 +124,8 @@ class SurfaceSide {
   void span(const Surface& surface, SurfaceFrame& frame) const;
   // Whether something asks how far the surfaces have come since a step began.
   bool keeps_travel() const { return model_.rotates() || !frames_.empty(); }
+  template <class Where>
+  std::vector<ContactSum> contacts_of(std::size_t count, const Where& where) const;
   template <class Sums>
   std::vector<Sums> merged(std::vector<Sums> sums) const;
 

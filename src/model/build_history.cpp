@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "deck/suggestion.hpp"
 #include "model/build_parts.hpp"
@@ -27,8 +28,27 @@ std::vector<int> walls_named(const Model& model, const std::string& name) {
   std::vector<std::string> known;
   for (const auto& [row, bodies] : names.rows) known.push_back(row);
   for (const Wall& wall : model.walls) known.push_back(wall.name);
-  table.fail(kKey, fmt::format("there is no body, row of bodies, wall or side that is a wall named \"{}\"{}",
-                               name, suggestion(name, known)));
+  for (const Body& body : model.bodies)
+    for (const MeshShape& shape : body.meshes)
+      known.push_back(body.name + "." + model.meshes[static_cast<std::size_t>(shape.mesh)].name);
+  table.fail(
+      kKey, fmt::format(
+                "there is no body, row of bodies, mesh of a body, wall or side that is a wall named \"{}\"{}",
+                name, suggestion(name, known)));
+}
+
+// "bucket.teeth": a mesh of a body.
+std::optional<ContactTarget> mesh_named(const ModelNames& names, const Model& model,
+                                        const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos) return std::nullopt;
+  const auto body = names.bodies.find(name.substr(0, dot));
+  if (body == names.bodies.end()) return std::nullopt;
+  const std::vector<MeshShape>& meshes = model.bodies[static_cast<std::size_t>(body->second)].meshes;
+  for (std::size_t m = 0; m < meshes.size(); ++m)
+    if (model.meshes[static_cast<std::size_t>(meshes[m].mesh)].name == name.substr(dot + 1))
+      return ContactTarget{name, {body->second}, false, -1, static_cast<int>(m)};
+  return std::nullopt;
 }
 
 ContactTarget target_of(const DeckTable& table, const ModelNames& names, const Model& model,
@@ -38,7 +58,10 @@ ContactTarget target_of(const DeckTable& table, const ModelNames& names, const M
   const bool moves = body != names.bodies.end() || row != names.rows.end();
   const std::vector<int> walls = walls_named(model, name);
   const std::size_t meanings = walls.size() + (moves ? 1 : 0);
-  if (meanings == 0) fail_unknown(table, names, model, name);
+  if (meanings == 0) {
+    if (std::optional<ContactTarget> mesh = mesh_named(names, model, name)) return *std::move(mesh);
+    fail_unknown(table, names, model, name);
+  }
   if (meanings > 1)
     table.fail(kKey, fmt::format("\"{}\" is the name of {} bodies, rows and walls; it must be that of one",
                                  name, meanings));

@@ -13,8 +13,8 @@ namespace scree {
 // segments of a line.
 Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius);
 
-// What seems wrong with the meshes, one text for each finding: nobody uses or touches them, particles are too large for
-// their curves, their facets too coarse for the overlaps, or too fine for the particles.
+// What seems wrong with the meshes, one text for each finding: nobody uses or touches them, particles are too
+// large for their curves, their facets too coarse for the overlaps, or too fine for the particles.
 std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& model);
 
 }  // namespace scree

@@ -124,6 +124,7 @@ struct ContactTarget {
   std::vector<int> bodies;  // indices into Model::bodies: one, or those of a row
   bool row = false;
   int wall = -1;  // index into Model::walls, or -1
+  int mesh = -1;  // index into the body's meshes, which it is about; -1: all of the body
 };
 
 struct Output {

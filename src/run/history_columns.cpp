@@ -209,7 +209,10 @@ std::string torque_text(const ContactTarget& target) {
 
 // k: number of the target.
 void contact_columns(Group contacts, const ContactTarget& target, std::size_t k) {
-  const std::string what = target.wall >= 0 ? "the wall" : target.row ? "the row's bodies" : "the body";
+  const std::string what = target.wall >= 0   ? "the wall"
+                           : target.mesh >= 0 ? "the mesh"
+                           : target.row       ? "the row's bodies"
+                                              : "the body";
   contacts.add_vector("f", "N", "contact force on " + what,
                       [k](const Sample& s) { return s.contacts[k].force; });
   contacts.add_vector("torque_", "N m", torque_text(target),

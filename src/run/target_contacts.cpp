@@ -1,5 +1,7 @@
 #include "run/target_contacts.hpp"
 
+#include <algorithm>
+
 namespace scree {
 namespace {
 
@@ -8,6 +10,15 @@ std::size_t carrier_of_wall(const Model& model, int wall) {
   std::size_t carrier = model.bodies.size();
   for (int w = 0; w < wall; ++w) carrier += model.walls[static_cast<std::size_t>(w)].is_placed();
   return carrier;
+}
+
+// The meshes of bodies stand behind the shapes of all (SurfaceSet).
+std::size_t surface_of_mesh(const Model& model, const ContactTarget& target) {
+  std::size_t surface = 0;
+  for (const Body& body : model.bodies) surface += body.shapes.size();
+  for (int b = 0; b < target.bodies.front(); ++b)
+    surface += model.bodies[static_cast<std::size_t>(b)].meshes.size();
+  return surface + static_cast<std::size_t>(target.mesh);
 }
 
 // A carrier's torque is about its origin; this is about the wall's point, where that has come.
@@ -37,11 +48,13 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
   const auto is_plane = [&](const ContactTarget& target) {
     return target.wall >= 0 && !model.walls[static_cast<std::size_t>(target.wall)].is_placed();
   };
+  const auto is_mesh = [](const ContactTarget& target) { return target.mesh >= 0; };
   std::vector<int> planes;
   for (const ContactTarget& target : targets)
     if (is_plane(target)) planes.push_back(target.wall);
-  std::vector<ContactSum> on_carriers;
+  std::vector<ContactSum> on_carriers, on_surfaces;
   if (planes.size() < targets.size()) on_carriers = backend.reports().carrier_contacts();
+  if (std::ranges::any_of(targets, is_mesh)) on_surfaces = backend.reports().surface_contacts();
   const std::vector<ContactSum> on_planes = backend.reports().wall_contacts(planes);
   std::vector<BodyMotion> motion;
   if (link.multibody() != nullptr) motion = link.multibody()->motion(state.bodies);
@@ -55,6 +68,8 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
       sum = on_wall(model.walls[static_cast<std::size_t>(target.wall)],
                     on_carriers[carrier_of_wall(model, target.wall)],
                     link.motion()[carrier_of_wall(model, target.wall)]);
+    else if (is_mesh(target))
+      sum = on_surfaces[surface_of_mesh(model, target)];
     else if (!target.row)
       sum = on_carriers[target.bodies.front()];
     else if (!motion.empty())  // rank 0

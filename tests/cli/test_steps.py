@@ -16,7 +16,7 @@ class StepsTest(CommandLineTest):
         coarse = (*damped, "--set", "time.step=1e-2")
         warning = (r"warning: time\.step: steps of 0\.01 s misjudge rebounds of \"default\" on \"default\" by \d+ %: "
                    r"0\.\d+ of the speed instead of 0\.5\d+ of the speed; steps up to 0\.000\d+ s keep within 1 %, "
-                   r"time\.control = \"adaptive\" within 0\.02 %\n")
+                   r"time\.control = \"adaptive\" within 0\.01 %\n")
         self.assertRegex(self.expect(DONE, "check", self.deck, *coarse).stderr, warning)
         log = self.run_deck(DONE, "out", *coarse)
         self.assertEqual(len(re.findall(warning, log.stdout + log.stderr)), 1)

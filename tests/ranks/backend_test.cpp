@@ -158,9 +158,12 @@ TEST_CASE("particles, wrenches and sums have the bits of one rank") {
       const std::vector<ContactSum> walls_a = one.backend->reports().wall_contacts(walls),
                                     walls_b = many.backend->reports().wall_contacts(walls),
                                     bodies_a = one.backend->reports().carrier_contacts(),
-                                    bodies_b = many.backend->reports().carrier_contacts();
+                                    bodies_b = many.backend->reports().carrier_contacts(),
+                                    shapes_a = one.backend->reports().surface_contacts(),
+                                    shapes_b = many.backend->reports().surface_contacts();
       if (world.is_root()) CHECK((same_bits(walls_a, walls_b) && touched(walls_a) == c.walls));
       if (world.is_root()) CHECK((same_bits(bodies_a, bodies_b) && touched(bodies_a) == c.bodies));
+      if (world.is_root()) CHECK((same_bits(shapes_a, shapes_b) && touched(shapes_a) == c.bodies));
       const ParticleLedger p = one.backend->reports().ledger(0), q = many.backend->reports().ledger(0);
       if (!world.is_root()) continue;
       CHECK((p.kinetic == q.kinetic && p.gravitational == q.gravitational));

@@ -77,6 +77,7 @@ void check_contacts(Pair& pair, Real tolerance) {
     Backend& backend = k == 0 ? *pair.cpu : *pair.cuda;
     sums[k] = backend.reports().wall_contacts(all);
     for (const ContactSum& body : backend.reports().carrier_contacts()) sums[k].push_back(body);
+    for (const ContactSum& surface : backend.reports().surface_contacts()) sums[k].push_back(surface);
   }
   REQUIRE(sums[0].size() == sums[1].size());
   std::int64_t contacts = 0;

@@ -23,6 +23,7 @@ class CountedReports : public Reports {
   ContactLines contact_lines() override { return {}; }
   std::vector<TracedParticle> traced(std::span<const GlobalId>) override { return {}; }
   std::vector<ContactSum> carrier_contacts() override { return {}; }
+  std::vector<ContactSum> surface_contacts() override { return {}; }
   std::vector<ContactSum> wall_contacts(std::span<const int>) override { return {}; }
   std::vector<TriangleLoad> triangle_loads() override { return {}; }
 

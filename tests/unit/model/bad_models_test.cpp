@@ -70,8 +70,8 @@ TEST_CASE("names of what a history records the contacts of") {
   CHECK(model.walls[static_cast<std::size_t>(targets[2].wall)].name == "floor");
   CHECK(model.walls[static_cast<std::size_t>(targets[3].wall)].name == "x_max");
   CHECK(contains(model_error(recording("\"flor\"")),
-                 "there is no body, row of bodies, wall or side that is a wall named \"flor\"; did you mean "
-                 "\"floor\"?"));
+                 "there is no body, row of bodies, mesh of a body, wall or side that is a wall named "
+                 "\"flor\"; did you mean \"floor\"?"));
   CHECK(contains(model_error(recording("\"y_min\"")),
                  "the side y_min is no wall; space.y_min = \"wall\" makes it one"));
   CHECK(contains(model_error(recording("\"a\", \"floor\", \"a\"")),

@@ -155,8 +155,8 @@ TEST_CASE("lines of planar decks: refined along themselves, closed counterclockw
       model_error(kSmallLine, {"meshes.line.closed=true", "meshes.line.points=[[0,0],[1,0],[1,1],[0,0]]"}),
       "must be apart, one from the next and the last from the first: (0, 0) stands twice"));
   CHECK(contains(
-      model_error(kSmallLine,
-                  {"meshes.line.closed=true", "meshes.line.points=[[0,0],[1,0],[0.2,0.8],[0.8,0.8],[0,0.1]]"}),
+      model_error(kSmallLine, {"meshes.line.closed=true",
+                               "meshes.line.points=[[0,0],[1,0],[0.2,0.8],[0.8,0.8],[0,0.1]]"}),
       "meshes.line.points=[[0,0],[1,0],[0.2,0.8],[0.8,0.8],[0,0.1]]: the closed line is no outline"));
   CHECK(contains(model_error(kSmallLine, {"meshes.line.refine=1e-12"}),
                  "must be above the length of the line"));

@@ -78,6 +78,60 @@ mass = 2.0
 history_contacts = ["table.0", "table.1", "table", "cart", "y_min"]
 )";
 
+// A grain and a ball, which is a body, each on a tray of a beam; both trays are meshes.
+const std::string kTrays = R"(
+gravity = [0.0, 0.0, -9.8066]
+[space]
+dimension = 3
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+[time]
+end = 1.0
+step = 1e-4
+control = "fixed"
+[integrator]
+particles = "hht"
+residual_tolerance = 1e-11
+[[contact.pairs]]
+stiffness = 1e5
+damping = 400.0
+[[meshes]]
+name = "tray"
+kind = "box"
+size = [0.2, 0.2, 0.02]
+[[meshes]]
+name = "other"
+kind = "box"
+size = [0.2, 0.2, 0.02]
+offset = [-0.5, 0.0, 0.0]
+[[bodies]]
+name = "beam"
+kind = "spatial"
+position = [0.2, 0.0, 0.0]
+mass = 3.0
+inertia_tensor = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]
+meshes = [{ mesh = "tray" }, { mesh = "other" }]
+[[bodies]]
+name = "ball"
+kind = "spatial"
+position = [0.2, 0.0, 0.0599]
+mass = 1.0
+inertia_tensor = [0.001, 0.001, 0.001, 0.0, 0.0, 0.0]
+shapes = [{ radius = 0.05 }]
+[[joints]]
+name = "post"
+type = "fixed"
+bodies = ["ground", "beam"]
+[[particles]]
+name = "grain"
+kind = "list"
+positions = [[-0.3, 0.0, 0.0599]]
+radius = 0.05
+mass = 2.0
+[output]
+history_contacts = ["beam", "beam.tray", "beam.other"]
+)";
+
 const std::vector<std::string> kIntegrators = {"integrator.particles=hht",
                                                "integrator.particles=velocity-verlet"};
 
@@ -133,6 +187,26 @@ TEST_CASE("bodies at rest carry what lies on them, and press on walls with both 
     CHECK(keeps(norm(post.force + table.force - Vec3{0, 3.0 * kGravity, 0}),
                 {.promise = kAtRest, .measured = 2e-14}));
     CHECK(keeps(post.torque.z + table.torque.z, {.promise = kAtRest, .measured = 1e-15}));
+  }
+}
+
+TEST_CASE("what lies on each mesh of a body is told from what lies on the others") {
+  for (const std::string& integrator : kIntegrators) {
+    CAPTURE(integrator);
+    SimulationRun run(model_of(kTrays, {integrator}));
+    run.run();
+    const std::vector<Real> values = run.contact_values();
+    const Real ball = 1.0 * kGravity, grain = 2.0 * kGravity;
+    const auto check_mesh = [&](std::size_t target, Real force, Vec3 torque, Real contacts) {
+      const Recorded on = recorded(values, target);
+      CAPTURE(target, on.force.z, on.torque.y, on.contacts);
+      CHECK(norm(on.force - Vec3{0, 0, -force}) <= kAtRest * (1 + force));
+      CHECK(norm(on.torque - torque) <= kAtRest * (1 + norm(torque)));
+      CHECK(on.contacts == contacts);
+    };
+    check_mesh(0, ball + grain, {0, -0.5 * grain, 0}, 2);
+    check_mesh(1, ball, {}, 1);
+    check_mesh(2, grain, {0, -0.5 * grain, 0}, 1);
   }
 }
 
