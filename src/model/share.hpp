@@ -19,6 +19,7 @@ struct StartItem {
   Vec3 position;            // [m]
   Real radius = 0;          // [m]
   std::int64_t number = 0;  // a particle's global id; shapes count on
+  int material = 0;
 };
 
 class Share {

@@ -80,12 +80,13 @@ std::vector<StartItem> collect_items(const Model& model, const Share& share) {
   const ParticleSet& particles = model.particles;
   items.reserve(particles.size());
   for (std::size_t i = 0; i < particles.size(); ++i)
-    items.push_back(
-        {particles.position[i], particles.radius[i], particles.first_id + static_cast<std::int64_t>(i)});
+    items.push_back({particles.position[i], particles.radius[i],
+                     particles.first_id + static_cast<std::int64_t>(i), particles.material[i]});
   std::int64_t number = particles.totals.count;
   for (std::size_t b = 0; b < model.bodies.size() && share.rank() == share.size() - 1; ++b)
     for (const Shape& shape : model.bodies[b].shapes)
-      items.push_back({to_global_point(model, static_cast<int>(b), shape.offset), shape.radius, number++});
+      items.push_back({to_global_point(model, static_cast<int>(b), shape.offset), shape.radius, number++,
+                       shape.material});
   return items;
 }
 
@@ -151,7 +152,7 @@ void find_pair_overlaps(const Model& model, const std::vector<StartItem>& items,
         const Real touching = item.radius + other.radius;
         if (other.number >= item.number || !(dot(apart, apart) < touching * touching)) return;
         const Real ratio = (touching - norm(apart)) / std::min(item.radius, other.radius);
-        if (ratio >= worst.ratio && ratio > 0 &&
+        if (ratio >= worst.ratio && ratio > 0 && model.contact.law(item.material, other.material).acts() &&
             rule.may_touch(names.body(item.number), names.body(other.number)))
           worst.meet(ratio, other.number, item.number);
       });
@@ -165,6 +166,7 @@ void find_wall_overlaps(const Model& model, const std::vector<StartItem>& items,
     const Wall& wall = model.walls[w];
     if (wall.mesh >= 0) continue;
     for (const StartItem& item : items) {
+      if (!model.contact.law(item.material, wall.material).acts()) continue;
       const Real overlap = item.radius - dot(wall.normal, item.position - wall.point);
       worst.meet(overlap / item.radius, item.number, first_wall + static_cast<std::int64_t>(w));
     }
@@ -179,7 +181,8 @@ void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items,
   for (const StartMesh& mesh : meshes.all()) {
     const std::int64_t number = mesh.wall < 0 ? of_bodies++ : names.first_wall() + mesh.wall;
     for (const StartItem& item : items)
-      if (rule.may_touch(names.body(item.number), mesh.body))
+      if (rule.may_touch(names.body(item.number), mesh.body) &&
+          model.contact.law(item.material, mesh.material).acts())
         worst.meet(mesh.overlap(item.position, item.radius) / item.radius, item.number, number);
   }
 }

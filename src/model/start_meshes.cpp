@@ -85,20 +85,21 @@ std::vector<Vec3> image_shifts(Vec3 periods) {
 
 StartMeshes::StartMeshes(const Model& model) : space_(model.space) {
   const Vec3 periods = periods_of(space_);
-  const auto add = [&](int number, int body, int wall, Vec3 point, const Mat3& axes) {
+  const auto add = [&](int number, int body, int wall, int material, Vec3 point, const Mat3& axes) {
     const SurfaceMesh& mesh = *model.meshes[static_cast<std::size_t>(number)].surface;
     const Vec3 place = in_periodic_box(space_, point),
                middle = transposed_times(axes, Real(0.5) * (mesh.box.min + mesh.box.max));
     const Vec3 spanned = spanned_by(mesh.box, axes, periods);
-    meshes_.push_back(
-        {mesh.view(), body, wall, place, axes, place + middle, spanned, image_shifts(periods - spanned)});
+    meshes_.push_back({mesh.view(), body, wall, material, place, axes, place + middle, spanned,
+                       image_shifts(periods - spanned)});
   };
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     for (const MeshShape& shape : model.bodies[static_cast<std::size_t>(b)].meshes)
-      add(shape.mesh, b, -1, to_global_point(model, b, shape.offset), global_frame(model, b, {}));
+      add(shape.mesh, b, -1, shape.material, to_global_point(model, b, shape.offset),
+          global_frame(model, b, {}));
   for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
     const Wall& wall = model.walls[static_cast<std::size_t>(w)];
-    if (wall.mesh >= 0) add(wall.mesh, kGround, w, wall.point, identity3());
+    if (wall.mesh >= 0) add(wall.mesh, kGround, w, wall.material, wall.point, identity3());
   }
 }
 

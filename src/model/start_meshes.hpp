@@ -12,8 +12,9 @@ namespace scree {
 struct StartMesh {
   MeshView mesh;
   int body = kGround, wall = -1;  // what carries it: index into Model::bodies or Model::walls
-  Vec3 point;                     // of its origin, in the periodic box [m]
-  Mat3 axes;                      // rows: its axes in the global frame
+  int material = 0;
+  Vec3 point;  // of its origin, in the periodic box [m]
+  Mat3 axes;   // rows: its axes in the global frame
   // As in a run: along an axis on which it is as long as the periodic space it goes on for ever, and a sphere
   // is where it lies beside its middle; along others it has images.
   Vec3 middle, spanned;      // [m], the latter 0 along the other axes

@@ -47,6 +47,25 @@ TEST_CASE("overlapping particles: a warning, past the limit an error") {
   CHECK(model_error(kDeck, {at("[[0, 0], [0.09, 0]]"), "contact.max_start_overlap=0.3"}).empty());
 }
 
+TEST_CASE("what does not interact may overlap at the start") {
+  const std::string deck =
+      kDeck +
+      "[[materials]]\nname = \"air\"\n[[materials]]\nname = \"solid\"\n[[meshes]]\nname = \"line\"\n" +
+      "kind = \"line\"\npoints = [[0.2, 0], [0.4, 0]]\n[[walls]]\nname = \"line\"\nmesh = \"line\"\n" +
+      "material = \"solid\"\n";
+  const auto error = [&](const std::string& positions, const std::string& stiffness) {
+    return model_error(
+        deck, {"contact.pairs=[{materials=[\"air\",\"air\"],stiffness=" + stiffness +
+                   "},{materials=[\"air\",\"solid\"],stiffness=" + stiffness + "}]",
+               "particles.0.material=air", "space.y_min=wall", "space.wall_material=solid", at(positions)});
+  };
+  for (const char* positions : {"[[0, 0], [0.03, 0]]", "[[0, -0.99]]", "[[0.3, 0.01]]"}) {
+    CAPTURE(positions);
+    CHECK(contains(error(positions, "1e4"), "overlap at t = 0"));
+    CHECK(error(positions, "0").empty());
+  }
+}
+
 TEST_CASE("overlaps with walls and across periodic sides") {
   const std::string wall = model_error(kDeck, {"space.y_min=wall", at("[[0, -0.96]]")});
   CHECK(contains(wall, "particle 0 and wall \"y_min\" overlap at t = 0 by 0.2"));
