@@ -29,10 +29,8 @@ const TableKeys& output_keys() {
                "added up in each step: impact_work [J], what the damping of normal forces, with the making "
                "of necks, has taken there; sliding_work [J], what friction has; wear_depth [m], the volume "
                "that Archard's law wears off (wear_coefficient of the pairs) over the area. In 2D a segment "
-               "of a "
-               "line is two triangles: both have what there is per length of the segment [N/m], of a line "
-               "that "
-               "is 1 m deep; a work is at one of the two."),
+               "of a line is two triangles: both have what there is per length of the segment [N/m], of a "
+               "line that is 1 m deep; a work is at one of the two."),
        boolean("contacts")
            .otherwise("false")
            .about("Whether snapshots hold the contacts of particles and of bodies' discs and spheres, a line "
@@ -67,10 +65,9 @@ const TableKeys& output_keys() {
            .about(
                "Bodies, rows of bodies, meshes of bodies (\"bucket.teeth\"), walls and sides that are walls "
                "(\"x_min\") on which the contact force is recorded, with its torque and the number of "
-               "contacts. "
-               "Torques are about a body's centre, a wall's point, where that has come (a side's: space.min "
-               "or "
-               "space.max; a mesh's: its origin), and for a row, whose bodies are summed, about the origin."),
+               "contacts. Torques are about a body's centre, a wall's point, where that has come (a side's: "
+               "space.min or space.max; a mesh's: its origin), and for a row, whose bodies are summed, about "
+               "the origin."),
        integer("history_reactions")
            .at_least(0)
            .otherwise("100")

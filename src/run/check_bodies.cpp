@@ -89,8 +89,7 @@ std::string multibody_lines(const Model& model) {
   if (meshes > 0)
     lines +=
         "               their meshes touch particles and the discs and spheres of other bodies, not walls "
-        "and not "
-        "each other\n";
+        "and not each other\n";
   lines += solid_lines(model);
   lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
   // Of rows that may repeat each other the rank counts, which the bodies' solver reports.
