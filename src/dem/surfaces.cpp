@@ -41,4 +41,11 @@ SurfaceSet::SurfaceSet(const Model& model)
   }
 }
 
+Index SurfaceSet::placed_mesh(const Model& model, int body, int mesh) {
+  std::size_t placed = 0;
+  for (const Body& of : model.bodies) placed += of.shapes.size();
+  for (int b = 0; b < body; ++b) placed += model.bodies[static_cast<std::size_t>(b)].meshes.size();
+  return static_cast<Index>(placed) + mesh;
+}
+
 }  // namespace scree

@@ -59,6 +59,8 @@ class SurfaceSet {
   Index number_of(Index placed) const {
     return placed < on_bodies_ ? ground_ + placed : walls_[static_cast<std::size_t>(placed - on_bodies_)];
   }
+  // Of the mesh-th of a body's meshes: they stand behind the shapes of all bodies.
+  static Index placed_mesh(const Model& model, int body, int mesh);
   bool is_on_body(Index placed) const { return placed < on_bodies_; }
   // How far past touch it is looked for where planes at rest are by `skin` [m].
   Real skin_of(Index placed, Real skin) const {

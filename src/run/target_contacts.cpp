@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "dem/surfaces.hpp"
+
 namespace scree {
 namespace {
 
@@ -10,15 +12,6 @@ std::size_t carrier_of_wall(const Model& model, int wall) {
   std::size_t carrier = model.bodies.size();
   for (int w = 0; w < wall; ++w) carrier += model.walls[static_cast<std::size_t>(w)].is_placed();
   return carrier;
-}
-
-// The meshes of bodies stand behind the shapes of all (SurfaceSet).
-std::size_t surface_of_mesh(const Model& model, const ContactTarget& target) {
-  std::size_t surface = 0;
-  for (const Body& body : model.bodies) surface += body.shapes.size();
-  for (int b = 0; b < target.bodies.front(); ++b)
-    surface += model.bodies[static_cast<std::size_t>(b)].meshes.size();
-  return surface + static_cast<std::size_t>(target.mesh);
 }
 
 // A carrier's torque is about its origin; this is about the wall's point, where that has come.
@@ -69,7 +62,8 @@ std::vector<ContactSum> target_contacts(const Model& model, const BodyLink& link
                     on_carriers[carrier_of_wall(model, target.wall)],
                     link.motion()[carrier_of_wall(model, target.wall)]);
     else if (is_mesh(target))
-      sum = on_surfaces[surface_of_mesh(model, target)];
+      sum = on_surfaces[static_cast<std::size_t>(
+          SurfaceSet::placed_mesh(model, target.bodies.front(), target.mesh))];
     else if (!target.row)
       sum = on_carriers[target.bodies.front()];
     else if (!motion.empty())  // rank 0
