@@ -58,6 +58,7 @@ const TableKeys& solid_keys() {
              .above(0)
              .left_out("inertia is not \"shell\"")
              .about("Of the skin, of which half lies on either side."),
+         real("depth", "m").only_for(meshes).above(0).left_out("1 for a line").about("Of a line, along z."),
          real("radius", "m").only_for(round).above(0).required().about("Radius."),
          real("length", "m")
              .only_for(long_ones)

@@ -213,4 +213,17 @@ TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Re
   return mesh;
 }
 
+TriangleMesh without_ends(TriangleMesh line) {
+  std::erase_if(line.triangles, [&](const std::array<Index, 3>& t) {
+    const auto is_high = [&](Index corner) { return line.vertices[corner].z > 0; };
+    return is_high(t[0]) == is_high(t[1]) && is_high(t[1]) == is_high(t[2]);
+  });
+  return line;
+}
+
+TriangleMesh line_of_depth(TriangleMesh line, Real depth) {
+  for (Vec3& vertex : line.vertices) vertex.z = std::copysign(depth / 2, vertex.z);
+  return line;
+}
+
 }  // namespace scree

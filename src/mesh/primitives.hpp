@@ -112,5 +112,10 @@ TriangleMesh rectangle_mesh(Real width, Real depth);
 // counterclockwise around its inside, has ends and is a closed mesh. Throws InputError for one that crosses
 // itself.
 TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Real half_depth);
+// Such a line without the ends of a closed one, which no particle is near, and which may have triangles
+// without area.
+TriangleMesh without_ends(TriangleMesh line);
+// Such a line from -depth / 2 to depth / 2 [m].
+TriangleMesh line_of_depth(TriangleMesh line, Real depth);
 
 }  // namespace scree

@@ -11,6 +11,7 @@
 #include "base/rotation.hpp"
 #include "mesh/convex_hull.hpp"
 #include "mesh/mesh_mass.hpp"
+#include "mesh/primitives.hpp"
 #include "model/body_exchange.hpp"
 #include "model/build_parts.hpp"
 #include "model/frames.hpp"
@@ -48,10 +49,8 @@ MassProperties hull_mass(const DeckTable& table, const TriangleMesh& mesh, Real 
 
 MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real density) {
   const int number = find_name(names.meshes, table, "mesh", "mesh");
-  const auto& [mesh, sheet] = names.triangles[static_cast<std::size_t>(number)];
+  const auto& [mesh, sheet, line] = names.triangles[static_cast<std::size_t>(number)];
   const MeshInertia kind = table.choice<MeshInertia>("inertia");
-  if (mesh.triangles.empty())
-    table.fail("mesh", "is a line, which encloses no volume; give the body's mass and inertia instead");
   if (sheet && kind == MeshInertia::exact)
     table.fail("mesh",
                "is a sheet, which encloses no volume; inertia = \"convex\" or \"shell\", or give the body's "
@@ -59,8 +58,22 @@ MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real d
   if ((kind == MeshInertia::shell) != table.has("thickness"))
     table.fail("thickness", kind == MeshInertia::shell ? "missing; inertia is \"shell\""
                                                        : "not used without inertia = \"shell\"");
-  if (kind == MeshInertia::shell) return shell_mesh_mass(mesh, density * table.real("thickness"));
-  return kind == MeshInertia::convex ? hull_mass(table, mesh, density) : solid_mesh_mass(mesh, density);
+  if (!line && table.has("depth")) table.fail("depth", "is for lines, in 2D; this mesh has its own");
+  const auto mass_of = [&](const TriangleMesh& whole) {
+    switch (kind) {
+      case MeshInertia::shell:
+        return shell_mesh_mass(line ? without_ends(whole) : whole, density * table.real("thickness"));
+      case MeshInertia::convex:
+        return hull_mass(table, whole, density);
+      case MeshInertia::exact:
+        break;
+    }
+    return solid_mesh_mass(whole, density);
+  };
+  if (!line) return mass_of(mesh);
+  MassProperties mass = mass_of(line_of_depth(mesh, table.has("depth") ? table.real("depth") : 1));
+  mass.center.z = 0;  // by symmetry; round-off would lift the body off the plane
+  return mass;
 }
 
 Real density_of(const DeckTable& table, const ModelNames& names) {

@@ -10,6 +10,7 @@
 #include "mesh/coarsen.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/mesh_mass.hpp"
+#include "mesh/primitives.hpp"
 #include "mesh/refine.hpp"
 #include "mesh/surface_numbers.hpp"
 #include "mesh/weld.hpp"
@@ -62,17 +63,19 @@ TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, Mode
   return std::move(coarse.mesh);
 }
 
-// Welded and checked, made coarser and finer; in 2D lines were refined when they were drawn. note: gets what
-// became of the triangles.
-TriangleMesh surface_of(const DeckTable& table, Real half_depth, ModelMesh& note) {
-  const TriangleMesh mesh = make_mesh(table, half_depth);
+// Welded and checked.
+TriangleMesh sound(const DeckTable& table, const TriangleMesh& mesh) {
   LooselyWelded joined{welded(mesh), {}};
   if (table.has("weld")) joined = welded_within(mesh, table.real("weld"));
   check(table, joined.mesh, joined.numbers);
-  TriangleMesh surface = std::move(joined.mesh);
+  return std::move(joined.mesh);
+}
+
+// Made coarser and finer, too. note: gets what became of the triangles.
+TriangleMesh made_sound(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
+  TriangleMesh surface = sound(table, mesh);
   if (table.has("coarsen")) surface = made_coarser(table, surface, note);
-  const bool drawn = table.choice<MeshKind>("kind") == MeshKind::line;
-  return table.has("refine") && !drawn ? made_finer(table, surface) : surface;
+  return table.has("refine") ? made_finer(table, surface) : surface;
 }
 
 void check_features(const DeckTable& table, const SurfaceMesh& mesh) {
@@ -108,12 +111,14 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
                  planar ? "must be \"line\", as space.dimension = 2" : "\"line\" needs space.dimension = 2");
     add_name(names.meshes, table.text("name"), static_cast<int>(model.meshes.size()), table);
     ModelMesh made{table.text("name"), nullptr};
-    const TriangleMesh mesh = surface_of(table, half_depth, made);
+    const TriangleMesh drawn = make_mesh(table, half_depth);
+    // A line was refined when it was drawn.
+    const TriangleMesh mesh = planar ? sound(table, without_ends(drawn)) : made_sound(table, drawn, made);
     made.surface = std::make_shared<const SurfaceMesh>(
         build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
     check_features(table, *made.surface);
     model.meshes.push_back(made);
-    names.triangles.push_back({planar ? TriangleMesh{} : mesh, is_sheet(table)});
+    names.triangles.push_back({planar ? drawn : mesh, is_sheet(table), planar});
   }
 }
 

@@ -76,15 +76,6 @@ std::vector<Vec3> with_points_between(const std::vector<Vec3>& points, bool clos
   return all;
 }
 
-// Without the ends of a closed line, which no particle is near, and which may have triangles without area.
-TriangleMesh upright(TriangleMesh mesh) {
-  std::erase_if(mesh.triangles, [&](const std::array<Index, 3>& t) {
-    const Real z = mesh.vertices[t[0]].z;
-    return mesh.vertices[t[1]].z == z && mesh.vertices[t[2]].z == z;
-  });
-  return mesh;
-}
-
 TriangleMesh line_of(const DeckTable& table, Real half_depth) {
   constexpr Real kMostSegments = 1e7;
   const std::vector<Vec3>& points = table.vectors("points");
@@ -108,7 +99,7 @@ TriangleMesh line_of(const DeckTable& table, Real half_depth) {
                     area));
   const auto drawn = [&](const std::vector<Vec3>& corners) {
     try {
-      return upright(extruded_line_mesh(corners, closed, half_depth));
+      return extruded_line_mesh(corners, closed, half_depth);
     } catch (const InputError& error) {
       table.fail("points", error.what());
     }
@@ -119,6 +110,17 @@ TriangleMesh line_of(const DeckTable& table, Real half_depth) {
     table.fail("refine", fmt::format("must be above the length of the line / {:g} = {:.4g}", kMostSegments,
                                      length / kMostSegments));
   return drawn(with_points_between(points, closed, longest));
+}
+
+// Lines stay in the x-y plane.
+void check_line_axis(const DeckTable& table, const Mat3& axes) {
+  constexpr Real kRoundOff = 1e-12;
+  const Vec3 z = axes * Vec3{0, 0, 1};
+  if (std::abs(z.x) <= kRoundOff && std::abs(z.y) <= kRoundOff) return;
+  const auto given = [&](const char* key) { return table.has(key); };
+  const auto keys = {"rotation_axis", "quaternion", "z_axis", "x_axis"};
+  table.fail(*std::ranges::find_if(keys, given),
+             "lines lie in the x-y plane and can be turned about z alone, by quaternion");
 }
 
 TriangleMesh read(const DeckTable& table) {
@@ -198,6 +200,7 @@ TriangleMesh make_mesh(const DeckTable& table, Real half_depth) {
   TriangleMesh mesh = made(table, half_depth);
   const Quaternion turn = read_orientation(table);
   const Mat3 axes = rotation_matrix(turn);
+  if (table.choice<MeshKind>("kind") == MeshKind::line) check_line_axis(table, axes);
   const Vec3 offset = table.vector("offset");
   const Real scale = table.has("scale") ? table.real("scale") : 1;
   for (Vec3& vertex : mesh.vertices) {

@@ -6,9 +6,9 @@
 
 namespace scree {
 
-// In the frame of what carries the mesh. Lines are drawn along z to half_depth at least [m]. Throws
-// InputError with place, key and value, or with the text alone that is wrong with a file; IoError where it
-// cannot be read.
+// In the frame of what carries the mesh. Lines are drawn along z to half_depth at least [m], closed ones
+// with ends. Throws InputError with place, key and value, or with the text alone that is wrong with a file;
+// IoError where it cannot be read.
 TriangleMesh make_mesh(const DeckTable& table, Real half_depth);
 // Whether it has two sides.
 bool is_sheet(const DeckTable& table);

@@ -24,10 +24,11 @@ struct NamedMarker {
   Marker marker;
 };
 
-// Triangles that a solid may be made of; none of lines.
+// Triangles that a solid may be made of; of lines with the ends of closed ones.
 struct NamedMesh {
   TriangleMesh mesh;
   bool sheet = false;
+  bool line = false;
 };
 
 struct ModelNames {

@@ -137,7 +137,7 @@ TEST_CASE("the masses of solids made of meshes are kept for the report, each onc
   CHECK(masses[1] == Approx(0.001).epsilon(1e-12));
 }
 
-TEST_CASE("lines of planar decks: refined along themselves, closed counterclockwise, without volume") {
+TEST_CASE("lines of planar decks: refined along themselves, closed counterclockwise, in their plane") {
   const auto triangles = [](const std::vector<std::string>& overrides) {
     return model_of(kSmallLine, overrides).meshes.front().surface->triangles.size();
   };
@@ -161,10 +161,42 @@ TEST_CASE("lines of planar decks: refined along themselves, closed counterclockw
   CHECK(contains(model_error(kSmallLine, {"meshes.line.refine=1e-12"}),
                  "must be above the length of the line"));
   CHECK(contains(
-      model_error(kSmallLine, {"meshes.line.closed=true",
-                               "bodies=[{name=\"b\",position=[0,0],solids=[{kind=\"mesh\",mesh=\"line\","
-                               "density=1.0}]}]"}),
-      "encloses no volume"));
+      model_error(kSmallLine, {"meshes.line.rotation_axis=[1, 0]", "meshes.line.rotation_angle=1.0"}),
+      "lines lie in the x-y plane and can be turned about z alone, by quaternion"));
+}
+
+TEST_CASE("bodies of closed lines weigh what is inside times a depth, or their outline's hull, or a skin") {
+  const auto of_line = [](const std::string& keys) {
+    return std::vector<std::string>{
+        "meshes.line.points=[[0,0],[0.4,0],[0.4,0.2],[0.2,0.1],[0,0.2]]", "meshes.line.closed=true",
+        fmt::format(
+            "bodies=[{{name=\"b\",position=[1,0],solids=[{{kind=\"mesh\",mesh=\"line\",density=500.0{}}}]}}]",
+            keys)};
+  };
+  const auto line_body = [&](const std::string& keys) {
+    return model_of(kSmallLine, of_line(keys)).bodies.front();
+  };
+  // A rectangle less a triangle; both are symmetric about x = 0.2.
+  const Real area = 0.08 - 0.02, y_rectangle = 0.1, y_triangle = 0.2 - 0.1 / 3,
+             y = (0.08 * y_rectangle - 0.02 * y_triangle) / area,
+             rectangle = 0.08 * ((0.4 * 0.4 + 0.2 * 0.2) / 12 + std::pow(y - y_rectangle, 2)),
+             triangle = 0.02 * (0.1 * 0.1 / 18 + 0.4 * 0.4 / 24 + std::pow(y - y_triangle, 2));
+  for (const Real depth : {1.0, 0.03}) {
+    const Body body = line_body(depth == 1 ? "" : fmt::format(",depth={}", depth));
+    CHECK(body.mass == Approx(500 * area * depth).epsilon(1e-12));
+    CHECK(body.inertia == Approx(500 * depth * (rectangle - triangle)).epsilon(1e-12));
+    CHECK(norm(body.position - Vec3{1.2, y, 0}) < 1e-15);
+    CHECK(body.position.z == 0);
+  }
+  CHECK(line_body(",depth=2.0,inertia=\"convex\"").mass == Approx(500 * 0.08 * 2));
+  CHECK(line_body(",depth=2.0,inertia=\"shell\",thickness=1e-3").mass ==
+        Approx(500 * 1e-3 * 2 * (0.8 + 2 * std::sqrt(0.05))));
+  std::vector<std::string> open = of_line("");
+  open[1] = "meshes.line.closed=false";
+  CHECK(contains(model_error(kSmallLine, open), "is a sheet, which encloses no volume"));
+  CHECK(contains(model_error(body_of("kind = \"box\"\nsize = [1, 1, 1]",
+                                     "{ kind = \"mesh\", mesh = \"made\", density = 1.0, depth = 2.0 }")),
+                 "is for lines, in 2D; this mesh has its own"));
 }
 
 TEST_CASE("with meshes no more surfaces than contacts can tell apart") {
