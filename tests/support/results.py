@@ -10,9 +10,14 @@ import scree  # noqa: E402
 from scree import files  # noqa: E402
 
 
+def opened(folder):
+    """The run as the package has it."""
+    return scree.open(folder, earlier=False)
+
+
 def columns(folder):
     """Of the history, by path: arrays [rows]."""
-    history = scree.open(folder, earlier=False).history.read()
+    history = opened(folder).history.read()
     return {name: column.values for name, column in history.items()}
 
 
@@ -25,7 +30,7 @@ def rows(folder):
 def snapshots(folder):
     """For each snapshot its time [s] and the particles' fields by name, "position" among them: rows in the order of the
     ids."""
-    for snapshot in scree.open(folder, earlier=False).snapshots:
+    for snapshot in opened(folder).snapshots:
         yield snapshot.time, {name: field.values for name, field in snapshot.particles.items()}
 
 

@@ -10,6 +10,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import queue
 import subprocess
 import sys
 import tempfile
@@ -118,6 +119,11 @@ def snapshots(folder, name):
     return results.snapshots(folder / name)
 
 
+def run(folder, name):
+    """The run itself, for what its snapshots hold beside the particles."""
+    return results.opened(folder / name)
+
+
 def finished(folder, name):
     """Whether a run went to its end: one that was stopped has a record, too."""
     record = folder / name / "run_record.json"
@@ -130,17 +136,26 @@ def run_decks(folder, texts, arguments):
     for name, text in texts.items():
         (folder / f"{name}.toml").write_text(text)
 
-    def run(name):
-        with open(folder / f"{name}.log", "w", encoding="utf-8") as log:
-            return subprocess.run(
-                [str(arguments.scree), "run", f"{name}.toml", "--overwrite", "--backend", arguments.backend],
-                cwd=folder,
-                stdout=log,
-                stderr=subprocess.STDOUT).returncode
+    gpus = queue.SimpleQueue()
+    for job in range(arguments.jobs):
+        gpus.put(str(job % arguments.gpus))
+
+    def run_one(name):
+        gpu = gpus.get()
+        try:
+            with open(folder / f"{name}.log", "w", encoding="utf-8") as log:
+                return subprocess.run(
+                    [str(arguments.scree), "run", f"{name}.toml", "--overwrite", "--backend", arguments.backend],
+                    cwd=folder,
+                    env=os.environ if arguments.gpus == 1 else os.environ | {"CUDA_VISIBLE_DEVICES": gpu},
+                    stdout=log,
+                    stderr=subprocess.STDOUT).returncode
+        finally:
+            gpus.put(gpu)
 
     todo = [name for name in texts if not finished(folder, name)]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        failed = [name for name, code in zip(todo, pool.map(run, todo)) if code != 0]
+        failed = [name for name, code in zip(todo, pool.map(run_one, todo)) if code != 0]
     for name in failed:
         print((folder / f"{name}.log").read_text()[-2000:])
         print(f"FAIL {name}: the run failed")
@@ -157,6 +172,7 @@ def main(description, decks, show, smoke):
     parser.add_argument("--scree", default=os.environ.get("SCREE", "scree"))
     parser.add_argument("--backend", default="auto")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser.add_argument("--gpus", type=int, default=1, help="that the runs are shared out to")
     parser.add_argument("--only", default="", help="cases whose names have this in them")
     arguments = parser.parse_args()
     if os.sep in arguments.scree:

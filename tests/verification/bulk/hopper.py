@@ -10,8 +10,8 @@ through comes back on top by the periodic side, so that the level stays. Rates f
 momentum: over a time in which the bed does not change on the whole, the number that passes any level per unit
 time is -P_z/(m L_z).
 
-Bands: literature as in bands.csv. Rates of an independent program (silo.csv) are printed beside, not judged: its
-silo is a wide cylinder with a frictional wall, 52 diameters deep and emptying, with a sharp edge.
+Bands: literature as in bands.csv. Rates are some 16 % above those through the sharp edge of a silo that empties
+(silo.py): this floor is of spheres, and the bed is stirred by what falls on it.
 """
 
 import math
@@ -22,7 +22,6 @@ import numpy
 import bulk
 
 HOLES = (5, 6, 8, 10)
-INDEPENDENT = {6: 24.0, 8: 58.9, 10: 118.8}
 LAW = "stiffness = 2e5\ndamping = 25.0\nfriction = 0.5\n"
 HEIGHT = 34.0  # of the space; the floor's surface is at FLOOR
 FLOOR = 2.0
@@ -121,8 +120,6 @@ def show(folder, report):
                    " ".join(f"{part:.2f}" for part in parts))
         report.check(f"counted over from momentum, {hole} d, second half", crossed / second, 0.98, 1.02,
                      "they are one number")
-        if hole in INDEPENDENT:
-            report.say(f"     over that of an independent program, another silo: {found[hole] / INDEPENDENT[hole]:.3f}")
     wide = [hole for hole in found if hole > 5]  # the law is one of holes of more than five diameters
     if len(wide) >= 3:
         holes, rates = numpy.array(wide), numpy.array([found[hole] for hole in wide])
@@ -130,15 +127,14 @@ def show(folder, report):
         k, c = -cut / slope, slope**2.5 / numpy.mean(densities)
         exponent = numpy.polyfit(numpy.log(holes - k), numpy.log(rates), 1)[0]
         report.say(f"     density of the bed {numpy.mean(densities):.3f} spheres per volume")
-        report.check("Beverloo's C", c, 0.53, 0.66, "Beverloo 1961; Nedderman 1992; independent program 0.552")
-        report.check("Beverloo's k", k, 1.2, 2.0, "the same; independent program 1.68")
+        report.check("Beverloo's C", c, 0.53, 0.66, "Beverloo 1961; Nedderman 1992")
+        report.check("Beverloo's k", k, 1.2, 2.0, "the same")
         report.check("largest deviation from the law",
-                     abs(rates / (slope * (holes - k))**2.5 - 1).max(), 0.0, 0.05, "independent program: 0.03")
+                     abs(rates / (slope * (holes - k))**2.5 - 1).max(), 0.0, 0.05, "fits of measured rates are as good")
         report.check("exponent of the rate over D - k d", exponent, 2.4, 2.6, "Mankoc et al. 2007")
         fine = numpy.linspace(k, 12, 100)
         right.plot(fine, (slope * (fine - k))**2.5, "k-", label=f"C = {c:.3f}, k = {k:.2f}")
         right.plot(list(found), list(found.values()), "o", label="measured")
-        right.plot(list(INDEPENDENT), list(INDEPENDENT.values()), "r+", ms=10, label="independent program")
     left.set(xlabel="t [sqrt(d/g)]", ylabel="spheres per unit time (over 2)", title="from the mean momentum")
     right.set(xlabel="D [d]", ylabel="spheres per unit time", title="Beverloo's law")
     for axes in (left, right):
