@@ -140,7 +140,9 @@ const TableKeys& integrator_keys() {
        choice<Precision>("precision")
            .otherwise_choice(Precision::full)
            .about("GPU, velocity-verlet: mixed keeps state and sums at about double precision and computes "
-                  "contact forces in single; the CPU computes in double either way."),
+                  "contact forces in single. All in double, and the run says so, where contacts attract or "
+                  "resist "
+                  "rolling, where bodies have shapes, and on the CPU."),
        real("residual_tolerance", "")
            .within(0, 1)
            .above(0)

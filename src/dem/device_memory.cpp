@@ -155,7 +155,7 @@ double bytes_of_steps(const Model& model, const Sizes& n) {
   double of_steps = n.particles * sizeof(Vec3) + n.slots * sizeof(Index);
   if (places > n.particles * sizeof(Vec3)) of_steps += places;
   // Where particles rotate these stand in the place of what is of an instant.
-  if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates())
+  if (model.integrator.precision == Precision::mixed && !n.on_bodies && !model.rotates() && !model.attracts())
     of_steps += n.particles * kMixedArrays;
   return of_steps;
 }

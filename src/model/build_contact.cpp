@@ -278,8 +278,6 @@ void check_attraction(const DeckTable& contact, const Model& model) {
     if (!pair.has(key) || pair.real(key) == 0) continue;
     if (model.integrator.particles != ParticleIntegrator::velocity_verlet)
       pair.fail(key, "needs integrator.particles = \"velocity-verlet\"");
-    if (model.integrator.precision == Precision::mixed)
-      pair.fail(key, "needs integrator.precision = \"double\"");
   }
 }
 

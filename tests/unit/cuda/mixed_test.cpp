@@ -180,6 +180,30 @@ TEST_CASE("mixed precision: spheres that rub leave with the velocities and spins
       hertz ? "Hertz" : "linear spring", velocity, spin, lost, exactly);
 }
 
+TEST_CASE(
+    "mixed precision: what attracts or resists rolling is in double all the same, and the run says so") {
+  Model model = box_model(10, Precision::mixed);
+  const bool attracts = GENERATE(true, false);
+  if (attracts)
+    model.contact.laws[0].attraction = 5, model.contact.laws[0].range = 0.02, model.contact.reach = 0.02;
+  else
+    model.contact.friction = {{0.3, Real(2) / 7 * 2e5, 0, 0.1}},
+    model.contact.rolling = {{.friction = 0.2, .stiffness_factor = 2.25}};
+  add_sphere(model, {4, 5, 5}, {1, 0.03, 0}), add_sphere(model, {5.005, 5.2, 5.1}, {-1, 0, 0.3});
+  Run mixed(model, true), exact(model, false);
+  CHECK_FALSE(mixed.backend->is_mixed());
+  const std::string told = mixed.backend->description();
+  CAPTURE(told);
+  CHECK(told.find(attracts ? "precision double, because particles attract each other"
+                           : "precision double, because contacts resist rolling") != std::string::npos);
+  mixed.advance(1e-4, 400), exact.advance(1e-4, 400);
+  const std::vector<Particle> a = mixed.backend->particles().records(),
+                              b = exact.backend->particles().records();
+  CHECK(norm(b[0].velocity - Vec3{1, 0.03, 0}) > 0.3);  // they did collide
+  for (std::size_t i = 0; i < 2; ++i)
+    CHECK((a[i].position == b[i].position && a[i].velocity == b[i].velocity));
+}
+
 // What contacts remember would creep if singles kept it.
 TEST_CASE("mixed precision: a pile that friction holds stays where it is", "[long]") {
   Model model = box_model(12, Precision::mixed);
