@@ -4,8 +4,8 @@
     tests/verification/bulk/janssen.py show DIR
 
 Discs whose diameters vary by a fifth between two plane walls ten diameters apart, on a floor of discs that a
-driver lowers slowly: the grains slide down along the walls, which carry what friction lets them. (Walls do not
-move in a deck; poured and left alone a column hardly leans on its walls.) Friction 0.5 between grains, 0.25 on
+driver lowers slowly: the grains slide down along the walls, which carry what friction lets them. (Poured and left
+alone a column hardly leans on its walls. silo.py moves the wall instead, in 3D.) Friction 0.5 between grains, 0.25 on
 the walls, below the 0.28 or so of which a sheared bed is capable, so that it is at the walls that they slide.
 Janssen: m_app = m_sat (1 - exp(-m/m_sat)), m the mass of the filling, m_app what the floor feels of it. m_sat is
 the one number that is fitted, to all fillings together; from it follows K = (m/h) W / (2 mu_w m_sat), the

@@ -122,7 +122,7 @@ def raised(name, end, diameter=20.0, count=16000, filled=FILLED):
 
     return "\n".join(
         case("a silo whose wall moves up", diameter, count, -1.0, end, parts) +
-        [bulk.output(name, 8.0, 0.2, [], history_contacts='["floor", "cylinder"]')])
+        [bulk.output(name, 4.0, 0.2, [], history_contacts='["floor", "cylinder"]')])
 
 
 def decks():
@@ -135,7 +135,7 @@ def decks():
 
 def stresses(folder, name, start):
     """Means over the snapshots from `start` on, at heights 0, 1, ...: spheres above, friction of the wall on them
-    and the normal force on the wall, both above."""
+    and the normal force on the wall, both above. A triangle's force counts as spread over its height."""
     heights, total, taken = numpy.arange(0.0, 60.0), numpy.zeros((3, 60)), 0
     for snapshot in bulk.run(folder, name).snapshots:
         if snapshot.time < start - 1e-6:
@@ -145,12 +145,13 @@ def stresses(folder, name, start):
         corners = surfaces["position"].values[surfaces.triangles]
         edges = corners[:, 1:] - corners[:, :1]
         area = 0.5 * numpy.linalg.norm(numpy.cross(edges[:, 0], edges[:, 1]), axis=1)
-        middle = corners[:, :, 2].mean(axis=1)
-        for row, place, amount in ((0, snapshot.particles["position"].values[:, 2], None),
-                                   (1, middle, -surfaces["shear"].values[:, 2] * area),
-                                   (2, middle, surfaces["pressure"].values * area)):
-            found = numpy.histogram(place, numpy.append(heights, 1e3), weights=amount)[0]
-            total[row] += found[::-1].cumsum()[::-1]
+        shear, pressure = surfaces["shear"].values[:, 2], surfaces["pressure"].values
+        touched = pressure > 0
+        low, high = (of(corners[touched, :, 2], axis=1)[:, None] for of in (numpy.min, numpy.max))
+        above = numpy.clip((high - heights) / (high - numpy.maximum(low, 0.0)), 0.0, 1.0)  # none is below the floor
+        total[0] += (snapshot.particles["position"].values[:, 2:] > heights).sum(axis=0)
+        total[1] -= (shear * area)[touched] @ above
+        total[2] += (pressure * area)[touched] @ above
     return heights, total / taken
 
 
