@@ -25,7 +25,8 @@ const TableKeys& mesh_keys() {
          choice<MeshKind>("kind").required().about(
              "File: STL, OBJ or PLY. Rectangle: a sheet in the plane z = 0. Funnel, hopper: a sheet open at "
              "both ends, round or with four flat sides, from the outlet at z = 0 up to the top. Line: in 2D, "
-             "a sheet through points. All others are closed solids about their axis z: plate, a box with a "
+             "through points; closed, the outline of a solid, else a sheet. All others are closed solids "
+             "about their axis z: plate, a box with a "
              "round hole along z; pipe, a tube; drum, a pipe with bars along its inside; screw, a core with "
              "a helical flight."),
          file("file").only_for(files).required().about("File, relative to the deck's folder."),
@@ -114,9 +115,9 @@ const TableKeys& mesh_keys() {
          vectors("points", "m")
              .only_for(lines)
              .required()
-             .about("Places in the x-y plane that the line goes through. Where it is not closed, it is a "
-                    "sheet with "
-                    "two sides."),
+             .about(
+                 "Places in the x-y plane that the line goes through. Where it is not closed, it is a sheet "
+                 "with two sides. Lines turn about z alone, by quaternion."),
          boolean("closed").only_for(lines).otherwise("false").about(
              "Whether the last point is joined to the first, counterclockwise around what is solid."),
          boolean("sheet").only_for(files).otherwise("false").about(

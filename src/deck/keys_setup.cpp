@@ -141,8 +141,7 @@ const TableKeys& integrator_keys() {
            .otherwise_choice(Precision::full)
            .about("GPU, velocity-verlet: mixed keeps state and sums at about double precision and computes "
                   "contact forces in single. All in double, and the run says so, where contacts attract or "
-                  "resist "
-                  "rolling, where bodies have shapes, and on the CPU."),
+                  "resist rolling, where bodies have shapes, and on the CPU."),
        real("residual_tolerance", "")
            .within(0, 1)
            .above(0)

@@ -197,15 +197,31 @@ TriangleMesh rectangle_mesh(Real width, Real depth) {
   return {{{-x, -y, 0}, {x, -y, 0}, {x, y, 0}, {-x, y, 0}}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Real half_depth) {
+namespace {
+
+struct DrawnLine {
+  TriangleMesh mesh;
+  Ring low, high;
+};
+
+DrawnLine drawn_line(const std::vector<Vec3>& points, bool closed, Real half_depth) {
   int exponent = 0;
   const bool is_power = std::frexp(half_depth, &exponent) == Real(0.5);
   const Real end = std::ldexp(Real(1), is_power ? exponent - 1 : exponent);
   MeshBuilder builder;
   const Ring low = builder.ring(points, -end), high = builder.ring(points, end);
   builder.strip(low, high, closed);
-  TriangleMesh mesh = builder.take();
-  if (!closed) return mesh;
+  return {builder.take(), low, high};
+}
+
+}  // namespace
+
+TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Real half_depth) {
+  return drawn_line(points, closed, half_depth).mesh;
+}
+
+TriangleMesh extruded_outline_mesh(const std::vector<Vec3>& points, Real half_depth) {
+  auto [mesh, low, high] = drawn_line(points, true, half_depth);
   for (const Ring& end_face : {reversed(low), high}) {
     const std::string trouble = add_polygon(mesh, end_face);
     if (!trouble.empty()) throw InputError("the closed line is no outline: " + trouble);
@@ -213,12 +229,12 @@ TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Re
   return mesh;
 }
 
-TriangleMesh without_ends(TriangleMesh line) {
-  std::erase_if(line.triangles, [&](const std::array<Index, 3>& t) {
-    const auto is_high = [&](Index corner) { return line.vertices[corner].z > 0; };
+TriangleMesh without_ends(TriangleMesh outline) {
+  std::erase_if(outline.triangles, [&](const std::array<Index, 3>& t) {
+    const auto is_high = [&](Index corner) { return outline.vertices[corner].z > 0; };
     return is_high(t[0]) == is_high(t[1]) && is_high(t[1]) == is_high(t[2]);
   });
-  return line;
+  return outline;
 }
 
 TriangleMesh line_of_depth(TriangleMesh line, Real depth) {

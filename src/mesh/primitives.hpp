@@ -108,14 +108,14 @@ TriangleMesh hopper_mesh(const HopperShape& shape);
 TriangleMesh rectangle_mesh(Real width, Real depth);
 // For planar models: segments between points (their z is left out) drawn along z, from -2^k to 2^k, the least
 // power of two that is at least half_depth, so that what is nearest to a point at z = 0 is at z = 0 exactly.
-// Seen from the right of the way from point to point. An open line is a sheet; a closed one, which runs
-// counterclockwise around its inside, has ends and is a closed mesh. Throws InputError for one that crosses
-// itself.
+// Seen from the right of the way from point to point. Without ends, which no particle is near.
 TriangleMesh extruded_line_mesh(const std::vector<Vec3>& points, bool closed, Real half_depth);
-// Such a line without the ends of a closed one, which no particle is near, and which may have triangles
-// without area.
-TriangleMesh without_ends(TriangleMesh line);
-// Such a line from -depth / 2 to depth / 2 [m].
+// A closed line, counterclockwise around its inside, with its ends: a closed mesh. Throws InputError for one
+// that crosses itself.
+TriangleMesh extruded_outline_mesh(const std::vector<Vec3>& points, Real half_depth);
+// Such a mesh without its ends.
+TriangleMesh without_ends(TriangleMesh outline);
+// A line, with ends or without, from -depth / 2 to depth / 2 [m].
 TriangleMesh line_of_depth(TriangleMesh line, Real depth);
 
 }  // namespace scree

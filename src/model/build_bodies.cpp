@@ -15,6 +15,7 @@
 #include "model/body_exchange.hpp"
 #include "model/build_parts.hpp"
 #include "model/frames.hpp"
+#include "model/make_mesh.hpp"
 #include "model/plausibility.hpp"
 #include "model/shape_places.hpp"
 #include "physics/solid_body.hpp"
@@ -76,6 +77,11 @@ MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real d
   return mass;
 }
 
+bool is_line(const DeckTable& table, const ModelNames& names) {
+  if (table.choice<SolidKind>("kind") != SolidKind::mesh) return false;
+  return names.triangles[static_cast<std::size_t>(find_name(names.meshes, table, "mesh", "mesh"))].line;
+}
+
 Real density_of(const DeckTable& table, const ModelNames& names) {
   const int material = table.has("density") ? 0 : find_material(names, table, "material");
   const Real density =
@@ -104,9 +110,10 @@ MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
     return solid_box(density, {size[0], size[1], size[2]});
   }();
   if (!std::isnormal(own.mass) || !std::isnormal(own.inertia.zz) || !std::isnormal(own.inertia.xx))
-    table.fail("kind",
+    table.fail(table.has("depth") ? "depth" : "kind",
                fmt::format("its mass, {:g} kg, or its inertia is beyond what a number holds", own.mass));
   const Mat3 axes = rotation_matrix(read_orientation(table));
+  if (is_line(table, names)) check_turned_about_z(table, axes);
   return {own.mass, table.vector("offset") + axes * own.center, turned_tensor(axes, own.inertia)};
 }
 

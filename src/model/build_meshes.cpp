@@ -10,7 +10,6 @@
 #include "mesh/coarsen.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/mesh_mass.hpp"
-#include "mesh/primitives.hpp"
 #include "mesh/refine.hpp"
 #include "mesh/surface_numbers.hpp"
 #include "mesh/weld.hpp"
@@ -64,7 +63,7 @@ TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, Mode
 }
 
 // Welded and checked.
-TriangleMesh sound(const DeckTable& table, const TriangleMesh& mesh) {
+TriangleMesh checked(const DeckTable& table, const TriangleMesh& mesh) {
   LooselyWelded joined{welded(mesh), {}};
   if (table.has("weld")) joined = welded_within(mesh, table.real("weld"));
   check(table, joined.mesh, joined.numbers);
@@ -72,8 +71,8 @@ TriangleMesh sound(const DeckTable& table, const TriangleMesh& mesh) {
 }
 
 // Made coarser and finer, too. note: gets what became of the triangles.
-TriangleMesh made_sound(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
-  TriangleMesh surface = sound(table, mesh);
+TriangleMesh checked_and_resized(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
+  TriangleMesh surface = checked(table, mesh);
   if (table.has("coarsen")) surface = made_coarser(table, surface, note);
   return table.has("refine") ? made_finer(table, surface) : surface;
 }
@@ -111,14 +110,15 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
                  planar ? "must be \"line\", as space.dimension = 2" : "\"line\" needs space.dimension = 2");
     add_name(names.meshes, table.text("name"), static_cast<int>(model.meshes.size()), table);
     ModelMesh made{table.text("name"), nullptr};
+    const TriangleMesh line_solid = planar ? make_line_solid(table) : TriangleMesh{};
     const TriangleMesh drawn = make_mesh(table, half_depth);
     // A line was refined when it was drawn.
-    const TriangleMesh mesh = planar ? sound(table, without_ends(drawn)) : made_sound(table, drawn, made);
+    const TriangleMesh mesh = planar ? checked(table, drawn) : checked_and_resized(table, drawn, made);
     made.surface = std::make_shared<const SurfaceMesh>(
         build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
     check_features(table, *made.surface);
     model.meshes.push_back(made);
-    names.triangles.push_back({planar ? drawn : mesh, is_sheet(table), planar});
+    names.triangles.push_back({planar ? line_solid : mesh, is_sheet(table), planar});
   }
 }
 

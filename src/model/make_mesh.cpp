@@ -10,7 +10,6 @@
 #include "mesh/primitives.hpp"
 #include "mesh/read_mesh.hpp"
 #include "model/frames.hpp"
-#include "physics/spatial_rotation.hpp"
 
 namespace scree {
 namespace {
@@ -76,20 +75,19 @@ std::vector<Vec3> with_points_between(const std::vector<Vec3>& points, bool clos
   return all;
 }
 
-TriangleMesh line_of(const DeckTable& table, Real half_depth) {
-  constexpr Real kMostSegments = 1e7;
+// Checked but for whether they cross themselves.
+const std::vector<Vec3>& line_points(const DeckTable& table) {
   const std::vector<Vec3>& points = table.vectors("points");
   const bool closed = table.boolean("closed");
   const std::size_t least = closed ? 3 : 2;
   if (points.size() < least) table.fail("points", fmt::format("must be at least {}", least));
-  Real length = 0, area = 0;
+  Real area = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 a = points[i], b = points[(i + 1) % points.size()];
     const bool joined = closed || i + 1 < points.size();
     if (joined && a == b)
       table.fail("points", fmt::format("must be apart, one from the next{}: ({:g}, {:g}) stands twice",
                                        closed ? " and the last from the first" : "", a.x, a.y));
-    length += joined ? norm(b - a) : 0;
     area += cross(a - points[0], b - points[0]).z / 2;
   }
   if (closed && !(area > 0))
@@ -97,30 +95,25 @@ TriangleMesh line_of(const DeckTable& table, Real half_depth) {
         "points",
         fmt::format("enclose an area of {:.4g} m^2; they must run counterclockwise around what is solid",
                     area));
-  const auto drawn = [&](const std::vector<Vec3>& corners) {
-    try {
-      return extruded_line_mesh(corners, closed, half_depth);
-    } catch (const InputError& error) {
-      table.fail("points", error.what());
-    }
-  };
-  if (!table.has("refine")) return drawn(points);
-  const Real longest = table.real("refine");
+  return points;
+}
+
+Real length_of(const std::vector<Vec3>& points, bool closed) {
+  Real length = closed ? norm(points.back() - points.front()) : 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += norm(points[i] - points[i - 1]);
+  return length;
+}
+
+TriangleMesh line_of(const DeckTable& table, Real half_depth) {
+  constexpr Real kMostSegments = 1e7;
+  const std::vector<Vec3>& points = line_points(table);
+  const bool closed = table.boolean("closed");
+  if (!table.has("refine")) return extruded_line_mesh(points, closed, half_depth);
+  const Real longest = table.real("refine"), length = length_of(points, closed);
   if (!(length / longest < kMostSegments))
     table.fail("refine", fmt::format("must be above the length of the line / {:g} = {:.4g}", kMostSegments,
                                      length / kMostSegments));
-  return drawn(with_points_between(points, closed, longest));
-}
-
-// Lines stay in the x-y plane.
-void check_line_axis(const DeckTable& table, const Mat3& axes) {
-  constexpr Real kRoundOff = 1e-12;
-  const Vec3 z = axes * Vec3{0, 0, 1};
-  if (std::abs(z.x) <= kRoundOff && std::abs(z.y) <= kRoundOff) return;
-  const auto given = [&](const char* key) { return table.has(key); };
-  const auto keys = {"rotation_axis", "quaternion", "z_axis", "x_axis"};
-  table.fail(*std::ranges::find_if(keys, given),
-             "lines lie in the x-y plane and can be turned about z alone, by quaternion");
+  return extruded_line_mesh(with_points_between(points, closed, longest), closed, half_depth);
 }
 
 TriangleMesh read(const DeckTable& table) {
@@ -179,7 +172,32 @@ TriangleMesh made(const DeckTable& table, Real half_depth) {
   return line_of(table, half_depth);
 }
 
+TriangleMesh placed(const DeckTable& table, TriangleMesh mesh) {
+  const Quaternion turn = read_orientation(table);
+  const Mat3 axes = rotation_matrix(turn);
+  if (table.choice<MeshKind>("kind") == MeshKind::line) check_turned_about_z(table, axes);
+  const Vec3 offset = table.vector("offset");
+  const Real scale = table.has("scale") ? table.real("scale") : 1;
+  for (Vec3& vertex : mesh.vertices) {
+    vertex = scale * vertex;
+    vertex = (turn.w == 1 ? vertex : axes * vertex) + offset;
+  }
+  return mesh;
+}
+
 }  // namespace
+
+void check_turned_about_z(const DeckTable& table, const Mat3& axes) {
+  constexpr Real kRoundOff = 1e-12;
+  const Vec3 z = axes * Vec3{0, 0, 1};
+  if (norm(z - Vec3{0, 0, 1}) <= kRoundOff) return;
+  const auto given = [&](const char* key) { return table.has(key); };
+  const auto keys = {"rotation_axis", "quaternion", "z_axis", "x_axis"};
+  table.fail(
+      *std::ranges::find_if(keys, given),
+      "lines lie in the x-y plane and turn about z alone: quaternion = [cos(a/2), 0, 0, sin(a/2)] turns "
+      "them by a");
+}
 
 bool is_sheet(const DeckTable& table) {
   switch (table.choice<MeshKind>("kind")) {
@@ -197,17 +215,17 @@ bool is_sheet(const DeckTable& table) {
 }
 
 TriangleMesh make_mesh(const DeckTable& table, Real half_depth) {
-  TriangleMesh mesh = made(table, half_depth);
-  const Quaternion turn = read_orientation(table);
-  const Mat3 axes = rotation_matrix(turn);
-  if (table.choice<MeshKind>("kind") == MeshKind::line) check_line_axis(table, axes);
-  const Vec3 offset = table.vector("offset");
-  const Real scale = table.has("scale") ? table.real("scale") : 1;
-  for (Vec3& vertex : mesh.vertices) {
-    vertex = scale * vertex;
-    vertex = (turn.w == 1 ? vertex : axes * vertex) + offset;
+  return placed(table, made(table, half_depth));
+}
+
+TriangleMesh make_line_solid(const DeckTable& table) {
+  const std::vector<Vec3>& points = line_points(table);
+  if (!table.boolean("closed")) return placed(table, extruded_line_mesh(points, false, 1));
+  try {
+    return placed(table, extruded_outline_mesh(points, 1));
+  } catch (const InputError& error) {
+    table.fail("points", error.what());
   }
-  return mesh;
 }
 
 }  // namespace scree

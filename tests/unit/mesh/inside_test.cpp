@@ -67,7 +67,7 @@ TEST_CASE("a sheet has no inside; a closed line has") {
   const SurfaceMesh sheet = build_surface_mesh(rectangle_mesh(2, 2), kFeatureAngle, true);
   CHECK_FALSE(is_inside(sheet.view(), {0, 0, -0.1}));
   const std::vector<Vec3> corners = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 0.5, 0}, {0, 1, 0}};
-  const SurfaceMesh line = build_surface_mesh(extruded_line_mesh(corners, true, 3), kFeatureAngle, false);
+  const SurfaceMesh line = build_surface_mesh(extruded_outline_mesh(corners, 3), kFeatureAngle, false);
   CHECK(is_inside(line.view(), {1, 0.25, 0}));
   CHECK(is_inside(line.view(), {0.1, 0.5, 0}));
   CHECK_FALSE(is_inside(line.view(), {1, 0.75, 0}));

@@ -229,13 +229,15 @@ TEST_CASE("a planar line is drawn out to a power of two") {
 
 TEST_CASE("a closed planar line bounds a solid") {
   const std::vector<Vec3> l{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
-  const TriangleMesh mesh = extruded_line_mesh(l, true, 1);
+  const TriangleMesh mesh = extruded_outline_mesh(l, 1);
   check_sound(mesh);
   CHECK(mesh_volume(mesh) == 6);
   CHECK(mesh.triangles.size() == 20);
-  const TriangleMesh clockwise = extruded_line_mesh({l.rbegin(), l.rend()}, true, 1);
+  CHECK(without_ends(mesh).triangles == extruded_line_mesh(l, true, 1).triangles);
+  CHECK(mesh_volume(line_of_depth(mesh, 0.5)) == 1.5);
+  const TriangleMesh clockwise = extruded_outline_mesh({l.rbegin(), l.rend()}, 1);
   CHECK(mesh_troubles(clockwise, false).at(0).starts_with("its volume is -6 m^3, below 0"));
-  CHECK_THROWS_WITH(extruded_line_mesh({l[0], l[2], l[1], l[5]}, true, 1),
+  CHECK_THROWS_WITH(extruded_outline_mesh({l[0], l[2], l[1], l[5]}, 1),
                     "the closed line is no outline: it crosses itself or has no area");
 }
 

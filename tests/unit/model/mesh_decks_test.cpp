@@ -162,7 +162,7 @@ TEST_CASE("lines of planar decks: refined along themselves, closed counterclockw
                  "must be above the length of the line"));
   CHECK(contains(
       model_error(kSmallLine, {"meshes.line.rotation_axis=[1, 0]", "meshes.line.rotation_angle=1.0"}),
-      "lines lie in the x-y plane and can be turned about z alone, by quaternion"));
+      "lines lie in the x-y plane and turn about z alone"));
 }
 
 TEST_CASE("bodies of closed lines weigh what is inside times a depth, or their outline's hull, or a skin") {
@@ -191,6 +191,18 @@ TEST_CASE("bodies of closed lines weigh what is inside times a depth, or their o
   CHECK(line_body(",depth=2.0,inertia=\"convex\"").mass == Approx(500 * 0.08 * 2));
   CHECK(line_body(",depth=2.0,inertia=\"shell\",thickness=1e-3").mass ==
         Approx(500 * 1e-3 * 2 * (0.8 + 2 * std::sqrt(0.05))));
+  for (const char* turn :
+       {"rotation_axis=[1,0],rotation_angle=1.0", "quaternion=[0.8,0.6,0,0]", "z_axis=[1,0]"})
+    CHECK(contains(model_error(kSmallLine, of_line(fmt::format(",{}", turn))),
+                   "lines lie in the x-y plane and turn about z alone"));
+  const Body turned = line_body(",quaternion=[0.6,0,0,0.8]");
+  CHECK(turned.inertia == Approx(line_body("").inertia).epsilon(1e-12));
+  CHECK(norm(turned.center_of_mass) == Approx(norm(line_body("").center_of_mass)).epsilon(1e-12));
+  // Refined far beyond what can be cut into triangles as a polygon.
+  std::vector<std::string> fine = of_line("");
+  fine.push_back("meshes.line.refine=1e-4");
+  CHECK(model_of(kSmallLine, fine).bodies.front().inertia == line_body("").inertia);
+  CHECK(contains(model_error(kSmallLine, of_line(",depth=1e-320")), "its mass"));
   std::vector<std::string> open = of_line("");
   open[1] = "meshes.line.closed=false";
   CHECK(contains(model_error(kSmallLine, open), "is a sheet, which encloses no volume"));

@@ -136,9 +136,11 @@ def run_decks(folder, texts, arguments):
     for name, text in texts.items():
         (folder / f"{name}.toml").write_text(text)
 
+    shown = os.environ.get("CUDA_VISIBLE_DEVICES", "")
+    devices = shown.split(",") if shown else [str(device) for device in range(arguments.gpus)]
     gpus = queue.SimpleQueue()
     for job in range(arguments.jobs):
-        gpus.put(str(job % arguments.gpus))
+        gpus.put(devices[job % min(arguments.gpus, len(devices))])
 
     def run_one(name):
         gpu = gpus.get()
@@ -172,7 +174,12 @@ def main(description, decks, show, smoke):
     parser.add_argument("--scree", default=os.environ.get("SCREE", "scree"))
     parser.add_argument("--backend", default="auto")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
-    parser.add_argument("--gpus", type=int, default=1, help="that the runs are shared out to")
+    parser.add_argument("--gpus",
+                        type=int,
+                        choices=range(1, 17),
+                        default=1,
+                        metavar="N",
+                        help="that the runs are shared out to")
     parser.add_argument("--only", default="", help="cases whose names have this in them")
     arguments = parser.parse_args()
     if os.sep in arguments.scree:
