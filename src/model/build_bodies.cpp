@@ -48,9 +48,12 @@ MassProperties hull_mass(const DeckTable& table, const TriangleMesh& mesh, Real 
   }
 }
 
+const NamedMesh& mesh_of(const DeckTable& solid, const ModelNames& names) {
+  return names.triangles[static_cast<std::size_t>(find_name(names.meshes, solid, "mesh", "mesh"))];
+}
+
 MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real density) {
-  const int number = find_name(names.meshes, table, "mesh", "mesh");
-  const auto& [mesh, sheet, line] = names.triangles[static_cast<std::size_t>(number)];
+  const auto& [mesh, sheet, line] = mesh_of(table, names);
   const MeshInertia kind = table.choice<MeshInertia>("inertia");
   if (sheet && kind == MeshInertia::exact)
     table.fail("mesh",
@@ -75,11 +78,6 @@ MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real d
   MassProperties mass = mass_of(line_of_depth(mesh, table.has("depth") ? table.real("depth") : 1));
   mass.center.z = 0;  // by symmetry; round-off would lift the body off the plane
   return mass;
-}
-
-bool is_line(const DeckTable& table, const ModelNames& names) {
-  if (table.choice<SolidKind>("kind") != SolidKind::mesh) return false;
-  return names.triangles[static_cast<std::size_t>(find_name(names.meshes, table, "mesh", "mesh"))].line;
 }
 
 Real density_of(const DeckTable& table, const ModelNames& names) {
@@ -113,7 +111,8 @@ MassProperties solid_of(const DeckTable& table, const ModelNames& names) {
     table.fail(table.has("depth") ? "depth" : "kind",
                fmt::format("its mass, {:g} kg, or its inertia is beyond what a number holds", own.mass));
   const Mat3 axes = rotation_matrix(read_orientation(table));
-  if (is_line(table, names)) check_turned_about_z(table, axes);
+  if (table.choice<SolidKind>("kind") == SolidKind::mesh && mesh_of(table, names).line)
+    check_turned_about_z(table, axes);
   return {own.mass, table.vector("offset") + axes * own.center, turned_tensor(axes, own.inertia)};
 }
 

@@ -46,6 +46,13 @@ class Report:
         print(f"{'ok  ' if holds else 'FAIL'} {what}: {value:.4g}, band {low:.4g} to {high:.4g} ({source})",
               flush=True)
 
+    def has(self, folder, name):
+        """Whether a case has gone to its end; says so where it has not."""
+        there = finished(folder, name)
+        if not there:
+            self.say(f"{name}: not run")
+        return there
+
     def draw(self, figure):
         figure.savefig(self.picture, dpi=110, bbox_inches="tight")
         print(f"drawn: {self.picture}")

@@ -121,8 +121,7 @@ def show(folder, report):
     means = {}
     for angle in ANGLES:
         name = f"chute_{angle}"
-        if not bulk.finished(folder, name):
-            report.say(f"{name}: not run")
+        if not report.has(folder, name):
             continue
         time, v = speed(folder, name)
         left.plot(time, v, label=f"{angle}$^\\circ$")

@@ -76,8 +76,7 @@ def show(folder, report):
     angles = {}
     for friction in FRICTION:
         name = f"drum_{friction}"
-        if not bulk.finished(folder, name):
-            report.say(f"{name}: not run")
+        if not report.has(folder, name):
             continue
         slopes, sideways, heights = [], [], []
         for time, fields in bulk.snapshots(folder, name):

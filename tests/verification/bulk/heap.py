@@ -136,8 +136,7 @@ def show(folder, report):
     figure, axes = bulk.subplots(2, 2, figsize=(13, 8))
     found, apart = {}, {2: [], 3: []}
     for name, dimension, friction, rolling in cases():
-        if not bulk.finished(folder, name):
-            report.say(f"{name}: not run")
+        if not report.has(folder, name):
             continue
         last = list(bulk.snapshots(folder, name))[-1][1]
         left, right = angle(last, HALF[dimension])

@@ -104,8 +104,7 @@ def show(folder, report):
     found, densities = {}, []
     for hole in HOLES:
         name = f"hopper_{hole}"
-        if not bulk.finished(folder, name):
-            report.say(f"{name}: not run")
+        if not report.has(folder, name):
             continue
         columns = bulk.history(folder, name)
         time, rate = columns["step/time"], -columns["momentum/linear_z"] / HEIGHT

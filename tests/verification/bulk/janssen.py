@@ -115,8 +115,7 @@ def fit(mass, floor):
 def show(folder, report):
     found = {}
     for name in decks():
-        if not bulk.finished(folder, name):
-            report.say(f"{name}: not run")
+        if not report.has(folder, name):
             continue
         found[name] = loads(folder, name, STEADY)
         report.say("     {}: mass {:.1f}, floor {:.1f}, walls {:.1f}, their friction {:.3f}, height {:.1f}".format(

@@ -116,8 +116,7 @@ def show(folder, report):
     found = []
     for wished, end in SPEEDS.items():
         name = f"shear_{wished}"
-        if not bulk.finished(folder, name):
-            report.say(f"{name}: not run")
+        if not report.has(folder, name):
             continue
         columns = bulk.history(folder, name)
         time = columns["step/time"]

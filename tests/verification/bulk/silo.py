@@ -160,8 +160,7 @@ def show_rates(folder, report, axes):
     found, rates = {}, OF_SAME_PROGRAM | dict(zip(table["D"].astype(int), table["W"]))
     for hole in HOLES:
         name = f"silo_{hole}"
-        if not bulk.finished(folder, name):
-            report.say(f"{name}: not run")
+        if not report.has(folder, name):
             continue
         columns = bulk.history(folder, name)
         time, left = columns["step/time"] - FILLED, columns["step/left"]
@@ -186,8 +185,7 @@ def show_rates(folder, report, axes):
 
 
 def show_raised(folder, report, axes):
-    if not bulk.finished(folder, "raised"):
-        report.say("raised: not run")
+    if not report.has(folder, "raised"):
         return
     columns = bulk.history(folder, "raised")
     start, time = FILLED + STEADY, columns["step/time"]
