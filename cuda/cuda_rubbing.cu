@@ -332,6 +332,8 @@ void CudaRubbingStep::accept() {
   items_.surfaces.book_rubs(items_.device(), *items_.kernels);
   items_.history.accepted();
   for_each(items_.device(), items_.owned,
+           BalanceItem{step_views(), turning_views(), step_forces(), step_torques()});
+  for_each(items_.device(), items_.owned,
            AcceptItem{step_views(), step_forces(), now.force.data(), now.integrator_loss.data()});
   for_each(items_.device(), items_.owned,
            AcceptTurnItem{step_views(), turning_views(), step_torques(), now.orientation.data(),

@@ -243,6 +243,7 @@ void CpuRubbingStep::accept() {
   items_.history.accepted();
   items_.side.book_step();
   items_.surfaces.book_rubs(items_.side.places(), store, items_.list.surfaces);
+  for_each(Serial{}, n, BalanceItem{step_views(), turning_views(), step_forces(), step_torques()});
   for_each(Serial{}, n,
            AcceptItem{step_views(), step_forces(), store.force.data(), store.integrator_loss.data()});
   for_each(Serial{}, n,

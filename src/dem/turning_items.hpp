@@ -171,6 +171,23 @@ struct TurningErrorItem {
   }
 };
 
+// The accelerations at the end of a step that balance its forces in full: the next step, which starts from
+// them, does not leave over again what the iteration has left over. Else a residual too small to be corrected
+// would act on and on, and a pile that nothing keeps from rolling would creep.
+struct BalanceItem {
+  StepViews step;
+  TurningViews turning;
+  StepForces forces;
+  StepTorques torques;
+
+  SCREE_HD void operator()(Index i) const {
+    step.acceleration[i] =
+        hht_acceleration(step.hht, step.velocity[i].w, forces.step_force[i], step.start_force[i]);
+    turning.acceleration[i] =
+        hht_acceleration(step.hht, turning.spin[i].w, torques.step[i], torques.start[i]);
+  }
+};
+
 // Closes the rotation of an implicit step, as AcceptItem the motion.
 struct AcceptTurnItem {
   StepViews step;

@@ -51,6 +51,11 @@ SCREE_HD Vec3 hht_residual(const HhtCoefficients& c, Real mass, Vec3 a1, Vec3 f1
   return (mass * scale) * a1 - f1 + (c.hht_alpha * scale) * f0;
 }
 
+// The acceleration for which it is zero.
+SCREE_HD Vec3 hht_acceleration(const HhtCoefficients& c, Real mass, Vec3 f1, Vec3 f0) {
+  return (1 / mass) * ((1 + c.hht_alpha) * f1 - c.hht_alpha * f0);
+}
+
 // From the acceleration that a step needed at its end to the one there, where a contact opened or closed
 // within it.
 SCREE_HD Vec3 hht_event_acceleration(const HhtCoefficients& c, Real mass, Vec3 step_force, Vec3 end_force) {

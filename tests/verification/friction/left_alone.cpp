@@ -1,6 +1,8 @@
 // Heaps: one left alone does not creep, and both sides of every contact of one that is shaken stay mirrored.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "support/bars.hpp"
 #include "support/catch.hpp"
 #include "support/contact_book.hpp"
@@ -91,6 +93,60 @@ TEST_CASE("a heap of discs that has come to rest by friction does not creep in 1
       keeps(largest_move(run.particles(), before) / (2 * kRadius), {.promise = 1e-9, .measured = 5e-12})));
   CHECK(keeps(now.kinetic, {.promise = 1e-16, .measured = stirred}));  // a weight times its radius is 1e-2 J
   CHECK(now.contact_loss - settled.contact_loss < 1e-15);
+}
+
+// Three spheres apart from each other under a fourth: each touches two others, about whose line it can roll.
+// What the pile has left of its fall it rolls on with: of that, nothing more comes.
+TEST_CASE("a pile of spheres that nothing keeps from rolling gains no motion in 1e5 implicit steps") {
+  for (const Real alpha : {0.0, -0.05, -0.3}) {
+    CAPTURE(alpha);
+    constexpr Real kSettled = 5, kImplicit = 5 * kStep;
+    const Real out = 0.045 / std::sqrt(Real(3)), top = kRadius + std::sqrt(4 * kRadius * kRadius - out * out);
+    SimulationRun run(model_of(fmt::format(R"(
+gravity = [0.0, -9.81, 0.0]
+[space]
+dimension = 3
+min = [0.0, 0.0, 0.0]
+max = [0.2, 0.2, 0.2]
+y_min = "wall"
+[time]
+end = {end}
+step = {step}
+control = "fixed"
+[integrator]
+particles = "hht"
+hht_alpha = {alpha}
+[[contact.pairs]]
+stiffness = 2e4
+damping = 20.0
+friction = 0.5
+tangential_damping_ratio = 0.5
+[[particles]]
+kind = "list"
+positions = [[{far}, 0.02, 0.1], [{near}, 0.02, 0.1225], [{near}, 0.02, 0.0775], [0.1, {top}, 0.1]]
+radius = {radius}
+density = 2500.0
+)",
+                                           fmt::arg("end", kSettled + 1e5 * kImplicit),
+                                           fmt::arg("step", kImplicit), fmt::arg("alpha", alpha),
+                                           fmt::arg("radius", kRadius), fmt::arg("far", 0.1 + out),
+                                           fmt::arg("near", 0.1 - out / 2), fmt::arg("top", top))));
+    run.run_until(kSettled);
+    const std::vector<Particle> before = run.particles();
+    REQUIRE(run.particle_ledger().contacts == 6);
+    run.run_until(kSettled + 5e4 * kImplicit);
+    const std::vector<Particle> half_way = run.particles();
+    run.run();
+    const std::vector<Particle> after = run.particles();
+    CHECK(run.particle_ledger().contacts == 6);
+    std::vector<Particle> evenly = before;  // half way, had the velocity stayed
+    for (std::size_t i = 0; i < evenly.size(); ++i)
+      evenly[i].position = Real(0.5) * (before[i].position + after[i].position);
+    const Real gained = 2 * largest_move(half_way, evenly) / (2 * kRadius);
+    CHECK(measured("left_alone/rolling", "diameters", keeps(gained, {.promise = 1e-9, .measured = 1e-12})));
+    if (alpha > -0.1)
+      CHECK(keeps(largest_move(after, before) / (2 * kRadius), {.promise = 1e-9, .measured = 3.3e-10}));
+  }
 }
 
 TEST_CASE("both sides of every contact mirror each other after 1e5 steps of a shaken heap") {
