@@ -339,7 +339,9 @@ Real impact_speed(const Model& model, const PairLimit& limit) {
     speed = model.particles.totals.most_radii_per_second * model.particles.totals.smallest_radius;
   if (a.shapes + b.shapes + a.meshes + b.meshes > 0)
     for (const Body& body : model.bodies) speed = std::max(speed, norm(body.velocity));
-  const bool floor = a.is_of_surfaces() || b.is_of_surfaces();
+  // Grains fall on such as lie on a floor already, of whatever material that is.
+  const bool floor =
+      std::any_of(uses.begin(), uses.end(), [](const MaterialUse& use) { return use.is_of_surfaces(); });
   if (floor && a.particles + b.particles > 0)
     speed = std::hypot(speed, fall_speed(norm(model.gravity), height(model)));
   return speed;

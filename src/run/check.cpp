@@ -183,13 +183,13 @@ std::string time_lines(const Model& model) {
   const TimeControl& time = model.time;
   const Integrator& integrator = model.integrator;
   const bool fixed = time.control == StepControl::fixed;
+  const auto steps_of = [&](Real step) { return std::ceil(time.end / step * (1 - 1e-9)); };
   std::string lines = fmt::format("time           0 to {} s, ", time.end);
-  lines += fixed ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, std::ceil(time.end / time.step))
+  lines += fixed ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, steps_of(time.step))
                  : fmt::format(
                        "adaptive steps from {:.4g} to {:.4g} s ({:.0f} at least), the first of {:.4g} s, "
                        "tolerance {}\n",
-                       time.min_step, time.max_step, std::ceil(time.end / time.max_step), time.step,
-                       time.tolerance);
+                       time.min_step, time.max_step, steps_of(time.max_step), time.step, time.tolerance);
   const std::string particles =
       integrator.particles == ParticleIntegrator::hht
           ? "the same"

@@ -189,7 +189,7 @@ std::string step_warning(const Model& model) {
   constexpr Real kLeastError = 1e-4;  // that one estimate of the step lets tell
   if (model.time.control == StepControl::adaptive) return "";
   std::vector<StepTrial> bad = try_steps(model);
-  std::erase_if(bad, [](const StepTrial& trial) { return trial.result.error() <= kBadRebound; });
+  std::erase_if(bad, [](const StepTrial& trial) { return !(trial.result.error() > kBadRebound); });
   if (bad.empty()) return "";
   const StepTrial& worst = *std::max_element(bad.begin(), bad.end(), [](const auto& a, const auto& b) {
     return a.result.error() < b.result.error();

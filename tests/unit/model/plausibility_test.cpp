@@ -56,6 +56,13 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       spheres +
       "[[meshes]]\nname = \"m\"\nkind = \"rectangle\"\nsize = [0.5, 0.5]\noffset = [0, 0, "
       "-0.4]\n[[walls]]\nname = \"w\"\nmesh = \"m\"\n";
+  // Grains, and a floor of another material.
+  const std::string two_materials =
+      kSmallDeck +
+      "[[materials]]\nname = \"grain\"\n[[materials]]\nname = \"ground\"\n[[contact.pairs]]\nmaterials = "
+      "[\"grain\", \"grain\"]\nstiffness = 3e3\n[[contact.pairs]]\nmaterials = [\"grain\", "
+      "\"ground\"]\nstiffness = 1e6\n" +
+      group("d", "min = [-0.9, -0.9]\nmax = [0.9, 0.9]\n") + "material = \"grain\"\n";
   const std::vector<Case> cases = {
       {all, {kFloor, kGravity, "time.step=1e-4"}, ""},
       {spheres, {"gravity=[0, 0, -10]"}, ""},
@@ -113,6 +120,10 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       {all,
        {"contact.pairs.0.stiffness=3e3", kFloor, kGravity, "contact.pairs.0.damping=0"},
        "the stiffness is too low for impacts at 6.32 m/s"},
+      {two_materials,
+       {kFloor, kGravity, "space.wall_material=ground"},
+       "contact \"grain\" on \"grain\": the stiffness is too low for impacts at 6.32 m/s"},
+      {two_materials, {kGravity}, ""},  // all fall alike
       {sheet,
        {"contact.pairs.0.stiffness=1e3", "particles.d.velocity=[4, 0, 0]", "contact.pairs.0.damping=0"},
        ""},
