@@ -8,7 +8,7 @@
 namespace scree {
 
 // Turns from the body's frame to the global one; (1, 0, 0, 0) turns nothing.
-struct Quaternion {
+struct alignas(16) Quaternion {
   Real w = 1, x = 0, y = 0, z = 0;
 };
 
