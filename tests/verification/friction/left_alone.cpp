@@ -143,7 +143,7 @@ density = 2500.0
     for (std::size_t i = 0; i < evenly.size(); ++i)
       evenly[i].position = Real(0.5) * (before[i].position + after[i].position);
     const Real gained = 2 * largest_move(half_way, evenly) / (2 * kRadius);
-    CHECK(measured("left_alone/rolling", "diameters", keeps(gained, {.promise = 1e-9, .measured = 1e-12})));
+    CHECK(measured("left_alone/rolling", "diameters", keeps(gained, {.promise = 1e-9, .measured = 2e-13})));
     if (alpha > -0.1)
       CHECK(keeps(largest_move(after, before) / (2 * kRadius), {.promise = 1e-9, .measured = 3.3e-10}));
   }
