@@ -78,7 +78,10 @@ TEST_CASE("a belt that runs is a floor that moves without end") {
     const Particle a = belt.particles()[0], b = floor.particles()[0];
     CHECK(near(a.position, b.position, {.absolute = 1e-10}));
     CHECK(near(a.angular_velocity, b.angular_velocity, {.absolute = 1e-8}));
-    CHECK(near(belt.ledger().driver_work, floor.ledger().driver_work, {.relative = 1e-9}));
+    // Of the work, what a step of too many iterations has left over is the integrator's: it may differ.
+    const auto passed_on = [](const Ledger& l) { return l.driver_work - l.dissipated_integrator; };
+    CHECK(near(passed_on(belt.ledger()), passed_on(floor.ledger()), {.relative = 1e-9}));
+    CHECK(near(belt.ledger().driver_work, floor.ledger().driver_work, {.relative = 1e-7}));
     CHECK(near(belt.ledger().dissipated_contacts, floor.ledger().dissipated_contacts, {.relative = 1e-9}));
   }
 }
