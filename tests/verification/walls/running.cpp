@@ -14,8 +14,9 @@ namespace scree {
 namespace {
 
 constexpr Real kBelt = 0.7, kFriction = 0.2, kGravity = 9.81;
-// What is compared here to 1e-9 sums up what 4,000 steps have left.
-const std::vector<std::string> kSolved{"integrator.residual_tolerance=1e-12"};
+// What is compared here to 1e-9 sums up what 4,000 steps have left; steps that cannot reach a smaller
+// tolerance would be halved where round-off decides.
+const std::vector<std::string> kSolved{"integrator.residual_tolerance=1e-10"};
 
 // Its weight lies on the belt from the start.
 WallDeck conveyor(const std::string& method, Real step) {
@@ -78,10 +79,7 @@ TEST_CASE("a belt that runs is a floor that moves without end") {
     const Particle a = belt.particles()[0], b = floor.particles()[0];
     CHECK(near(a.position, b.position, {.absolute = 1e-10}));
     CHECK(near(a.angular_velocity, b.angular_velocity, {.absolute = 1e-8}));
-    // Of the work, what a step of too many iterations has left over is the integrator's: it may differ.
-    const auto passed_on = [](const Ledger& l) { return l.driver_work - l.dissipated_integrator; };
-    CHECK(near(passed_on(belt.ledger()), passed_on(floor.ledger()), {.relative = 1e-9}));
-    CHECK(near(belt.ledger().driver_work, floor.ledger().driver_work, {.relative = 1e-7}));
+    CHECK(near(belt.ledger().driver_work, floor.ledger().driver_work, {.relative = 1e-9}));
     CHECK(near(belt.ledger().dissipated_contacts, floor.ledger().dissipated_contacts, {.relative = 1e-9}));
   }
 }
