@@ -151,11 +151,12 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
 }
 
 // What the multibody room says of the bodies, the constraints' rank included; on rank 0.
-std::string bodies_report(const Model& model, const Ranks& ranks) {
+std::string bodies_report(const Model& model, const Ranks& ranks, Log& log) {
   if (model.bodies.empty()) return "solver         none";
   std::string report;
   ranks.on_root([&] {
-    const Multibody multibody(model);
+    Multibody multibody(model);
+    for (const std::string& warning : multibody.start_warnings()) log.warning(warning);
     const std::string& change = multibody.start_change();
     report = "solver         " + multibody.solver_description();
     if (!multibody.redundancy().empty())
@@ -179,7 +180,7 @@ ExitCode check(const Arguments& arguments) {
   naming_deck(arguments.deck, [&] {
     naming_memory(size, ranks.size(), [&] {
       if (!model.bodies.empty()) ranks.on_root([&] { petsc.emplace("scree", std::vector<std::string>{}); });
-      const std::string bodies = bodies_report(model, ranks);
+      const std::string bodies = bodies_report(model, ranks, log);
       log.info(check_report(model, ranks) + bodies);
     });
   });

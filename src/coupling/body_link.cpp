@@ -24,6 +24,12 @@ void BodyLink::set_initial_state(MultibodyState& bodies, const std::vector<BodyW
   if (has_bodies()) ranks_.on_root([&] { bodies = multibody_->initial_state(wrench); });
 }
 
+std::vector<std::string> BodyLink::start_warnings() {
+  std::vector<std::string> warnings;
+  if (bodies_ > 0) ranks_.on_root([&] { warnings = multibody_->start_warnings(); });
+  return warnings;
+}
+
 void BodyLink::solve_acceleration(MultibodyState& bodies, Real t) {
   const std::vector<BodyWrench> wrench = wrench_of_bodies();
   if (has_bodies()) ranks_.on_root([&] { multibody_->solve_acceleration(bodies, t, wrench); });
@@ -81,9 +87,17 @@ void BodyLink::check_reactions() {
 }
 
 std::string BodyLink::trouble() {
+  return of_root([&] { return multibody_->trouble(); });
+}
+
+std::string BodyLink::dead_point(const MultibodyState& bodies, Real t) {
+  return of_root([&] { return multibody_->dead_point(bodies, t); });
+}
+
+std::string BodyLink::of_root(const std::function<std::string()>& tell) {
   std::string text;
   if (!has_bodies()) return text;
-  ranks_.on_root([&] { text = multibody_->trouble(); });
+  ranks_.on_root([&] { text = tell(); });
   std::size_t length = text.size();
   ranks_.broadcast(length);
   text.resize(length);

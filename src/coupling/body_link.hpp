@@ -1,6 +1,7 @@
 // Rank 0's multibody subsystem as every rank sees it: motion comes down, wrenches go up.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ class BodyLink {
 
   // The functions of Multibody on rank 0; collective, and nothing without bodies.
   void set_initial_state(MultibodyState& bodies, const std::vector<BodyWrench>& wrench);
+  std::vector<std::string> start_warnings();                // on rank 0 alone
   void solve_acceleration(MultibodyState& bodies, Real t);  // with end_wrench()
   // end: of the step, t + h but for round-off [s].
   void predict(const MultibodyState& bodies, Real t, Real h, Real end);
@@ -42,7 +44,9 @@ class BodyLink {
   void book_walls(MultibodyState& bodies, Real t, Real end, const std::vector<BodyWrench>& wrench);
   const std::vector<BodyWrench>& step_wrench() const { return step_wrench_.wrench; }
   void check_reactions();
-  std::string trouble();  // on every rank
+  // On every rank.
+  std::string trouble();
+  std::string dead_point(const MultibodyState& bodies, Real t);
 
   // Rank 0 -> all: motion at the current iterate of the open step, handed to the placed surfaces on the list.
   void broadcast_motion(RankList& list);
@@ -64,6 +68,7 @@ class BodyLink {
   const std::vector<BodyMotion>& motion() const { return motion_; }
 
  private:
+  std::string of_root(const std::function<std::string()>& tell);
   void broadcast(RankList& list, Real t);
   void place(const std::vector<BodyMotion>& bodies);
 

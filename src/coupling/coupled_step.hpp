@@ -42,6 +42,8 @@ class CoupledStep {
   // Advances both sides from t by h, or leaves both as they were. Throws SimulationError, with both as they
   // were, where a particle would be outside the space and must not (see check_inside).
   StepOutcome implicit_step(MultibodyState& bodies, Real t, Real h);
+  // Why no step goes on from this state, where a driver is why; else empty. Collective.
+  std::string dead_point(const MultibodyState& bodies, Real t) { return link_.dead_point(bodies, t); }
   // Advances both sides by up to times.size() steps of length h, the particles in substeps. times: where each
   // step starts; end: of the last one [s]. Returns the number of steps taken: fewer where a particle is
   // outside the space after one.

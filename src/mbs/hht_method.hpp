@@ -109,6 +109,7 @@ class HhtMethod {
   const std::vector<Real>& constraint_force() const { return constraint_force_; }  // Phi_q^T lambda
   // Of the step's start.
   const std::vector<Real>& start_position() const { return start_position_; }
+  const std::vector<Real>& start_velocity() const { return start_velocity_; }
   const std::vector<Real>& start_acceleration() const { return start_acceleration_; }
   const std::vector<Real>& start_force() const { return start_force_; }  // Q - Phi_q^T lambda
 

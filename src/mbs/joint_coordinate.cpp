@@ -28,4 +28,19 @@ CoordinateInstant coordinate_at(const Constraint& coordinate, const BodyPoses& p
   return instant;
 }
 
+Real second_rate(const Constraint& coordinate, const BodyPoses& poses, const SystemInstant& at,
+                 const SparseTerm& gradient) {
+  const auto of = [](const std::vector<Real>& values, int i) { return values[static_cast<std::size_t>(i)]; };
+  const Real one = 1;
+  SparseTerm hessian;
+  hessian.begin();
+  coordinate.hessian(poses, &one, hessian);
+  Real sum = 0;
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    sum += gradient.value(i) * of(*at.acceleration, gradient.column(i));
+  for (std::size_t i = 0; i < hessian.size(); ++i)
+    sum += hessian.value(i) * of(at.velocity, hessian.row(i)) * of(at.velocity, hessian.column(i));
+  return sum;
+}
+
 }  // namespace scree

@@ -23,5 +23,8 @@ std::unique_ptr<Constraint> joint_coordinate(const std::string& title, const Mod
 // c and c' = c_q v of such a row. gradient: gets c_q.
 CoordinateInstant coordinate_at(const Constraint& coordinate, const BodyPoses& poses, const SystemInstant& at,
                                 SparseTerm& gradient);
+// c'' = c_q a + v.c_qq v at an instant with accelerations, and with c_q there.
+Real second_rate(const Constraint& coordinate, const BodyPoses& poses, const SystemInstant& at,
+                 const SparseTerm& gradient);
 
 }  // namespace scree

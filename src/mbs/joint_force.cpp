@@ -34,6 +34,7 @@ Real JointForce::load_of(const SystemInstant& at) const {
 void JointForce::open_step(const BodyPoses& poses, const SystemInstant& at, Real h, Real memory) {
   step_ = {coordinate_at(*coordinate_, poses, at, gradient_), memory, h};
   step_.start.load = last_.load = load_of(at);
+  if (h > 0 && law_->needs_second()) step_.start.second = second_rate(*coordinate_, poses, at, gradient_);
   start_effort_ = law_->effort(step_.start, memory).effort;
   in_step_ = h > 0;
 }
@@ -121,6 +122,7 @@ JointForce::Sample JointForce::sample(const BodyPoses& poses, const SystemInstan
   SparseTerm gradient;
   CoordinateInstant instant = coordinate_at(*coordinate_, poses, at, gradient);
   instant.load = load_of(at);
+  if (at.acceleration != nullptr) instant.second = second_rate(*coordinate_, poses, at, gradient);
   return {instant, law_->effort(instant, memory).effort};
 }
 

@@ -57,7 +57,7 @@ class JointForce {
 
   Real elastic_energy(const BodyPoses& poses, Real t, Real memory) const;
   Real elastic_scale(Real length) const { return law_->stiffness() * (is_angle() ? 1 : length * length); }
-  // At any instant, with its multipliers; memory: as the state's there.
+  // At any instant, with its multipliers; memory: as the state's there. With c'' where it has accelerations.
   struct Sample {
     CoordinateInstant at;
     Real effort = 0;
@@ -69,7 +69,6 @@ class JointForce {
   void find_coordinates();
   std::size_t place(int coordinate) const;
   void pull_back(const BodyPoses& poses);
-
   struct RotationColumns {
     int body, first;
   };

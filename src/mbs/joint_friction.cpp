@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "mbs/joint_laws.hpp"
-#include "physics/step_slider.hpp"
+#include "mbs/limited_line.hpp"
 
 namespace scree {
 
@@ -11,14 +11,14 @@ namespace {
 // A spring that slides holds the limit but for round-off; its effort follows the load, and so must the
 // derivative.
 constexpr Real kHeld = 1 - 1e-12;
-// Where the limit falls and rises with the rate, one that slid over a step holds that of the mean rate.
-constexpr Real kSlid = 0.99;
+// The same of a spring whose limit was found with reactions that converged to round-off.
+constexpr Real kSlid = 1 - 1e-9;
 
 // Remembered: the effort z of the spring, which c stretches. T = -(z + d c'), no larger than
 //   T_max = s(c') (T_0 + lever F),  s(c') = 1 + (ratio - 1) exp(-(c'/v_s)^2).
-// Over a step the mean M of z + d c' by the return mapping of step_spring(), its limit that of the mean load
-// and rate. The trapezoidal rule finds it where the end of the step holds T = -(2 M + T_start): work less
-// what the spring stores is never below 0, at any step.
+// Over a step z + d c' runs along a straight line that the limits at its ends hold back, with the mean M. The
+// trapezoidal rule finds M where the end of the step holds T = -(2 M + T_start): work less what the spring
+// stores is never below 0, at any step.
 class FrictionLaw final : public JointLaw {
  public:
   explicit FrictionLaw(const JointFriction& friction) : p_(friction) {}
@@ -32,35 +32,41 @@ class FrictionLaw final : public JointLaw {
   }
   JointEffort step_effort(const LawStep& step, const CoordinateInstant& end) const override {
     if (step.h == 0) return effort(end, step.memory);
-    const StepSpring over = spring_over(step, end);
-    const Real start = effort(step.start, step.memory).effort, twice = 2 * over.mean.x;
-    JointEffort out{-(twice + start), 0, 0, std::max(std::abs(start), std::abs(twice)), 0};
-    if (over.grip == 0) {
-      out.by_value = -2 * over.stiffness;
-      return out;
-    }
-    const Real rate = mean_rate(step, end), sign = over.direction.x > 0 ? -1 : 1;
-    out.by_value = sign * slope_at(rate) / step.h * (bound(step.start.load) + bound(end.load));
-    out.by_load = sign * level_at(rate) * p_.lever;
-    return out;
+    const Real start = effort(step.start, step.memory).effort;
+    const Dual twice = 2 * over(step, end).mean;
+    return {-(twice.value + start), -twice.by_value, -twice.by_rate,
+            std::max(std::abs(start), std::abs(twice.value)), -twice.by_load};
   }
   bool resolves_events() const override { return true; }
   bool remembers() const override { return true; }
   Real memory_after(const LawStep& step, const CoordinateInstant& end) const override {
-    return step.h == 0 ? memory_under(step, end.load) : spring_over(step, end).spring.x;
+    return step.h == 0 ? memory_under(step, end.load) : over(step, end).spring.value;
   }
   bool is_loaded() const override { return p_.lever > 0; }
   Real energy(Real, Real memory) const override { return memory * memory / (2 * p_.stiffness); }
   Real stiffness() const override { return p_.stiffness; }
 
  private:
-  static Real mean_rate(const LawStep& step, const CoordinateInstant& end) {
-    return (end.value - step.start.value) / step.h;
-  }
+  // The mean of z + d c' over the step, held back, and z at its end.
+  struct Over {
+    Dual mean, spring;
+  };
+  // What a step begins with and ends with, in units of z that grow with the rate at its start where the rate
+  // changes its sign.
+  struct Ends {
+    Real spring, rate, bound;    // z, c' and T_0 + lever F at the start
+    Real first;                  // the limit there
+    Dual way, last_rate, trial;  // c_1 - c_0; c' of the straight line with this way; z without a limit
+    Dual last_bound, last;       // T_0 + lever F and the limit at the end
+  };
+
   Real bound(Real load) const { return p_.effort + p_.lever * load; }
   Real level_at(Real rate) const {
     const Real x = rate / p_.stribeck_rate;
     return 1 + (p_.static_ratio - 1) * std::exp(-x * x);
+  }
+  Real slope_at(Real rate) const {  // of the level
+    return -2 * rate / (p_.stribeck_rate * p_.stribeck_rate) * (level_at(rate) - 1);
   }
   // A spring that slides holds the limit under every load.
   Real memory_under(const LawStep& at, Real load) const {
@@ -68,18 +74,73 @@ class FrictionLaw final : public JointLaw {
     if (load == at.start.load || held == 0 || std::abs(at.memory) < kSlid * held) return at.memory;
     return at.memory * (bound(load) / bound_then);
   }
-  Real slope_at(Real rate) const {  // of the level
-    return -2 * rate / (p_.stribeck_rate * p_.stribeck_rate) * (level_at(rate) - 1);
-  }
-  StepSpring spring_over(const LawStep& step, const CoordinateInstant& end) const {
-    const Real level = level_at(mean_rate(step, end)), first = level * bound(step.start.load),
-               last = level * bound(end.load);
-    const SpringSlider slider{p_.stiffness, p_.stiffness, p_.damping, (first + last) / 2};
-    return step_spring(slider, {step.memory, 0, 0}, {end.value - step.start.value, 0, 0}, step.h, last);
-  }
+
+  Ends ends_of(const LawStep& step, const CoordinateInstant& end, Real side) const;
+  Over over(const LawStep& step, const CoordinateInstant& end) const;
+  Over turned(const Ends& e, Real h) const;
+  Dual kept(const Ends& e, const Over& over, Real h) const;
 
   JointFriction p_;
 };
+
+FrictionLaw::Ends FrictionLaw::ends_of(const LawStep& step, const CoordinateInstant& end, Real side) const {
+  Ends e;
+  e.rate = side * step.start.rate, e.bound = bound(step.start.load);
+  e.first = level_at(step.start.rate) * e.bound;
+  e.spring = std::clamp(side * step.memory, -e.first, e.first);
+  e.way = Dual{side * (end.value - step.start.value), side, 0, 0};
+  e.last_rate = (2 / step.h) * e.way - e.rate;
+  e.trial = e.spring + p_.stiffness * e.way;
+  e.last_bound = Dual{bound(end.load), 0, 0, p_.lever};
+  e.last = Dual{level_at(end.rate), 0, slope_at(end.rate), 0} * e.last_bound;
+  return e;
+}
+
+FrictionLaw::Over FrictionLaw::over(const LawStep& step, const CoordinateInstant& end) const {
+  const Real side = step.start.rate < 0 ? -1 : 1;
+  const Ends e = ends_of(step, end, side);
+  Over over;
+  if (e.rate > 0 && e.last_rate.value < 0) {
+    over = turned(e, step.h);
+  } else {
+    const Dual first = e.spring + p_.damping * e.rate, last = e.trial + p_.damping * e.last_rate;
+    over = {limited_mean(first, last, e.first, e.last), within(e.trial, e.last)};
+  }
+  over.mean = kept(e, over, step.h);
+  return {side * over.mean, side * over.spring};
+}
+
+// A step in which the joint turns back, after the share s: up to there z grows, as far as the limit of a
+// joint at rest, and from there it falls. What it slid before the turn is lost, and no way back undoes it;
+// else a joint that comes to rest would stick later than it does. Each part has what the limits change of its
+// own line. The trapezoidal mean of z itself stays that of the ends, so that a step that sticks is
+// conservative. A way back that is long enough to pull the spring the other way does not resolve this motion:
+// it counts as one line.
+FrictionLaw::Over FrictionLaw::turned(const Ends& e, Real h) const {
+  const Dual share = e.rate / (e.rate - e.last_rate), there = 0.5 * e.rate * h * share, back = e.way - there;
+  const Dual limit = level_at(0) * (e.bound + share * (e.last_bound - e.bound));
+  const Dual whole = e.spring + p_.stiffness * there, top = within(whole, limit),
+             trial = top + p_.stiffness * back;
+  const Dual unturned = within(e.trial, e.last);
+  const Dual spring = larger(within(trial, e.last), smaller(unturned, 0));
+  const Dual before =
+      limited_mean(e.spring + p_.damping * e.rate, whole, e.first, limit) - 0.5 * (e.spring + top);
+  const Dual after =
+      limited_mean(top, trial + p_.damping * e.last_rate, limit, e.last) - 0.5 * (top + spring);
+  return {0.5 * (e.spring + spring) + share * before + (1 - share) * after, spring};
+}
+
+// The mean with which the step takes no less than nothing. With the dashpot at the mean rate that holds for
+// every step; with the rates at both ends, which have the dashpot right where it is held back, the mean goes
+// only as far from there as it may.
+Dual FrictionLaw::kept(const Ends& e, const Over& over, Real h) const {
+  const Dual dashpot = (p_.damping / h) * e.way;
+  const Dual safe = limited_mean(e.spring + dashpot, e.trial + dashpot, e.first, e.last);
+  const Dual stored = (over.spring * over.spring - e.spring * e.spring) / (2 * p_.stiffness);
+  const Dual lost = safe * e.way - stored, change = (over.mean - safe) * e.way;
+  if (lost.value + change.value >= 0 || change.value >= 0) return over.mean;
+  return safe + larger(lost, 0) / -change * (over.mean - safe);
+}
 
 }  // namespace
 

@@ -15,6 +15,7 @@ struct CoordinateInstant {
   Real time = 0;             // t [s]
   Real value = 0, rate = 0;  // c, c' [rad or m, per s]
   Real load = 0;             // F: force of the joint's reaction [N]; for the laws that depend on it
+  Real second = 0;           // c'' [rad or m, per s^2]; at the start of a step, for the laws that ask for it
 };
 
 // An effort T, which pushes c up where it is above 0, and its derivatives.
@@ -52,6 +53,9 @@ class JointLaw {
 
   // Whether the effort depends on the load.
   virtual bool is_loaded() const { return false; }
+
+  // Whether the law asks for c'' at the start of a step.
+  virtual bool needs_second() const { return false; }
 
   // Whether its work is fed in; else it is stored, and dissipated.
   virtual bool drives() const { return false; }

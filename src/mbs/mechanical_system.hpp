@@ -21,6 +21,8 @@ struct SystemInstant {
   const std::vector<Real>& velocity;  // v [coordinates]
   // lambda [constraints], where forces depend on reactions; none: those of the last instant that had some.
   const std::vector<Real>* multipliers = nullptr;
+  // a [coordinates], at the start of a step.
+  const std::vector<Real>* acceleration = nullptr;
 };
 
 // What Newton's matrix depends on besides; all but lambda [coordinates].

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "mbs/dead_point.hpp"
 #include "mbs/energy_ledger.hpp"
 #include "mbs/hht_method.hpp"
 #include "mbs/joint_readings.hpp"
 #include "mbs/newton_solver.hpp"
+#include "mbs/passed_stops.hpp"
 #include "mbs/reaction_watch.hpp"
 #include "mbs/rigid_body_system.hpp"
 #include "mbs/start_checks.hpp"
@@ -28,8 +30,6 @@ constexpr Real kOscillation = 10;
 constexpr Real kRuin = 100, kRuinedVelocity = 1e-3;
 // The bodies' error, over the tolerance, from which they decide on the step's length.
 constexpr Real kGoverns = 0.3;
-// Of HHT (deck/keys_setup.cpp).
-constexpr Real kLeastAlpha = -1.0 / 3;
 
 MultibodyState checked_start(const Model& model, RigidBodySystem& system, StartFindings& findings) {
   MultibodyState state;
@@ -56,14 +56,16 @@ struct Multibody::Impl {
         watch(system.coordinate_scale(), system.constraint_scale()),
         time_control(model.time),
         corrects_start(model.integrator.corrected_start && has_spatial_bodies(model)),
+        stops(stops_of(model)),
         motion(model.bodies.size()) {
+    for (const Body& body : model.bodies) weight += body.mass * norm(model.gravity);
     start.memory.assign(system.joint_forces().memory().size(), 0);
     settle_velocities(model);
   }
 
   void settle_velocities(const Model& model);
   void open_step(const MultibodyState& state, Real t, Real h) {
-    const SystemInstant at{t, state.position, state.velocity, &state.multipliers};
+    const SystemInstant at{t, state.position, state.velocity, &state.multipliers, &state.acceleration};
     if (!system.joint_forces().empty())
       system.joint_forces().open_step(system.poses_at(at), at, h, state.memory);
   }
@@ -76,7 +78,6 @@ struct Multibody::Impl {
   }
   void follow_load();
   void watch_reactions(const MultibodyState& state, Real error);
-  std::string oscillation(Real share) const;
   [[noreturn]] void fail_for_oscillation() const;
 
   // Of the carriers' wrenches.
@@ -97,6 +98,8 @@ struct Multibody::Impl {
   ReactionWatch watch;
   TimeControl time_control;
   bool corrects_start;
+  std::vector<Stop> stops;
+  Real weight = 0;  // of all bodies [N]
   std::vector<BodyMotion> motion;
   MultibodyState end;    // of the step that accept() closes; its arrays change places with the caller's
   Real time = 0;         // of the open step's start [s]
@@ -183,6 +186,12 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   return state;
 }
 
+std::vector<std::string> Multibody::start_warnings() {
+  if (impl_->stops.empty()) return {};
+  const MultibodyState state = initial_state(std::vector<BodyWrench>(impl_->motion.size()));
+  return passed_stops(impl_->system, impl_->stops, state, impl_->weight);
+}
+
 void Multibody::solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench) {
   impl_->system.set_contacts({wrench, {}});
   check_joints_hold(impl_->system, state.position, state.velocity, t);
@@ -219,11 +228,19 @@ std::string Multibody::trouble() {
   std::string text;
   if (largest > 0 && largest >= impl.norms.residual / 2)
     text = "; the largest gaps are those of " + largest_gaps(impl.system, gap);
+  const std::string dead =
+      scree::dead_point(impl.system, impl.method.start_position(), impl.method.start_velocity(),
+                        impl.method.multipliers(), impl.time);
+  if (!dead.empty()) return text + "; " + dead;
   if (impl.method.shares())
     return text.empty() ? ""
                         : text + ": constraints that share their reactions must not contradict each other";
   const std::string near = near_singular(impl.system, impl.method.start_position(), impl.time);
   return near.empty() ? text : text + "; " + near + kSingularPosition;
+}
+
+std::string Multibody::dead_point(const MultibodyState& state, Real t) {
+  return scree::dead_point(impl_->system, state.position, state.velocity, state.multipliers, t);
 }
 
 Real Multibody::error() const {
@@ -243,12 +260,16 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   impl.system.count_turns(impl.system.poses(), impl.end.position);
   impl.end.counted_angles = state.counted_angles;
   impl.end.wrench = end_wrench;
-  const bool efforts_differ = impl.system.joint_forces().end_step();
-  if (efforts_differ || !impl.system.has_forces_of(end_wrench)) {
+  const bool efforts_differ = impl.system.joint_forces().end_step(),
+             contacts_differ = !impl.system.has_forces_of(end_wrench);
+  // Of the efforts of joints all of the change: with alpha < 0 the impulse of a step in which one has an
+  // event is then right whenever that is (mbs/README.md, "Events").
+  if (efforts_differ) impl.newton.change_forces(impl.end, impl.method.end_time(), 1);
+  if (contacts_differ) {
     impl.system.set_forces(end_wrench);
     impl.newton.change_forces(impl.end, impl.method.end_time(), impl.method.end_share());
-    impl.follow_load();
   }
+  if (efforts_differ || contacts_differ) impl.follow_load();
   std::swap(state, impl.end);
 }
 
@@ -277,23 +298,13 @@ void Multibody::Impl::watch_reactions(const MultibodyState& state, Real error) {
   if (ruined || (governs && watch.share() >= kOscillation)) fail_for_oscillation();
 }
 
-std::string Multibody::Impl::oscillation(Real share) const {
-  const Real alpha = method.coefficients().hht_alpha;
-  const bool none = alpha == 0;  // of either sign
-  return fmt::format(
-      "within the steps the reactions of joints and drivers, not those recorded, change sign at every step "
-      "and have grown to {:.0f} times their mean: an oscillation of the method, which integrator.hht_alpha = "
-      "{:g} {}; set it {}below zero, e.g. {:g}",
-      share, none ? 0 : alpha, none ? "does not damp" : "damps too little", none ? "" : "further ",
-      none ? -0.05 : std::max(2 * alpha, kLeastAlpha));
-}
-
 void Multibody::Impl::fail_for_oscillation() const {
-  throw SimulationError("stage accept: " + oscillation(watch.share()));
+  throw SimulationError("stage accept: " + oscillation_text(watch.share(), method.coefficients().hht_alpha));
 }
 
 std::string Multibody::reaction_warning() const {
-  return impl_->watch.worst_share() >= kOscillation ? impl_->oscillation(impl_->watch.worst_share()) : "";
+  const Real share = impl_->watch.worst_share();
+  return share < kOscillation ? "" : oscillation_text(share, impl_->method.coefficients().hht_alpha);
 }
 
 const std::vector<BodyMotion>& Multibody::motion() const { return impl_->motion; }

@@ -87,6 +87,10 @@ class Multibody {
   // time t [s]. Throws InputError where a joint or driver does not hold there.
   void solve_acceleration(MultibodyState& state, Real t, const std::vector<BodyWrench>& wrench);
 
+  // What is to be said of a start position that has passed joint limits, one text for each: what they push
+  // with and what they hold. Throws InputError where it can hardly be meant (mbs/passed_stops.hpp).
+  std::vector<std::string> start_warnings();
+
   // Opens a step from `state` at time t of length h: Newmark prediction with a_{n+1} = a_n.
   void predict(const MultibodyState& state, Real t, Real h);
   // One Newton iteration of Eq. 14 with the contact wrenches at the current iterate. Throws SimulationError
@@ -95,6 +99,9 @@ class Multibody {
   // What is to be said of a step that does not converge: which joints and drivers are not kept, and whether
   // the position is near a singular one; empty where neither tells why. Of the last correct().
   std::string trouble();
+  // What is to be said of a run that goes on no further than this state, at time t: the driver that asks for
+  // what the mechanism cannot follow (mbs/dead_point.hpp); empty where none does.
+  std::string dead_point(const MultibodyState& state, Real t);
   // Scaled local position error of the open step: HHT's estimate over the length scale.
   Real error() const;
   // Closes the step into `state`. Without a call, the step is rejected: `state` was not touched. end_wrench:

@@ -1,5 +1,7 @@
 #include "mbs/reaction_watch.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,5 +65,16 @@ void ReactionWatch::observe(const MultibodyState& start, const MultibodyState& e
 }
 
 bool ReactionWatch::oscillates() const { return steps_ >= kSteps && alternating_ >= kGrowth * first_; }
+
+std::string oscillation_text(Real share, Real hht_alpha) {
+  constexpr Real kLeastAlpha = -1.0 / 3;  // of HHT (deck/keys_setup.cpp)
+  const bool none = hht_alpha == 0;       // of either sign
+  return fmt::format(
+      "within the steps the reactions of joints and drivers, not those recorded, change sign at every step "
+      "and have grown to {:.0f} times their mean: an oscillation of the method, which integrator.hht_alpha = "
+      "{:g} {}; set it {}below zero, e.g. {:g}",
+      share, none ? 0 : hht_alpha, none ? "does not damp" : "damps too little", none ? "" : "further ",
+      none ? -0.05 : std::max(2 * hht_alpha, kLeastAlpha));
+}
 
 }  // namespace scree

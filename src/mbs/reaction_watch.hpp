@@ -2,6 +2,7 @@
 // Those of instants, which outputs show, do not see it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mbs/multibody.hpp"
@@ -42,5 +43,8 @@ class ReactionWatch {
   Real first_ = 0;                            // A of the first of the steps that alternate [J]
   int steps_ = 0;                             // that alternate, in sequence
 };
+
+// What is to be said of reactions whose alternating part has grown to `share` times the largest mean part.
+std::string oscillation_text(Real share, Real hht_alpha);
 
 }  // namespace scree

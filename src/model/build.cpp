@@ -1,3 +1,4 @@
+#include "model/angle_plausibility.hpp"
 #include "model/build.hpp"
 
 #include <fmt/format.h>
@@ -99,6 +100,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
     check_start_positions(root, model, share, log);
     check_steps(root, model, log);
     for (const std::string& finding : implausible(root, model)) log.warning(finding);
+    for (const std::string& finding : angles_in_degrees(root)) log.warning(finding);
   });
   return model;
 }

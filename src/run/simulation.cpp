@@ -117,6 +117,7 @@ void Simulation::start_or_resume() {
     state_.clock = StepClock(model_).state();
     backend_->particles().load(initial_records(model_.particles, Subdomain(model_.space)), {});
     step_.start(state_.bodies);
+    for (const std::string& finding : link_.start_warnings()) log_.warning(finding);
     if (!start_change().empty())
       log_.info("velocities = \"consistent\": the largest change at t = 0 is that of the " + start_change());
     if (link_.multibody() && !link_.multibody()->redundancy().empty())
@@ -332,8 +333,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.start_change = start_change();
   record.redundancy = link_.multibody() ? link_.multibody()->redundancy() : "";
   record.restarted_from = options_.restart, record.changes = restart_.changes;
-  record.state_hash = state_hash_;
-  record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
+  record.state_hash = state_hash_, record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
   const LoadBalance balance = backend_->list().balance();
   record.wall_seconds = live_.wall_seconds(), record.loop_seconds = loop_seconds_;
   record.cpu_seconds = cpu_seconds() - start_cpu_;

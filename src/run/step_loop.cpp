@@ -84,10 +84,21 @@ void StepLoop::take_step(Real until) {
   const Real h = clock_.begin_step();
   if (!implicit_) return take_explicit_steps(h, until);
   const StepOutcome outcome = parts_.step.implicit_step(state_.bodies, clock_.time(), h);
-  if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
-  if (outcome.verdict == Verdict::not_converged) return clock_.rejected_for_convergence(outcome.trouble);
+  if (outcome.verdict != Verdict::accepted) return reject(outcome);
   clock_.accepted(outcome.error);
   close_step(h);
+}
+
+// Where a step can be shortened no further a driver may be why: of that no step length says anything.
+void StepLoop::reject(const StepOutcome& outcome) {
+  try {
+    if (outcome.verdict == Verdict::inaccurate) return clock_.rejected_for_error(outcome.error);
+    clock_.rejected_for_convergence(outcome.trouble);
+  } catch (const SimulationError&) {
+    const std::string dead_point = parts_.step.dead_point(state_.bodies, clock_.time());
+    if (dead_point.empty()) throw;
+    throw SimulationError("stage mbs_correct: " + dead_point);
+  }
 }
 
 // Equal steps up to the next output, but no longer than until the next look at signals and progress, and none

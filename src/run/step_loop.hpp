@@ -57,6 +57,7 @@ class StepLoop {
   int look_outside();
   void write_checkpoint();
   void take_step(Real until);
+  void reject(const StepOutcome& outcome);
   void take_explicit_steps(Real h, Real until);
   void close_step(Real h);
   void leave();
