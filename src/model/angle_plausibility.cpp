@@ -4,6 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "deck/choices.hpp"
+#include "model/joint_coordinates.hpp"
 
 namespace scree {
 
@@ -12,15 +16,12 @@ namespace {
 constexpr std::size_t kShown = 5;
 constexpr Real kTurn = 2 * std::numbers::pi_v<Real>;
 
-// Of a joint's coordinate, which may be an angle.
-bool may_be_angle(const std::string& unit) { return unit == "rad or m"; }
-
 class Search {
  public:
-  std::vector<std::string> in(const DeckTable& deck) {
-    look(deck);
-    if (found_ > kShown) findings_.back() += fmt::format("; and {} more keys like these", found_ - kShown);
-    return findings_;
+  explicit Search(const DeckTable& deck) : deck_(deck) { look(deck); }
+  std::vector<std::string> findings() && {
+    if (found_ > kShown) findings_.back() += fmt::format("; and {} more keys like this one", found_ - kShown);
+    return std::move(findings_);
   }
 
  private:
@@ -35,22 +36,33 @@ class Search {
     }
   }
   void judge(const DeckTable& table, const Key& key, Real value, const DeckValue& given) {
-    const bool meant = key.unit == "rad" || (may_be_angle(key.unit) && std::floor(value) == value);
-    if (!meant || !(std::abs(value) > kTurn) || !std::isfinite(value)) return;
-    if (++found_ > kShown) return;
+    if (!(std::abs(value) > kTurn) || !std::isfinite(value)) return;
+    const bool meant =
+        key.unit == "rad" || (key.unit == "rad or m" && std::floor(value) == value && is_of_angle(table));
+    if (!meant || ++found_ > kShown) return;
     findings_.push_back(fmt::format(
-        "{}: {}{}{} = {}: {:g} rad are {:.3g} turns; angles are in radians: {:g} degrees are {:.6g}{}",
-        given.place, table.path(), table.path().empty() ? "" : ".", key.name, given.shown, value,
-        std::abs(value) / kTurn, value, value * kTurn / 360,
-        key.unit == "rad" ? "" : ", where the coordinate is an angle"));
+        "{}: {}.{} = {}: {:g} rad are {:.3g} turns; angles are in radians: {:g} degrees are {:.6g}",
+        given.place, table.path(), key.name, given.shown, value, std::abs(value) / kTurn, value,
+        value * kTurn / 360));
+  }
+  // Whether what stands in the table is of an angle of its joint.
+  bool is_of_angle(const DeckTable& table) const {
+    for (const DeckTable& joint : deck_.tables("joints")) {
+      if (joint.text("name") != table.text("joint")) continue;
+      if (table.has("coordinate")) return is_angle(table.choice<JointCoordinate>("coordinate"));
+      const std::vector<JointCoordinate> own = coordinates_of(joint.choice<JointKind>("type"));
+      return !own.empty() && is_angle(own.front());
+    }
+    return false;  // one of a row
   }
 
+  const DeckTable& deck_;
   std::size_t found_ = 0;
   std::vector<std::string> findings_;
 };
 
 }  // namespace
 
-std::vector<std::string> angles_in_degrees(const DeckTable& deck) { return Search().in(deck); }
+std::vector<std::string> angles_in_degrees(const DeckTable& deck) { return Search(deck).findings(); }
 
 }  // namespace scree

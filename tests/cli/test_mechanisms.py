@@ -207,5 +207,102 @@ class CheckTest(CommandLineTest):
         self.assertNotIn("\nhistory ", self.report(deck, "output.history_reactions=0"))  # they are not wanted
 
 
+# A rod of 0.3 m between a crank of 0.1 m and a slider, which is driven out to `reach` + travel.
+def slider_crank(angle, motion):
+    x, y = 0.1 * math.cos(angle), 0.1 * math.sin(angle)
+    slider = x + math.sqrt(0.09 - y * y)
+    deck = 'velocities = "consistent"\n' + FOUR_BAR.replace("step = 0.01\ncontrol", "step = 1e-3\ncontrol")
+    for name, px, py, turned in (("crank", x / 2, y / 2, angle), ("rod", (x + slider) / 2, y / 2, -math.asin(y / 0.3)),
+                                 ("slider", slider, 0.0, 0.0)):
+        deck += (f'\n[[bodies]]\nname = "{name}"\nposition = [{px}, {py}]\nangle = {turned}\nmass = 1.0\n'
+                 "inertia = 1e-3\n")
+    for name, one, two, px, py in (("pivot", "ground", "crank", 0.0, 0.0), ("pin", "crank", "rod", x, y),
+                                   ("wrist", "rod", "slider", slider, 0.0)):
+        deck += f'\n[[joints]]\nname = "{name}"\ntype = "revolute"\nbodies = ["{one}", "{two}"]\npoint = [{px}, {py}]\n'
+    deck += '\n[[joints]]\nname = "guide"\ntype = "translational"\nbodies = ["ground", "slider"]\naxis = [1.0, 0.0]\n'
+    return deck + f'\n[[drivers]]\nname = "push"\njoint = "guide"\nmotion = {motion}\n', slider
+
+
+class DeadPointTest(CommandLineTest):
+    """The driver is named, whatever the steps, and no advice is given that does not pass the dead point."""
+
+    def failure(self, deck, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        result = self.expect(FAILED, "run", self.write("reach.toml", deck), "--output", self.folder / "out",
+                             "--overwrite", *words)
+        self.assertIn("driver 'push' asks for a motion that the mechanism cannot follow", result.stderr)
+        for name in ("'pivot'", "'pin'", "'wrist'", "'guide'"):
+            self.assertIn(f"joint {name}", result.stderr)
+        for advice in ("min_step", "tolerance;", "passes"):
+            self.assertNotIn(advice, result.stderr)
+        return result.stderr
+
+    def test_a_slider_that_is_driven_past_its_reach(self):
+        deck, start = slider_crank(0.5, RAMP.format(0.0, 0.1))
+        for settings in ((), ("time.control=adaptive",), ("integrator.redundant=share",),
+                         ("time.control=adaptive", "integrator.redundant=share")):
+            time = float(self.failure(deck, *settings).split("t = ")[1].split(" ")[0])
+            self.assertAlmostEqual(time, (0.4 - start) / 0.1, 3)
+
+    def test_one_that_comes_to_rest_there(self):
+        motion = "{{ kind = \"step\", value = 0.0, end_value = {}, start = 0.1, end = 0.6 }}"
+        _, start = slider_crank(0.5, "0.0")
+        self.failure(slider_crank(0.5, motion.format(0.4 - start + 1e-3))[0])
+        within = self.write("within.toml", slider_crank(0.5, motion.format(0.99 * (0.4 - start)))[0])
+        self.expect(DONE, "run", within, "--output", self.folder / "within")
+
+
+STOP = """
+[[joint_limits]]
+name = "stop"
+joint = "hinge"
+{}
+stiffness = {}
+"""
+
+
+class StartTest(CommandLineTest):
+    def both(self, code, deck):
+        path = self.write("start.toml", deck)
+        for words in (("check", path), ("run", path, "--output", self.folder / "out", "--overwrite")):
+            yield self.expect(code, *words).stderr
+
+    def resting(self, stop):
+        """The arm lies level, at angle 0; its weight acts at 0.25 m."""
+        deck = CRANK.replace("gravity = [0.0, 0.0, 0.0]", "gravity = [0.0, -10.0, 0.0]")
+        deck = deck.replace("end = 1.0", "end = 0.01")
+        return "".join(line for line in deck.splitlines(True) if "velocity" not in line) + stop
+
+    def test_a_stop_that_holds_more_than_can_be_meant_is_refused(self):
+        for side, words in (("lower = 0.5", "below lower = 0.5"), ("upper = -0.5", "above upper = -0.5")):
+            for text in self.both(BAD_INPUT, self.resting(STOP.format(side, 1e6))):
+                self.assertIn("joint limit 'stop': passed at t = 0: joint 'hinge' stands at 0 rad, 0.5 rad " + words,
+                              text)
+                self.assertIn("holds 1.25e+05 J", text)
+                self.assertIn("start the joint within its limits, or move this one", text)
+                self.assertNotIn("step", text)
+
+    def test_one_that_is_passed_by_little_is_warned_of(self):
+        for text in self.both(DONE, self.resting(STOP.format("lower = 1e-3", 1e5))):
+            self.assertIn("warning: joint limit 'stop': passed at t = 0: joint 'hinge' stands at 0 rad, 0.001 rad "
+                          "below lower = 0.001. The stop begins with 100 N m, holds 0.05 J and throws the joint out", text)
+
+    def test_one_that_a_weight_rests_on_is_not(self):
+        for side in ("lower = 5e-5", "lower = 0.0", "upper = 0.0"):
+            for text in self.both(DONE, self.resting(STOP.format(side, 1e5))):
+                self.assertEqual(text, "")
+
+    def test_angles_that_look_like_degrees(self):
+        turned = "rotation_axis = [1.0, 0.0, 0.0]\nrotation_angle = "
+        deck = CRANK.replace("[[joints]]", turned + "45.0\n\n[[joints]]", 1).replace("[0.0, 0.0, 6.283185307179586]",
+                                                                                     "[0.0, 0.0, 0.0]")
+        deck = "".join(line for line in deck.splitlines(True) if "velocity" not in line).partition("[[joints]]")[0]
+        for text in self.both(DONE, deck):
+            self.assertIn("bodies.crank.rotation_angle = 45.0: 45 rad are 7.16 turns; angles are in radians: 45 "
+                          "degrees are 0.785398", text)
+        for text in self.both(DONE, deck.replace("45.0", "6.28")):
+            self.assertEqual(text, "")
+
+
 if __name__ == "__main__":
     unittest.main()
