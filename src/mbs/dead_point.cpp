@@ -46,18 +46,28 @@ struct DrivenRow {
   Real asked = 0, weight = 0;  // weight times its rate; weight, for a row of length 1
 };
 
+// Whether it is in one of the combinations.
+bool is_in(const std::vector<Dependency>& combinations, int row) {
+  return std::ranges::any_of(combinations, [&](const Dependency& one) {
+    return std::ranges::find(one.columns, row) != one.columns.end();
+  });
+}
+
 // The one of those that take part which asks for most, or, where all rest, weighs most.
 DrivenRow driven_row(const RigidBodySystem& system, const SparseTerm& jacobian,
-                     const std::vector<Dependency>& repeated, const std::vector<Real>& rate) {
+                     const std::vector<Dependency>& combinations, const std::vector<Dependency>& repeated,
+                     const std::vector<Real>& rate) {
   const std::vector<Real> length = row_lengths(system, jacobian);
   DrivenRow most;
-  for (const Dependency& dependency : repeated) {
+  for (const Dependency& dependency : combinations) {
     Real heaviest = 0;
     for (const auto& [row, weight] : dependency.weight)
       heaviest = std::max(heaviest, std::abs(weight) * length[at(row)]);
     for (const auto& [row, w] : dependency.weight) {
       const DrivenRow one{row, std::abs(w * rate[at(row)]), std::abs(w) * length[at(row)]};
-      if (!system.groups()[at(system.group_of(row))].drives || one.weight < kTakesPart * heaviest) continue;
+      if (!system.groups()[at(system.group_of(row))].drives || one.weight < kTakesPart * heaviest ||
+          is_in(repeated, row))
+        continue;
       if (most.row < 0 || std::pair(one.asked, one.weight) > std::pair(most.asked, most.weight)) most = one;
     }
   }
@@ -67,34 +77,33 @@ DrivenRow driven_row(const RigidBodySystem& system, const SparseTerm& jacobian,
 }  // namespace
 
 std::string dead_point(RigidBodySystem& system, const std::vector<Real>& position,
-                       const std::vector<Real>& velocity, const std::vector<Real>& multipliers, Real t) {
+                       const std::vector<Real>& velocity, Real t, const std::vector<Dependency>& repeated) {
   SystemTerms terms;
   terms.applied_force.assign(at(system.coordinates()), 0);
   terms.constraint.assign(at(system.constraints()), 0);
-  const SystemInstant instant{t, position, velocity, &multipliers};
+  const SystemInstant instant{t, position, velocity};
   system.evaluate(instant, terms);
+  const SparseTerm& jacobian = terms.constraint_jacobian;
   std::vector<Real> rate(at(system.constraints()), 0);
   system.velocity_rhs(instant, rate);
-  std::vector<Dependency> repeated = repeated_rows(system, terms.constraint_jacobian, kAtIt);
-  int row = driven_row(system, terms.constraint_jacobian, repeated, rate).row;
-  if (row < 0) {
-    const Real asked = largest(rate, system.constraint_scale());
-    if (!(largest(velocity, system.coordinate_scale()) > kGrown * asked)) return "";
-    repeated = repeated_rows(system, terms.constraint_jacobian, kNear);
-    row = driven_row(system, terms.constraint_jacobian, repeated, rate).row;
+  const Real asked = largest(rate, system.constraint_scale()),
+             reached = largest(velocity, system.coordinate_scale());
+  std::vector<Dependency> combinations = repeated_rows(system, jacobian, kAtIt);
+  int row = driven_row(system, jacobian, combinations, repeated, rate).row;
+  if (row < 0 && reached > kGrown * asked) {
+    combinations = repeated_rows(system, jacobian, kNear);
+    row = driven_row(system, jacobian, combinations, repeated, rate).row;
   }
   if (row < 0) return "";
-  const ConstraintGroup& driver = system.groups()[at(system.group_of(row))];
   return fmt::format(
       "{} asks for a motion that the mechanism cannot follow: it leads to a dead point, where {} become "
-      "dependent "
-      "and velocities and reactions grow without bound; the driver's is {:.3g} {} here. Change its motion so "
-      "that "
-      "it stays clear of this position, or drive another joint: neither shorter steps nor "
-      "integrator.redundant = "
-      "\"share\" pass it",
-      driver.title, names_of(system, repeated), std::abs(multipliers[at(row)]),
-      system.is_angle(row) ? "N m" : "N");
+      "dependent and velocities and reactions grow without bound{}. Change its motion so that it stays clear "
+      "of this position, or drive another joint: neither shorter steps nor integrator.redundant = \"share\" "
+      "pass it",
+      system.constraint_name(row), names_of(system, combinations),
+      reached > asked && asked > 0
+          ? fmt::format(" (velocities here are {:.3g} times what drivers ask for)", reached / asked)
+          : "");
 }
 
 }  // namespace scree

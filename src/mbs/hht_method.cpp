@@ -1,6 +1,7 @@
 #include "mbs/hht_method.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace scree {
 
@@ -34,6 +35,26 @@ HhtMethod::HhtMethod(MechanicalSystem& system, Real hht_alpha, const std::vector
       residual_(count(system.coordinates() + system.constraints())) {
   if (inverse_mass.size() > 0)
     compliance_ = RowCompliance(terms_.constraint_jacobian, inverse_mass, system.constraints());
+  if (shares()) compliance_.update(terms_.constraint_jacobian);
+}
+
+std::vector<Real> HhtMethod::units() const {
+  constexpr Real kPivot = 1e-4;  // a tenth of KLU's threshold
+  const SparseTerm &jacobian = terms_.constraint_jacobian, &mass = terms_.mass;
+  std::vector<Real> largest(compliance().size(), 0), units(inertia_force_.size(), 0);
+  for (std::size_t i = 0; i < jacobian.size(); ++i)
+    largest[count(jacobian.row(i))] = std::max(largest[count(jacobian.row(i))], std::abs(jacobian.value(i)));
+  bool small = true;
+  for (std::size_t j = 0; j < largest.size(); ++j) small = small && compliance()[j] <= kPivot * largest[j];
+  if (small) return {};
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    if (mass.row(i) == mass.column(i)) units[count(mass.row(i))] += mass.value(i);
+  units.insert(units.end(), compliance().begin(), compliance().end());
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const Real size = i < inertia_force_.size() ? units[i] : units[i] / kComplianceShare;
+    units[i] = size > 0 ? std::exp2(-std::round(std::log2(size) / 2)) : 1;
+  }
+  return units;
 }
 
 void HhtMethod::predict(const MultibodyState& state, Real t, Real h) {

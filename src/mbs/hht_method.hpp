@@ -92,6 +92,12 @@ class HhtMethod {
   bool shares() const { return !compliance_.empty(); }
   const std::vector<Real>& compliance() const { return compliance_.of_row(); }
 
+  // Powers of two for the factorizations [unknowns], or none. KLU takes a pivot on the diagonal that is at
+  // least a thousandth of its column. C must not be one: what stands on it has lost nine digits. Beside Phi_q
+  // it is as small as eps where lengths and masses are of the order of 1; else, as with bodies of less than a
+  // milligram, these units make it so.
+  std::vector<Real> units() const;
+
   // Change of the position per change of the acceleration, beta h^2 [s^2].
   Real position_gain() const { return newmark_position_gain(coefficients_, step_); }
   Real end_time() const { return time_ + step_; }

@@ -228,9 +228,8 @@ std::string Multibody::trouble() {
   std::string text;
   if (largest > 0 && largest >= impl.norms.residual / 2)
     text = "; the largest gaps are those of " + largest_gaps(impl.system, gap);
-  const std::string dead =
-      scree::dead_point(impl.system, impl.method.start_position(), impl.method.start_velocity(),
-                        impl.method.multipliers(), impl.time);
+  const std::string dead = scree::dead_point(impl.system, impl.method.start_position(),
+                                             impl.method.start_velocity(), impl.time, impl.findings.repeated);
   if (!dead.empty()) return text + "; " + dead;
   if (impl.method.shares())
     return text.empty() ? ""
@@ -240,7 +239,7 @@ std::string Multibody::trouble() {
 }
 
 std::string Multibody::dead_point(const MultibodyState& state, Real t) {
-  return scree::dead_point(impl_->system, state.position, state.velocity, state.multipliers, t);
+  return scree::dead_point(impl_->system, state.position, state.velocity, t, impl_->findings.repeated);
 }
 
 Real Multibody::error() const {

@@ -35,7 +35,11 @@ NewtonSolver::NewtonSolver(const MechanicalSystem& system, HhtMethod& method)
       method_(method),
       solver_(method.pattern()),
       acceleration_solver_(method.pattern()),
-      acceleration_matrix_(method.pattern().column.size()) {}
+      acceleration_matrix_(method.pattern().column.size()) {
+  if (!method.shares()) return;
+  solver_.set_units(method.units());
+  acceleration_solver_.set_units(method.units());
+}
 
 void NewtonSolver::begin_step() { first_ = true; }
 

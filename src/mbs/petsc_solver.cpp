@@ -117,9 +117,11 @@ struct PetscSolver::Impl {
   void create();
   void choose_package();
   bool is_available(const char* package);
+  bool solve(bool refactor);
+  void multiply(bool back);
 
   SparsePattern pattern;
-  std::vector<Real> values, rhs, solution;
+  std::vector<Real> values, rhs, solution, units;
   Mat matrix = nullptr;
   Vec rhs_vector = nullptr, solution_vector = nullptr;
   KSP solver = nullptr;
@@ -201,25 +203,49 @@ std::span<Real> PetscSolver::values() { return impl_->values; }
 std::span<Real> PetscSolver::rhs() { return impl_->rhs; }
 std::span<const Real> PetscSolver::solution() const { return impl_->solution; }
 
+void PetscSolver::set_units(std::vector<Real> units) { impl_->units = std::move(units); }
+
+// Matrix and right-hand side by the units, or back.
+void PetscSolver::Impl::multiply(bool back) {
+  const auto times = [&](Real& value, Real unit) { value = back ? value / unit : value * unit; };
+  for (int row = 0; row < pattern.rows(); ++row) {
+    const std::size_t i = static_cast<std::size_t>(row);
+    for (int k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k) {
+      const std::size_t entry = static_cast<std::size_t>(k);
+      times(values[entry], units[i] * units[static_cast<std::size_t>(pattern.column[entry])]);
+    }
+    times(rhs[i], units[i]);
+  }
+}
+
 bool PetscSolver::solve(bool refactor) {
+  if (impl_->units.empty()) return impl_->solve(refactor);
+  impl_->multiply(false);
+  const bool solved = impl_->solve(refactor);
+  impl_->multiply(true);
+  for (std::size_t i = 0; i < impl_->units.size(); ++i) impl_->solution[i] *= impl_->units[i];
+  return solved;
+}
+
+bool PetscSolver::Impl::solve(bool refactor) {
   // Taking and returning an array tells PETSc that its contents changed.
   Real* array = nullptr;
   if (refactor) {
-    check(MatSeqAIJGetArrayWrite(impl_->matrix, &array));
-    check(MatSeqAIJRestoreArrayWrite(impl_->matrix, &array));
+    check(MatSeqAIJGetArrayWrite(matrix, &array));
+    check(MatSeqAIJRestoreArrayWrite(matrix, &array));
   }
-  check(VecGetArrayWrite(impl_->rhs_vector, &array));
-  check(VecRestoreArrayWrite(impl_->rhs_vector, &array));
+  check(VecGetArrayWrite(rhs_vector, &array));
+  check(VecRestoreArrayWrite(rhs_vector, &array));
   // Factoring here, not within KSPSolve, leaves the solver usable after a matrix that cannot be factored.
-  PetscErrorCode factored = KSPSetUp(impl_->solver);
-  if (!failed(factored)) factored = PCSetUp(impl_->preconditioner);
+  PetscErrorCode factored = KSPSetUp(solver);
+  if (!failed(factored)) factored = PCSetUp(preconditioner);
   if (is_singular(factored)) return false;
   check(factored);
-  check(KSPSolve(impl_->solver, impl_->rhs_vector, impl_->solution_vector));
+  check(KSPSolve(solver, rhs_vector, solution_vector));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(impl_->solver, &reason));
+  check(KSPGetConvergedReason(solver, &reason));
   bool finite = true;
-  for (const Real x : impl_->solution) finite = finite && std::isfinite(x);
+  for (const Real x : solution) finite = finite && std::isfinite(x);
   return reason > 0 && finite;
 }
 

@@ -7,10 +7,6 @@ namespace scree {
 
 namespace {
 
-// The matrix' condition grows with 1/eps, the gap that the compliance leaves with eps: at 1e-9 multipliers
-// have seven digits, and rows of 1 m and 1 kg under a few N yield by 1e-15 m in a step of 1 ms.
-constexpr Real kShare = 1e-9;
-
 using Entries = std::vector<std::vector<std::size_t>>;  // of a SparseTerm, by row
 
 Entries entries_by_row(const SparseTerm& term, std::size_t rows) {
@@ -33,7 +29,8 @@ RowCompliance::RowCompliance(const SparseTerm& jacobian, const SparseTerm& inver
       for (const std::size_t m : of_coordinate[static_cast<std::size_t>(jacobian.column(one))])
         for (const std::size_t other : of_constraint[row])
           if (jacobian.column(other) == inverse_mass.column(m))
-            products_.push_back({static_cast<int>(row), one, other, kShare * inverse_mass.value(m)});
+            products_.push_back(
+                {static_cast<int>(row), one, other, kComplianceShare * inverse_mass.value(m)});
 }
 
 void RowCompliance::update(const SparseTerm& jacobian) {

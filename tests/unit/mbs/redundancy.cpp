@@ -1,4 +1,5 @@
 // Constraints that repeat each other: refused by name, shared, or found to contradict each other.
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -148,4 +149,31 @@ TEST_CASE("a matrix that is singular for its constraints alone says that the pos
       matrix_failure(system, method.pattern(), values),
       "is singular: joint 'middle', joint 'again' repeat each other in this position, or nearly so: it "
       "is singular; integrator.redundant = \"share\" passes it"));
+}
+
+TEST_CASE("a rod of a tenth of a micrometre shares as one of a tenth of a metre does") {
+  petsc();
+  // Lengths, masses and times by these powers of two: the numbers have the same digits.
+  const auto start_of = [](int length, int mass, int time) {
+    const auto metres = [&](Real x, Real y) { return Vec3{std::ldexp(x, length), std::ldexp(y, length), 0}; };
+    Model model = empty_model();
+    model.gravity = {}, model.consistent_velocities = true;
+    model.integrator.redundant = RedundantRows::share;
+    model.bodies = {paper_disc("rod", 0, 0)};
+    Body& rod = model.bodies[0];
+    rod.shapes.clear();
+    rod.position = metres(0.3, 0.05), rod.velocity = (1 / std::ldexp(1.0, time)) * metres(-0.47, -0.017);
+    rod.angular_velocity = std::ldexp(0.43, -time);
+    rod.mass = std::ldexp(0.3, mass), rod.inertia = std::ldexp(3.4e-4, mass + 2 * length);
+    model.joints = {ground_pin("pin", 0, metres(0.32, 0.07), metres(0.02, 0.02))};
+    TimeFunction turn;
+    turn.kind = TimeFunction::Kind::sine;
+    turn.amplitude = 0.2, turn.frequency = std::ldexp(5, -time);
+    model.drivers = {{"drive", 0, turn}};
+    Multibody multibody(model);
+    return multibody.initial_state(std::vector<BodyWrench>(1)).velocity;
+  };
+  const std::vector<Real> large = start_of(0, 0, 0), small = start_of(-20, -60, -10);
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(near(std::ldexp(small[i], i < 2 ? 10 : -10), large[i], {.relative = 1e-12}));
 }
