@@ -1,4 +1,3 @@
-#include "model/angle_plausibility.hpp"
 #include "model/build.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/angle_plausibility.hpp"
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"

@@ -285,7 +285,8 @@ class StartTest(CommandLineTest):
     def test_one_that_is_passed_by_little_is_warned_of(self):
         for text in self.both(DONE, self.resting(STOP.format("lower = 1e-3", 1e5))):
             self.assertIn("warning: joint limit 'stop': passed at t = 0: joint 'hinge' stands at 0 rad, 0.001 rad "
-                          "below lower = 0.001. The stop begins with 100 N m, holds 0.05 J and throws the joint out", text)
+                          "below lower = 0.001. The stop begins with 100 N m, holds 0.05 J and throws the joint out",
+                          text)
 
     def test_one_that_a_weight_rests_on_is_not(self):
         for side in ("lower = 5e-5", "lower = 0.0", "upper = 0.0"):
