@@ -22,6 +22,7 @@
 #include "mbs/multibody.hpp"
 #include "mbs/petsc_session.hpp"
 #include "model/build.hpp"
+#include "model/fit_segments.hpp"
 #include "model/memory.hpp"
 #include "output/library_versions.hpp"
 #include "output/results_folder.hpp"
@@ -137,9 +138,10 @@ ExitCode run(const Arguments& arguments, const CommandLine& line) {
   warn_of_run(model, log);
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   ranks.on_root([&] { petsc.emplace("scree", line.petsc_words); });
+  const Deck whole = with_fitting_segments(deck);
   RunOptions options{arguments.backend,       directory,      arguments.restart,
-                     arguments.allow_changes, arguments.deck, deck.resolved_text(),
-                     deck.fingerprint(),      line.text,      ranks,
+                     arguments.allow_changes, arguments.deck, whole.resolved_text(),
+                     whole.fingerprint(),     line.text,      ranks,
                      arguments.overwrite};
   const ExitCode code = naming_deck(arguments.deck, [&] {
     return naming_memory(size_of(model), ranks.size(), [&] { return run_simulation(model, options, log); });
@@ -186,7 +188,8 @@ ExitCode check(const Arguments& arguments) {
   });
   if (arguments.picture.empty()) return ExitCode::done;
   naming_memory(size, ranks.size(), [&] {
-    draw_start(std::move(model), deck.resolved_text(), drawer, arguments.picture, ranks);
+    draw_start(std::move(model), with_fitting_segments(deck).resolved_text(), drawer, arguments.picture,
+               ranks);
   });
   if (is_stopped(ranks, "before the picture was drawn", log)) return ExitCode::stopped_by_signal;
   log.info("picture        " + arguments.picture);

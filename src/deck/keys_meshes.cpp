@@ -80,10 +80,22 @@ const TableKeys& mesh_keys() {
          integer("segments")
              .only_for(curved)
              .within(3, 10000)
-             .otherwise("48")
-             .about("Edges once around; of plates and capsules a multiple of 4, of screws at least 8."),
-         integer("levels").only_for(spheres).within(0, 9).otherwise("3").about(
-             "The 20 triangles of an icosahedron are split into four so many times."),
+             .left_out("follows from the smallest particle")
+             .about(
+                 "Edges once around; of plates and capsules a multiple of 4, of screws at least 8. Left out: "
+                 "the least multiple of 4, from 16 to 360, with which facets lie within 5 % of the smallest "
+                 "particle's radius of the true circle and turn by less than feature_angle; an edge is then "
+                 "0.4 diameters long or longer. 48 without particles. The largest circle of the shape "
+                 "counts."),
+         integer("levels")
+             .only_for(spheres)
+             .within(0, 9)
+             .left_out("follows from the smallest particle")
+             .about("The 20 triangles of an icosahedron are split into four so many times. Left out: from 2 "
+                    "to 6, the "
+                    "least with which facets lie within 5 % of the smallest particle's radius of the sphere; "
+                    "3 without "
+                    "particles."),
          real("wall", "m").only_for(drums).above(0).required().about("Thickness of the drum's wall."),
          real("end_wall", "m")
              .only_for(drums)

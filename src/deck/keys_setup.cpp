@@ -208,7 +208,7 @@ const TableKeys& contact_keys() {
            .about(
                "mu_r: a spring resists rolling until its moment is mu_r R* F (Ai, Chen, Rotter, Ooi, 2011, "
                "model C), R* the reduced radius: tan of the slope on which a sphere begins to roll. Needs "
-               "friction beside it."),
+               "friction beside it; 0: as if left out."),
        real("rolling_stiffness", "N m")
            .above(0)
            .left_out("2.25 K mu_r^2 R*^2, in 2D 3 K mu_r^2 R*^2, K: dF/dd")
@@ -372,8 +372,8 @@ const TableKeys& wall_keys() {
            .left_out("the surface moves as the wall")
            .about(
                "How fast the surface runs along itself while the wall stays, as a conveyor's belt does: of "
-               "this vector, fixed to the wall, the part along the surface at each contact. It acts by "
-               "friction alone.")},
+               "this vector, fixed to the wall, the part along the surface at each contact; of a plane it "
+               "must be along the plane. It acts by friction alone.")},
       ""};
   return keys;
 }

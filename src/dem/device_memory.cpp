@@ -109,7 +109,7 @@ SurfaceRows rows_at_start(const Model& model, const ParticleStore& store, const 
   return rows;
 }
 
-// What a mesh is on the device: the arrays of a MeshView.
+// What a mesh is on the device, whether or not anything touches it: the arrays of a MeshView.
 double bytes_of_mesh(const SurfaceMesh& mesh) {
   const auto of = [](const auto& values) {
     return static_cast<double>(values.size() * sizeof(values.front()));
@@ -197,9 +197,8 @@ double surface_bytes(const Model& model, const Sizes& n) {
   if (model.output.contacts) per_entry += sizeof(ShownContact);
   if (const int numbers = kept_numbers(model, history_of(model.contact)); numbers != 0)
     per_entry += kSpareRoom * (3 * records_of(numbers) * sizeof(Vec4) + 2 * sizeof(Index));
-  double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
+  const double bytes = kSurfaceArrays * static_cast<double>(SurfaceSet(model).placed());
   if (!model.meshes.empty()) per_entry += kSpareRoom * (kTouchArrays + (implicit ? kTouchArraysOverStep : 0));
-  for (const ModelMesh& mesh : model.meshes) bytes += bytes_of_mesh(*mesh.surface);
   return bytes + per_entry * n.entries +
          kSpareRoom * (kGroupArrays * n.groups + kRowOfTriangle * n.triangles);
 }
@@ -216,6 +215,12 @@ double slots_per_particle(const Model& model) {
   return diameter > 0 ? std::min(kMost, kSpheres + kPerDiameter * seen / diameter) : kSpheres;
 }
 
+std::size_t device_memory_of_meshes(const Model& model) {
+  double bytes = static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
+  for (const ModelMesh& mesh : model.meshes) bytes += sizeof(MeshView) + bytes_of_mesh(*mesh.surface);
+  return static_cast<std::size_t>(bytes);
+}
+
 std::size_t device_memory(const Model& model) {
   const Sizes n = sizes_of(model);
   const bool explicit_steps = model.integrator.particles == ParticleIntegrator::velocity_verlet;
@@ -224,8 +229,7 @@ std::size_t device_memory(const Model& model) {
   if (!explicit_steps)
     bytes += model.rotates() ? n.items * kRubbingArrays + n.slots * kRubbingArraysPerSlot
                              : n.items * kStepArrays + n.slots * kStepArraysPerSlot;
-  bytes += surface_bytes(model, n);
-  bytes += static_cast<double>(TriangleWorks(model).triangles() * sizeof(TriangleWork));
+  bytes += surface_bytes(model, n) + static_cast<double>(device_memory_of_meshes(model));
   bytes += n.particles * (kReportArrays + output_bytes(model.output)) +
            static_cast<double>(kRecordsAtOnce) * sizeof(Particle);
   if (model.output.contacts)

@@ -3,6 +3,7 @@
 
 #include "mesh/mesh_builder.hpp"
 #include "mesh/primitives.hpp"
+#include "mesh/shape_parts.hpp"
 
 namespace scree {
 
@@ -29,10 +30,10 @@ Section drum_section(const DrumShape& shape) {
   if (shape.lifters == 0)
     for (Index k = 0; k < shape.segments; ++k)
       add(section.inner, shape.radius * circle_point(k, shape.segments));
-  const Real half = shape.lifter_width / 2, foot_angle = std::asin(half / shape.radius);
+  const DrumArcs arcs = drum_arcs(shape);
+  const Index arc = arcs.segments, below = arcs.below;
+  const Real half = shape.lifter_width / 2, foot_angle = arcs.foot_angle;
   const Real foot = std::sqrt(shape.radius * shape.radius - half * half);
-  const Index arc = 2 * ((shape.segments + 2 * shape.lifters - 1) / std::max<Index>(1, 2 * shape.lifters));
-  const Index below = static_cast<Index>(std::ceil(shape.segments * foot_angle / kPi));
   for (Index i = 0; i < shape.lifters; ++i) {
     const Vec3 out = circle_point(i, shape.lifters), along{-out.y, out.x, 0};
     const auto on_arc = [&](Real angle) {

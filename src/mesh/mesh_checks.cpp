@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "mesh/mesh_mass.hpp"
 #include "mesh/mesh_shells.hpp"
 #include "mesh/mesh_sides.hpp"
+#include "mesh/shell_crossings.hpp"
 
 namespace scree {
 
@@ -168,7 +170,10 @@ class Checker {
   void check_shells() {
     Places inverted, inner;
     const std::vector<Index> shell = shells_of(mesh_);
-    for (const MisplacedShell& misplaced : misplaced_shells(mesh_, shell)) {
+    std::set<Index> crossing;
+    for (const ShellCrossing& c : shell_crossings(mesh_, shell)) crossing.insert({c.shell[0], c.shell[1]});
+    for (const MisplacedShell& misplaced :
+         misplaced_shells(mesh_, shell, {crossing.begin(), crossing.end()})) {
       const auto text = [&] {
         const auto first = std::find(shell.begin(), shell.end(), misplaced.shell) - shell.begin();
         return fmt::format("that of {}", triangle_text(static_cast<Index>(first)));
@@ -192,6 +197,17 @@ class Checker {
 std::vector<std::string> mesh_troubles(const TriangleMesh& mesh, bool sheet,
                                        const std::vector<Index>& numbers) {
   return Checker(mesh, numbers).troubles(sheet);
+}
+
+std::string crossing_text(const TriangleMesh& mesh, const std::vector<Index>& numbers) {
+  const std::vector<ShellCrossing> crossings = shell_crossings(mesh, shells_of(mesh));
+  if (crossings.empty()) return "";
+  const auto number = [&](Index triangle) { return numbers.empty() ? triangle : numbers[triangle]; };
+  const ShellCrossing& first = crossings.front();
+  return fmt::format(
+      "its shells {} and {} cut through each other, first at {} (triangles {} and {}){}", first.shell[0],
+      first.shell[1], text_of(first.position), number(first.triangle[0]), number(first.triangle[1]),
+      crossings.size() == 1 ? "" : fmt::format("; so do {} more pairs of shells", crossings.size() - 1));
 }
 
 }  // namespace scree

@@ -6,14 +6,21 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <set>
 
+#include "mesh/box_tree.hpp"
 #include "mesh/mesh_sides.hpp"
+#include "mesh/shell_crossings.hpp"
 
 namespace scree {
 
 namespace {
 
 constexpr std::size_t kMostShells = 10'000;  // each is compared with each
+constexpr Real kShareOfThickness = 0.01;     // so deep under a shell's surface its inside begins for sure
+
+// Of length 2 x area.
+Vec3 normal_of(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
 struct Shell {
   std::vector<std::array<Vec3, 3>> triangles;
@@ -29,11 +36,16 @@ struct Shell {
   bool may_hold(Vec3 p) const {
     return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y && low.z <= p.z && p.z <= high.z;
   }
-  Vec3 place() const { return triangles[0][0]; }
   Real volume() const {
+    const Vec3 place = triangles[0][0];
     Real sum = 0;
-    for (const auto& [a, b, c] : triangles) sum += dot(a - place(), cross(b - place(), c - place()));
+    for (const auto& [a, b, c] : triangles) sum += dot(a - place, cross(b - place, c - place));
     return sum / 6;
+  }
+  Real area() const {
+    Real sum = 0;
+    for (const auto& [a, b, c] : triangles) sum += norm(cross(b - a, c - a));
+    return sum / 2;
   }
 };
 
@@ -54,6 +66,37 @@ Real turns_around(Vec3 point, const Shell& shell) {
   if (shell.may_hold(point))
     for (const auto& [a, b, c] : shell.triangles) turns += turns_around(point, a, b, c);
   return turns;
+}
+
+// In how many places the surroundings of a shell are looked at: each of them costs a pass over the triangles
+// of the shells whose boxes it is in, and one over all boxes.
+std::size_t points_to_judge(std::size_t triangles, std::size_t shells) {
+  constexpr Real kMostPoints = 16, kMostTriangles = 1e7, kMostBoxes = 1e8;
+  const Real many = std::min(kMostTriangles / static_cast<Real>(triangles),
+                             kMostBoxes / static_cast<Real>(shells * shells));
+  return static_cast<std::size_t>(std::clamp(many, Real(1), kMostPoints));
+}
+
+// The list cut into so many parts, of each the largest triangle.
+std::vector<Index> largest_of_parts(const TriangleMesh& mesh, const std::vector<Index>& list,
+                                    std::size_t parts) {
+  std::vector<Index> largest;
+  for (std::size_t k = 0; k < std::min(parts, list.size()); ++k) {
+    const auto at = [&](std::size_t part) {
+      return list.begin() + static_cast<std::ptrdiff_t>(part * list.size() / std::min(parts, list.size()));
+    };
+    largest.push_back(*std::max_element(at(k), at(k + 1), [&](Index t, Index u) {
+      return norm(normal_of(corners_of(mesh, t))) < norm(normal_of(corners_of(mesh, u)));
+    }));
+  }
+  return largest;
+}
+
+// The point at this depth under the middle of a triangle [m].
+Vec3 behind(const TriangleMesh& mesh, Index triangle, Real depth) {
+  const TriangleCorners c = corners_of(mesh, triangle);
+  const Vec3 normal = normal_of(c);
+  return Real(1) / 3 * (c[0] + c[1] + c[2]) - depth / norm(normal) * normal;
 }
 
 }  // namespace
@@ -81,7 +124,8 @@ std::vector<Index> shells_of(const TriangleMesh& mesh) {
 }
 
 std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
-                                             const std::vector<Index>& shell_of_triangle) {
+                                             const std::vector<Index>& shell_of_triangle,
+                                             const std::vector<Index>& crossing) {
   const Index count = 1 + *std::max_element(shell_of_triangle.begin(), shell_of_triangle.end());
   if (count == 1 || static_cast<std::size_t>(count) > kMostShells) return {};
   std::vector<Shell> shells(static_cast<std::size_t>(count));
@@ -89,16 +133,36 @@ std::vector<MisplacedShell> misplaced_shells(const TriangleMesh& mesh,
     const auto [a, b, c] = mesh.triangles[i];
     shells[shell_of_triangle[i]].add({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
   }
-  std::vector<MisplacedShell> misplaced;
+  const std::vector<MeshBox> boxes = boxes_of(mesh);
+  std::vector<std::vector<Index>> near(shells.size());
+  for (const Index t : triangles_near_others(boxes, shell_of_triangle))
+    near[shell_of_triangle[t]].push_back(t);
+  const Real depth = kCrossingTolerance * extent_of(boxes);
+  const std::size_t points = points_to_judge(mesh.triangles.size(), shells.size());
+  std::vector<Real> volume;
+  for (const Shell& shell : shells) volume.push_back(shell.volume());
+  std::set<Index> misplaced;
   for (Index i = 0; i < count; ++i) {
-    Real turns = 0;
-    for (Index j = 0; j < count; ++j)
-      if (j != i) turns += turns_around(shells[i].place(), shells[j]);
-    const Real volume = shells[i].volume(), whole = std::round(turns);
-    const bool touches = !(std::abs(turns - whole) < Real(0.01));
-    if (!touches && whole != (volume < 0 ? 1 : 0)) misplaced.push_back({i, volume});
+    if (std::ranges::binary_search(crossing, i)) continue;
+    const Real around =
+        volume[i] < 0 ? 1 : 0;  // how often the others must go around the solid behind the shell
+    if (near[i].empty() && around != 0) misplaced.insert(i);
+    const Real under = std::min(depth, kShareOfThickness * std::abs(volume[i]) / shells[i].area());
+    for (const Index t : largest_of_parts(mesh, near[i], points)) {
+      Real turns = 0;
+      Index smallest = i;  // of two solids that share a volume
+      for (Index j = 0; j < count; ++j) {
+        const Real of_other = j == i ? 0 : turns_around(behind(mesh, t, under), shells[j]);
+        turns += of_other;
+        if (of_other > Real(0.5) && volume[j] < volume[smallest]) smallest = j;
+      }
+      const bool is_known = std::abs(turns - std::round(turns)) < Real(0.01);
+      if (is_known && std::round(turns) != around) misplaced.insert(smallest);
+    }
   }
-  return misplaced;
+  std::vector<MisplacedShell> result;
+  for (const Index shell : misplaced) result.push_back({shell, volume[shell]});
+  return result;
 }
 
 }  // namespace scree

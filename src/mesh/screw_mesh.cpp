@@ -5,6 +5,7 @@
 
 #include "mesh/mesh_builder.hpp"
 #include "mesh/primitives.hpp"
+#include "mesh/shape_parts.hpp"
 
 namespace scree {
 
@@ -12,8 +13,8 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// A left-handed one. Its section at one height: the free core, and the flight as a fan of `radial_segments_`
-// by `sector_segments_` patches, whose edges on the flight's faces are so short that a face's patches, which
+// A left-handed one. Its section at one height: the free core, and the flight as a fan of `radial_segments`
+// by `sector_segments` patches, whose edges on the flight's faces are so short that a face's patches, which
 // are twisted, are flat to second order. Strips split the core's patches along z where the sections turn this
 // way; the other way they would cut off a chord of two segments.
 class Screw {
@@ -22,15 +23,13 @@ class Screw {
       : shape_(shape),
         rise_(std::abs(shape.pitch)),
         half_sector_(kPi * shape.thickness / rise_),
-        layers_(segments_of(shape.length / rise_, 1)),
-        core_segments_(segments_of(1 - half_sector_ / kPi, 2)),
-        sector_segments_(segments_of(half_sector_ / kPi, 1)),
-        radial_segments_(segments_of((1 - shape.core_radius / shape.flight_radius) / (2 * kPi), 1)) {}
+        parts_(screw_parts(shape)) {}
 
   TriangleMesh mesh() {
     std::vector<Layer> layers;
-    for (Index k = 0; k <= layers_; ++k) layers.push_back(layer(k));
-    for (Index k = 0; k < layers_; ++k) builder_.strip(contour(layers[k]), contour(layers[k + 1]), true);
+    for (Index k = 0; k <= parts_.layers; ++k) layers.push_back(layer(k));
+    for (Index k = 0; k < parts_.layers; ++k)
+      builder_.strip(contour(layers[k]), contour(layers[k + 1]), true);
     end(layers.front(), false);
     end(layers.back(), true);
     return builder_.take();
@@ -44,11 +43,8 @@ class Screw {
     Real z, turned;
   };
 
-  Index segments_of(Real turns, Index least) const {
-    return std::max(least, static_cast<Index>(std::ceil(shape_.segments * turns)));
-  }
   Real radius(Index k) const {
-    return shape_.core_radius + (shape_.flight_radius - shape_.core_radius) * k / radial_segments_;
+    return shape_.core_radius + (shape_.flight_radius - shape_.core_radius) * k / parts_.radial_segments;
   }
   Index vertex_at(Real radius, Real angle, Real z) {
     return builder_.vertex({radius * std::cos(angle), radius * std::sin(angle), z});
@@ -61,13 +57,15 @@ class Screw {
     return ring;
   }
   Layer layer(Index k) {
-    const Real z = shape_.length * (Real(k) / layers_ - Real(0.5)), turned = -2 * kPi * z / rise_;
+    const Real z = shape_.length * (Real(k) / parts_.layers - Real(0.5)), turned = -2 * kPi * z / rise_;
     const Real first = turned - half_sector_, second = turned + half_sector_;
     Layer layer{{}, {}, {}, {}, z, turned};
-    layer.core = arc(shape_.core_radius, second, first + 2 * kPi, core_segments_, z);
-    for (Index r = 1; r < radial_segments_; ++r) layer.first_face.push_back(vertex_at(radius(r), first, z));
-    layer.rim = arc(shape_.flight_radius, first, second, sector_segments_, z);
-    for (Index r = radial_segments_; --r > 0;) layer.second_face.push_back(vertex_at(radius(r), second, z));
+    layer.core = arc(shape_.core_radius, second, first + 2 * kPi, parts_.core_segments, z);
+    for (Index r = 1; r < parts_.radial_segments; ++r)
+      layer.first_face.push_back(vertex_at(radius(r), first, z));
+    layer.rim = arc(shape_.flight_radius, first, second, parts_.sector_segments, z);
+    for (Index r = parts_.radial_segments; --r > 0;)
+      layer.second_face.push_back(vertex_at(radius(r), second, z));
     return layer;
   }
   static Ring contour(const Layer& layer) {
@@ -76,12 +74,13 @@ class Screw {
       ring.insert(ring.end(), part->begin(), part->end());
     return ring;
   }
-  // Across the flight at radius(r), 0 <= r < radial_segments_: new vertices between those of the faces.
+  // Across the flight at radius(r), 0 <= r < parts_.radial_segments: new vertices between those of the faces.
   Ring across(const Layer& layer, Index r) {
-    const Index last = radial_segments_ - 1;
+    const Index last = parts_.radial_segments - 1;
     Ring ring{r == 0 ? layer.core.back() : layer.first_face[r - 1]};
-    for (Index k = 1; k < sector_segments_; ++k) {
-      const Real angle = layer.turned + half_sector_ * (2 * k - sector_segments_) / sector_segments_;
+    for (Index k = 1; k < parts_.sector_segments; ++k) {
+      const Real angle =
+          layer.turned + half_sector_ * (2 * k - parts_.sector_segments) / parts_.sector_segments;
       ring.push_back(vertex_at(radius(r), angle, layer.z));
     }
     ring.push_back(r == 0 ? layer.core.front() : layer.second_face[last - r]);
@@ -91,8 +90,8 @@ class Screw {
   void end(const Layer& layer, bool up) {
     const Ring foot = across(layer, 0);
     Ring low = foot;
-    for (Index r = 1; r <= radial_segments_; ++r) {
-      const Ring high = r < radial_segments_ ? across(layer, r) : layer.rim;
+    for (Index r = 1; r <= parts_.radial_segments; ++r) {
+      const Ring high = r < parts_.radial_segments ? across(layer, r) : layer.rim;
       up ? builder_.strip(high, low, false) : builder_.strip(low, high, false);
       low = high;
     }
@@ -117,7 +116,7 @@ class Screw {
   const ScrewShape& shape_;
   Real rise_;         // of a turn
   Real half_sector_;  // [rad], of the flight's section
-  Index layers_, core_segments_, sector_segments_, radial_segments_;
+  ScrewParts parts_;
   MeshBuilder builder_;
 };
 

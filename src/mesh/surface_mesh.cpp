@@ -102,6 +102,7 @@ SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, Real feature_angle, boo
   MeshParts parts = mesh_parts(topology, result.flatness, result.cosine);
   result.flatness = std::max(result.flatness, farthest_from_plane(topology.mesh, parts));
   result.curvature = mesh_curvature(topology, parts, result.cosine, sheet);
+  result.fold = least_fold(topology, parts, result.cosine, sheet);
   MeshFeatures features = mesh_features(topology, parts, sheet);
   result.triangles = std::move(features.triangles);
   result.features = std::move(features.features);

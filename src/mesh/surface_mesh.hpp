@@ -6,6 +6,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "mesh/mesh_curvature.hpp"
+#include "mesh/mesh_fold.hpp"
 #include "mesh/mesh_view.hpp"
 #include "mesh/triangle_mesh.hpp"
 
@@ -23,6 +24,7 @@ struct SurfaceMesh {
   std::vector<Index> original;     // number of each triangle in the mesh that it was made from
   MeshBox box;                     // of all vertices [m]
   MeshCurvature curvature;
+  MeshFold fold;
   bool sheet = false;
   Real cosine = 1, round_off = 0, flatness = 0;
 

@@ -53,12 +53,18 @@ const NamedMesh& mesh_of(const DeckTable& solid, const ModelNames& names) {
 }
 
 MassProperties mesh_mass(const DeckTable& table, const ModelNames& names, Real density) {
-  const auto& [mesh, sheet, line] = mesh_of(table, names);
+  const auto& [mesh, sheet, line, crossing] = mesh_of(table, names);
   const MeshInertia kind = table.choice<MeshInertia>("inertia");
   if (sheet && kind == MeshInertia::exact)
     table.fail("mesh",
                "is a sheet, which encloses no volume; inertia = \"convex\" or \"shell\", or give the body's "
                "mass and inertia instead");
+  if (!crossing.empty() && kind == MeshInertia::exact)
+    table.fail("mesh",
+               fmt::format("{}, and the volume that two of them share would count twice: unite them in "
+                           "the program that the file comes from, or leave solids out and give the "
+                           "body's mass and inertia",
+                           crossing));
   if ((kind == MeshInertia::shell) != table.has("thickness"))
     table.fail("thickness", kind == MeshInertia::shell ? "missing; inertia is \"shell\""
                                                        : "not used without inertia = \"shell\"");

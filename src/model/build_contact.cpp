@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +17,9 @@
 namespace scree {
 
 namespace {
+
+// Whether a key is given with an effect: where 0 means that there is none, it is as if it were left out.
+bool is_positive(const DeckTable& table, const char* key) { return table.has(key) && table.real(key) > 0; }
 
 // The damping ratio of a restitution, beside a law's K, n and tension.
 void take_restitution(const DeckTable& table, KelvinVoigt& law) {
@@ -161,18 +165,21 @@ Friction build_friction(const DeckTable& deck, const DeckTable& table, const Kel
   return friction;
 }
 
+constexpr std::array kRollingKeys{"rolling_friction", "rolling_damping", "twisting_friction"};
+
 // Spring: 2.25 K mu_r^2 R*^2 in space and 3 K mu_r^2 R*^2 in the plane, where none is given
 // (ElasticPlasticRolling).
 RollingResistance build_rolling(const DeckTable& table, const Friction& friction, int dimension) {
-  const bool springs = table.has("rolling_friction"), acts = springs || table.has("rolling_damping");
-  for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
-    if (table.has(key) && !table.has("friction"))
+  const bool springs = is_positive(table, "rolling_friction"),
+             acts = springs || is_positive(table, "rolling_damping");
+  for (const char* key : kRollingKeys)
+    if (is_positive(table, key) && !table.has("friction"))
       table.fail(key, "needs friction beside it, 0 where contacts do not rub");
-  if (table.has("rolling_stiffness") && !springs)
+  if (table.has("rolling_stiffness") && !table.has("rolling_friction"))
     table.fail("rolling_stiffness", "needs rolling_friction beside it");
-  if (table.real("rolling_damping_ratio") > 0 && !springs)
+  if (table.real("rolling_damping_ratio") > 0 && !table.has("rolling_friction"))
     table.fail("rolling_damping_ratio", "needs rolling_friction beside it");
-  if (dimension == 2 && table.has("twisting_friction"))
+  if (dimension == 2 && is_positive(table, "twisting_friction"))
     table.fail("twisting_friction", "must be left out in 2D: discs do not twist");
   RollingResistance rolling;
   if (springs) {
@@ -193,15 +200,14 @@ RollingResistance build_rolling(const DeckTable& table, const Friction& friction
 
 // Whether the pair asks for moments against rolling or twisting.
 bool resists_rolling(const DeckTable& table) {
-  return table.has("rolling_friction") || table.has("rolling_damping") || table.has("twisting_friction");
+  return std::ranges::any_of(kRollingKeys, [&](const char* key) { return is_positive(table, key); });
 }
 
 // Where contacts rub; what that does not go with yet.
 void check_friction(const DeckTable& deck, const Model& model) {
   for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
-    if (!pair.has("friction")) continue;
-    for (const char* key : {"rolling_friction", "rolling_damping", "twisting_friction"})
-      if (pair.has(key) && model.integrator.particles != ParticleIntegrator::velocity_verlet)
+    for (const char* key : kRollingKeys)
+      if (is_positive(pair, key) && model.integrator.particles != ParticleIntegrator::velocity_verlet)
         pair.fail(key,
                   "needs integrator.particles = \"velocity-verlet\": implicit steps have friction alone");
   }
@@ -227,20 +233,20 @@ void check_mixing(const DeckTable& table, const Contact& contact, const KelvinVo
 
 // What surfaces that attract each other add to a pair's law.
 void take_attraction(const DeckTable& table, KelvinVoigt& law) {
+  if (table.has("surface_energy") && table.has("work_of_adhesion"))
+    table.fail("surface_energy", "stands beside work_of_adhesion; give one of the two");
   const char* key = table.has("surface_energy") ? "surface_energy" : "work_of_adhesion";
-  if (table.has(key)) {
-    if (table.has("surface_energy") && table.has("work_of_adhesion"))
-      table.fail(key, "stands beside work_of_adhesion; give one of the two");
+  if (is_positive(table, key)) {
     if (law.effective_modulus == 0)
       table.fail(key,
                  "needs Hertz's law: young_modulus and poisson_ratio of both materials, spheres, and no "
                  "stiffness; other laws may have an attraction");
     law.adhesion_work = (table.has("surface_energy") ? 2 : 1) * table.real(key);
     law.neck = !table.has("adhesion") || table.choice<Adhesion>("adhesion") == Adhesion::jkr;
-  } else if (table.has("adhesion")) {
+  } else if (table.has("adhesion") && !table.has(key)) {
     table.fail("adhesion", "needs work_of_adhesion or surface_energy beside it");
   }
-  if (table.has("attraction")) {
+  if (is_positive(table, "attraction")) {
     if (law.effective_modulus == 0 && law.exponent != 1)
       table.fail("attraction", "needs a pair with exponent = 1, or Hertz's law");
     if (!law.acts()) table.fail("attraction", "must be left out where the stiffness is 0");
@@ -272,12 +278,9 @@ void check_attraction_beside(const DeckTable& table, const Contact& contact, con
 // What attraction does not go with yet.
 void check_attraction(const DeckTable& contact, const Model& model) {
   for (const DeckTable& pair : contact.tables("pairs")) {
-    const char* key = pair.has("attraction")       ? "attraction"
-                      : pair.has("surface_energy") ? "surface_energy"
-                                                   : "work_of_adhesion";
-    if (!pair.has(key) || pair.real(key) == 0) continue;
-    if (model.integrator.particles != ParticleIntegrator::velocity_verlet)
-      pair.fail(key, "needs integrator.particles = \"velocity-verlet\"");
+    for (const char* key : {"attraction", "surface_energy", "work_of_adhesion"})
+      if (is_positive(pair, key) && model.integrator.particles != ParticleIntegrator::velocity_verlet)
+        pair.fail(key, "needs integrator.particles = \"velocity-verlet\"");
   }
 }
 

@@ -14,6 +14,7 @@
 #include "mesh/surface_numbers.hpp"
 #include "mesh/weld.hpp"
 #include "model/build_parts.hpp"
+#include "model/fit_segments.hpp"
 #include "model/make_mesh.hpp"
 
 namespace scree {
@@ -54,7 +55,9 @@ TriangleMesh made_finer(const DeckTable& table, const TriangleMesh& mesh) {
 // Surfaces that come close to each other may meet in the coarser mesh.
 TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
   CoarseMesh coarse = coarsened(mesh, table.real("coarsen"), table.real("feature_angle"));
-  const std::vector<std::string> troubles = mesh_troubles(coarse.mesh, is_sheet(table));
+  std::vector<std::string> troubles = mesh_troubles(coarse.mesh, is_sheet(table));
+  if (troubles.empty() && !is_sheet(table) && note.crossing.empty()) troubles = {crossing_text(coarse.mesh)};
+  std::erase(troubles, "");
   if (!troubles.empty())
     table.fail("coarsen",
                fmt::format("is too large, the coarser mesh is no surface: {}", fmt::join(troubles, "; ")));
@@ -62,17 +65,18 @@ TriangleMesh made_coarser(const DeckTable& table, const TriangleMesh& mesh, Mode
   return std::move(coarse.mesh);
 }
 
-// Welded and checked.
-TriangleMesh checked(const DeckTable& table, const TriangleMesh& mesh) {
+// Welded and checked. note: gets where its shells cross.
+TriangleMesh checked(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
   LooselyWelded joined{welded(mesh), {}};
   if (table.has("weld")) joined = welded_within(mesh, table.real("weld"));
   check(table, joined.mesh, joined.numbers);
+  if (table.has("file") && !is_sheet(table)) note.crossing = crossing_text(joined.mesh, joined.numbers);
   return std::move(joined.mesh);
 }
 
-// Made coarser and finer, too. note: gets what became of the triangles.
+// Made coarser and finer, too. note: gets what became of the triangles, too.
 TriangleMesh checked_and_resized(const DeckTable& table, const TriangleMesh& mesh, ModelMesh& note) {
-  TriangleMesh surface = checked(table, mesh);
+  TriangleMesh surface = checked(table, mesh, note);
   if (table.has("coarsen")) surface = made_coarser(table, surface, note);
   return table.has("refine") ? made_finer(table, surface) : surface;
 }
@@ -84,6 +88,17 @@ void check_features(const DeckTable& table, const SurfaceMesh& mesh) {
     table.fail(source_key(table),
                fmt::format("the mesh has {} faces, edges and vertices; at most {} can be told apart",
                            features, most));
+}
+
+// The table with what it leaves out of how finely it is cut. note: gets what fits particles of radius
+// `grain` [m], and whether the mesh has it.
+DeckTable with_fitting_segments(DeckTable table, Real grain, ModelMesh& note) {
+  const FittingSegments fitting = fitting_segments_of(table, grain);
+  if (fitting.key.empty()) return table;
+  if (grain < kInfinity) note.fitting = fmt::format("{} = {}", fitting.key, fitting.value);
+  note.is_fitted = !table.has(fitting.key);
+  if (note.is_fitted) table.set(fitting.key, {fitting.value, table.place(), std::to_string(fitting.value)});
+  return table;
 }
 
 }  // namespace
@@ -104,21 +119,26 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
   const bool planar = space.integer("dimension") == 2;
   // No particle is near the ends of a line along z.
   const Real half_depth = norm(space.vector("max") - space.vector("min"));
-  for (const DeckTable& table : deck.tables("meshes")) {
+  const Real grain = deck.tables("meshes").empty() ? kInfinity : smallest_grain(deck);
+  for (const DeckTable& given : deck.tables("meshes")) {
+    ModelMesh made{given.text("name"), nullptr};
+    const DeckTable table = with_fitting_segments(given, grain, made);
     if (planar != (table.choice<MeshKind>("kind") == MeshKind::line))
       table.fail("kind",
                  planar ? "must be \"line\", as space.dimension = 2" : "\"line\" needs space.dimension = 2");
     add_name(names.meshes, table.text("name"), static_cast<int>(model.meshes.size()), table);
-    ModelMesh made{table.text("name"), nullptr};
     const TriangleMesh line_solid = planar ? make_line_solid(table) : TriangleMesh{};
-    const TriangleMesh drawn = make_mesh(table, half_depth);
+    const MadeMesh drawn = make_mesh(table, half_depth);
     // A line was refined when it was drawn.
-    const TriangleMesh mesh = planar ? checked(table, drawn) : checked_and_resized(table, drawn, made);
+    const TriangleMesh mesh =
+        planar ? checked(table, drawn.triangles, made) : checked_and_resized(table, drawn.triangles, made);
     made.surface = std::make_shared<const SurfaceMesh>(
         build_surface_mesh(mesh, table.real("feature_angle"), is_sheet(table)));
     check_features(table, *made.surface);
+    made.deviation = drawn.deviation.value_or(made.surface->curvature.sag);
+    made.deviation_is_exact = drawn.deviation.has_value();
     model.meshes.push_back(made);
-    names.triangles.push_back({planar ? line_solid : mesh, is_sheet(table), planar});
+    names.triangles.push_back({planar ? line_solid : mesh, is_sheet(table), planar, made.crossing});
   }
 }
 

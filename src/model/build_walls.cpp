@@ -58,6 +58,19 @@ void check_periodic_axes(const DeckTable& table, const Wall& wall, const Space& 
   }
 }
 
+// A surface runs along itself: what its velocity has across a plane would act on nothing.
+void check_runs_along(const DeckTable& table, const Wall& wall) {
+  constexpr Real kRoundOff = 1e-9;
+  const Vec3 v = wall.surface_velocity;
+  const Real across = dot(v, wall.normal);
+  if (std::abs(across) <= kRoundOff * norm(v)) return;
+  table.fail(
+      "surface_velocity",
+      fmt::format("has a part of {:.4g} m/s along the plane's normal; a surface runs along itself, and "
+                  "motions move a wall",
+                  across));
+}
+
 }  // namespace
 
 Wall build_wall(const DeckTable& table, const ModelNames& names, const Space& space) {
@@ -75,6 +88,7 @@ Wall build_wall(const DeckTable& table, const ModelNames& names, const Space& sp
     if (!table.has(key)) table.fail(key, "missing; without mesh it must be given");
   wall.point = table.vector("point"), wall.normal = unit_vector(table, "normal");
   check_periodic_axes(table, wall, space);
+  check_runs_along(table, wall);
   return wall;
 }
 

@@ -196,4 +196,17 @@ std::vector<Real> draw(const DeckTable& table, std::int64_t count, IdRange part,
   return values;
 }
 
+std::vector<Real> distribution_values(const DeckTable& distribution) {
+  switch (distribution.choice<DistributionKind>("kind")) {
+    case DistributionKind::constant:
+      return {distribution.real("value")};
+    case DistributionKind::uniform:
+    case DistributionKind::normal:
+      return {distribution.real("min"), distribution.real("max")};
+    case DistributionKind::table:
+      return distribution.reals("values");
+  }
+  throw std::logic_error("a distribution of no kind");
+}
+
 }  // namespace scree

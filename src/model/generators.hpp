@@ -44,4 +44,7 @@ std::string packing_trouble(const PackingBox& box, std::vector<Real> radius);
 std::vector<Real> draw(const DeckTable& distribution, std::int64_t count, IdRange part,
                        RandomNumbers& random);
 
+// Values that a distribution may take, the least among them.
+std::vector<Real> distribution_values(const DeckTable& distribution);
+
 }  // namespace scree

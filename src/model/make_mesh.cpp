@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.hpp"
 #include "deck/choices.hpp"
+#include "mesh/facets.hpp"
 #include "mesh/primitives.hpp"
 #include "mesh/read_mesh.hpp"
 #include "model/frames.hpp"
@@ -29,9 +31,9 @@ void check_smaller(const DeckTable& table, const std::string& key, const std::st
 }
 
 template <class Shape>
-TriangleMesh sound(const DeckTable& table, const Shape& shape, TriangleMesh (*make)(const Shape&)) {
+MadeMesh sound(const DeckTable& table, const Shape& shape, TriangleMesh (*make)(const Shape&)) {
   if (const std::string trouble = shape_trouble(shape); !trouble.empty()) table.fail("kind", trouble);
-  return make(shape);
+  return {make(shape), facet_deviation(shape)};
 }
 
 DrumShape drum_of(const DeckTable& table) {
@@ -124,12 +126,12 @@ TriangleMesh read(const DeckTable& table) {
   }
 }
 
-TriangleMesh made(const DeckTable& table, Real half_depth) {
+MadeMesh made(const DeckTable& table, Real half_depth) {
   const auto radius = [&] { return table.real("radius"); };
   const auto length = [&] { return table.real("length"); };
   switch (table.choice<MeshKind>("kind")) {
     case MeshKind::file:
-      return read(table);
+      return {read(table), std::nullopt};
     case MeshKind::box:
       return sound(table, BoxShape{size_of(table, 3)}, box_mesh);
     case MeshKind::cylinder:
@@ -164,12 +166,12 @@ TriangleMesh made(const DeckTable& table, Real half_depth) {
     }
     case MeshKind::rectangle: {
       const Vec3 size = size_of(table, 2);
-      return rectangle_mesh(size.x, size.y);
+      return {rectangle_mesh(size.x, size.y), 0};
     }
     case MeshKind::line:
       break;
   }
-  return line_of(table, half_depth);
+  return {line_of(table, half_depth), std::nullopt};
 }
 
 TriangleMesh placed(const DeckTable& table, TriangleMesh mesh) {
@@ -214,8 +216,10 @@ bool is_sheet(const DeckTable& table) {
   }
 }
 
-TriangleMesh make_mesh(const DeckTable& table, Real half_depth) {
-  return placed(table, made(table, half_depth));
+MadeMesh make_mesh(const DeckTable& table, Real half_depth) {
+  MadeMesh mesh = made(table, half_depth);
+  mesh.triangles = placed(table, std::move(mesh.triangles));
+  return mesh;
 }
 
 TriangleMesh make_line_solid(const DeckTable& table) {

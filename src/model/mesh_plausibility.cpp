@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/facets.hpp"
 #include "model/limits.hpp"
 #include "model/plausibility.hpp"
 #include "physics/plausible.hpp"
@@ -19,14 +20,24 @@ constexpr Real kMostSag = 0.1;      // over the largest overlap: so far the forc
 constexpr Real kMostTrianglesNear = 64;
 constexpr Real kMostOfSpace = 10;  // the length of a mesh
 
-Real area_of(const SurfaceMesh& mesh) {
-  Real area = 0;
+// Sums over the triangles [m^2], [m].
+struct MeshSize {
+  Real area = 0, perimeters = 0;
+};
+
+MeshSize size_of(const SurfaceMesh& mesh) {
+  MeshSize size;
   for (const MeshTriangle& triangle : mesh.triangles) {
-    const Vec3 a = mesh.vertices[triangle.vertex[0]];
-    area += norm(cross(mesh.vertices[triangle.vertex[1]] - a, mesh.vertices[triangle.vertex[2]] - a)) / 2;
+    const Vec3 a = mesh.vertices[triangle.vertex[0]], b = mesh.vertices[triangle.vertex[1]],
+               c = mesh.vertices[triangle.vertex[2]];
+    size.area += norm(cross(b - a, c - a)) / 2;
+    size.perimeters += norm(b - a) + norm(c - b) + norm(a - c);
   }
-  return area;
+  return size;
 }
+
+// Of a line, which is drawn along z [m].
+Real length_of(const SurfaceMesh& line) { return size_of(line).area / (line.box.max.z - line.box.min.z); }
 
 // Meshes that walls and bodies have, or solids are made of.
 std::set<std::string> used_meshes(const DeckTable& deck) {
@@ -51,18 +62,25 @@ std::vector<std::set<int>> materials_of(const Model& model) {
   return materials;
 }
 
+// Pairs of one of the materials with one that particles have.
+std::vector<PairLimit> limits_with_particles(const Model& model, const std::set<int>& materials) {
+  const std::vector<MaterialUse> uses = material_uses(model);
+  std::vector<PairLimit> limits = pair_limits(model);
+  std::erase_if(limits, [&](const PairLimit& limit) {
+    const auto is_on = [&](int side) {
+      return materials.contains(limit.material[side]) &&
+             uses[static_cast<std::size_t>(limit.material[1 - side])].particles > 0;
+    };
+    return !is_on(0) && !is_on(1);
+  });
+  return limits;
+}
+
 // The largest that impacts on one of the materials make; 0 where nothing moves [m].
 Real largest_overlap(const Model& model, const std::set<int>& materials) {
-  const std::vector<MaterialUse> uses = material_uses(model);
-  const auto has_particles = [&](int material) {
-    return uses[static_cast<std::size_t>(material)].particles > 0;
-  };
   Real largest = 0;
-  for (const PairLimit& limit : pair_limits(model))
-    for (int side = 0; side < 2; ++side)
-      if (materials.contains(limit.material[side]) && has_particles(limit.material[1 - side]))
-        largest =
-            std::max(largest, impact_overlap(limit.law, lightest_mass(limit), impact_speed(model, limit)));
+  for (const PairLimit& limit : limits_with_particles(model, materials))
+    largest = std::max(largest, impact_overlap(limit.law, lightest_mass(limit), impact_speed(model, limit)));
   return largest;
 }
 
@@ -91,14 +109,14 @@ std::string too_narrow(const Model& model, const ModelMesh& mesh) {
 }
 
 std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set<int>& materials) {
-  const Real sag = mesh.surface->curvature.sag, overlap = largest_overlap(model, materials);
+  const Real sag = mesh.deviation, overlap = largest_overlap(model, materials);
   if (overlap > 0 && mesh.moved > std::max(sag, kMostSag * overlap))
     return fmt::format(
         "mesh \"{}\": coarsen leaves the file's vertices up to {:.3g} m beside it, {:.0f} % of the {:.3g} m "
         "by "
         "which impacts overlap it, and forces err by as much: a smaller coarsen",
         mesh.name, mesh.moved, 100 * mesh.moved / overlap, overlap);
-  if (overlap == 0 || !(sag > kMostSag * overlap)) return "";
+  if (overlap == 0 || mesh.is_fitted || !(sag > kMostSag * overlap)) return "";
   return fmt::format(
       "mesh \"{}\": its facets are up to {:.3g} m beside the smooth surface that they stand for, {:.0f} % of "
       "the {:.3g} m by which impacts overlap it, and forces err by as much: facets of half the length have a "
@@ -106,15 +124,91 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
       mesh.name, sag, 100 * sag / overlap, overlap);
 }
 
-std::string too_fine(const Model& model, const ModelMesh& mesh) {
-  const Real radius = model.particles.totals.largest_radius,
-             near = triangles_near(model, *mesh.surface, radius);
+// What makes a mesh of this table coarser.
+std::string coarser(const DeckTable& table, const ModelMesh& mesh, Real smallest_radius) {
+  if (table.has("refine")) return "a larger refine";
+  if (table.has("file")) return fmt::format("coarsen = {:.2g}", kFacetShare * smallest_radius);
+  return mesh.fitting.empty() || mesh.is_fitted ? "a smaller contact.skin" : mesh.fitting;
+}
+
+std::string too_fine(const Model& model, const ModelMesh& mesh, const DeckTable& table) {
+  const ParticleTotals& particles = model.particles.totals;
+  const Real near = triangles_near(model, *mesh.surface, particles.largest_radius);
   if (!(near > kMostTrianglesNear)) return "";
   return fmt::format(
-      "mesh \"{}\": a particle of radius {:.3g} m that touches it is near about {:.3g} triangles, and each "
-      "of "
-      "them is looked at: a coarser mesh, or a smaller contact.skin",
-      mesh.name, radius, near);
+      "mesh \"{}\": its triangles are small beside the particles: one of radius {:.3g} m that touches it is "
+      "near "
+      "about {:.2g} of them, and each costs time: {}",
+      mesh.name, particles.largest_radius, near, coarser(table, mesh, particles.smallest_radius));
+}
+
+// What contacts of a fold need, of the pair of materials that overlaps the farthest beyond it: by how much
+// its stiffness is too low.
+struct FoldNeed {
+  Real factor = 0;   // of the stiffness
+  Real overlap = 0;  // [m]
+  PairLimit limit;
+};
+
+// r: of the smallest particle; most: overlap that the fold allows [m].
+FoldNeed need_of_fold(const Model& model, const std::set<int>& materials, Real most) {
+  FoldNeed need;
+  for (const PairLimit& limit : limits_with_particles(model, materials)) {
+    const Real impact = impact_overlap(limit.law, lightest_mass(limit), impact_speed(model, limit)),
+               rest = resting_overlap(limit.law, weight_at_bottom(model)), n = limit.law.exponent;
+    const Real factor = std::max(std::pow(impact / most, n + 1), std::pow(rest / most, n));
+    if (factor > need.factor) need = {factor, std::max(impact, rest), limit};
+  }
+  return need;
+}
+
+std::string sharp_folds(const Model& model, const ModelMesh& mesh, const std::set<int>& materials) {
+  const MeshFold& fold = mesh.surface->fold;
+  if (fold.angle == 0) return "";
+  const Real share = 1 - std::cos(fold.angle), radius = model.particles.totals.smallest_radius;
+  const FoldNeed need = need_of_fold(model, materials, share * radius);
+  if (!(need.factor > 1)) return "";
+  const auto [one, other] = need.limit.material;
+  const std::vector<std::string>& names = model.contact.material_names;
+  const bool has_moduli = model.contact.law(one, other).effective_modulus > 0;
+  return fmt::format(
+      "mesh \"{}\": its faces turn inwards by {:.3g} degrees at ({:.4g}, {:.4g}, {:.4g}) in its own frame, "
+      "and "
+      "contact \"{}\" on \"{}\" overlaps by up to {:.3g} of the smallest radius, {:.3g} m: past {:.2g} a "
+      "contact "
+      "with one side of such a fold ends at once, and impacts there lose or gain energy; {}",
+      mesh.name, fold.angle * 180 / std::numbers::pi_v<Real>, fold.position.x, fold.position.y,
+      fold.position.z, names[static_cast<std::size_t>(one)], names[static_cast<std::size_t>(other)],
+      need.overlap / radius, radius, share,
+      has_moduli
+          ? fmt::format("moduli {:.2g} times as high would do", need.factor)
+          : fmt::format("a stiffness of {:.3g} N/m{} would do", need.factor * need.limit.law.normal_stiffness,
+                        need.limit.law.exponent == 1 ? "" : fmt::format("^{}", need.limit.law.exponent)));
+}
+
+std::string crossing_shells(const ModelMesh& mesh) {
+  if (mesh.crossing.empty()) return "";
+  return fmt::format(
+      "mesh \"{}\": {}: within what they share, what touches the mesh is taken to be outside, and its volume "
+      "counts "
+      "twice; unite the shells in the program that the file comes from",
+      mesh.name, mesh.crossing);
+}
+
+// Of a wall whose mesh has no face along which its surface could run.
+std::string runs_across(const Model& model, const Wall& wall) {
+  constexpr Real kRoundOff = 1e-9;
+  if (wall.mesh < 0 || !wall.runs()) return "";
+  const std::vector<MeshPart>& parts = model.meshes[static_cast<std::size_t>(wall.mesh)].surface->parts;
+  const auto is_across = [&](const MeshPart& part) {
+    return norm(cross(wall.surface_velocity, part.normal)) <= kRoundOff * norm(wall.surface_velocity);
+  };
+  if (!std::ranges::all_of(parts, is_across)) return "";
+  return fmt::format(
+      "wall \"{}\": its surface_velocity is across every face of its mesh, and takes nothing along: a "
+      "surface "
+      "runs along itself",
+      wall.name);
 }
 
 // Meshes meet neither walls nor each other.
@@ -128,18 +222,26 @@ std::string without_partners(const DeckTable& deck, const Model& model) {
 
 }  // namespace
 
+// Within a distance of a point of a plane that is cut into triangles are on average as many of these as have
+// the point within their outlines widened by that distance: the area of such an outline is that of the
+// triangle, its perimeter times the distance, and a disc.
 Real triangles_near(const Model& model, const SurfaceMesh& mesh, Real radius) {
-  const Real reach = radius + model.contact.reach + model.contact.skin, area = area_of(mesh);
+  const Real reach = radius + model.contact.reach + model.contact.skin;
+  const Real within = std::sqrt(reach * reach - radius * radius);
   const auto count = static_cast<Real>(mesh.triangles.size());
-  const Real cap = std::numbers::pi_v<Real> * (reach * reach - radius * radius);
-  if (model.space.dimension == 3) {
-    // Those that the border of the disc cuts count, too: as if it were wider by one.
-    const Real width = std::sqrt(cap * count / area) + 1;
-    return std::min(width * width, count);
+  if (model.space.dimension == 2) {
+    const Real segments = count / 2;
+    return std::min(1 + 2 * within * segments / length_of(mesh), segments);
   }
-  const Real length = area / (mesh.box.max.z - mesh.box.min.z);
-  const Real segments = count / 2;
-  return std::min(2 * std::sqrt(cap / std::numbers::pi_v<Real>) * segments / length + 1, segments);
+  const MeshSize size = size_of(mesh);
+  const Real discs = count * std::numbers::pi_v<Real> * within * within;
+  return std::min(1 + (size.perimeters * within + discs) / size.area, count);
+}
+
+Real triangles_wide(const Model& model, const SurfaceMesh& mesh, Real radius) {
+  const auto count = static_cast<Real>(mesh.triangles.size());
+  if (model.space.dimension == 2) return 2 * radius * count / 2 / length_of(mesh);
+  return 2 * radius / std::sqrt(2 * size_of(mesh).area / count);
 }
 
 std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& model) {
@@ -154,11 +256,15 @@ std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& 
       findings.push_back(fmt::format("mesh \"{}\": no wall, body or solid uses it", mesh.name));
     if (std::string finding = too_large(model, mesh); !finding.empty())
       findings.push_back(std::move(finding));
+    if (!materials[m].empty()) findings.push_back(crossing_shells(mesh));
     if (materials[m].empty() || model.particles.totals.count == 0) continue;
     for (const std::string& finding :
-         {too_narrow(model, mesh), too_coarse(model, mesh, materials[m]), too_fine(model, mesh)})
-      if (!finding.empty()) findings.push_back(finding);
+         {too_narrow(model, mesh), too_coarse(model, mesh, materials[m]),
+          too_fine(model, mesh, deck.tables("meshes")[m]), sharp_folds(model, mesh, materials[m])})
+      findings.push_back(finding);
   }
+  for (const Wall& wall : model.walls) findings.push_back(runs_across(model, wall));
+  std::erase(findings, "");
   return findings;
 }
 

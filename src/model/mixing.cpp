@@ -160,7 +160,8 @@ void Combination::take_twisting() {
   const char* key = "twisting_friction";
   if (!a_.has(key) && !b_.has(key)) return;
   const auto rolls = [&](const DeckTable& pair) {
-    return pair.has("rolling_friction") || pair.has("rolling_damping");
+    const auto acts = [&](const char* of) { return pair.has(of) && pair.real(of) > 0; };
+    return acts("rolling_friction") || acts("rolling_damping");
   };
   const auto of = [&](const DeckTable& pair) {
     if (!pair.has(key) && !rolls(pair)) both(key);

@@ -64,6 +64,13 @@ struct ModelMesh {
   std::vector<Real> solid_masses{};  // of solids that it stands for, each number once [kg]
   std::size_t triangles_before = 0;  // it was made coarser; else 0
   Real moved = 0;                    // the farthest that a vertex was then beside it [m]
+  // How far facets lie from the surface that they stand for at the most [m]: exact for what is made from a
+  // few numbers, else MeshCurvature::sag.
+  Real deviation = 0;
+  bool deviation_is_exact = false;
+  std::string fitting{};   // "segments = 32": what fits the size of the particles; empty: nothing is known
+  bool is_fitted = false;  // the deck leaves it out, and the mesh has it
+  std::string crossing{};  // where its shells cross each other, for messages; empty: they do not
 };
 
 // A pair of materials that the deck does not give, made by contact.mixing.

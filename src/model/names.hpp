@@ -29,6 +29,7 @@ struct NamedMesh {
   TriangleMesh mesh;
   bool sheet = false;
   bool line = false;
+  std::string crossing{};  // ModelMesh::crossing
 };
 
 struct ModelNames {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "deck/choices.hpp"
 #include "model/connections.hpp"
+#include "model/generators.hpp"
 #include "model/limits.hpp"
 #include "model/mesh_plausibility.hpp"
 #include "model/touching.hpp"
@@ -166,7 +166,15 @@ std::string overdamped(const Model& model, const PairLimit& limit) {
       pair_name(model, limit), damping, ratio, damping / ratio);
 }
 
-// Particles of the smallest kind, spread over the whole base: no column is lower than the mean.
+// In a column of particles of the smallest kind, spread over the whole base: no column is lower than the
+// mean.
+Real particles_on_top(const Model& model) {
+  const Real diameter = 2 * model.particles.totals.smallest_radius;
+  const Real per_layer = std::max(base_size(model) / std::pow(diameter, model.space.dimension - 1), Real(1));
+  return std::clamp(static_cast<Real>(model.particles.totals.count) / per_layer, Real(1),
+                    std::max(height(model) / diameter, Real(1)));
+}
+
 std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
   const ParticleTotals& totals = model.particles.totals;
   if (totals.count == 0 || height(model) == 0) return "";
@@ -175,11 +183,7 @@ std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
     return uses[static_cast<std::size_t>(limit.material[side])].particles;
   };
   if (particles(0) + particles(1) == 0) return "";
-  const Real diameter = 2 * totals.smallest_radius;
-  const Real per_layer = std::max(base_size(model) / std::pow(diameter, model.space.dimension - 1), Real(1));
-  const Real stack = std::clamp(static_cast<Real>(totals.count) / per_layer, Real(1),
-                                std::max(height(model) / diameter, Real(1)));
-  const Real weight = stack * totals.smallest_mass * norm(model.gravity),
+  const Real stack = particles_on_top(model), weight = weight_at_bottom(model),
              overlap = resting_overlap(limit.law, weight);
   if (overlap <= totals.smallest_radius) return "";
   return fmt::format(
@@ -253,20 +257,6 @@ std::string same_random_places(const DeckTable& deck) {
   return "";
 }
 
-// Values of a distribution that it may take.
-std::vector<Real> values_of(const DeckTable& distribution) {
-  switch (distribution.choice<DistributionKind>("kind")) {
-    case DistributionKind::constant:
-      return {distribution.real("value")};
-    case DistributionKind::uniform:
-    case DistributionKind::normal:
-      return {distribution.real("min"), distribution.real("max")};
-    case DistributionKind::table:
-      return distribution.reals("values");
-  }
-  throw std::logic_error("a distribution of no kind");
-}
-
 std::string odd_density(const DeckTable& deck) {
   const auto finding = [](const DeckTable& table, Real density) -> std::string {
     if (density >= kLightest && density <= kHeaviest) return "";
@@ -278,7 +268,7 @@ std::string odd_density(const DeckTable& deck) {
       if (const std::string text = finding(table, table.real("density")); !text.empty()) return text;
   for (const DeckTable& table : deck.tables("particles"))
     if (table.has("density"))
-      for (const Real density : values_of(table.table("density")))
+      for (const Real density : distribution_values(table.table("density")))
         if (const std::string text = finding(table, density); !text.empty()) return text;
   return "";
 }
@@ -328,6 +318,11 @@ std::string undamped_joints_in_space(const Model& model) {
 Real lightest_mass(const PairLimit& limit) {
   const Real inverse_frequency = limit.contact_time / std::numbers::pi_v<Real>;
   return limit.stiffness * inverse_frequency * inverse_frequency;
+}
+
+Real weight_at_bottom(const Model& model) {
+  if (model.particles.totals.count == 0 || height(model) == 0) return 0;
+  return particles_on_top(model) * model.particles.totals.smallest_mass * norm(model.gravity);
 }
 
 Real impact_speed(const Model& model, const PairLimit& limit) {

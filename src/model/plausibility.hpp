@@ -19,6 +19,9 @@ Real lightest_mass(const PairLimit& limit);
 // where there is something to fall on.
 Real impact_speed(const Model& model, const PairLimit& limit);
 
+// Of the particles above one at the bottom, which all lie on the base of the space [N]; 0 without gravity.
+Real weight_at_bottom(const Model& model);
+
 // Refuses contacts whose duration or step limit is 0 or infinite. Throws InputError.
 void check_step_limits(const DeckTable& deck, const Model& model);
 // Refuses a positive value that is smaller than any normal number: products with it lose their digits.

@@ -296,9 +296,11 @@ bool can_estimate_device(const Model& model, const Ranks& ranks) {
 std::string device_memory_line(const Model& model, const Ranks& ranks) {
   if (!can_estimate_device(model, ranks))
     return "device memory  too little memory is free here to estimate it\n";
-  const std::string line =
-      fmt::format("device memory  about {} {} (estimate)", megabytes(static_cast<Real>(device_memory(model))),
-                  ranks.alone() ? "on the GPU" : "on the GPU of each rank");
+  const std::size_t meshes = device_memory_of_meshes(model);
+  const std::string line = fmt::format(
+      "device memory  about {} {} (estimate{})", megabytes(static_cast<Real>(device_memory(model))),
+      ranks.alone() ? "on the GPU" : "on the GPU of each rank",
+      meshes == 0 ? "" : fmt::format("; {} of it meshes", megabytes(static_cast<Real>(meshes))));
   choose_device(ranks);
   const std::string trouble = device_trouble();
   if (ranks.any(!trouble.empty()))

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "mesh/mesh_mass.hpp"
 #include "mesh/mesh_shells.hpp"
@@ -60,19 +61,53 @@ std::string coarser_line(const ModelMesh& mesh) {
                      mesh.triangles_before, mesh.moved);
 }
 
-std::string curvature_line(const Model& model, const ModelMesh& mesh) {
+// What the angles between facets tell of files, and what they do not.
+std::string deviation_text(const ModelMesh& mesh) {
+  const SurfaceMesh& surface = *mesh.surface;
+  if (mesh.deviation_is_exact)
+    return mesh.deviation > 0 ? fmt::format("facets up to {:.3g} m beside the true surface", mesh.deviation)
+                              : "";
+  const std::string taken = fmt::format("edges of {:.3g} degrees or more are taken for true edges",
+                                        std::acos(surface.cosine) * 180 / std::numbers::pi_v<Real>);
+  return mesh.deviation > 0
+             ? fmt::format(
+                   "facets up to {:.3g} m beside their curve, estimated from the angles between them; {}",
+                   mesh.deviation, taken)
+             : fmt::format("no curve found from the angles between facets; {}", taken);
+}
+
+// "segments = 32, from the size of the particles".
+std::string fitted_text(const Model& model, const ModelMesh& mesh) {
+  if (!mesh.is_fitted) return "";
+  if (mesh.fitting.empty()) return "cut as without particles";
+  return fmt::format("{}, from the smallest particle's radius, {:.4g} m", mesh.fitting,
+                     model.particles.totals.smallest_radius);
+}
+
+std::string cost_text(const Model& model, const ModelMesh& mesh) {
+  const Real radius = model.particles.totals.largest_radius;
+  if (!(radius > 0)) return "";
+  const SurfaceMesh& surface = *mesh.surface;
+  return fmt::format("a particle of {:.4g} m is {:.2g} {} wide; where it touches, about {:.2g} are near",
+                     radius, triangles_wide(model, surface, radius),
+                     model.space.dimension == 2 ? "segments" : "triangles",
+                     triangles_near(model, surface, radius));
+}
+
+std::string facet_lines(const Model& model, const ModelMesh& mesh) {
   const MeshCurvature& curvature = mesh.surface->curvature;
-  std::string text;
-  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  std::string shape;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty()) shape += (shape.empty() ? "" : ", ") + part;
+  };
+  add(fitted_text(model, mesh));
   if (curvature.concave_radius < kInfinity)
     add(fmt::format("least concave radius about {:.3g} m", curvature.concave_radius));
-  if (curvature.sag > 0) add(fmt::format("facets up to {:.3g} m beside their curve", curvature.sag));
-  const Real radius = model.particles.totals.largest_radius;
-  if (radius > 0)
-    add(fmt::format("a particle of {:.4g} m that touches it is near about {:.2g} {}", radius,
-                    triangles_near(model, *mesh.surface, radius),
-                    model.space.dimension == 2 ? "segments" : "triangles"));
-  return text.empty() ? "" : fmt::format("               {}\n", text);
+  add(deviation_text(mesh));
+  std::string lines;
+  for (const std::string& line : {shape, cost_text(model, mesh)})
+    if (!line.empty()) lines += fmt::format("               {}\n", line);
+  return lines;
 }
 
 }  // namespace
@@ -84,7 +119,7 @@ std::string mesh_lines(const Model& model) {
     const ModelMesh& mesh = model.meshes[m];
     lines += fmt::format("mesh           \"{}\": {}{}\n", mesh.name,
                          planar ? line_text(*mesh.surface) : size_text(*mesh.surface), mass_text(mesh)) +
-             coarser_line(mesh) + curvature_line(model, mesh);
+             coarser_line(mesh) + facet_lines(model, mesh);
   }
   if (model.meshes.size() > kMeshesShown)
     lines += fmt::format("               and {} more\n", model.meshes.size() - kMeshesShown);

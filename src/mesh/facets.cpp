@@ -1,0 +1,159 @@
+#include "mesh/facets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh/shape_parts.hpp"
+
+namespace scree {
+
+namespace {
+
+constexpr Real kPi = std::numbers::pi_v<Real>;
+
+// Of a chord that spans this angle from its arc of radius 1; without the difference of two numbers near 1.
+Real sag_of(Real angle) {
+  const Real s = std::sin(angle / 4);
+  return 2 * s * s;
+}
+
+Real around(Real radius, Index segments) { return radius * sag_of(2 * kPi / segments); }
+
+// Of the side of a cone. A chord's middle is beside the circle by the sag, and beside the side by that times
+// the cosine of its slope.
+Real of_cone(Real radius, Real top_radius, Real length, Index segments) {
+  const Real slant = std::hypot(length, radius - top_radius);
+  return around(std::max(radius, top_radius), segments) * length / slant;
+}
+
+// Of a point in the plane from the origin to the segment from p to q.
+Real distance_to_segment(Real px, Real py, Real qx, Real qy) {
+  const Real ex = qx - px, ey = qy - py;
+  const Real t = std::clamp(-(px * ex + py * ey) / (ex * ex + ey * ey), Real(0), Real(1));
+  return std::hypot(px + t * ex, py + t * ey);
+}
+
+}  // namespace
+
+Real facet_deviation(const BoxShape&) { return 0; }
+Real facet_deviation(const HopperShape&) { return 0; }
+
+Real facet_deviation(const CylinderShape& shape) { return around(shape.radius, shape.segments); }
+
+Real facet_deviation(const ConeShape& shape) {
+  return of_cone(shape.radius, shape.top_radius, shape.length, shape.segments);
+}
+
+Real facet_deviation(const PlateShape& shape) { return around(shape.hole_radius, shape.segments); }
+
+Real facet_deviation(const PipeShape& shape) { return around(shape.outer_radius, shape.segments); }
+
+Real facet_deviation(const FunnelShape& shape) {
+  const Real cone = of_cone(shape.radius, shape.top_radius, shape.length, shape.segments);
+  return shape.outlet_length > 0 ? std::max(cone, around(shape.radius, shape.segments)) : cone;
+}
+
+// The largest facet is in the middle of a face of the icosahedron. Its corners are at an angle from the
+// face's axis whose tangent is halved with each level, as the middles of the facet's edges are half as far
+// from the axis and as far along it as its corners.
+Real facet_deviation(const SphereShape& shape) {
+  const Real g = std::numbers::phi_v<Real>, cosine = g * g / std::sqrt(3 * (1 + g * g));
+  const Real tangent = std::sqrt(1 - cosine * cosine) / cosine / std::ldexp(Real(1), shape.levels);
+  return shape.radius * sag_of(2 * std::atan(tangent));
+}
+
+// A half sphere's facets between two latitudes are flat, and symmetric to a meridian: the nearest point to
+// the centre is on the line between the middles of its two chords.
+Real facet_deviation(const CapsuleShape& shape) {
+  const Real chord = std::cos(kPi / shape.segments);
+  Real nearest = 1;
+  for (Index k = 0; k < shape.segments / 4; ++k) {
+    const Vec3 low = circle_point(k, shape.segments), high = circle_point(k + 1, shape.segments);
+    nearest = std::min(nearest, distance_to_segment(chord * low.x, low.y, chord * high.x, high.y));
+  }
+  return shape.radius * (1 - nearest);
+}
+
+// The outer wall has the angles of the arcs between the lifters and of those under them.
+Real facet_deviation(const DrumShape& shape) {
+  const DrumArcs arcs = drum_arcs(shape);
+  return (shape.radius + shape.wall) * sag_of(std::max(arcs.angle, arcs.angle_below));
+}
+
+namespace {
+
+// Of a point from the helicoid z = -rise * angle, which goes on to any radius: the least over the angle of
+// the distance from the line at that angle, by Newton's method from the point's own angle on.
+Real distance_from_helicoid(Vec3 p, Real rise) {
+  const Real radius = std::hypot(p.x, p.y), own = std::atan2(p.y, p.x);
+  Real turn = 0;  // from there
+  for (int step = 0; step < 20; ++step) {
+    const Real height = p.z + rise * (own + turn);
+    const Real slope = radius * radius * std::sin(2 * turn) / 2 + rise * height;
+    const Real bend = radius * radius * std::cos(2 * turn) + rise * rise;
+    if (!(bend > 0)) break;
+    turn -= slope / bend;
+  }
+  return std::hypot(radius * std::sin(turn), p.z + rise * (own + turn));
+}
+
+// The largest of points of a triangle.
+Real farthest_from_helicoid(Vec3 a, Vec3 b, Vec3 c, Real rise) {
+  constexpr int kPoints = 24;
+  Real farthest = 0;
+  for (int i = 0; i <= kPoints; ++i)
+    for (int j = 0; i + j <= kPoints; ++j) {
+      const Vec3 p = a + (Real(i) / kPoints) * (b - a) + (Real(j) / kPoints) * (c - a);
+      farthest = std::max(farthest, distance_from_helicoid(p, rise));
+    }
+  return farthest;
+}
+
+// Of a face of the flight between two sections that are turned by `angle`, each patch split from its inner
+// corner in the one to its outer corner in the other; the other face is its image in a half turn.
+Real of_flight(const ScrewShape& shape, const ScrewParts& parts, Real angle) {
+  const Real rise = std::abs(shape.pitch) / (2 * kPi), height = rise * angle;
+  const auto at = [&](Real radius, bool high) {
+    return high ? Vec3{radius * std::cos(angle), -radius * std::sin(angle), height} : Vec3{radius, 0, 0};
+  };
+  Real farthest = 0;
+  for (Index k = 0; k < parts.radial_segments; ++k) {
+    const Real step = (shape.flight_radius - shape.core_radius) / parts.radial_segments;
+    const Real inner = shape.core_radius + k * step, outer = inner + step;
+    farthest =
+        std::max({farthest, farthest_from_helicoid(at(inner, false), at(outer, false), at(outer, true), rise),
+                  farthest_from_helicoid(at(inner, false), at(outer, true), at(inner, true), rise)});
+  }
+  return farthest;
+}
+
+}  // namespace
+
+Real facet_deviation(const ScrewShape& shape) {
+  const ScrewParts parts = screw_parts(shape);
+  const Real sector = 2 * kPi * shape.thickness / std::abs(shape.pitch);
+  const Real turn = 2 * kPi * shape.length / std::abs(shape.pitch) / parts.layers;
+  const Real on_rim = sector / parts.sector_segments, on_core = (2 * kPi - sector) / parts.core_segments;
+  const Real at_ends = shape.core_length > shape.length ? on_rim : 0;
+  return std::max({shape.flight_radius * sag_of(std::max(turn, on_rim)),
+                   shape.core_radius * sag_of(std::max({turn, on_core, at_ends})),
+                   of_flight(shape, parts, turn)});
+}
+
+Index fitting_segments(Real radius, Real grain, Real feature_angle) {
+  constexpr Index kLeast = 16, kMost = 360;
+  const Real quarter = std::min<Real>(kMost, std::floor(kPi / 2 / feature_angle) + 1);
+  const Index smooth = static_cast<Index>(quarter);  // in a quarter
+  return std::clamp(segments_within(radius, kFacetShare * grain), std::clamp(4 * smooth, kLeast, kMost),
+                    kMost);
+}
+
+int fitting_levels(Real radius, Real grain) {
+  constexpr int kLeast = 2, kMost = 6;
+  int levels = kLeast;
+  while (levels < kMost && facet_deviation(SphereShape{radius, levels}) > kFacetShare * grain) ++levels;
+  return levels;
+}
+
+}  // namespace scree

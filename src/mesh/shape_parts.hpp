@@ -1,0 +1,23 @@
+// Into how many parts the circles of drums and screws are cut.
+#pragma once
+
+#include "mesh/primitives.hpp"
+
+namespace scree {
+
+// Around a drum, arcs from lifter to lifter and those under the lifters, each cut into equal parts; without
+// lifters there is one arc, all around.
+struct DrumArcs {
+  Index segments, below;    // of an arc, and under a lifter
+  Real angle, angle_below;  // of one part [rad]
+  Real foot_angle;          // half of what a lifter takes [rad]
+};
+DrumArcs drum_arcs(const DrumShape& shape);
+
+// Along a screw, and around its section.
+struct ScrewParts {
+  Index layers, core_segments, sector_segments, radial_segments;
+};
+ScrewParts screw_parts(const ScrewShape& shape);
+
+}  // namespace scree
