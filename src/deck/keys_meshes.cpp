@@ -84,18 +84,18 @@ const TableKeys& mesh_keys() {
              .about(
                  "Edges once around; of plates and capsules a multiple of 4, of screws at least 8. Left out: "
                  "the least multiple of 4, from 16 to 360, with which facets lie within 5 % of the smallest "
-                 "particle's radius of the true circle and turn by less than feature_angle; an edge is then "
-                 "0.4 diameters long or longer. 48 without particles. The largest circle of the shape "
-                 "counts."),
+                 "particle's radius of the true circle and turn by less than feature_angle: edges are 0.4 of "
+                 "the particle's diameter or longer. The largest circle of the shape counts. 48 without "
+                 "particles."),
          integer("levels")
              .only_for(spheres)
              .within(0, 9)
              .left_out("follows from the smallest particle")
              .about("The 20 triangles of an icosahedron are split into four so many times. Left out: from 2 "
-                    "to 6, the "
-                    "least with which facets lie within 5 % of the smallest particle's radius of the sphere; "
-                    "3 without "
-                    "particles."),
+                    "to 6, "
+                    "the least with which facets lie within 5 % of the smallest particle's radius of the "
+                    "sphere; "
+                    "3 without particles."),
          real("wall", "m").only_for(drums).above(0).required().about("Thickness of the drum's wall."),
          real("end_wall", "m")
              .only_for(drums)

@@ -1,10 +1,13 @@
 #include "mesh/mesh_fold.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace scree {
 namespace {
 
+const Real kSharp = std::cos(std::numbers::pi_v<Real> / 6);  // folds turn by 30 degrees at least
 constexpr Real kAlike = 1e-9;  // angles that differ by less are the same but for round-off [rad]
 
 // The corner of a triangle that is not on the edge.
@@ -23,7 +26,7 @@ MeshFold least_fold(const MeshTopology& topology, const MeshParts& parts, Real c
     const auto uses = topology.uses_of(edge);
     const Index one = parts.part_of[uses[0].triangle], other = parts.part_of[uses[1].triangle];
     const Vec3 n = parts.parts[one].normal, m = parts.parts[other].normal;
-    if (one == other || dot(n, m) > cosine) continue;
+    if (one == other || dot(n, m) > std::min(cosine, kSharp)) continue;
     const Vec3 a = topology.mesh.vertices[edge.low], b = topology.mesh.vertices[edge.high];
     if (!sheet && !(dot(corner_off(topology, uses[1].triangle, edge) - a, n) > 0)) continue;
     const Real angle = std::atan2(norm(cross(n, m)), dot(n, m));

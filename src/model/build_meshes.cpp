@@ -119,7 +119,7 @@ void build_meshes(const DeckTable& deck, Model& model, ModelNames& names) {
   const bool planar = space.integer("dimension") == 2;
   // No particle is near the ends of a line along z.
   const Real half_depth = norm(space.vector("max") - space.vector("min"));
-  const Real grain = deck.tables("meshes").empty() ? kInfinity : smallest_grain(deck);
+  const Real grain = any_round(deck) ? smallest_grain(deck) : kInfinity;
   for (const DeckTable& given : deck.tables("meshes")) {
     ModelMesh made{given.text("name"), nullptr};
     const DeckTable table = with_fitting_segments(given, grain, made);

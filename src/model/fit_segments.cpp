@@ -63,6 +63,11 @@ FittingSegments fitting_segments_of(const DeckTable& mesh, Real grain) {
           grain < kInfinity ? fitting_segments(radius, grain, mesh.real("feature_angle")) : kUsualSegments};
 }
 
+bool any_round(const DeckTable& deck) {
+  return std::ranges::any_of(deck.tables("meshes"),
+                             [](const DeckTable& mesh) { return largest_circle(mesh) > 0; });
+}
+
 Deck with_fitting_segments(Deck deck) {
   std::vector<DeckTable> meshes = deck.root.tables("meshes");
   const auto is_cut = [](const DeckTable& mesh) {

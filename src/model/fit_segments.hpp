@@ -17,6 +17,9 @@ struct FittingSegments {
 };
 FittingSegments fitting_segments_of(const DeckTable& mesh, Real grain);
 
+// Whether a mesh of the deck has such a key.
+bool any_round(const DeckTable& deck);
+
 // The deck with segments and levels where it leaves them out.
 Deck with_fitting_segments(Deck deck);
 

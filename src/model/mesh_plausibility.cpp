@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mesh/facets.hpp"
+#include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/plausibility.hpp"
 #include "physics/plausible.hpp"
@@ -17,8 +18,8 @@ namespace {
 
 constexpr Real kMostOfCurve = 0.5;  // radius of a particle over that of a concave surface
 constexpr Real kMostSag = 0.1;      // over the largest overlap: so far the force errs where it is greatest
-constexpr Real kMostTrianglesNear = 64;
-constexpr Real kMostOfSpace = 10;  // the length of a mesh
+constexpr Real kMostTrianglesNear = 24;  // where they touch
+constexpr Real kMostOfSpace = 10;        // the length of a mesh
 
 // Sums over the triangles [m^2], [m].
 struct MeshSize {
@@ -116,7 +117,9 @@ std::string too_coarse(const Model& model, const ModelMesh& mesh, const std::set
         "by "
         "which impacts overlap it, and forces err by as much: a smaller coarsen",
         mesh.name, mesh.moved, 100 * mesh.moved / overlap, overlap);
-  if (overlap == 0 || mesh.is_fitted || !(sag > kMostSag * overlap)) return "";
+  // No finer than where the deck leaves it out.
+  const Real fitting = mesh.deviation_is_exact ? kFacetShare * model.particles.totals.smallest_radius : 0;
+  if (overlap == 0 || !(sag > std::max(kMostSag * overlap, fitting))) return "";
   return fmt::format(
       "mesh \"{}\": its facets are up to {:.3g} m beside the smooth surface that they stand for, {:.0f} % of "
       "the {:.3g} m by which impacts overlap it, and forces err by as much: facets of half the length have a "
@@ -142,48 +145,101 @@ std::string too_fine(const Model& model, const ModelMesh& mesh, const DeckTable&
       mesh.name, particles.largest_radius, near, coarser(table, mesh, particles.smallest_radius));
 }
 
-// What contacts of a fold need, of the pair of materials that overlaps the farthest beyond it: by how much
-// its stiffness is too low.
-struct FoldNeed {
-  Real factor = 0;   // of the stiffness
-  Real overlap = 0;  // [m]
+// Over the lowest corner of the space, against gravity [m].
+Real height_of(const Model& model, Vec3 p) {
+  const Vec3 g = model.gravity, low = p - model.space.min, high = model.space.max - p;
+  const auto along = [](Real gravity, Real from_min, Real to_max) {
+    return std::abs(gravity) * (gravity < 0 ? from_min : to_max);
+  };
+  const Real size = norm(g);
+  return size > 0 ? (along(g.x, low.x, high.x) + along(g.y, low.y, high.y) + along(g.z, low.z, high.z)) / size
+                  : 0;
+}
+
+// The highest place in a box.
+Vec3 top_of(const Model& model, Vec3 low, Vec3 high) {
+  const Vec3 g = model.gravity;
+  return {g.x < 0 ? high.x : low.x, g.y < 0 ? high.y : low.y, g.z < 0 ? high.z : low.z};
+}
+
+// How far a particle can fall from where the highest one starts to a mesh's fold, where that is the lowest at
+// t = 0 [m].
+Real fall_to_fold(const Model& model, std::size_t mesh) {
+  const Vec3 fold = model.meshes[mesh].surface->fold.position;
+  Real lowest = kInfinity;
+  for (const Wall& wall : model.walls)
+    if (wall.mesh == static_cast<int>(mesh)) lowest = std::min(lowest, height_of(model, fold));
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes)
+      if (shape.mesh == static_cast<int>(mesh))
+        lowest = std::min(lowest,
+                          height_of(model, to_global_point(model, static_cast<int>(b), shape.offset + fold)));
+  const ParticleTotals& particles = model.particles.totals;
+  return std::max<Real>(0, height_of(model, top_of(model, particles.lowest, particles.highest)) - lowest);
+}
+
+// A particle that touches a fold: the smallest or the largest one, on something that does not give way.
+struct FoldImpact {
+  Real factor = 0;           // by which the stiffness is too low
+  Real overlap = 0, radius;  // [m]
   PairLimit limit;
 };
 
-// r: of the smallest particle; most: overlap that the fold allows [m].
-FoldNeed need_of_fold(const Model& model, const std::set<int>& materials, Real most) {
-  FoldNeed need;
-  for (const PairLimit& limit : limits_with_particles(model, materials)) {
-    const Real impact = impact_overlap(limit.law, lightest_mass(limit), impact_speed(model, limit)),
-               rest = resting_overlap(limit.law, weight_at_bottom(model)), n = limit.law.exponent;
-    const Real factor = std::max(std::pow(impact / most, n + 1), std::pow(rest / most, n));
-    if (factor > need.factor) need = {factor, std::max(impact, rest), limit};
-  }
-  return need;
+// share: of its radius that a particle may overlap; speed [m/s].
+FoldImpact fold_impact(const Model& model, const PairLimit& limit, Real share, Real speed, bool largest) {
+  const ParticleTotals& particles = model.particles.totals;
+  const Real radius = largest ? particles.largest_radius : particles.smallest_radius,
+             mass = largest ? particles.largest_mass : particles.smallest_mass, n = limit.law.exponent;
+  KelvinVoigt law = limit.law;  // of the smallest partners
+  if (model.contact.law(limit.material[0], limit.material[1]).effective_modulus > 0)
+    law.normal_stiffness *= std::sqrt(radius / particles.smallest_radius);
+  const Real impact = impact_overlap(law, mass, speed), rest = resting_overlap(law, weight_at_bottom(model));
+  const Real most = share * radius;
+  return {std::max(std::pow(impact / most, n + 1), std::pow(rest / most, n)), std::max(impact, rest), radius,
+          limit};
 }
 
-std::string sharp_folds(const Model& model, const ModelMesh& mesh, const std::set<int>& materials) {
+// The one that overlaps the farthest beyond what it may. fall: onto the fold [m]; impacts are as fast as they
+// can be in the model, but for the way that particles fall.
+FoldImpact worst_on_fold(const Model& model, const std::set<int>& materials, Real share, Real fall) {
+  const Real top = height_of(model, top_of(model, model.space.min, model.space.max)),
+             not_fallen = fall_speed(norm(model.gravity), std::max<Real>(0, top - fall));
+  FoldImpact worst{};
+  for (const PairLimit& limit : limits_with_particles(model, materials)) {
+    const Real fastest = impact_speed(model, limit),
+               speed = std::sqrt(std::max<Real>(0, fastest * fastest - not_fallen * not_fallen));
+    for (const bool largest : {false, true}) {
+      const FoldImpact impact = fold_impact(model, limit, share, speed, largest);
+      if (impact.factor > worst.factor) worst = impact;
+    }
+  }
+  return worst;
+}
+
+std::string sharp_folds(const Model& model, std::size_t number, const std::set<int>& materials) {
+  const ModelMesh& mesh = model.meshes[number];
   const MeshFold& fold = mesh.surface->fold;
   if (fold.angle == 0) return "";
-  const Real share = 1 - std::cos(fold.angle), radius = model.particles.totals.smallest_radius;
-  const FoldNeed need = need_of_fold(model, materials, share * radius);
-  if (!(need.factor > 1)) return "";
-  const auto [one, other] = need.limit.material;
+  const Real share = 1 - std::cos(fold.angle);
+  const FoldImpact worst = worst_on_fold(model, materials, share, fall_to_fold(model, number));
+  if (!(worst.factor > 1)) return "";
+  const Real enough = Real(1.01) * worst.factor;  // also with the digits that are shown
+  const auto [one, other] = worst.limit.material;
   const std::vector<std::string>& names = model.contact.material_names;
+  const KelvinVoigt& law = worst.limit.law;
   const bool has_moduli = model.contact.law(one, other).effective_modulus > 0;
   return fmt::format(
       "mesh \"{}\": its faces turn inwards by {:.3g} degrees at ({:.4g}, {:.4g}, {:.4g}) in its own frame, "
       "and "
-      "contact \"{}\" on \"{}\" overlaps by up to {:.3g} of the smallest radius, {:.3g} m: past {:.2g} a "
-      "contact "
-      "with one side of such a fold ends at once, and impacts there lose or gain energy; {}",
+      "contacts \"{}\" on \"{}\" overlap by up to {:.3g} of the radius, {:.3g} m: past {:.2g} a contact with "
+      "one side "
+      "of such a fold ends at once, and impacts there lose or gain energy; {} would do",
       mesh.name, fold.angle * 180 / std::numbers::pi_v<Real>, fold.position.x, fold.position.y,
       fold.position.z, names[static_cast<std::size_t>(one)], names[static_cast<std::size_t>(other)],
-      need.overlap / radius, radius, share,
-      has_moduli
-          ? fmt::format("moduli {:.2g} times as high would do", need.factor)
-          : fmt::format("a stiffness of {:.3g} N/m{} would do", need.factor * need.limit.law.normal_stiffness,
-                        need.limit.law.exponent == 1 ? "" : fmt::format("^{}", need.limit.law.exponent)));
+      worst.overlap / worst.radius, worst.radius, share,
+      has_moduli ? fmt::format("moduli {:.3g} times as high", enough)
+                 : fmt::format("a stiffness of {:.3g} N/m{}", enough * law.normal_stiffness,
+                               law.exponent == 1 ? "" : fmt::format("^{}", law.exponent)));
 }
 
 std::string crossing_shells(const ModelMesh& mesh) {
@@ -260,7 +316,7 @@ std::vector<std::string> implausible_meshes(const DeckTable& deck, const Model& 
     if (materials[m].empty() || model.particles.totals.count == 0) continue;
     for (const std::string& finding :
          {too_narrow(model, mesh), too_coarse(model, mesh, materials[m]),
-          too_fine(model, mesh, deck.tables("meshes")[m]), sharp_folds(model, mesh, materials[m])})
+          too_fine(model, mesh, deck.tables("meshes")[m]), sharp_folds(model, m, materials[m])})
       findings.push_back(finding);
   }
   for (const Wall& wall : model.walls) findings.push_back(runs_across(model, wall));

@@ -38,11 +38,15 @@ void count_particles(ParticleSet& particles, int materials, const Share& share) 
   Extremes radius, mass, density, radii_per_second;
   std::vector<std::int64_t> count(slots);
   std::vector<Extremes> radius_of(slots), mass_of(slots), factor_of(slots);
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto material = static_cast<std::size_t>(particles.material[i]);
     radius.add(particles.radius[i]), mass.add(particles.mass[i]), ++count[material];
     density.add(particles.mass[i] / sphere_mass(particles.radius[i], 1));
     radii_per_second.add(norm(particles.velocity[i]) / particles.radius[i]);
+    const Vec3 p = particles.position[i];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     radius_of[material].add(particles.radius[i]), mass_of[material].add(particles.mass[i]);
     factor_of[material].add(particles.inertia_factor_of(i));
   }
@@ -54,6 +58,9 @@ void count_particles(ParticleSet& particles, int materials, const Share& share) 
   totals.smallest_density = smallest_of_all(share, density.smallest);
   totals.largest_density = share.max(density.largest);
   totals.most_radii_per_second = share.max(radii_per_second.largest);
+  low = {-share.max(-low.x), -share.max(-low.y), -share.max(-low.z)};
+  high = {share.max(high.x), share.max(high.y), share.max(high.z)};
+  if (totals.count > 0) totals.lowest = low, totals.highest = high;
   for (std::size_t m = 0; m < slots; ++m)
     totals.materials.push_back({share.sum(count[m]), smallest_of_all(share, radius_of[m].smallest),
                                 smallest_of_all(share, mass_of[m].smallest),

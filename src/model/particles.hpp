@@ -24,6 +24,7 @@ struct ParticleTotals {
   Real smallest_mass = 0, largest_mass = 0;        // [kg]
   Real smallest_density = 0, largest_density = 0;  // of spheres with these radii and masses [kg/m^3]
   Real most_radii_per_second = 0;                  // speed over the particle's own radius [1/s]
+  Vec3 lowest, highest;                            // corners of the box around all centres at the start [m]
   std::vector<OfMaterial> materials;               // as many as Contact::material_names
 };
 

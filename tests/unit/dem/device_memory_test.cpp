@@ -34,6 +34,19 @@ TEST_CASE("device memory has meshes with their trees, and the rows of those that
   CHECK(close - away > 500 * 0.1 / 1.3 * sizeof(SurfaceLoad));  // those whose centres are half a radius away
 }
 
+TEST_CASE("device memory has meshes that nothing touches, too, and says how much they are") {
+  Model model = random_box(kBoxes[6], 100, 5);
+  const std::size_t without = device_memory(model);
+  CHECK(device_memory_of_meshes(model) == 0);
+  add_floor(model, 50);
+  model.walls.pop_back();
+  const SurfaceMesh& mesh = *model.meshes.back().surface;
+  const std::size_t meshes = device_memory_of_meshes(model);
+  CHECK(near(device_memory(model) - without, meshes, {.absolute = 1}));
+  CHECK(meshes > mesh.triangles.size() * sizeof(MeshTriangle) + mesh.vertices.size() * sizeof(Vec3) +
+                     mesh.features.size() * sizeof(MeshFeature) + mesh.boxes.size() * sizeof(MeshBox));
+}
+
 TEST_CASE("a rank with a GPU of its own is judged by its own need") {
   const DeviceClaim claims[] = {claim('a', 300, 300), claim('b', 301, 300), claim('c', 1, 300)};
   CHECK(device_memory_trouble(claims, 0, "GPU") == "");

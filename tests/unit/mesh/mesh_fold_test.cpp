@@ -46,7 +46,8 @@ TEST_CASE("of closed meshes folds are concave from outside") {
   CHECK(fold_of(cylinder_mesh({1, 1, 8}), false).angle == 0);
   CHECK(fold_of(pipe_mesh({1, 2, 1, 8}), false).angle == Approx(45 * kDegree));
   CHECK(fold_of(pipe_mesh({1, 2, 1, 16}), false).angle == 0);
-  CHECK(fold_of(pipe_mesh({1, 2, 1, 16}), false, 0.2).angle == Approx(22.5 * kDegree));
+  CHECK(fold_of(pipe_mesh({1, 2, 1, 16}), false, 0.2).angle == 0);
+  CHECK(fold_of(pipe_mesh({1, 2, 1, 8}), false, 0.8).angle == 0);
   // The first of 16 that turn alike.
   CHECK(norm(fold_of(pipe_mesh({1, 2, 1, 8}), false).position) == Approx(1));
 }

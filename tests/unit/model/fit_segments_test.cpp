@@ -59,8 +59,8 @@ TEST_CASE("segments that are left out follow the smallest particle") {
   CHECK(segments(kSpace + mesh("kind = \"cylinder\"\nradius = 1.0\nlength = 0.5\nsegments = 7") +
                  grains("0.02")) == 7);
   CHECK(segments(kSpace + mesh("kind = \"sphere\"\nradius = 1.0"), "levels") == 3);
-  CHECK(segments(kSpace + mesh("kind = \"sphere\"\nradius = 1.0") + grains("0.3"), "levels") == 2);
-  CHECK(segments(kSpace + mesh("kind = \"sphere\"\nradius = 1.0") + grains("0.02"), "levels") == 4);
+  CHECK(segments(kSpace + mesh("kind = \"sphere\"\nradius = 1.0") + grains("0.4"), "levels") == 2);
+  CHECK(segments(kSpace + mesh("kind = \"sphere\"\nradius = 1.0") + grains("0.02"), "levels") == 5);
 }
 
 TEST_CASE("the mesh has the segments that the resolved deck names, and says how far its facets lie") {
