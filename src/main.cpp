@@ -114,6 +114,16 @@ Deck checked_deck(const Arguments& arguments) {
   return deck;
 }
 
+// From here on the deck has what the program chose, as if it named it.
+void take_chosen(const std::vector<ChosenValue>& chosen, Deck& deck) {
+  for (const ChosenValue& value : chosen) deck.root.take(value);
+}
+
+void say_chosen(const std::vector<ChosenValue>& chosen, Log& log) {
+  for (const ChosenValue& value : chosen)
+    if (!value.reason.empty()) log.info(fmt::format("chosen: {} ({})", value.text(), value.reason));
+}
+
 void warn_of_run(const Model& model, Log& log) {
   for (const std::string& warning : {step_warning(model), outside_at_start(model), still_fields(model)})
     if (!warning.empty()) log.warning(warning);
@@ -129,10 +139,13 @@ bool is_stopped(const Ranks& ranks, const char* lacking, Log& log) {
 ExitCode run(const Arguments& arguments, const CommandLine& line) {
   const Ranks ranks = Ranks::world();
   Log log(!ranks.is_root());
-  const Deck deck = checked_deck(arguments);
+  Deck deck = checked_deck(arguments);
   const std::string directory = output_directory(arguments, deck);
   ranks.on_root([&] { ResultsFolder({directory, arguments.restart, arguments.overwrite}).check(); });
-  const Model model = build_model(deck, log, RanksShare(ranks));
+  std::vector<ChosenValue> chosen;
+  const Model model = build_model(deck, log, RanksShare(ranks), chosen);
+  take_chosen(chosen, deck);
+  say_chosen(chosen, log);
   if (is_stopped(ranks, "before the first step: there is no new checkpoint", log))
     return ExitCode::stopped_by_signal;
   warn_of_run(model, log);
@@ -174,8 +187,10 @@ ExitCode check(const Arguments& arguments) {
   Log log(!ranks.is_root());
   std::string drawer;
   if (!arguments.picture.empty()) ranks.on_root([&] { drawer = find_scree_post(); });
-  const Deck deck = checked_deck(arguments);
-  Model model = build_model(deck, log, RanksShare(ranks));
+  Deck deck = checked_deck(arguments);
+  std::vector<ChosenValue> chosen;
+  Model model = build_model(deck, log, RanksShare(ranks), chosen);
+  take_chosen(chosen, deck);
   warn_of_run(model, log);
   std::optional<PetscSession> petsc;  // of rank 0, where the bodies are
   const ModelSize size = size_of(model);
@@ -183,7 +198,7 @@ ExitCode check(const Arguments& arguments) {
     naming_memory(size, ranks.size(), [&] {
       if (!model.bodies.empty()) ranks.on_root([&] { petsc.emplace("scree", std::vector<std::string>{}); });
       const std::string bodies = bodies_report(model, ranks, log);
-      log.info(check_report(model, ranks) + bodies);
+      log.info(check_report(model, chosen, ranks) + bodies);
     });
   });
   if (arguments.picture.empty()) return ExitCode::done;

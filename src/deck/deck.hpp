@@ -20,8 +20,20 @@ struct DeckValue {
   std::variant<bool, std::int64_t, Real, std::string, Vec3, std::vector<Real>, std::vector<std::int64_t>,
                std::vector<std::string>, std::vector<Vec3>, std::vector<DeckTable>>
       data;
-  std::string place;  // "deck.toml:12:8", or "--set key=value"
-  std::string shown;  // the value as TOML text, shortened, for messages
+  std::string place;        // "deck.toml:12:8", or "--set key=value"
+  std::string shown;        // the value as TOML text, shortened, for messages
+  bool is_given = false;    // by the deck or by --set; else a default, or chosen
+  std::string reason = {};  // of a value that the program chose
+};
+
+// A value that the deck leaves to the program.
+struct ChosenValue {
+  std::string table, key;  // "time", "step"
+  std::variant<Real, std::string> value;
+  std::string reason;  // of the choice, for people; empty where it follows from another one
+
+  // "time.step = 1.2e-05"
+  std::string text() const;
 };
 
 // A table of the deck after its keys were checked against their declarations. The accessors throw
@@ -34,6 +46,10 @@ class DeckTable {
 
   // Whether the key was given or has a default value.
   bool has(const std::string& key) const { return values_.count(key) > 0; }
+  // Whether the deck itself gives the key.
+  bool gives(const std::string& key) const { return has(key) && value(key).is_given; }
+  // The word of a choice is "auto": choice() has no value for it.
+  bool is_automatic(const std::string& key) const { return text(key) == kAutomatic; }
   bool boolean(const std::string& key) const { return get<bool>(key); }
   std::int64_t integer(const std::string& key) const { return get<std::int64_t>(key); }
   Real real(const std::string& key) const { return get<Real>(key); }
@@ -68,6 +84,9 @@ class DeckTable {
   const TableKeys& keys() const { return *keys_; }
   const std::map<std::string, DeckValue>& values() const { return values_; }
   void set(const std::string& key, DeckValue value) { values_.insert_or_assign(key, std::move(value)); }
+  // Takes values that the program chose: of the table's own keys, or of those of a table in it. Where one is
+  // the table's selector, values of keys that its word does not have are dropped.
+  void take(const ChosenValue& chosen);
 
  private:
   const DeckValue& value(const std::string& key) const;

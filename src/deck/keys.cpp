@@ -41,6 +41,11 @@ Key& Key::otherwise(const std::string& toml_text) {
   return *this;
 }
 
+Key& Key::otherwise_automatic() {
+  words.insert(words.begin(), kAutomatic);
+  return otherwise('"' + kAutomatic + '"');
+}
+
 Key& Key::left_out(const std::string& meaning) {
   default_note = meaning;
   return *this;

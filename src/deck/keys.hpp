@@ -33,6 +33,8 @@ enum class ValueType {
 struct TableKeys;
 
 constexpr std::size_t kLongestName = 200;  // [B]
+// The word of a choice that the program makes from the rest of the deck.
+inline const std::string kAutomatic = "auto";
 // The unit of a key within a quantity's table: that of the quantity.
 inline const std::string kQuantityUnit = "the quantity's unit";
 
@@ -73,6 +75,8 @@ struct Key {
   Key& otherwise_choice(Value value) {
     return otherwise('"' + word_of(value) + '"');
   }
+  // The word kAutomatic besides the choice's own, and by default.
+  Key& otherwise_automatic();
   // The choice `there` where the deck gives the choice `value` for the key at the path.
   template <class Where, class Value>
   Key& otherwise_where(const std::string& key_path, Where value, Value there) {

@@ -76,15 +76,17 @@ const TableKeys& time_keys() {
       {real("end", "s").above(0).required().about("The simulation runs from 0 to this time."),
        real("step", "s")
            .above(0)
-           .required_for({StepControl::fixed})
-           .left_out("1/20 of the shortest contact time or end / 1000, whichever is shorter")
-           .about("Step size; the first one if control is \"adaptive\"."),
+           .left_out("velocity-verlet: chosen from the deck's contacts, so that trial impacts rebound within "
+                     "2 % and the step is stable (input/choosing.md); hht, adaptive: 1/20 of the shortest "
+                     "contact time or end / 1000, whichever is shorter; hht, fixed: must be given")
+           .about("Step size; the first one if control is \"adaptive\". A step that is chosen stands in the "
+                  "output of scree check, in the log and in the resolved deck."),
        choice<StepControl>("control")
            .otherwise_choice(StepControl::adaptive)
            .otherwise_where("integrator.particles", ParticleIntegrator::velocity_verlet, StepControl::fixed)
            .about(
-               "Fixed step, or steps that keep the estimated local error within tolerance; velocity-verlet "
-               "has no error estimate."),
+               "Fixed step, or steps that keep the estimated local error within tolerance; velocity-verlet, "
+               "named or chosen, has no error estimate and fixed steps."),
        real("min_step", "s")
            .above(0)
            .left_out("step / 1e3 if fixed; step / 1e6 if adaptive")
@@ -127,8 +129,14 @@ const TableKeys& integrator_keys() {
                   "whichever of them carry it; the reactions are then the least ones, weighted by the "
                   "bodies' mobility."),
        choice<ParticleIntegrator>("particles")
-           .otherwise_choice(ParticleIntegrator::hht)
-           .about("Integrator of the particles: implicit, or explicit. Bodies always use HHT."),
+           .otherwise_automatic()
+           .about(
+               "Integrator of the particles: implicit, or explicit. Bodies always use HHT. auto: explicit "
+               "where contacts resist rolling or attract, and from 20 particles that may touch on with "
+               "friction, or 50 without; else, and where the deck names what only implicit steps have "
+               "(control = \"adaptive\", tolerance, max_step, contact_events) or a step too long for "
+               "explicit ones, implicit. The choice stands in the output of scree check, in the log and in "
+               "the resolved deck."),
        choice<ContactEvents>("contact_events")
            .otherwise_choice(ContactEvents::resolved)
            .about("Hht: a contact that opens or closes within a step acts over its part of the step, or (the "

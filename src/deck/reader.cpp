@@ -122,7 +122,9 @@ void Reader::read_key(const toml::table& source, const Key& key, DeckTable& tabl
   Context context{key, join_path(table.path(), key.name), table.place(), quantity_unit};
   if (const toml::node* node = source.get(key.name)) {
     context.place = place_of(node->source(), table.place());
-    table.set(key.name, read_value(*node, context));
+    DeckValue value = read_value(*node, context);
+    value.is_given = true;
+    table.set(key.name, std::move(value));
   } else if (key.is_required || is_of(table, key.required_kinds)) {
     fail_missing(context, table);
   } else {
@@ -131,18 +133,9 @@ void Reader::read_key(const toml::table& source, const Key& key, DeckTable& tabl
 }
 
 void Reader::fail_missing(const Context& context, const DeckTable& table) const {
-  const TableKeys& keys = table.keys();
-  const std::string& selector = keys.selector;
-  std::string with;
-  if (!context.key.is_required) {
-    with = fmt::format("with {} = \"{}\" ", selector, table.text(selector));
-    const auto kind =
-        std::find_if(keys.keys.begin(), keys.keys.end(), [&](const Key& k) { return k.name == selector; });
-    if (kind != keys.keys.end() && follows_another_key(*kind) &&
-        kind->default_there == "\"" + table.text(selector) + "\"")
-      with = fmt::format("{} = \"{}\" makes {} \"{}\", and then ", kind->where_key, kind->where_value,
-                         selector, table.text(selector));
-  }
+  const std::string& selector = table.keys().selector;
+  const std::string with =
+      context.key.is_required ? "" : fmt::format("with {} = \"{}\" ", selector, table.text(selector));
   throw InputError(
       fmt::format("{}: {}: missing; {}it must be {}", context.place, context.path, with, allowed(context)));
 }

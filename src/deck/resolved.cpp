@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -126,7 +127,9 @@ void Writer::write_table(const DeckTable& table, const std::string& name) {
   const std::vector<Key>& keys = table.keys().keys;
   for (const Key& key : keys) {
     if (is_table(key) || !table.has(key.name) || left_out(name, key)) continue;
-    out_ += key.name + " = " + value_text(table, key) + "\n";
+    const std::string& reason = table.values().at(key.name).reason;
+    const bool explained = !for_fingerprint_ && !reason.empty();
+    out_ += key.name + " = " + value_text(table, key) + (explained ? "  # chosen: " + reason : "") + "\n";
   }
   for (const Key& key : keys) {
     if (!is_table(key) || left_out(name, key)) continue;
@@ -146,6 +149,26 @@ std::string text_of(const DeckTable& root, bool for_fingerprint) {
 }
 
 }  // namespace
+
+std::string ChosenValue::text() const {
+  const std::string shown = std::holds_alternative<Real>(value) ? number_text(std::get<Real>(value))
+                                                                : quoted(std::get<std::string>(value));
+  return table + "." + key + " = " + shown;
+}
+
+void DeckTable::take(const ChosenValue& chosen) {
+  if (!chosen.table.empty()) {
+    DeckTable& inner = std::get<std::vector<DeckTable>>(values_.at(chosen.table).data).front();
+    return inner.take({"", chosen.key, chosen.value, chosen.reason});
+  }
+  DeckValue value{false, place_, "", false, chosen.reason};
+  std::visit([&](const auto& of) { value.data = of; }, chosen.value);
+  set(chosen.key, std::move(value));
+  if (chosen.key != keys_->selector) return;
+  for (const Key& key : keys_->keys)
+    if (!key.kinds.empty() && std::ranges::find(key.kinds, text(chosen.key)) == key.kinds.end())
+      values_.erase(key.name);
+}
 
 std::string Deck::resolved_text() const { return text_of(root, false); }
 

@@ -1,7 +1,7 @@
 #include <numeric>
 
-#include "dem/choose_law.hpp"
 #include "dem/contact_kernels_impl.hpp"
+#include "model/choose_law.hpp"
 
 namespace scree {
 

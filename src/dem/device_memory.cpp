@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "dem/backend.hpp"
-#include "dem/choose_law.hpp"
 #include "dem/contact_line_items.hpp"
 #include "dem/device.hpp"
 #include "dem/kept_contacts.hpp"
@@ -15,6 +14,7 @@
 #include "dem/surface_side.hpp"
 #include "dem/triangle_works.hpp"
 #include "dem/turning_items.hpp"
+#include "model/choose_law.hpp"
 #include "partition/halo.hpp"
 
 namespace scree {

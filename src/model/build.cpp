@@ -16,7 +16,7 @@ namespace scree {
 namespace {
 
 // More cannot be meant, and counts of them must stay exact.
-constexpr Real kMostSteps = 1e12, kMostOutputs = 1e9;
+constexpr Real kMostOutputs = 1e9;
 
 void build_boundaries(const DeckTable& table, Space& space) {
   for (int side = 0; side < kSides; ++side) space.boundary[side] = table.choice<Boundary>(kSideNames[side]);
@@ -34,28 +34,6 @@ void build_boundaries(const DeckTable& table, Space& space) {
   }
 }
 
-// Short enough for any contact; from there on the step control goes by the error [s].
-Real first_step(const Model& model) {
-  constexpr Real kShareOfContact = 0.05, kShareOfRun = 1e-3;
-  const std::optional<PairLimit> shortest = shortest_contact(pair_limits(model));
-  const Real longest = kShareOfRun * model.time.end;
-  return shortest ? std::min(kShareOfContact * shortest->contact_time, longest) : longest;
-}
-
-// In a longer one a particle as fast as at t = 0 that then fell through the space would go farther than half
-// of the smallest radius, and might pass through others unnoticed: no error estimate says so [s].
-Real longest_step(const Model& model) {
-  constexpr Real kShareOfRadius = 0.5, kShareOfRun = 1e-2;
-  const ParticleTotals& particles = model.particles.totals;
-  const Real longest = kShareOfRun * model.time.end;
-  if (particles.count == 0) return longest;
-  const Vec3 extent = model.space.max - model.space.min, g = model.gravity;
-  const Real fall = std::abs(g.x) * extent.x + std::abs(g.y) * extent.y + std::abs(g.z) * extent.z;
-  const Real radii_per_second =
-      std::hypot(particles.most_radii_per_second, std::sqrt(2 * fall) / particles.smallest_radius);
-  return radii_per_second * longest > kShareOfRadius ? kShareOfRadius / radii_per_second : longest;
-}
-
 // The plane of a side of the space.
 Wall side_wall(const Space& space, int side) {
   Wall wall{kSideNames[side], side % 2 == 0 ? space.min : space.max, {}, space.wall_material};
@@ -69,6 +47,11 @@ Wall side_wall(const Space& space, int side) {
 }  // namespace
 
 Model build_model(const Deck& deck, Log& log, const Share& share) {
+  std::vector<ChosenValue> chosen;
+  return build_model(deck, log, share, chosen);
+}
+
+Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<ChosenValue>& chosen) {
   const DeckTable& root = deck.root;
   Model model;
   ModelNames names;
@@ -93,8 +76,10 @@ Model build_model(const Deck& deck, Log& log, const Share& share) {
     build_joint_forces(root, model, names);
     build_particles(root, model, names, size, share, log);
     build_contact(root, model, names);
+    choose_integrator(root, model, share, chosen);
+    check_integrator(root, model);
     check_step_limits(root, model);
-    build_steps(root, model);
+    build_steps(root, model, share, chosen);
     build_output(root, names, model);
     build_parallel(root, model);
     check_start_positions(root, model, share, log);
@@ -130,57 +115,6 @@ void build_space(const DeckTable& deck, const ModelNames& names, Model& model) {
   for (int side = 0; side < kSides; ++side) {
     if (space.boundary[side] == Boundary::wall) model.walls.push_back(side_wall(space, side));
   }
-}
-
-void build_time(const DeckTable& deck, Model& model) {
-  const DeckTable& table = deck.table("time");
-  TimeControl& time = model.time;
-  time.end = table.real("end");
-  time.control = table.choice<StepControl>("control");
-  const bool adaptive = time.control == StepControl::adaptive;
-  if (adaptive) time.tolerance = table.real("tolerance");
-
-  const DeckTable& method = deck.table("integrator");
-  Integrator& integrator = model.integrator;
-  integrator.hht_alpha = method.real("hht_alpha");
-  integrator.corrected_start = method.boolean("corrected_start");
-  integrator.redundant = method.choice<RedundantRows>("redundant");
-  integrator.particles = method.choice<ParticleIntegrator>("particles");
-  integrator.resolve_events = method.choice<ContactEvents>("contact_events") == ContactEvents::resolved;
-  integrator.substeps = static_cast<int>(method.integer("substeps"));
-  integrator.precision = method.choice<Precision>("precision");
-  integrator.residual_tolerance = method.real("residual_tolerance");
-  integrator.correction_tolerance = method.real("correction_tolerance");
-  integrator.max_iterations = static_cast<int>(method.integer("max_iterations"));
-  const bool implicit = integrator.particles == ParticleIntegrator::hht;
-  if (implicit && integrator.substeps > 1) {
-    method.fail("substeps", "must be 1, unless integrator.particles = \"velocity-verlet\"");
-  }
-  if (implicit && integrator.precision == Precision::mixed) {
-    method.fail("precision", "must be \"double\", unless integrator.particles = \"velocity-verlet\"");
-  }
-  if (!implicit && adaptive) {
-    method.fail("particles",
-                "time.control = \"adaptive\" needs \"hht\": the explicit method has no error estimate");
-  }
-}
-
-void build_steps(const DeckTable& deck, Model& model) {
-  const DeckTable& table = deck.table("time");
-  TimeControl& time = model.time;
-  const bool adaptive = time.control == StepControl::adaptive;
-  time.max_step = table.has("max_step") ? table.real("max_step") : longest_step(model);
-  time.step = table.has("step") ? table.real("step") : std::min(first_step(model), time.max_step);
-  time.min_step = table.has("min_step") ? table.real("min_step") : time.step / (adaptive ? 1e6 : 1e3);
-  if (!table.has("max_step")) time.max_step = adaptive ? std::max(time.step, time.max_step) : time.step;
-  if (time.step > time.end) table.fail("step", fmt::format("must be at most time.end = {}", time.end));
-  if (time.end / time.step > kMostSteps)
-    table.fail("step",
-               fmt::format("must be at least time.end / {:g} = {:g}", kMostSteps, time.end / kMostSteps));
-  if (time.min_step > time.step)
-    table.fail("min_step", fmt::format("must be at most time.step = {}", time.step));
-  if (time.max_step < time.step)
-    table.fail("max_step", fmt::format("must be at least time.step = {}", time.step));
 }
 
 void build_parallel(const DeckTable& deck, Model& model) {

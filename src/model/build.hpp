@@ -1,6 +1,8 @@
 // From the deck to the model.
 #pragma once
 
+#include <vector>
+
 #include "base/log.hpp"
 #include "deck/deck.hpp"
 #include "model/model.hpp"
@@ -13,5 +15,7 @@ namespace scree {
 // there are several ranks: each has its part of the particles, and all else of the model, warnings and errors
 // are the same on all.
 Model build_model(const Deck& deck, Log& log, const Share& share = Share());
+// The same; `chosen` gets the values that the deck leaves to the program, with their reasons.
+Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<ChosenValue>& chosen);
 
 }  // namespace scree

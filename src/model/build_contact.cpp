@@ -203,14 +203,8 @@ bool resists_rolling(const DeckTable& table) {
   return std::ranges::any_of(kRollingKeys, [&](const char* key) { return is_positive(table, key); });
 }
 
-// Where contacts rub; what that does not go with yet.
-void check_friction(const DeckTable& deck, const Model& model) {
-  for (const DeckTable& pair : deck.table("contact").tables("pairs")) {
-    for (const char* key : kRollingKeys)
-      if (is_positive(pair, key) && model.integrator.particles != ParticleIntegrator::velocity_verlet)
-        pair.fail(key,
-                  "needs integrator.particles = \"velocity-verlet\": implicit steps have friction alone");
-  }
+// Turning particles that nothing turns.
+void check_rotation(const DeckTable& deck, const Model& model) {
   if (model.rotates()) return;
   const std::string still = "no particle rotates: no pair in contact.pairs has friction";
   for (const DeckTable& group : deck.tables("particles")) {
@@ -273,15 +267,6 @@ void check_attraction_beside(const DeckTable& table, const Contact& contact, con
   if (!law.attracts() || !found(has_neck) || !found(pulls)) return;
   table.fail(table.has("attraction") ? "attraction" : "adhesion",
              "a deck has adhesion = \"jkr\" for all pairs that attract, or \"dmt\" and attraction");
-}
-
-// What attraction does not go with yet.
-void check_attraction(const DeckTable& contact, const Model& model) {
-  for (const DeckTable& pair : contact.tables("pairs")) {
-    for (const char* key : {"attraction", "surface_energy", "work_of_adhesion"})
-      if (is_positive(pair, key) && model.integrator.particles != ParticleIntegrator::velocity_verlet)
-        pair.fail(key, "needs integrator.particles = \"velocity-verlet\"");
-  }
 }
 
 void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, const ModelNames& names,
@@ -388,8 +373,7 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   for (const KelvinVoigt& law : contact.laws)
     contact.reach = std::max(contact.reach, searched_reach(law, largest));
   check_periods(deck, model, largest);
-  check_friction(deck, model);
-  check_attraction(table, model);
+  check_rotation(deck, model);
 }
 
 }  // namespace scree

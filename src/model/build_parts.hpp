@@ -17,7 +17,8 @@ void check_surface_count(const DeckTable& deck, const Model& model);
 void build_space(const DeckTable& deck, const ModelNames& names, Model& model);  // also walls
 // dimension: of the space.
 Wall build_wall(const DeckTable& table, const ModelNames& names, const Space& space);
-void build_time(const DeckTable& deck, Model& model);  // control and end; also the integrator
+void build_time(const DeckTable& deck,
+                Model& model);  // control and end; also the integrator, as far as named
 void build_bodies(const DeckTable& deck, Model& model, ModelNames& names);
 void build_markers(const DeckTable& deck, const Model& model, ModelNames& names);
 void build_joints(const DeckTable& deck, Model& model, ModelNames& names);  // also drivers
@@ -33,7 +34,14 @@ void take_wear(const DeckTable& pair, Real friction, const int (&material)[2], C
 // Of a spring across the normal that the deck leaves out beside a linear stiffness [N/m]: two solid spheres
 // that touch swing across it as fast as along it.
 inline Real standard_slip_stiffness(Real stiffness) { return Real(2) / 7 * stiffness; }
-void build_steps(const DeckTable& deck, Model& model);  // after the contacts, from which the first may follow
+// After the contacts. integrator.particles = "auto" becomes one or the other, and time.control what goes with
+// it; `chosen` gets both.
+void choose_integrator(const DeckTable& deck, Model& model, const Share& share,
+                       std::vector<ChosenValue>& chosen);
+// Refuses what the integrator does not go with.
+void check_integrator(const DeckTable& deck, const Model& model);
+// An explicit step that is left out is chosen; `chosen` gets it.
+void build_steps(const DeckTable& deck, Model& model, const Share& share, std::vector<ChosenValue>& chosen);
 void build_output(const DeckTable& deck, const ModelNames& names, Model& model);
 void build_surface_fields(const DeckTable& output, Model& model);
 void build_history_contacts(const DeckTable& table, const ModelNames& names, Model& model);  // of the output

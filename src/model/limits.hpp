@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "physics/step_limits.hpp"
 
 namespace scree {
 
@@ -48,6 +49,19 @@ struct PairLimit {
   Real contact_time = 0;       // shortest, undamped and head-on [s]
   Real explicit_step = 0;      // stability limit of velocity-verlet in dense contact [s]; 0: no particles
 };
+
+// Of the bodies' steps beside velocity-verlet particles: how fast a body on its contacts oscillates, and what
+// follows for the step. Frequencies are 0 where bodies touch nothing.
+struct BodyStepLimit {
+  Real frequency = 0;       // of the contact that bounds the step most [rad/s]
+  Real most_phase = 0;      // that a step may have of it [rad]
+  Real good_frequency = 0;  // the fastest, whose phase a good step keeps below kGoodBodyPhase [rad/s]
+  bool is_exact = true;     // not estimated, as it is for exponents other than 1
+
+  Real most_step() const { return frequency > 0 ? most_phase / frequency : kInfinity; }                // [s]
+  Real good_step() const { return good_frequency > 0 ? kGoodBodyPhase / good_frequency : kInfinity; }  // [s]
+};
+BodyStepLimit body_step_limit(const Model& model);
 
 // One entry per pair of materials that can meet and interact.
 std::vector<PairLimit> pair_limits(const Model& model);

@@ -36,22 +36,11 @@ std::string pair_name(const Model& model, const PairLimit& limit) {
                      names[static_cast<std::size_t>(limit.material[1])]);
 }
 
-// How far something can fall within the space [m].
-Real height(const Model& model) {
-  const std::array<Real, 3> gravity = components(model.gravity),
-                            extent = components(model.space.max - model.space.min);
-  const Real size = norm(model.gravity);
-  Real along = 0;
-  for (std::size_t axis = 0; axis < 3 && size > 0; ++axis)
-    along += std::abs(gravity[axis]) / size * extent[axis];
-  return along;
-}
-
 // Of the space across gravity, the base on which particles come to rest: area, or in 2D length.
 Real base_size(const Model& model) {
   const Vec3 extent = model.space.max - model.space.min;
   const Real volume = extent.x * extent.y * (model.space.dimension == 2 ? 1 : extent.z);
-  return volume / height(model);
+  return volume / fall_height(model);
 }
 
 std::string nothing_to_simulate(const DeckTable& deck, const Model& model) {
@@ -172,12 +161,12 @@ Real particles_on_top(const Model& model) {
   const Real diameter = 2 * model.particles.totals.smallest_radius;
   const Real per_layer = std::max(base_size(model) / std::pow(diameter, model.space.dimension - 1), Real(1));
   return std::clamp(static_cast<Real>(model.particles.totals.count) / per_layer, Real(1),
-                    std::max(height(model) / diameter, Real(1)));
+                    std::max(fall_height(model) / diameter, Real(1)));
 }
 
 std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
   const ParticleTotals& totals = model.particles.totals;
-  if (totals.count == 0 || height(model) == 0) return "";
+  if (totals.count == 0 || fall_height(model) == 0) return "";
   const std::vector<MaterialUse> uses = material_uses(model);
   const auto particles = [&](int side) {
     return uses[static_cast<std::size_t>(limit.material[side])].particles;
@@ -195,22 +184,26 @@ std::string overlap_at_rest(const Model& model, const PairLimit& limit) {
 
 // A sheet pushes back to its contact's side until the centre is a radius past it; all else lets through what
 // is past the middle.
-std::string overlap_at_impact(const Model& model, const PairLimit& limit) {
+std::string overlap_at_impact(const Model& model, const ImpactSpeeds& speeds, const PairLimit& limit) {
   const std::vector<MaterialUse> uses = material_uses(model);
   Real radius = kInfinity;
   for (const int material : limit.material) {
     const MaterialUse& use = uses[static_cast<std::size_t>(material)];
     if (use.smallest_radius > 0) radius = std::min(radius, use.smallest_radius);
   }
-  const Real speed = impact_speed(model, limit);
+  const Real speed = speeds.of(limit);
   const Real overlap = impact_overlap(limit.law, lightest_mass(limit), speed);
   const bool sheets = meet_on_sheets_alone(uses, limit.material[0], limit.material[1]);
   if (overlap <= (sheets ? 2 : 1) * radius) return "";
   return fmt::format(
       "contact {}: the stiffness is too low for impacts at {:.3g} m/s (speeds at t = 0, and a fall through "
-      "the "
-      "space): an overlap of {:.3g} m at a radius of {:.3g} m, and things pass through each other",
-      pair_name(model, limit), speed, overlap, radius);
+      "the space{}): an overlap of {:.3g} m at a radius of {:.3g} m, and things pass through each other",
+      pair_name(model, limit), speed,
+      speeds.fastest_surface() > 0
+          ? fmt::format(", and surfaces that motions, drivers and motors move at up to {:.3g} m/s",
+                        speeds.fastest_surface())
+          : "",
+      overlap, radius);
 }
 
 std::string many_sizes(const Model& model) {
@@ -315,31 +308,9 @@ std::string undamped_joints_in_space(const Model& model) {
 
 }  // namespace
 
-Real lightest_mass(const PairLimit& limit) {
-  const Real inverse_frequency = limit.contact_time / std::numbers::pi_v<Real>;
-  return limit.stiffness * inverse_frequency * inverse_frequency;
-}
-
 Real weight_at_bottom(const Model& model) {
-  if (model.particles.totals.count == 0 || height(model) == 0) return 0;
+  if (model.particles.totals.count == 0 || fall_height(model) == 0) return 0;
   return particles_on_top(model) * model.particles.totals.smallest_mass * norm(model.gravity);
-}
-
-Real impact_speed(const Model& model, const PairLimit& limit) {
-  const std::vector<MaterialUse> uses = material_uses(model);
-  const MaterialUse &a = uses[static_cast<std::size_t>(limit.material[0])],
-                    &b = uses[static_cast<std::size_t>(limit.material[1])];
-  Real speed = 0;
-  if (a.particles + b.particles > 0)
-    speed = model.particles.totals.most_radii_per_second * model.particles.totals.smallest_radius;
-  if (a.shapes + b.shapes + a.meshes + b.meshes > 0)
-    for (const Body& body : model.bodies) speed = std::max(speed, norm(body.velocity));
-  // Grains fall on such as lie on a floor already, of whatever material that is.
-  const bool floor =
-      std::any_of(uses.begin(), uses.end(), [](const MaterialUse& use) { return use.is_of_surfaces(); });
-  if (floor && a.particles + b.particles > 0)
-    speed = std::hypot(speed, fall_speed(norm(model.gravity), height(model)));
-  return speed;
 }
 
 void check_normal(const DeckTable& table, const std::string& key, Real value) {
@@ -361,9 +332,11 @@ std::vector<std::string> implausible(const DeckTable& deck, const Model& model) 
                                        belt_without_friction(model),
                                        many_steps(model),
                                        same_random_places(deck)};
-  for (const PairLimit& limit : pair_limits(model))
-    for (const auto& finding : {overdamped, overlap_at_rest, overlap_at_impact})
-      findings.push_back(finding(model, limit));
+  const ImpactSpeeds speeds(model);
+  for (const PairLimit& limit : pair_limits(model)) {
+    for (const auto& finding : {overdamped, overlap_at_rest}) findings.push_back(finding(model, limit));
+    findings.push_back(overlap_at_impact(model, speeds, limit));
+  }
   const std::vector<std::string> of_meshes = implausible_meshes(deck, model);
   findings.insert(findings.end(), of_meshes.begin(), of_meshes.end());
   std::erase(findings, "");

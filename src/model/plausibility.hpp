@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "deck/deck.hpp"
+#include "model/impact_speed.hpp"
 #include "model/limits.hpp"
 #include "model/model.hpp"
 
@@ -12,12 +13,6 @@ namespace scree {
 
 // What seems wrong with the whole model, one text for each finding. Costs no pass over the particles.
 std::vector<std::string> implausible(const DeckTable& deck, const Model& model);
-
-// Mass of the relative motion of the lightest pair [kg].
-Real lightest_mass(const PairLimit& limit);
-// At which the two of a pair may meet [m/s]: with the speeds at t = 0, and after a fall through the space
-// where there is something to fall on.
-Real impact_speed(const Model& model, const PairLimit& limit);
 
 // Of the particles above one at the bottom, which all lie on the base of the space [N]; 0 without gravity.
 Real weight_at_bottom(const Model& model);

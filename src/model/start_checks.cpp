@@ -8,7 +8,8 @@
 #include "base/rotation.hpp"
 #include "model/build_parts.hpp"
 #include "model/connections.hpp"
-#include "model/limits.hpp"
+#include "model/explicit_step.hpp"
+#include "model/impact_speed.hpp"
 #include "model/point_bins.hpp"
 #include "model/shape_places.hpp"
 #include "model/space_box.hpp"
@@ -20,8 +21,8 @@ namespace scree {
 
 namespace {
 
-// Phase that a body on one contact may turn in a step of a staggered run, and should.
-constexpr Real kMostBodyPhase = 0.7, kGoodBodyPhase = 0.3;
+// Phase that a body on one contact may turn in a step of a staggered run.
+constexpr Real kMostBodyPhase = 0.7;
 // Likewise between bodies, or bodies and walls, where nothing rubs: past it the contact gains energy.
 constexpr Real kMostAmongBodies = 2;
 
@@ -202,10 +203,9 @@ void check_explicit_step(const DeckTable& deck, const Model& model, const std::v
       "a velocity-verlet step of step / substeps = {:.4g} s is unstable in dense contacts of \"{}\" and "
       "\"{}\"; it must be at most {:.4g} s",
       step, names[a], names[b], tightest->explicit_step);
-  if (tightest->law.exponent == 1) {
-    deck.table("time").fail("step", problem);
-  }
-  log.warning("time.step: " + problem + " (estimated for an overlap of 1 % of the radius)");
+  if (tightest->law.exponent == 1) deck.table("time").fail("step", problem + left_out_step(model));
+  log.warning("time.step: " + problem + " (estimated for an overlap of 1 % of the radius)" +
+              left_out_step(model));
 }
 
 // Masses of a body on a contact [kg]: pushed along the normal, and rubbed across it; 0: there is none.
@@ -227,14 +227,14 @@ MassesOnContact masses_on_contact(const Model& model, const std::vector<Material
           reduced_mass(body.smallest_rubbed_mass, other.smallest_rubbed_mass), beside_particle};
 }
 
+}  // namespace
+
 // The bodies see the contact force at the end of their step, while the particles take substeps: staggered,
 // and stable only while the step is short against the oscillation of a body on its contacts. As above, it is
 // an estimate for exponents other than 1.
-void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
-  if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
+BodyStepLimit body_step_limit(const Model& model) {
   const std::vector<MaterialUse> uses = material_uses(model);
-  Real fastest = 0, most = kMostBodyPhase;
-  bool is_exact = true;
+  BodyStepLimit limit{0, kMostBodyPhase, 0, true};
   for (int a = 0; a < model.contact.materials(); ++a) {
     for (int b = 0; b < model.contact.materials(); ++b) {
       const MassesOnContact masses = masses_on_contact(model, uses, a, b);
@@ -248,20 +248,42 @@ void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
             frequency,
             contact_frequency(typical_slip_stiffness(model.contact.friction_of(a, b), size), masses.rubbed));
       const Real allowed = masses.beside_particle || model.rotates() ? kMostBodyPhase : kMostAmongBodies;
-      if (frequency / allowed > fastest / most)
-        fastest = frequency, most = allowed, is_exact = law.of_size(size).exponent == 1;
+      limit.good_frequency = std::max(limit.good_frequency, frequency);
+      if (frequency / allowed > limit.frequency / limit.most_phase)
+        limit.frequency = frequency, limit.most_phase = allowed,
+        limit.is_exact = law.of_size(size).exponent == 1;
     }
   }
-  const Real phase = fastest * model.time.step;
+  return limit;
+}
+
+namespace {
+
+void check_body_step(const DeckTable& deck, const Model& model, Log& log) {
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
+  const BodyStepLimit limit = body_step_limit(model);
   const std::string finding = fmt::format(
       "a body on a contact oscillates with {:.4g} rad/s; with velocity-verlet particles the bodies' step "
-      "must be at "
-      "most {:.3g} s",
-      fastest, most / fastest);
-  if (phase > most && is_exact) deck.table("time").fail("step", finding);
-  if (phase > kGoodBodyPhase)
-    log.warning(
-        fmt::format("time.step: {}, and should be at most {:.3g} s", finding, kGoodBodyPhase / fastest));
+      "must be at most {:.3g} s",
+      limit.frequency, limit.most_step());
+  if (model.time.step > limit.most_step() && limit.is_exact)
+    deck.table("time").fail("step", finding + left_out_step(model));
+  if (model.time.step > limit.good_step())
+    log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s{}", finding, limit.good_step(),
+                            left_out_step(model)));
+}
+
+// A surface that the deck moves goes as far as a particle might: past those in its way.
+void check_surface_speeds(const Model& model, Real step, Log& log) {
+  const Real speed = ImpactSpeeds(model).fastest_surface(), radius = model.particles.totals.smallest_radius;
+  if (model.particles.totals.count == 0 || speed * step <= radius) return;
+  const bool is_fixed = model.time.control == StepControl::fixed;
+  log.warning(fmt::format(
+      "{}: in a step of {:.4g} s a surface that motions, drivers or motors move goes {:.3g} times the "
+      "smallest "
+      "radius at its fastest, {:.3g} m/s, and may pass particles unnoticed; the step should be at most "
+      "{:.2g} s",
+      is_fixed ? "time.step" : "time.max_step", step, speed * step / radius, speed, 0.95 * radius / speed));
 }
 
 // A particle that goes farther than its radius in a step may pass through others and through walls. No law
@@ -337,6 +359,7 @@ void check_steps(const DeckTable& deck, const Model& model, Log& log) {
   const Real step =
       is_fixed ? model.time.step / (is_explicit ? model.integrator.substeps : 1) : model.time.max_step;
   check_speeds(model, step, log);
+  check_surface_speeds(model, step, log);
   if (is_fixed && is_explicit) check_explicit_step(deck, model, limits, log);
 }
 

@@ -14,6 +14,13 @@
 
 namespace scree {
 
+// What steps of velocity-verlet are good, and are chosen where a deck leaves its step out: at most these
+// shares, and no longer than trial impacts keep their rebounds (model/explicit_step.hpp).
+inline constexpr Real kStableShare = Real(1) / 3;  // of the stability limit in dense contact
+inline constexpr Real kNeckShare = 0.01;  // of the shortest contact, where a neck must let go within one
+// Phase that a body on its contacts turns in a step [rad]: its contacts are staggered with the particles'.
+inline constexpr Real kGoodBodyPhase = 0.3;
+
 // Mass of the relative motion of two bodies [kg].
 SCREE_HD Real reduced_mass(Real a, Real b) { return a * b / (a + b); }
 

@@ -10,17 +10,18 @@
 
 #include "base/host_memory.hpp"
 #include "base/printable.hpp"
-#include "dem/choose_law.hpp"
 #include "dem/device.hpp"
 #include "dem/kept_contacts.hpp"
 #include "dem/output_fields.hpp"
 #include "model/body_layout.hpp"
+#include "model/choose_law.hpp"
 #include "model/connections.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
 #include "run/check_bodies.hpp"
 #include "run/check_meshes.hpp"
 #include "run/link_lines.hpp"
+#include "run/step_clock.hpp"
 #include "run/step_trials.hpp"
 
 namespace scree {
@@ -143,10 +144,9 @@ std::string combined_line(const Model& model, const PairLimit& limit) {
   return "";
 }
 
-std::string limit_lines(const Model& model) {
+std::string limit_lines(const Model& model, const std::vector<StepTrial>& trials) {
   std::string lines;
   const std::vector<std::string>& names = model.contact.material_names;
-  const std::vector<StepTrial> trials = try_steps(model);
   for (const PairLimit& limit : pair_limits(model)) {
     const KelvinVoigt& law = limit.law;
     const bool sized = model.contact.law(limit.material[0], limit.material[1]).depends_on_size();
@@ -179,23 +179,54 @@ std::string limit_lines(const Model& model) {
   return lines;
 }
 
-std::string time_lines(const Model& model) {
+// How many steps that adapt become: between what is left where nothing touches, and what a contact asks for.
+std::string adaptive_steps(const Model& model, const std::vector<StepTrial>& trials) {
+  const TimeControl& time = model.time;
+  Real shortest = time.max_step;
+  for (const StepTrial& trial : trials) shortest = std::min(shortest, trial.step);
+  const auto steps_of = [&](Real step) { return std::ceil(time.end / step * (1 - 1e-9)); };
+  const std::string fewest = fmt::format("{:.0f} steps", steps_of(time.max_step));
+  if (shortest == time.max_step) return fewest + ", more where the bodies' motion asks for shorter ones";
+  return fmt::format("{} if nothing ever touches, about {:.0f} of {:.2g} s if something always does", fewest,
+                     std::stod(fmt::format("{:.1e}", steps_of(shortest))), shortest);
+}
+
+std::string fixed_steps(const Model& model) {
+  const std::int64_t steps = steps_of_fixed(model), substeps = model.integrator.substeps;
+  return substeps == 1 ? counted(steps, "step", "steps")
+                       : fmt::format("{}, of {} substeps each: {}", counted(steps, "step", "steps"), substeps,
+                                     steps * substeps);
+}
+
+// A line with the reason of a choice; "" of what the deck names.
+std::string chosen_line(const std::vector<ChosenValue>& chosen, const std::string& key) {
+  const auto found = std::ranges::find(chosen, key, &ChosenValue::key);
+  return found == chosen.end() || found->reason.empty()
+             ? ""
+             : fmt::format("               chosen: {}\n", found->reason);
+}
+
+std::string time_lines(const Model& model, const std::vector<StepTrial>& trials,
+                       const std::vector<ChosenValue>& chosen) {
   const TimeControl& time = model.time;
   const Integrator& integrator = model.integrator;
   const bool fixed = time.control == StepControl::fixed;
-  const auto steps_of = [&](Real step) { return std::ceil(time.end / step * (1 - 1e-9)); };
   std::string lines = fmt::format("time           0 to {} s, ", time.end);
-  lines += fixed ? fmt::format("fixed step {} s ({:.0f} steps)\n", time.step, steps_of(time.step))
-                 : fmt::format(
-                       "adaptive steps from {:.4g} to {:.4g} s ({:.0f} at least), the first of {:.4g} s, "
-                       "tolerance {}\n",
-                       time.min_step, time.max_step, steps_of(time.max_step), time.step, time.tolerance);
+  lines += fixed
+               ? fmt::format("fixed step {} s ({})\n", time.step, fixed_steps(model))
+               : fmt::format(
+                     "adaptive steps from {:.4g} to {:.4g} s, the first of {:.4g} s, tolerance {}\n"
+                     "               {}\n",
+                     time.min_step, time.max_step, time.step, time.tolerance, adaptive_steps(model, trials));
+  lines += chosen_line(chosen, "step");
   const std::string particles =
       integrator.particles == ParticleIntegrator::hht
           ? "the same"
           : "velocity-verlet, " + counted(integrator.substeps, "substep", "substeps");
-  return lines + fmt::format("integrator     bodies HHT with alpha = {}; particles {}\n",
-                             integrator.hht_alpha, particles);
+  return lines +
+         fmt::format("integrator     bodies HHT with alpha = {}; particles {}\n", integrator.hht_alpha,
+                     particles) +
+         chosen_line(chosen, "particles");
 }
 
 std::string megabytes(Real bytes) {
@@ -325,10 +356,11 @@ std::string device_memory_line(const Model& model, const Ranks& ranks) {
 
 }  // namespace
 
-std::string check_report(const Model& model, const Ranks& ranks) {
+std::string check_report(const Model& model, const std::vector<ChosenValue>& chosen, const Ranks& ranks) {
+  const std::vector<StepTrial> trials = try_steps(model);
   const std::string title = model.title.empty() ? "" : "title          " + printable(model.title) + "\n";
   return title + space_lines(model, ranks.size()) + mesh_lines(model) + multibody_lines(model) +
-         limit_lines(model) + time_lines(model) + output_lines(model) +
+         limit_lines(model, trials) + time_lines(model, trials, chosen) + output_lines(model) +
          fmt::format("search         skin {:.4g} m\n", model.contact.skin) +
          memory_line(model, ranks.size()) + device_memory_line(model, ranks);
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "deck/deck.hpp"
 #include "model/model.hpp"
 #include "partition/ranks.hpp"
 
@@ -10,7 +12,7 @@ namespace scree {
 
 // Sizes, materials, contact times and step limits, degrees of freedom, and an estimate of the memory on the
 // host and on a GPU; several lines. ranks: that the model was built by; this one has its part of the
-// particles. Collective.
-std::string check_report(const Model& model, const Ranks& ranks);
+// particles; chosen: what the deck left to the program. Collective.
+std::string check_report(const Model& model, const std::vector<ChosenValue>& chosen, const Ranks& ranks);
 
 }  // namespace scree

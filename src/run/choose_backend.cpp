@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "dem/choose_law.hpp"
 #include "dem/device.hpp"
 #include "dem/kept_contacts.hpp"
+#include "model/choose_law.hpp"
 #include "model/memory.hpp"
 #include "partition/shared_model.hpp"
 

@@ -81,6 +81,19 @@ void StepClock::open_segment() {
   state_.parts_left = 1;
 }
 
+std::int64_t steps_of_fixed(const Model& model) {
+  constexpr std::int64_t kMostSegments = 1000000;
+  StepClock clock(model);
+  std::int64_t steps = 0;
+  for (std::int64_t segments = 0; !clock.done() && segments < kMostSegments; ++segments) {
+    steps += clock.state_.grid_steps;
+    clock.state_.time = clock.state_.end;
+    clock.take_history(), clock.take_snapshot(), clock.take_checkpoint();
+    clock.open_segment();
+  }
+  return clock.done() ? steps : std::llround(static_cast<Real>(steps) * (clock.end() / clock.time()));
+}
+
 Real StepClock::begin_step() {
   if (state_.time == state_.end) open_segment();
   return step();

@@ -23,6 +23,10 @@ struct ClockState {
   std::int64_t histories = 0, snapshots = 0, checkpoints = 0;  // output times reached
 };
 
+// How many fixed steps a run takes, where none has to be repeated: outputs cut some of them. Of more than a
+// million outputs an estimate.
+std::int64_t steps_of_fixed(const Model& model);
+
 // At the same time, but with nothing carried on from the steps before: the next ones follow from these keys.
 ClockState with_new_steps(const ClockState& state, const TimeControl& time);
 
@@ -64,6 +68,7 @@ class StepClock {
   Real same_time_margin() const;  // times closer than this are one [s]
   bool reached(std::int64_t& count, Real interval);
   void shrink(Real factor, const std::string& reason);
+  friend std::int64_t steps_of_fixed(const Model& model);
 
   TimeControl time_;
   Output output_;

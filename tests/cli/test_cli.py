@@ -83,6 +83,9 @@ end = 0.5
 step = 1e-4
 control = "fixed"
 
+[integrator]
+particles = "hht"
+
 [[contact.pairs]]
 stiffness = 1e6
 

@@ -72,7 +72,7 @@ def write_scaled_deck(path, particles):
         "[space]", "dimension = 2", f"min = [{left - side}, {paper['space']['min'][1]}]",
         f"max = [{-left + side}, {max(3.0, low + rows * dy)}]", 'leaving = "drift"',
         "[time]", f"end = {paper['time']['end']}", f"step = {paper['time']['step']}", 'control = "fixed"',
-        "[integrator]", f"hht_alpha = {paper['integrator']['hht_alpha']}",
+        "[integrator]", 'particles = "hht"', f"hht_alpha = {paper['integrator']['hht_alpha']}",
         "[[contact.pairs]]", f"stiffness = {law['stiffness']}", f"damping = {law['damping']}",
         f"tension = {str(law['tension']).lower()}",
     ]

@@ -123,6 +123,22 @@ TEST_CASE("a fixed step is never longer than asked and as long as the output tim
   }
 }
 
+TEST_CASE("fixed steps are counted beforehand as the clock takes them") {
+  for (const IntervalCase& c : kIntervals) {
+    Model model = timed_model(c.end, c.step);
+    model.output.history_interval = c.history, model.output.snapshot_interval = c.snapshot;
+    model.output.checkpoint_interval = c.checkpoint;
+    StepClock clock(model);
+    std::int64_t steps = 0;
+    while (!clock.done()) {
+      clock.begin_step(), clock.accepted(0), ++steps;
+      clock.take_history(), clock.take_snapshot(), clock.take_checkpoint();
+    }
+    CAPTURE(c.end, c.step, c.history, c.snapshot);
+    CHECK(steps_of_fixed(model) == steps);
+  }
+}
+
 TEST_CASE("a step that divides the output interval is taken as it is written in the deck") {
   Model model = timed_model(1, 1e-4);
   model.output.history_interval = 1e-3;

@@ -50,6 +50,8 @@ const std::string kGas = contact_deck(
     "min = [0.0, 0.0]\nmax = [1.0, 1.0]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = "
     "\"wall\"\n",
     "end = 0.6\nstep = 3e-3\n", R"(
+[integrator]
+particles = "hht"
 [[particles]]
 name = "gas"
 kind = "random"
@@ -66,6 +68,7 @@ seed = 3
 const std::string kHopper = R"(
 gravity = [0.0, -9.8066]
 [integrator]
+particles = "hht"
 max_iterations = 60
 [[walls]]
 name = "left"

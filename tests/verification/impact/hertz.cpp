@@ -209,6 +209,8 @@ z_max = "wall"
 end = 0.2
 step = 1e-3
 control = "fixed"
+[integrator]
+particles = "hht"
 [[materials]]
 name = "soft"
 density = 1000.0

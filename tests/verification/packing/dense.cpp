@@ -34,6 +34,8 @@ z_max = "wall"
 end = 1.0
 step = 1e-3
 control = "fixed"
+[integrator]
+particles = "hht"
 [[contact.pairs]]
 stiffness = 1e7
 damping = 10.0

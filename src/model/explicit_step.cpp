@@ -1,0 +1,95 @@
+#include "model/explicit_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "model/impact_speed.hpp"
+#include "model/impact_trials.hpp"
+#include "model/limits.hpp"
+
+namespace scree {
+
+namespace {
+
+std::string pair_name(const Model& model, const PairLimit& limit) {
+  const std::vector<std::string>& names = model.contact.material_names;
+  return fmt::format("\"{}\" on \"{}\"", names[static_cast<std::size_t>(limit.material[0])],
+                     names[static_cast<std::size_t>(limit.material[1])]);
+}
+
+// Keeps the shortest.
+void bound(ExplicitStep& step, Real by, const std::string& reason) {
+  if (by < step.step) step = {by, reason};
+}
+
+bool has_neck(const Model& model, const PairLimit& limit) {
+  const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
+  return law.neck && law.attracts();
+}
+
+void bound_by_pair(const Model& model, const PairLimit& limit, ExplicitStep& step) {
+  const std::string name = pair_name(model, limit);
+  const Real substeps = model.integrator.substeps;
+  bound(step, substeps * kStableShare * limit.explicit_step,
+        fmt::format("{:.2g} of the stability limit in dense contacts of {}", kStableShare, name));
+  if (has_neck(model, limit))
+    bound(step, substeps * kNeckShare * limit.contact_time,
+          fmt::format("{:g} of the shortest contact of {}, whose necks let go within a small part of it",
+                      kNeckShare, name));
+  // Trials take a while: where the step is short enough they need not say how long it might be.
+  if (step.step < kInfinity && explicit_error(model, limit, step.step / substeps) < kGoodRebound) return;
+  bound(
+      step, substeps * good_explicit_step(model, limit),
+      fmt::format("the longest with which trial rebounds of {} are within {:g} %", name, 100 * kGoodRebound));
+}
+
+}  // namespace
+
+Real two_digits_below(Real x) {
+  constexpr Real kRoundOff = 1e-12;
+  const int exponent = static_cast<int>(std::floor(std::log10(x))) - 1;
+  const Real digits = std::floor(x / std::pow(Real(10), exponent) * (1 + kRoundOff));
+  return std::stod(fmt::format("{:.0f}e{}", digits, exponent));  // what a deck that names it reads
+}
+
+ExplicitStep longest_explicit_step(const Model& model) {
+  ExplicitStep step;
+  const Real substeps = model.integrator.substeps;
+  bound(step, body_step_limit(model).good_step(),
+        fmt::format("{:g} rad of the oscillation of a body on its contacts", kGoodBodyPhase));
+  bound(step, substeps * unnoticed_step(model),
+        "half of the smallest radius at the fastest speed that is known beforehand");
+  const std::vector<PairLimit> pairs = explicit_pairs(model);
+  for (const PairLimit& limit : pairs) bound_by_pair(model, limit, step);
+  if (step.step == kInfinity) return step;
+  step.step = two_digits_below(step.step);
+  // Errors mostly fall with the step, not always.
+  constexpr int kMostTries = 10;
+  constexpr Real kShorter = 0.8;
+  const auto errs = [&](const PairLimit& limit) {
+    return explicit_error(model, limit, step.step / substeps) >= kGoodRebound;
+  };
+  for (int k = 0; k < kMostTries && std::ranges::any_of(pairs, errs); ++k)
+    step.step = two_digits_below(kShorter * step.step);
+  return step;
+}
+
+bool suits_explicit(const Model& model, Real step) {
+  if (step > body_step_limit(model).good_step()) return false;
+  const Real h = step / model.integrator.substeps;
+  for (const PairLimit& limit : explicit_pairs(model))
+    if (h > limit.explicit_step || explicit_error(model, limit, h) > kBadRebound) return false;
+  return true;
+}
+
+std::string left_out_step(const Model& model) {
+  const ExplicitStep longest = longest_explicit_step(model);
+  return longest.step < kInfinity ? fmt::format("; left out, it is {:g} s: {}", longest.step, longest.reason)
+                                  : "";
+}
+
+}  // namespace scree

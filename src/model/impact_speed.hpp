@@ -1,0 +1,42 @@
+// How fast things may meet.
+#pragma once
+
+#include <vector>
+
+#include "model/limits.hpp"
+#include "model/model.hpp"
+
+namespace scree {
+
+// How far something can fall within the space [m].
+Real fall_height(const Model& model);
+// Mass of the relative motion of the lightest pair [kg].
+Real lightest_mass(const PairLimit& limit);
+
+// Of one model: looks at all its meshes once.
+class ImpactSpeeds {
+ public:
+  explicit ImpactSpeeds(const Model& model);
+
+  // At which the two of a pair may meet [m/s]: with the speeds at t = 0, and after a fall through the space
+  // where there is something to fall on; and with the speed of the surfaces that the deck moves, at which
+  // particles are thrown, too.
+  Real of(const PairLimit& limit) const;
+  // Of the surfaces that the deck moves, along their normals [m/s].
+  Real fastest_surface() const;
+
+ private:
+  const Model& model_;
+  std::vector<MaterialUse> uses_;
+  std::vector<Real> surfaces_;  // of each material
+};
+
+// Of one pair.
+inline Real impact_speed(const Model& model, const PairLimit& limit) { return ImpactSpeeds(model).of(limit); }
+
+// The time in which a particle as fast as at t = 0 that then fell through the space, or a surface that the
+// deck moves, goes half of the smallest radius [s]: in longer steps they might pass through others unnoticed,
+// and no error estimate says so. Infinite where nothing moves by itself.
+Real unnoticed_step(const Model& model);
+
+}  // namespace scree

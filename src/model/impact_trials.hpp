@@ -1,0 +1,44 @@
+// What steps make of impacts of the deck's own materials: each pair's lightest partners meet in the steps
+// that a run takes (physics/trial_impact.hpp).
+#pragma once
+
+#include <vector>
+
+#include "model/limits.hpp"
+#include "physics/trial_impact.hpp"
+
+namespace scree {
+
+// Of one pair of materials.
+struct StepTrial {
+  PairLimit limit;
+  Real speed;  // of approach [m/s]; nothing depends on it where the force is linear in the overlap
+  Real step;   // tried: that of the particles, or the one that adaptive steps come to [s]
+  bool is_adaptive;
+  bool rubs;       // with friction: an impact without spin at `incidence`, else head-on
+  Real incidence;  // from the normal [rad]
+  TrialResult result;
+  Real good_step;       // up to which errors stay below kGoodRebound [s]
+  bool any_step_good;   // good_step is the longest that was tried
+  Real adaptive_step;   // that implicit steps would come to [s]; 0: they adapt already, or are explicit
+  Real adaptive_error;  // of rebounds in such steps
+};
+
+// Errors of rebounds: what is good, which is what steps that are chosen keep to, and from where on there is a
+// warning.
+inline constexpr Real kGoodRebound = 0.02, kBadRebound = 0.05;
+
+// One per pair of materials that can meet and interact; of its lightest partners, two particles if such can
+// meet, else a particle and a body or a wall, else bodies. Empty for what is not in these steps: bodies among
+// themselves beside explicit particles.
+std::vector<StepTrial> try_steps(const Model& model);
+
+// Of the pairs of materials whose contacts velocity-verlet takes. These need no step and no integrator of the
+// model yet.
+std::vector<PairLimit> explicit_pairs(const Model& model);
+// The longest step of the particles up to which such a pair's trial is within kGoodRebound [s], and the error
+// of its rebound in steps of `step` [s].
+Real good_explicit_step(const Model& model, const PairLimit& limit);
+Real explicit_error(const Model& model, const PairLimit& limit, Real step);
+
+}  // namespace scree
