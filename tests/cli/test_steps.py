@@ -27,7 +27,6 @@ kind = "funnel"
 radius = 0.03
 top_radius = 0.15
 length = 0.2
-segments = 24
 [[walls]]
 name = "hopper"
 mesh = "hopper"
@@ -85,7 +84,7 @@ class StepsTest(CommandLineTest):
         self.assertEqual(*hashes)
         # A deck that names what was chosen is the same deck, and goes on from the checkpoint; one that names others is not.
         named = ["--set", "integrator.particles=velocity-verlet", "--set", f"time.step={step[1]}", "--set", "time.end=0.021"]
-        restart = ["--restart", self.folder / "one/checkpoint.h5", "--output", self.folder / "one"]
+        restart = ["--restart", self.folder / "one/checkpoint_end.h5", "--output", self.folder / "one"]
         self.expect(DONE, "run", deck, *named, *restart)
         refused = self.expect(BAD_INPUT, "run", deck, "--set", "integrator.particles=hht", *restart).stderr
         self.assertIn('integrator.particles: "velocity-verlet" -> "hht"', refused)

@@ -1,6 +1,12 @@
 // How fast the surfaces are that the deck moves, and what follows for stiffness and step.
 #include "model/surface_speeds.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "model/impact_speed.hpp"
 #include "support/catch.hpp"
 #include "support/models.hpp"
