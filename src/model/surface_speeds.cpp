@@ -157,13 +157,15 @@ Real wall_speed(const Model& model, const Wall& wall, Real t) {
   return most;
 }
 
-// One motion is fastest where its rate is; several are looked at where each is, and between.
+// One motion of a mesh is fastest where its rate is. Several are evaluated where each of them is, and
+// between, and so is a plane: what the space has of it changes as it turns.
 Real wall_speed(const Model& model, const Wall& wall) {
   constexpr int kBetween = 32;
   const Real end = model.time.end;
   std::vector<Real> times;
   for (const WallMotion& motion : wall.motions) times.push_back(fastest_time(motion.coordinate, end));
-  for (int k = 0; k <= kBetween && wall.motions.size() > 1; ++k) times.push_back(end * k / kBetween);
+  for (int k = 0; k <= kBetween && (wall.motions.size() > 1 || wall.mesh < 0); ++k)
+    times.push_back(end * k / kBetween);
   Real most = 0;
   for (const Real t : times) most = std::max(most, wall_speed(model, wall, t));
   return most;

@@ -82,10 +82,8 @@ y_max = "wall"
 end = 0.5
 step = 1e-4
 control = "fixed"
-
 [integrator]
 particles = "hht"
-
 [[contact.pairs]]
 stiffness = 1e6
 

@@ -66,8 +66,8 @@ class StepsTest(CommandLineTest):
         self.assertEqual(said.stderr, "")
         step = re.search(r"fixed step (\S+) s \((\d+) steps\)\n {15}chosen: (.+)\n", said.stdout)
         self.assertIn("within 2 %", step[3])
-        self.assertIn("particles velocity-verlet, 1 substep\n               chosen: 900 particles may touch, with friction: "
-                      "from 20 on", said.stdout)
+        self.assertIn("particles velocity-verlet, 1 substep\n               chosen: 900 particles may touch, with "
+                      "friction: from 20 on", said.stdout)
         hashes = []
         for name, launcher in (("one", ()), ("two", TWO_RANKS)):
             out = self.folder / name
@@ -79,11 +79,13 @@ class StepsTest(CommandLineTest):
             self.assertEqual(record["counts"]["steps"], int(step[2]))
             self.assertEqual(record["warnings"], [])
             hashes.append(record["run"]["state_hash"])
-            for line in ('particles = "velocity-verlet"  # chosen: ', f"step = {step[1]}  # chosen: ", 'control = "fixed"\n'):
+            for line in ('particles = "velocity-verlet"  # chosen: ', f"step = {step[1]}  # chosen: ",
+                         'control = "fixed"\n'):
                 self.assertIn(line, record["run"]["resolved_deck"])
         self.assertEqual(*hashes)
-        # A deck that names what was chosen is the same deck, and goes on from the checkpoint; one that names others is not.
-        named = ["--set", "integrator.particles=velocity-verlet", "--set", f"time.step={step[1]}", "--set", "time.end=0.021"]
+        # A deck that names what was chosen is the same deck, and goes on from the checkpoint.
+        named = ["--set", "integrator.particles=velocity-verlet", "--set", f"time.step={step[1]}",
+                 "--set", "time.end=0.021"]
         restart = ["--restart", self.folder / "one/checkpoint_end.h5", "--output", self.folder / "one"]
         self.expect(DONE, "run", deck, *named, *restart)
         refused = self.expect(BAD_INPUT, "run", deck, "--set", "integrator.particles=hht", *restart).stderr
@@ -92,18 +94,20 @@ class StepsTest(CommandLineTest):
     def test_a_named_integrator_is_taken_and_so_is_what_names_one(self):
         deck = self.write("hopper.toml", HOPPER)
         for words, reason in ((("integrator.particles=hht",), None), (("time.control=adaptive",), "time.control"),
-                              (("time.tolerance=1e-7",), "time.tolerance"), (("particles.grains.count=19",), "19 particles")):
+                              (("time.tolerance=1e-7",), "time.tolerance"),
+                              (("particles.grains.count=19",), "19 particles")):
             said = self.expect(DONE, "check", deck, *[word for each in words for word in ("--set", each)]).stdout
             self.assertIn("particles the same\n", said)
             chosen = re.search(r"particles the same\n {15}chosen: (.+)\n", said)
             self.assertEqual(chosen is not None, reason is not None)
             self.assertTrue(reason is None or reason in chosen[1])
-            self.assertRegex(said, r"adaptive steps from .*\n {15}\d+ steps if nothing ever touches, about \S+ of \S+ s if "
-                                   r"something always does\n")
+            self.assertRegex(said, r"adaptive steps from .*\n {15}\d+ steps if nothing ever touches, "
+                                   r"about \S+ of \S+ s if something always does\n")
 
     def test_a_wall_faster_than_the_contacts_are_stiff_is_warned_of(self):
-        wall = ('[[walls]]\nname = "plate"\npoint = [0, 0, -0.1]\nnormal = [0, 0, 1]\nmotions = [{ type = "translation", '
-                'direction = [0, 0, 1], displacement = { kind = "sine", amplitude = 0.02, frequency = 600.0 } }]\n')
+        wall = ('[[walls]]\nname = "plate"\npoint = [0, 0, -0.1]\nnormal = [0, 0, 1]\n'
+                '[[walls.motions]]\ntype = "translation"\ndirection = [0, 0, 1]\n'
+                'displacement = { kind = "sine", amplitude = 0.02, frequency = 600.0 }\n')
         deck = self.write("plate.toml", HOPPER + wall)
         warning = r"the stiffness is too low for impacts at \S+ m/s .* move at up to 75\.4 m/s\)"
         self.assertRegex(self.expect(DONE, "check", deck).stderr, warning)

@@ -116,8 +116,7 @@ TEST_CASE("texts that are no choice") {
 }
 
 TEST_CASE("missing keys and tables") {
-  CHECK(deck_error(with_line(7, "")) ==
-        "deck.toml:6:1: time.end: missing; it must be a number above 0 [s]");
+  CHECK(deck_error(with_line(7, "")) == "deck.toml:6:1: time.end: missing; it must be a number above 0 [s]");
   CHECK(contains(deck_error("title = \"x\"\n"), "deck.toml: space: missing; it must be a table"));
   CHECK(contains(deck_error(kSmallDeck + "[[bodies]]\nname = \"a\"\n"),
                  "deck.toml:10:1: bodies.a.position: missing; it must be 2 numbers [m] in brackets"));
