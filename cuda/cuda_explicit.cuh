@@ -16,7 +16,9 @@ class CudaExplicitRun : public ExplicitRun {
 
   StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
   void shape_contacts() override;
-  void reduce_wrench(std::vector<BodyWrench>& wrench) override { bodies_.reduce_wrench(wrench); }
+  void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) override {
+    bodies_.side().reduce(wrench, contacts);
+  }
 
   // Brings the open step into the arrays of the state; the run goes on from there.
   void settle();

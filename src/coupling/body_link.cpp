@@ -8,7 +8,7 @@
 namespace scree {
 
 BodyLink::BodyLink(const Model& model, const Ranks& ranks)
-    : ranks_(ranks), bodies_(model.bodies.size()), walls_(model) {
+    : ranks_(ranks), bodies_(model.bodies.size()), walls_(model), loaded_(model) {
   const std::size_t carriers = SurfaceSet(model).carriers();
   motion_.resize(carriers), end_wrench_.resize(carriers), step_wrench_.wrench.resize(carriers);
   walls_before_.resize(walls_.size()), walls_after_.resize(walls_.size());
@@ -137,11 +137,37 @@ void BodyLink::reduce_wrench(ImplicitStep& step) {
 }
 
 void BodyLink::reduce_end_wrench(ExplicitRun& run) {
-  if (has_carriers()) run.reduce_wrench(end_wrench_);
+  if (has_carriers()) run.reduce_wrench(end_wrench_, contacts_);
 }
 
 void BodyLink::reduce_end_wrench(RankParticles& particles) {
   if (has_carriers()) particles.reduce_wrench(end_wrench_);
+}
+
+bool BodyLink::is_loaded(Real h) {
+  if (!has_bodies() || !loaded_.can_be()) return false;
+  bool loaded = ranks_.is_root() && loaded_.are_loaded(contacts_, h);
+  ranks_.broadcast(loaded);
+  return loaded;
+}
+
+void BodyLink::open_loaded(Real h) {
+  if (!multibody_) return;
+  loaded_.open(contacts_, h, multibody_->motion(), step_wrench_.wrench, end_wrench_);
+  loaded_.give(step_wrench_);
+}
+
+void BodyLink::follow_load(bool found) {
+  if (!multibody_) return;
+  if (found)
+    loaded_.look(multibody_->motion(), end_wrench_);
+  else
+    loaded_.foretell(multibody_->motion());
+  loaded_.give(step_wrench_);
+}
+
+void BodyLink::average_accelerations(MultibodyState& bodies) {
+  if (multibody_) multibody_->average_accelerations(bodies, loaded_.averaged_share());
 }
 
 void BodyLink::set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/loaded_bodies.hpp"
 #include "coupling/wall_motion.hpp"
 #include "dem/backend.hpp"
 #include "mbs/multibody.hpp"
@@ -61,6 +62,16 @@ class BodyLink {
   // halved.
   void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
                        int substeps);
+  // Whether the contacts of the last reduce_end_wrench(run) are stiff for a step of length h [s] of the bodies
+  // (LoadedBodies). Collective.
+  bool is_loaded(Real h);
+  // Such a step, open: with its first prediction; after each correct(), with the contacts as
+  // reduce_end_wrench(run) has found them there, or without; after accept().
+  void open_loaded(Real h);
+  void follow_load(bool found);
+  void average_accelerations(MultibodyState& bodies);
+  std::string load_warning() const { return loaded_.warning(); }  // of rank 0
+
   // Of the bodies, then of the placed walls.
   void take_wrench(MultibodyState& state) const;  // end_wrench()
   const std::vector<BodyWrench>& end_wrench() const { return end_wrench_; }
@@ -81,6 +92,8 @@ class BodyLink {
   std::vector<BodyMotion> of_bodies_, walls_before_, walls_after_;  // scratch
   ContactWrenches step_wrench_;
   std::vector<BodyWrench> end_wrench_;
+  std::vector<std::int64_t> contacts_;  // of particles, in end_wrench_; of an explicit step
+  LoadedBodies loaded_;
 };
 
 }  // namespace scree

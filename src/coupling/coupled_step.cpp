@@ -28,14 +28,6 @@ constexpr int kMostFollowing = 12;
 // part of the largest force: so it is where a first touch in weightlessness is all that acts.
 constexpr Real kRoundOffMove = 1e-12;
 
-// sum += weight * wrenches
-void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
-  for (std::size_t b = 0; b < wrenches.size(); ++b) {
-    sum[b].force += weight * wrenches[b].force;
-    sum[b].torque += weight * wrenches[b].torque;
-  }
-}
-
 }  // namespace
 
 // The last one of a Newton loop.
@@ -272,95 +264,6 @@ bool CoupledStep::iterate_once(ImplicitStep& step, Iteration& last, bool final) 
   last.correction = correction.correction;
   counts_.linear_iterations += correction.iterations;
   return false;
-}
-
-std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h,
-                                        Real end) {
-  const int substeps = model_.integrator.substeps;
-  std::unique_ptr<ExplicitRun> run;
-  {
-    const auto scope = timers_.time(Stage::predict);
-    run = backend_.start_run(h / substeps);
-  }
-  std::size_t taken = 0;
-  if (link_.has_bodies() || link_.has_driven_walls()) {
-    for (bool open = true; open; ++taken) {
-      const bool last = taken + 1 == times.size();
-      open = explicit_step(*run, bodies, {times[taken], h, last ? end : times[taken + 1], !last});
-    }
-  } else {
-    const Index most = static_cast<Index>(times.size()) * substeps;
-    taken = static_cast<std::size_t>(run->take_steps(most, false, timers_).closed / substeps);
-  }
-  counts_.steps += static_cast<std::int64_t>(taken);
-  return taken;
-}
-
-// Returns whether the particles' next step is open.
-bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
-  const bool open = explicit_substeps(run, bodies, step);
-  if (link_.has_bodies())
-    solve_bodies(run, bodies, step);
-  else
-    link_.take_wrench(bodies);
-  return open;
-}
-
-bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
-  const int substeps = model_.integrator.substeps;
-  const std::vector<BodyWrench> start = bodies.wrench;
-  std::vector<BodyWrench>& sum = wrench_sum_;
-  sum.assign(link_.end_wrench().size(), BodyWrench{});
-  add_wrenches(sum, start, 0.5);
-  bool open = true;
-  Real before = step.t;
-  for (int s = 1; s <= substeps; ++s) {
-    const Real tau = step.h * s / substeps, now = s < substeps ? step.t + tau : step.end;
-    {
-      const auto scope = timers_.time(Stage::broadcast_motion);
-      link_.broadcast_motion(backend_.list(), bodies, tau, now);
-    }
-    open = run.take_steps(1, s < substeps || step.keep_open, timers_).open;
-    const auto scope = timers_.time(Stage::reduce_wrench);
-    link_.reduce_end_wrench(run);
-    add_wrenches(sum, link_.end_wrench(), s < substeps ? 1 : 0.5);
-    link_.book_walls(bodies, before, now, link_.end_wrench());
-    before = now;
-  }
-  link_.set_mean_wrench(start, sum, substeps);
-  return open;
-}
-
-// The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
-// begins, with the contacts at the bodies' corrected place.
-void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
-  const Integrator& limits = model_.integrator;
-  {
-    const auto scope = timers_.time(Stage::mbs_correct);
-    link_.predict(bodies, step.t, step.h, step.end);
-    IterationNorms norms;
-    int iteration = 0;
-    do {
-      if (++iteration > limits.max_iterations)
-        throw SimulationError(
-            fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations{}",
-                        limits.max_iterations, link_.trouble()));
-      ++counts_.newton_iterations;
-      norms = link_.correct();
-    } while (
-        !(norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance));
-  }
-  {
-    const auto scope = timers_.time(Stage::broadcast_motion);
-    link_.broadcast_motion(backend_.list());
-  }
-  {
-    const auto scope = timers_.time(Stage::reduce_wrench);
-    run.shape_contacts();
-    link_.reduce_end_wrench(run);
-  }
-  const auto scope = timers_.time(Stage::accept);
-  link_.accept(bodies);
 }
 
 }  // namespace scree

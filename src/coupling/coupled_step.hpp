@@ -73,8 +73,15 @@ class CoupledStep {
   bool iterate_once(ImplicitStep& step, Iteration& last, bool final);
   std::string trouble_of(ImplicitStep& step, const Iteration& last, int iterations) const;
   bool explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
-  bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
-  void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step);
+  // A step of the bodies within one of these, or all of it: from `first` substeps after its start to `last`.
+  struct BodyStep {
+    Real t, h, end;  // [s]
+    int first, last;
+    Real end_of_last = t;  // substep
+  };
+  bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step, BodyStep& part);
+  void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step);
+  void look_at_bodies(ExplicitRun& run);
 
   const Model& model_;
   Backend& backend_;

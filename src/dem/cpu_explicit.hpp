@@ -12,7 +12,9 @@ class CpuExplicitRun : public ExplicitRun {
 
   StepsTaken take_steps(Index most, bool keep_open, StageTimers& timers) override;
   void shape_contacts() override;
-  void reduce_wrench(std::vector<BodyWrench>& wrench) override { items_.reduce_wrench(wrench); }
+  void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) override {
+    items_.side.reduce(wrench, contacts);
+  }
 
  private:
   VerletViews views_of(std::vector<Vec4>& position, std::vector<Vec4>& velocity, std::vector<Vec4>& spin);

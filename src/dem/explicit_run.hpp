@@ -1,6 +1,7 @@
 // Explicit steps of the particles, one after the other without the state at rest in between.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/timer.hpp"
@@ -38,8 +39,9 @@ class ExplicitRun {
   // Contacts of the bodies' shapes, where they are placed now, with the particles as they were when the last
   // step was closed.
   virtual void shape_contacts() = 0;
-  // Contact wrenches on the bodies, after either of these. On rank 0; zero elsewhere.
-  virtual void reduce_wrench(std::vector<BodyWrench>& wrench) = 0;
+  // Contact wrenches on the bodies, after either of these, and the number of particles' contacts in each. On
+  // rank 0; zero elsewhere.
+  virtual void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) = 0;
 };
 
 }  // namespace scree

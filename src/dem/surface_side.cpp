@@ -203,6 +203,7 @@ Real SurfaceSide::displacement_since(const std::vector<PlacedSurface>& then, con
 
 void SurfaceSide::take_loads(std::span<const InstantSums> of_particles, Real h) {
   loads_.assign(of_particles.begin(), of_particles.end());
+  particle_loads_ = loads_.size();
   if (!ranks_.is_root()) return;
   bodies_.find_loads(places(), h);
   bodies_.add_sums(loads_);
@@ -243,8 +244,20 @@ void SurfaceSide::reduce(ContactWrenches& step, std::vector<BodyWrench>& end) co
 }
 
 void SurfaceSide::reduce(std::vector<BodyWrench>& end) const {
+  std::vector<std::int64_t> unused;
+  reduce(end, unused);
+}
+
+void SurfaceSide::reduce(std::vector<BodyWrench>& end, std::vector<std::int64_t>& contacts) const {
   std::fill(end.begin(), end.end(), BodyWrench{});
-  for (const InstantSums& sums : merged(loads_)) end[surfaces_.at(sums.surface).carrier] += sums.wrench();
+  contacts.assign(end.size(), 0);
+  const auto carrier = [this](const InstantSums& sums) {
+    return static_cast<std::size_t>(surfaces_.at(sums.surface).carrier);
+  };
+  for (const InstantSums& sums : merged(loads_))
+    end[carrier(sums)] += sums.wrench(), contacts[carrier(sums)] += sums.contacts;
+  for (std::size_t own = particle_loads_; own < loads_.size() && ranks_.is_root(); ++own)
+    contacts[carrier(loads_[own])] -= loads_[own].contacts;
 }
 
 // count: of sums; where: the one that a surface's contacts belong to.

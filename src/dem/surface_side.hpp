@@ -2,6 +2,7 @@
 // the bodies lose among each other. Few and small, they live on the host for every backend.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -81,6 +82,8 @@ class SurfaceSide {
   // out as zero. Collective.
   void reduce(ContactWrenches& step, std::vector<BodyWrench>& end) const;
   void reduce(std::vector<BodyWrench>& end) const;
+  // contacts: of particles, per carrier.
+  void reduce(std::vector<BodyWrench>& end, std::vector<std::int64_t>& contacts) const;
 
   // Of the bodies' shapes. book_losses: of an explicit step of length h from the last loads, like the
   // particles', by the trapezoidal rule unless contacts rub; book_step: of an implicit step, which is
@@ -143,7 +146,8 @@ class SurfaceSide {
   std::vector<SurfaceFrame> frames_;
   std::vector<Mat3> start_axes_, listed_axes_;
   std::vector<Vec3> step_, step_turn_;
-  std::vector<InstantSums> loads_;
+  std::vector<InstantSums> loads_;  // of particles, then of shapes
+  std::size_t particle_loads_ = 0;  // of these
   std::vector<StepSums> steps_;
   ShapeLosses losses_;
 };

@@ -43,8 +43,8 @@ struct SystemTerms {
   Real force_scale = 0;
 };
 
-// An entry of (-Q)_q and -Q_v T^-1 at a place that comes and goes: those of bodies that touch each other. No
-// pattern has it.
+// An entry of (-Q)_q and -Q_v T^-1 at a place that comes and goes: those of bodies that touch each other, and
+// of bodies that explicit particles load. No pattern has it.
 struct CoupledEntry {
   int row, column;
   Real stiffness, damping;
@@ -58,6 +58,13 @@ struct SystemDerivatives {
   SparseTerm tangent_inertia;    // M (T^-1 - 1)
   SparseTerm reaction;           // -Q_lambda^T [constraints, coordinates]
   std::vector<CoupledEntry> coupling;
+  bool loaded = false;  // whether entries of the latter are in it: beside these all others may be small
+
+  void add_passing(int row, int column, Real of_stiffness, Real of_damping) {
+    if (of_stiffness == 0 && of_damping == 0) return;
+    coupling.push_back({row, column, of_stiffness, of_damping});
+    loaded = true;
+  }
 };
 
 class MechanicalSystem {

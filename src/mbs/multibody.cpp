@@ -272,6 +272,13 @@ void Multibody::accept(MultibodyState& state, const std::vector<BodyWrench>& end
   std::swap(state, impl.end);
 }
 
+void Multibody::average_accelerations(MultibodyState& state, Real share) const {
+  const std::vector<Real>& start = impl_->method.start_velocity();
+  const Real h = impl_->method.step();
+  for (std::size_t i = 0; i < start.size(); ++i)
+    state.acceleration[i] += share * ((state.velocity[i] - start[i]) / h - state.acceleration[i]);
+}
+
 // The spring of friction that slides holds the limit under the reactions that the step ends with. What it
 // gives or takes by that is friction's.
 void Multibody::Impl::follow_load() {

@@ -110,6 +110,10 @@ class Multibody {
   // `state` as it was, where the reactions oscillate beyond repair (see ReactionWatch).
   void accept(MultibodyState& state, const std::vector<BodyWrench>& end_wrench);
 
+  // Of the step that accept() has just closed: replaces this share of the accelerations at its end by their
+  // mean over it.
+  void average_accelerations(MultibodyState& state, Real share) const;
+
   // After a step that failed: throws SimulationError where the reactions oscillate, as shorter steps do not
   // help then.
   void check_reactions() const;

@@ -134,9 +134,12 @@ class PlanarBodies final : public RigidBodies {
   void add_contact_derivatives(const BodyPoses&, const std::vector<BodyWrench>&,
                                SystemDerivatives& derivatives) const override {
     for (const Placed& b : bodies_) {
-      if (!b.body.touchable) continue;
       const int coordinate[3] = {b.at.column, b.at.column + 1, b.at.column + 2};
       const ContactBlock& block = contact_of(b.at.body);
+      if (!b.body.touchable) {
+        add_passing(coordinate, block, derivatives);
+        continue;
+      }
       derivatives.stiffness.add_block(
           coordinate, [&](std::size_t i, std::size_t j) { return block.stiffness[3 * i + j]; });
       derivatives.damping.add_block(coordinate,
@@ -217,6 +220,13 @@ class PlanarBodies final : public RigidBodies {
   const ContactBlock& contact_of(int body) const {
     static const ContactBlock none;
     return touched_.empty() ? none : contact_[static_cast<std::size_t>(body)];
+  }
+  static void add_passing(const int (&coordinate)[3], const ContactBlock& block,
+                          SystemDerivatives& derivatives) {
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        derivatives.add_passing(coordinate[i], coordinate[j], block.stiffness[3 * i + j],
+                                block.damping[3 * i + j]);
   }
   static Vec3 shift(const Real* v) { return {v[0], v[1], 0}; }
   static Vec3 turn(const Real* v) { return {0, 0, v[2]}; }

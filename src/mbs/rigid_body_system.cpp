@@ -190,7 +190,7 @@ void RigidBodySystem::differentiate(const SystemInstant& at, const SystemIterate
   derivatives.damping.begin();
   derivatives.tangent_inertia.begin();
   derivatives.reaction.begin();
-  derivatives.coupling.clear();
+  derivatives.coupling.clear(), derivatives.loaded = false;
   for (const auto& kind : kinds_) kind->set_tangents(iterate.displacement, poses_);
   for (const auto& element : elements_) {
     element->add_derivatives(poses_, at.time, derivatives.stiffness, derivatives.damping);

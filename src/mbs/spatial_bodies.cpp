@@ -45,6 +45,16 @@ Mat3 in_own_frame(const Mat3& block, const Mat3& rotation, int i, int j) {
   return j == 1 ? rows * rotation : rows;
 }
 
+void add_passing(const Mat3& stiffness, const Mat3& damping, int row, int column,
+                 SystemDerivatives& derivatives) {
+  const Vec3 k[] = {stiffness.x, stiffness.y, stiffness.z}, c[] = {damping.x, damping.y, damping.z};
+  for (int i = 0; i < 3; ++i) {
+    derivatives.add_passing(row + i, column, k[i].x, c[i].x);
+    derivatives.add_passing(row + i, column + 1, k[i].y, c[i].y);
+    derivatives.add_passing(row + i, column + 2, k[i].z, c[i].z);
+  }
+}
+
 class SpatialBodies final : public RigidBodies {
  public:
   SpatialBodies(const Model& model, const BodyLayout& layout) : gravity_(model.gravity) {
@@ -178,9 +188,9 @@ class SpatialBodies final : public RigidBodies {
                                SystemDerivatives& derivatives) const override {
     static const WrenchStiffness none;
     for (const Placed& b : bodies_) {
-      if (!b.touchable) continue;
-      const SpatialPose& pose = poses.spatial[b.at.body];
       const auto found = touched_.find(b.at.body);
+      if (!b.touchable && found == touched_.end()) continue;
+      const SpatialPose& pose = poses.spatial[b.at.body];
       const WrenchStiffness& contact = found == touched_.end() ? none : found->second;
       const Vec3 torque = pose.turn_back(wrench[static_cast<std::size_t>(b.at.body)].torque);
       for (int i = 0; i < 2; ++i)
@@ -188,9 +198,12 @@ class SpatialBodies final : public RigidBodies {
           const int row = b.at.column + 3 * i, column = b.at.column + 3 * j;
           Mat3 k = in_own_frame(block_of(contact.stiffness, i, j), pose.rotation, i, j);
           if (i == 1 && j == 1) k = k - tilde(torque);
-          add_block(derivatives.stiffness, row, column, k);
-          const Mat3 c = in_own_frame(block_of(contact.damping, i, j), pose.rotation, i, j);
-          add_block(derivatives.damping, row, column, j == 1 ? c * pose.inverse_tangent : c);
+          Mat3 c = in_own_frame(block_of(contact.damping, i, j), pose.rotation, i, j);
+          if (j == 1) c = c * pose.inverse_tangent;
+          if (b.touchable)
+            add_block(derivatives.stiffness, row, column, k), add_block(derivatives.damping, row, column, c);
+          else
+            add_passing(k, c, row, column, derivatives);
         }
     }
   }

@@ -11,6 +11,11 @@ namespace {
 constexpr Real kMostShare = 0.01;  // of the energy exchanged
 constexpr Real kRoundOff = 1e-9;   // of all energies: where less was exchanged, nothing is said
 
+// Beside bodies more substeps leave what the bodies' own step does to contacts.
+const char* advice_of_explicit(const Model& model) {
+  return model.bodies.empty() ? "shorten time.step, or raise integrator.substeps" : "shorten time.step";
+}
+
 }  // namespace
 
 void add_sample(BalanceState& balance, const Ledger& ledger) {
@@ -43,7 +48,7 @@ std::string balance_warning(const BalanceState& balance, const BodiesBook& bodie
       "the time integration has changed the energy by {:.3g} J, {:.2g} % of the {:.4g} J exchanged (it "
       "took out {:.3g} J, and {:.3g} J are not accounted for): {}",
       largest, 100 * largest / balance.exchanged, balance.exchanged, taken, error,
-      !implicit ? "shorten time.step, or raise integrator.substeps"
+      !implicit ? advice_of_explicit(model)
       : fixed   ? "shorten time.step, or set time.control = \"adaptive\""
                 : "lower time.tolerance, or bring integrator.hht_alpha nearer to 0");
 }

@@ -1,5 +1,7 @@
 #include "run/bodies_outside.hpp"
 
+#include <fmt/format.h>
+
 #include "model/body_layout.hpp"
 #include "model/space_box.hpp"
 
@@ -17,6 +19,15 @@ BodiesOutside bodies_outside(const Model& model, const MultibodyState& state) {
     if (!space.inside(centre) && ++outside.count == 1) outside.first = static_cast<std::size_t>(b);
   }
   return outside;
+}
+
+std::string bodies_outside_warning(const Model& model, const MultibodyState& state, Real t) {
+  const BodiesOutside outside = bodies_outside(model, state);
+  if (outside.count == 0) return "";
+  return fmt::format(
+      "body \"{}\" is outside the space at t = {:.6g} s: bodies that leave are counted, neither stopped nor "
+      "removed",
+      model.bodies[outside.first].name, t);
 }
 
 }  // namespace scree

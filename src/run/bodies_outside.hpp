@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "mbs/multibody.hpp"
 #include "model/model.hpp"
@@ -16,5 +17,7 @@ struct BodiesOutside {
 };
 // state: of rank 0; no bodies are outside on others.
 BodiesOutside bodies_outside(const Model& model, const MultibodyState& state);
+// Of a state at time t [s]; empty where none is outside.
+std::string bodies_outside_warning(const Model& model, const MultibodyState& state, Real t);
 
 }  // namespace scree

@@ -106,7 +106,7 @@ class Simulation {
   LiveView live_;
   double start_cpu_ = cpu_seconds();
   double loop_seconds_ = 0;
-  bool body_left_ = false, load_lost_ = false;
+  bool body_left_ = false, load_lost_ = false, overloaded_ = false;
   const SurfacesOutside surfaces_outside_;
   std::string state_hash_;
   std::int64_t list_entries_ = 0, migrated_ = 0, device_bytes_ = 0;  // of all ranks
@@ -191,16 +191,14 @@ void Simulation::checkpoint(State& state, const std::string& name) {
   live_.checkpoint_written(name, state.clock.time);
 }
 
-// Warns once.
+// Warns once of each.
 void Simulation::watch_bodies(const State& state) {
-  if (body_left_) return;
-  const BodiesOutside outside = bodies_outside(model_, state.bodies);
-  body_left_ = outside.count > 0;
-  if (body_left_)
-    log_.warning(
-        fmt::format("body \"{}\" is outside the space at t = {:.6g} s: bodies that leave are counted, "
-                    "neither stopped nor removed",
-                    model_.bodies[outside.first].name, state.clock.time));
+  const auto warn_once = [this](bool& warned, const std::string& warning) {
+    if (!warning.empty()) log_.warning(warning), warned = true;
+  };
+  if (!body_left_)
+    warn_once(body_left_, bodies_outside_warning(model_, state.bodies, state.clock.time));
+  if (!overloaded_) warn_once(overloaded_, link_.load_warning());
 }
 
 // Warns once, on every rank.
@@ -313,6 +311,7 @@ ExitCode Simulation::finish(const std::string& status, ExitCode code) {
   recorder_->finish();
   const std::string reactions = link_.multibody() ? link_.multibody()->reaction_warning() : "";
   if (!reactions.empty() && code != ExitCode::simulation_failed) log_.warning(reactions);
+  if (overloaded_) log_.warning(link_.load_warning());
   list_entries_ = ranks_.sum(backend_->list().entries());
   migrated_ = ranks_.sum(backend_->list().balance().migrated);
   device_bytes_ = ranks_.sum(static_cast<std::int64_t>(device_memory_in_use()));

@@ -199,6 +199,7 @@ TEST_CASE("what leaves after an implicit step, and what it leaves, is the same o
 struct Outcome {
   std::array<Real, 2> taken{};     // by those that left
   std::vector<BodyWrench> wrench;  // with the last step closed
+  std::vector<std::int64_t> contacts;  // that these are of
 };
 
 // Steps of one backend, with those that leave taken out on the way.
@@ -212,7 +213,7 @@ Outcome take_steps(Backend& backend, Pair& pair, Index steps, Index most, Real h
     left -= steps_taken.closed;
     if (steps_taken.open) continue;
     run->shape_contacts();
-    run->reduce_wrench(out.wrench);
+    run->reduce_wrench(out.wrench, out.contacts);
     const std::array<Real, 2> now = leave(backend);
     out.taken[0] += now[0], out.taken[1] += now[1];
     backend.list().build(pair.model.contact.skin, pair.timers);
@@ -237,6 +238,7 @@ TEST_CASE("explicit steps are the same on both backends") {
       CHECK(difference(pair.cpu->particles().records(), pair.cuda->particles().records()) <=
             (c.exponent == 1 ? 0 : 1e-7));
       check_wrenches({a.wrench, b.wrench}, c.exponent == 1 ? 0 : 1e-7);
+      CHECK(a.contacts == b.contacts);
       if (c.exponent == 1) check_contacts(pair, 0);
     }
 }

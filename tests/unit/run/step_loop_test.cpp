@@ -61,7 +61,9 @@ class WatchedRun : public ExplicitRun {
     return run_->take_steps(most, keep_open, timers);
   }
   void shape_contacts() override { run_->shape_contacts(); }
-  void reduce_wrench(std::vector<BodyWrench>& wrench) override { run_->reduce_wrench(wrench); }
+  void reduce_wrench(std::vector<BodyWrench>& wrench, std::vector<std::int64_t>& contacts) override {
+    run_->reduce_wrench(wrench, contacts);
+  }
 
  private:
   std::unique_ptr<ExplicitRun> run_;

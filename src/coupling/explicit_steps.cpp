@@ -1,0 +1,141 @@
+// The explicit steps of both sides.
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "coupling/coupled_step.hpp"
+
+namespace scree {
+namespace {
+
+// A step of loaded bodies looks at the contacts in so many iterations; where contacts open and close from one
+// to the next, the others go by what was found.
+constexpr int kMostLooks = 20;
+
+// sum += weight * wrenches
+void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
+  for (std::size_t b = 0; b < wrenches.size(); ++b) {
+    sum[b].force += weight * wrenches[b].force;
+    sum[b].torque += weight * wrenches[b].torque;
+  }
+}
+
+}  // namespace
+
+std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vector<Real>& times, Real h,
+                                        Real end) {
+  const int substeps = model_.integrator.substeps;
+  std::unique_ptr<ExplicitRun> run;
+  {
+    const auto scope = timers_.time(Stage::predict);
+    run = backend_.start_run(h / substeps);
+  }
+  std::size_t taken = 0;
+  if (link_.has_bodies() || link_.has_driven_walls()) {
+    for (bool open = true; open; ++taken) {
+      const bool last = taken + 1 == times.size();
+      open = explicit_step(*run, bodies, {times[taken], h, last ? end : times[taken + 1], !last});
+    }
+  } else {
+    const Index most = static_cast<Index>(times.size()) * substeps;
+    taken = static_cast<std::size_t>(run->take_steps(most, false, timers_).closed / substeps);
+  }
+  counts_.steps += static_cast<std::int64_t>(taken);
+  return taken;
+}
+
+// Returns whether the particles' next step is open. Where the contacts are stiff for the bodies, these step
+// with the particles: their step then ends with the substep after which that was seen, and so does each that
+// follows. Until there all that was done was the same.
+bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
+  const int all = model_.integrator.substeps;
+  bool open = true;
+  for (int done = 0; done < all;) {
+    BodyStep part{step.t + step.h * done / all, step.h, step.end, done, done};
+    open = explicit_substeps(run, bodies, step, part);
+    if (part.last < all || part.first > 0) part.h = step.h * (part.last - part.first) / all;
+    if (link_.has_bodies())
+      solve_bodies(run, bodies, part);
+    else
+      link_.take_wrench(bodies);
+    done = part.last;
+  }
+  return open;
+}
+
+// Sets where the part ends.
+bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step,
+                                    BodyStep& part) {
+  const int substeps = model_.integrator.substeps;
+  const std::vector<BodyWrench> start = bodies.wrench;
+  std::vector<BodyWrench>& sum = wrench_sum_;
+  sum.assign(link_.end_wrench().size(), BodyWrench{});
+  add_wrenches(sum, start, 0.5);
+  bool open = true;
+  for (bool last = false; !last;) {
+    const int s = ++part.last;
+    const Real tau = step.h * (s - part.first) / substeps, before = part.end_of_last;
+    part.end = s < substeps ? step.t + step.h * s / substeps : step.end;
+    {
+      const auto scope = timers_.time(Stage::broadcast_motion);
+      link_.broadcast_motion(backend_.list(), bodies, tau, part.end);
+    }
+    open = run.take_steps(1, s < substeps || step.keep_open, timers_).open;
+    const auto scope = timers_.time(Stage::reduce_wrench);
+    link_.reduce_end_wrench(run);
+    last = s == substeps || link_.is_loaded(step.h);
+    add_wrenches(sum, link_.end_wrench(), last ? 0.5 : 1);
+    link_.book_walls(bodies, before, part.end, link_.end_wrench());
+    part.end_of_last = part.end;
+  }
+  link_.set_mean_wrench(start, sum, part.last - part.first);
+  return open;
+}
+
+// The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
+// begins, with the contacts at the bodies' corrected place. Those of loaded bodies are looked at wherever an
+// iteration has brought them, and the wrench follows.
+void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step) {
+  const Integrator& limits = model_.integrator;
+  const bool loaded = link_.is_loaded(step.h);
+  const auto small = [&](const IterationNorms& norms) {
+    return norms.residual <= limits.residual_tolerance && norms.correction <= limits.correction_tolerance;
+  };
+  {
+    const auto scope = timers_.time(Stage::mbs_correct);
+    link_.predict(bodies, step.t, step.h, step.end);
+    if (loaded) link_.open_loaded(step.h);
+  }
+  bool looked = false;
+  IterationNorms norms;
+  for (int iteration = 1; iteration == 1 || !small(norms); ++iteration) {
+    if (iteration > limits.max_iterations)
+      throw SimulationError(
+          fmt::format("stage mbs_correct: the bodies' motion did not converge in {} iterations{}",
+                      limits.max_iterations, link_.trouble()));
+    {
+      const auto scope = timers_.time(Stage::mbs_correct);
+      ++counts_.newton_iterations;
+      norms = link_.correct();
+    }
+    looked = loaded && iteration <= kMostLooks;
+    if (looked) look_at_bodies(run);
+    if (loaded) link_.follow_load(looked);
+  }
+  if (!looked) look_at_bodies(run);
+  const auto scope = timers_.time(Stage::accept);
+  link_.accept(bodies);
+  if (loaded) link_.average_accelerations(bodies);
+}
+
+// The contacts with the bodies where their last correction has brought them.
+void CoupledStep::look_at_bodies(ExplicitRun& run) {
+  {
+    const auto scope = timers_.time(Stage::broadcast_motion);
+    link_.broadcast_motion(backend_.list());
+  }
+  const auto scope = timers_.time(Stage::reduce_wrench);
+  run.shape_contacts();
+  link_.reduce_end_wrench(run);
+}
+
+}  // namespace scree
