@@ -62,8 +62,8 @@ class BodyLink {
   // halved.
   void set_mean_wrench(const std::vector<BodyWrench>& start, const std::vector<BodyWrench>& sum,
                        int substeps);
-  // Whether the contacts of the last reduce_end_wrench(run) are stiff for a step of length h [s] of the bodies
-  // (LoadedBodies). Collective.
+  // Whether the contacts of the last reduce_end_wrench(run) are stiff for a step of length h [s] of the
+  // bodies (LoadedBodies). Collective.
   bool is_loaded(Real h);
   // Such a step, open: with its first prediction; after each correct(), with the contacts as
   // reduce_end_wrench(run) has found them there, or without; after accept().

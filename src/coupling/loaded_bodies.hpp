@@ -33,8 +33,8 @@ class WrenchSlope {
   Vector moved(const BodyMotion& from, const BodyMotion& to) const;
   Vector product(const Vector& move) const;
 
-  Real reach_ = 1;                         // [m]
-  std::array<Vector, 6> slope_{};          // [N/m]
+  Real reach_ = 1;                 // [m]
+  std::array<Vector, 6> slope_{};  // [N/m]
 };
 
 // On rank 0.

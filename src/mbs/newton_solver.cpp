@@ -210,7 +210,8 @@ std::span<const Real> NewtonSolver::solve_coupled() {
   method_.add_coupled(-1, coupled_, left_);
   Real whole = product(left_, left_);
   // Beside a large O it is the residual that has to be solved for, not what O has made of it.
-  if (method_.is_loaded_by_contacts()) whole = std::min(whole, product(method_.residual(), method_.residual()));
+  if (method_.is_loaded_by_contacts())
+    whole = std::min(whole, product(method_.residual(), method_.residual()));
   const Real enough = kCoupledShare * kCoupledShare * whole;
   directions_.clear(), images_.clear();
   for (int pass = 0; pass < kCoupledPasses && product(left_, left_) > enough; ++pass) {

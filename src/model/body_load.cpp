@@ -37,19 +37,23 @@ void add_contacts(const Model& model, int surface, Real radius, PressedBody& bod
 }
 
 PressedBody pressed_body(const Model& model, const Body& body) {
-  PressedBody touched;
-  touched.mass = body.mass;
+  PressedBody pressed;
+  pressed.mass = body.mass;
+  Real arm = 0;  // of the farthest push; discs and spheres are pushed through their centres unless rubbed
   for (const Shape& shape : body.shapes) {
-    add_contacts(model, shape.material, shape.radius, touched);
-    touched.reach = std::max(touched.reach, norm(shape.offset) + shape.radius);
+    add_contacts(model, shape.material, shape.radius, pressed);
+    const Real offset = norm(shape.offset);
+    pressed.reach = std::max(pressed.reach, offset + shape.radius);
+    arm = std::max(arm, model.rotates() ? offset + shape.radius : offset);
   }
   for (const MeshShape& shape : body.meshes) {
-    add_contacts(model, shape.material, kInfinity, touched);
+    add_contacts(model, shape.material, kInfinity, pressed);
     const ModelMesh& mesh = model.meshes[static_cast<std::size_t>(shape.mesh)];
-    touched.reach = std::max(touched.reach, farthest(mesh, shape.offset, model.space.dimension));
+    const Real reach = farthest(mesh, shape.offset, model.space.dimension);
+    pressed.reach = std::max(pressed.reach, reach), arm = std::max(arm, reach);
   }
-  touched.least_mass = 1 / (1 / body.mass + touched.reach * touched.reach / body.inertia);
-  return touched;
+  pressed.least_mass = 1 / (1 / body.mass + arm * arm / body.inertia);
+  return pressed;
 }
 
 Real triangle_area(const SurfaceMesh& mesh, const MeshTriangle& triangle) {
@@ -98,7 +102,8 @@ std::int64_t most_contacts(const Model& model, int body) {
   // Of the densest layer.
   const Real of_one = model.space.dimension == 2 ? 2 * r : 2 * std::sqrt(Real(3)) * r * r;
   const Real most = std::ceil(size / of_one);
-  return most < static_cast<Real>(totals.count) ? std::max<std::int64_t>(1, std::llround(most)) : totals.count;
+  return most < static_cast<Real>(totals.count) ? std::max<std::int64_t>(1, std::llround(most))
+                                                : totals.count;
 }
 
 std::optional<LoadedStep> shortest_loaded_step(const Model& model) {

@@ -15,7 +15,7 @@ struct PressedBody {
   Real stiffness = 0;   // of its stiffest contact with a particle [N/m], an estimate; 0: none can touch it
   Real damping = 0;     // of its contact with the largest damping [N s/m], likewise
   Real mass = 0;        // [kg]
-  Real least_mass = 0;  // that a push at its farthest point meets, 1 / (1/m + reach^2 / inertia) [kg]
+  Real least_mass = 0;  // that a push with the longest arm meets, 1 / (1/m + arm^2 / inertia) [kg]
   Real reach = 0;       // of its surfaces from its centre of mass [m]
 
   // Phase by which the body on this many contacts oscillates in a step of length h [s].

@@ -196,8 +196,7 @@ void Simulation::watch_bodies(const State& state) {
   const auto warn_once = [this](bool& warned, const std::string& warning) {
     if (!warning.empty()) log_.warning(warning), warned = true;
   };
-  if (!body_left_)
-    warn_once(body_left_, bodies_outside_warning(model_, state.bodies, state.clock.time));
+  if (!body_left_) warn_once(body_left_, bodies_outside_warning(model_, state.bodies, state.clock.time));
   if (!overloaded_) warn_once(overloaded_, link_.load_warning());
 }
 

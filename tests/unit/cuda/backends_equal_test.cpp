@@ -197,8 +197,8 @@ TEST_CASE("what leaves after an implicit step, and what it leaves, is the same o
 }
 
 struct Outcome {
-  std::array<Real, 2> taken{};     // by those that left
-  std::vector<BodyWrench> wrench;  // with the last step closed
+  std::array<Real, 2> taken{};         // by those that left
+  std::vector<BodyWrench> wrench;      // with the last step closed
   std::vector<std::int64_t> contacts;  // that these are of
 };
 
