@@ -160,7 +160,7 @@ void BodyLink::open_loaded(Real h) {
 void BodyLink::follow_load(bool found) {
   if (!multibody_) return;
   if (found)
-    loaded_.look(multibody_->motion(), end_wrench_);
+    loaded_.follow(multibody_->motion(), end_wrench_);
   else
     loaded_.foretell(multibody_->motion());
   loaded_.give(step_wrench_);

@@ -65,8 +65,9 @@ class BodyLink {
   // Whether the contacts of the last reduce_end_wrench(run) are stiff for a step of length h [s] of the
   // bodies (LoadedBodies). Collective.
   bool is_loaded(Real h);
-  // Such a step, open: with its first prediction; after each correct(), with the contacts as
-  // reduce_end_wrench(run) has found them there, or without; after accept().
+  // Of such a step, in this order: after predict(); after each correct(), `found` where
+  // reduce_end_wrench(run) has the contacts at the corrected position, else with the wrenches that their
+  // slopes foretell; after accept().
   void open_loaded(Real h);
   void follow_load(bool found);
   void average_accelerations(MultibodyState& bodies);

@@ -81,7 +81,7 @@ class CoupledStep {
   };
   bool explicit_substeps(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step, BodyStep& part);
   void solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step);
-  void look_at_bodies(ExplicitRun& run);
+  void evaluate_contacts(ExplicitRun& run);
 
   const Model& model_;
   Backend& backend_;

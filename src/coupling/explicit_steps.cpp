@@ -7,9 +7,9 @@
 namespace scree {
 namespace {
 
-// A step of loaded bodies looks at the contacts in so many iterations; where contacts open and close from one
-// to the next, the others go by what was found.
-constexpr int kMostLooks = 20;
+// Iterations of a step of loaded bodies that evaluate the contacts anew; where contacts open and close from
+// one to the next, the others go by the slope that these have found.
+constexpr int kMostEvaluations = 20;
 
 // sum += weight * wrenches
 void add_wrenches(std::vector<BodyWrench>& sum, const std::vector<BodyWrench>& wrenches, Real weight) {
@@ -44,8 +44,8 @@ std::size_t CoupledStep::explicit_steps(MultibodyState& bodies, const std::vecto
 }
 
 // Returns whether the particles' next step is open. Where the contacts are stiff for the bodies, these step
-// with the particles: their step then ends with the substep after which that was seen, and so does each that
-// follows. Until there all that was done was the same.
+// with the particles: their step then ends with the substep that tells so, and so does each that follows. Up
+// to there all that was done was the same.
 bool CoupledStep::explicit_step(ExplicitRun& run, MultibodyState& bodies, const ExplicitStep& step) {
   const int all = model_.integrator.substeps;
   bool open = true;
@@ -92,8 +92,8 @@ bool CoupledStep::explicit_substeps(ExplicitRun& run, MultibodyState& bodies, co
 }
 
 // The bodies' own Newton loop with the impulse of the particles' substeps. The step ends, and the next
-// begins, with the contacts at the bodies' corrected place. Those of loaded bodies are looked at wherever an
-// iteration has brought them, and the wrench follows.
+// begins, with the contacts at the bodies' corrected position. Those of loaded bodies are evaluated wherever
+// an iteration has brought them, and the wrench follows.
 void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const BodyStep& step) {
   const Integrator& limits = model_.integrator;
   const bool loaded = link_.is_loaded(step.h);
@@ -105,7 +105,7 @@ void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const B
     link_.predict(bodies, step.t, step.h, step.end);
     if (loaded) link_.open_loaded(step.h);
   }
-  bool looked = false;
+  bool evaluated = false;
   IterationNorms norms;
   for (int iteration = 1; iteration == 1 || !small(norms); ++iteration) {
     if (iteration > limits.max_iterations)
@@ -117,18 +117,18 @@ void CoupledStep::solve_bodies(ExplicitRun& run, MultibodyState& bodies, const B
       ++counts_.newton_iterations;
       norms = link_.correct();
     }
-    looked = loaded && iteration <= kMostLooks;
-    if (looked) look_at_bodies(run);
-    if (loaded) link_.follow_load(looked);
+    evaluated = loaded && iteration <= kMostEvaluations;
+    if (evaluated) evaluate_contacts(run);
+    if (loaded) link_.follow_load(evaluated);
   }
-  if (!looked) look_at_bodies(run);
+  if (!evaluated) evaluate_contacts(run);
   const auto scope = timers_.time(Stage::accept);
   link_.accept(bodies);
   if (loaded) link_.average_accelerations(bodies);
 }
 
 // The contacts with the bodies where their last correction has brought them.
-void CoupledStep::look_at_bodies(ExplicitRun& run) {
+void CoupledStep::evaluate_contacts(ExplicitRun& run) {
   {
     const auto scope = timers_.time(Stage::broadcast_motion);
     link_.broadcast_motion(backend_.list());

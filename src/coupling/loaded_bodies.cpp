@@ -10,8 +10,8 @@ namespace scree {
 
 namespace {
 
-// PressedBody::load from which a step is one of loaded bodies. The forces at the predicted place make steps
-// unstable from 2 on.
+// PressedBody::load from which a step is one of loaded bodies. The wrenches at the predicted position make
+// steps unstable from 2 on.
 constexpr Real kLoaded = 0.2;
 
 // An update needs that much of its two vectors along each other.
@@ -105,7 +105,7 @@ void LoadedBodies::open(const std::vector<std::int64_t>& contacts, Real h,
   watch(contacts, h);
 }
 
-void LoadedBodies::look(const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& found) {
+void LoadedBodies::follow(const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& found) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     slope_[b].observe(motion_[b], motion[b],
                       {found[b].force - now_[b].force, found[b].torque - now_[b].torque});

@@ -1,6 +1,6 @@
-// Explicit particles that press on bodies so hard that the force at the bodies' predicted place is none to
-// solve their step with: the force then follows the bodies' correction, contacts looked at again where each
-// iteration has brought them (src/coupling/README.md).
+// Bodies that explicit particles press on so hard that the wrench at the predicted position is none to solve
+// their step with: the wrench then follows the bodies' correction, with the contacts evaluated anew where
+// each iteration has brought them (src/coupling/README.md).
 #pragma once
 
 #include <array>
@@ -52,8 +52,8 @@ class LoadedBodies {
   void open(const std::vector<std::int64_t>& contacts, Real h, const std::vector<BodyMotion>& motion,
             const std::vector<BodyWrench>& mean, const std::vector<BodyWrench>& predicted);
   // The bodies are there now, and their contacts have the wrenches `found`.
-  void look(const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& found);
-  // The same without a look: by what was found before.
+  void follow(const std::vector<BodyMotion>& motion, const std::vector<BodyWrench>& found);
+  // The same with wrenches that the slopes foretell.
   void foretell(const std::vector<BodyMotion>& motion);
   // What the next iteration is to be solved with; of `step`, the bodies' entries.
   void give(ContactWrenches& step) const;
