@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "model/limits.hpp"
+#include "model/mesh_corners.hpp"
 #include "model/touching.hpp"
 
 namespace scree {
@@ -43,7 +44,8 @@ CoupledStep::CoupledStep(const Model& model, Backend& backend, BodyLink& link, S
       link_(link),
       timers_(timers),
       something_touches_(model.particles.totals.count > 0 || !pair_limits(model).empty()),
-      largest_radius_(radius_range(model).largest) {}
+      largest_radius_(radius_range(model).largest > 0 ? radius_range(model).largest
+                                                      : largest_corner_radius(model)) {}
 
 void CoupledStep::rebuild_list(Real skin) { backend_.list().build(skin, timers_); }
 

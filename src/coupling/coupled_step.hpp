@@ -88,7 +88,7 @@ class CoupledStep {
   BodyLink& link_;
   StageTimers& timers_;
   const bool something_touches_;  // without, nothing is looked for
-  const Real largest_radius_;     // of particles and shapes [m]
+  const Real largest_radius_;     // of particles and shapes, else of meshes on planes [m]
   StepCounts counts_;
   bool frozen_ = false;                 // in the step that is open
   std::vector<BodyWrench> wrench_sum_;  // over the substeps of an explicit step

@@ -81,7 +81,7 @@ TableKeys make_body_keys() {
        surface_material(), collides_key()},
       ""};
   static const TableKeys meshes{
-      "Meshes fixed to the body, which particles touch. They weigh nothing: see solids.",
+      "Meshes fixed to the body, which particles and planes touch. They weigh nothing: see solids.",
       {text("mesh").required().about("Name of one of the meshes; its frame is the body's."),
        surface_material(), collides_key()},
       ""};

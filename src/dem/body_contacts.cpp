@@ -57,8 +57,10 @@ BodyContacts::BodyContacts(const Model& model, const SurfaceSet& surfaces, const
     : model_(model),
       surfaces_(surfaces),
       rule_(model),
+      corners_(model, surfaces),
       period_(subdomain.period()),
-      kernels_(make_contact_kernels(without_attraction(model.contact))),
+      snap_(subdomain.snap_constant()),
+      kernels_(make_contact_kernels(corners_.with_own_materials(without_attraction(model.contact)))),
       planes_(wall_planes(model)),
       entries_(model, subdomain, *kernels_, 0, masses_of_carriers(model, surfaces)),
       held_(kept_numbers(model, kernels_->history()), {model.space.min, subdomain.period()}),
@@ -86,20 +88,32 @@ std::vector<std::vector<BodyContacts::Item>> BodyContacts::find_partners(
   return partners;
 }
 
-// Rows of these shapes, in this order, with all that is no shape.
+std::vector<Index> BodyContacts::find_shapes(const SurfacePlaces& places, Real skin) const {
+  std::vector<Index> shapes;
+  for (Index s = 0; s < static_cast<Index>(places.placed.size()); ++s)
+    if (places.placed[s].kind == SurfaceKind::sphere) shapes.push_back(s);
+  corners_.add_near_planes(places, planes_, kMeshSkins * skin, shapes);
+  return shapes;
+}
+
+// Rows of these shapes, in this order, with all that is no shape. Corners go as far as their meshes, and are
+// looked for as far from planes as these are from particles.
 void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
                                  SurfaceRows& rows) const {
   std::vector<Vec4> position;
   Vec3 min, max;
   Real largest = 0;
   for (const Index s : shapes) {
-    const PlacedSurface& shape = places.placed[static_cast<std::size_t>(s)];
-    const Vec3 p = shape.point;
+    const bool is_corner = corners_.has(s);
+    const PlacedSurface& shape = places.placed[static_cast<std::size_t>(corners_.surface_of(s))];
+    const Vec3 p =
+        is_corner ? shape.point + places.frames[shape.frame].axes * corners_.place_of(s) : shape.point;
+    const Real radius = is_corner ? (kMeshSkins - 1) * skin : shape.radius;
     if (position.empty()) min = max = p;
     min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
     max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
-    largest = std::max(largest, shape.radius);
-    position.push_back(vec4(p, shape.radius));
+    largest = std::max(largest, radius);
+    position.push_back(vec4(p, radius));
   }
   const auto n = static_cast<Index>(position.size());
   const CellGrid grid = make_cell_grid(min, max, 3, 2 * largest + skin, 4 * n + 64);
@@ -109,8 +123,9 @@ void BodyContacts::find_surfaces(const SurfacePlaces& places, Real skin, const s
   std::vector<Index> next(start.begin(), start.end() - 1);
   for (Index i = 0; i < n; ++i) items[next[grid.nearest(xyz(position[i]))]++] = i;
   const auto may_touch = [&](Index i, Index s) {
+    if (corners_.has(shapes[i])) return surfaces_.at(s).kind == SurfaceKind::plane;
     return surfaces_.at(s).kind != SurfaceKind::sphere &&
-           rule_.may_touch(surfaces_.at(shapes[i]).carrier, surfaces_.at(s).carrier);
+           rule_.may_touch(carrier_of(shapes[i]), surfaces_.at(s).carrier);
   };
   const auto remembered = [&](Index i, Index surface) { return kept_.contacts_with(shapes[i], surface); };
   build_rows({grid, start, items, position, n, largest}, n,
@@ -126,8 +141,9 @@ void BodyContacts::list_items(const std::vector<Index>& shapes,
     item_of.emplace(Item{s, kNoShift}, static_cast<Index>(items_.size()));
     items_.push_back({s, kNoShift});
   }
+  const std::vector<Item> none;  // of corners
   for (const Index s : shapes) {
-    for (const Item& partner : partners[s]) {
+    for (const Item& partner : corners_.has(s) ? none : partners[s]) {
       const auto [found, is_new] = item_of.emplace(partner, static_cast<Index>(items_.size()));
       if (is_new) items_.push_back(partner);
       list_.neighbors.push_back(found->second);
@@ -136,24 +152,29 @@ void BodyContacts::list_items(const std::vector<Index>& shapes,
   }
   store_.owned = store_.active = static_cast<Index>(shapes.size());
   store_.material.clear(), store_.row_key.clear();
+  std::vector<Real> law_radius;
   for (const Item& item : items_) {
-    store_.material.push_back(surfaces_.at(item.surface).material);
+    const Surface& surface = surfaces_.at(corners_.surface_of(item.surface));
+    const bool is_corner = corners_.has(item.surface), resist = !model_.contact.rolling.empty();
+    store_.material.push_back(surface.material + (is_corner && resist ? model_.contact.materials() : 0));
+    law_radius.push_back(is_corner ? corners_.mesh_of(item.surface).hull->radius : surface.radius);
     store_.row_key.push_back(row_key(item.surface, item.image));
   }
+  entries_.set_law_radii(corners_.empty() ? std::vector<Real>{} : std::move(law_radius));
 }
 
 void BodyContacts::build(const SurfacePlaces& places, Real skin) {
   const std::vector<std::vector<Item>> partners = find_partners(places.placed, skin);
-  std::vector<Index> all, near;
-  for (Index s = 0; s < static_cast<Index>(places.placed.size()); ++s)
-    if (places.placed[s].kind == SurfaceKind::sphere) all.push_back(s);
+  const std::vector<Index> all = find_shapes(places, skin);
+  std::vector<Index> near;
   find_surfaces(places, skin, all, list_.surfaces);
   const std::vector<Index>& offsets = list_.surfaces.offsets;
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (offsets[k + 1] > offsets[k] || !partners[all[k]].empty()) near.push_back(all[k]);
+    if (offsets[k + 1] > offsets[k] || (!corners_.has(all[k]) && !partners[all[k]].empty()))
+      near.push_back(all[k]);
   if (near.size() < all.size()) find_surfaces(places, skin, near, list_.surfaces);
   list_items(near, partners);
-  place(places.placed, 0);
+  place(places, Instant::now, 0);
   if (held_.exists()) take_contacts(places);
   has_list_ = true;
 }
@@ -189,7 +210,7 @@ ShapeContacts BodyContacts::contacts(const SurfacePlaces& places) {
   ShapeContacts out;
   out.numbers = held_.numbers();
   if (!held_.exists()) return out;
-  place(places.placed, 0);
+  place(places, Instant::now, 0);
   const KeptContacts rows = held_.contacts(listed(places));
   for (Index i = 0; i < store_.owned; ++i)
     out.shapes.insert(out.shapes.end(), static_cast<std::size_t>(rows.contacts(i)), items_[i].surface);
@@ -205,24 +226,28 @@ void BodyContacts::accept() {
 
 void BodyContacts::reopen() { std::swap(held_, found_); }
 
-void BodyContacts::place(std::span<const PlacedSurface> placed, Real h) {
+void BodyContacts::place(const SurfacePlaces& places, Instant when, Real h) {
+  const bool at_start = when == Instant::start, at_middle = h > 0 && model_.rotates();
   store_.position.clear(), store_.velocity.clear(), store_.angular_velocity.clear(), arm_.clear();
   for (const Item& item : items_) {
-    const PlacedSurface& s = placed[item.surface];
-    const Body& body = model_.bodies[static_cast<std::size_t>(surfaces_.at(item.surface).carrier)];
-    const bool at_middle = h > 0 && model_.rotates();
-    store_.position.push_back(vec4(s.point + image_shift(item.image, period_), s.radius));
-    store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * s.travel : s.velocity_at({}), body.mass));
+    const PlacedSurface& s = (at_start ? places.start : places.placed)[corners_.surface_of(item.surface)];
+    const Body& body = model_.bodies[static_cast<std::size_t>(carrier_of(item.surface))];
+    const bool is_corner = corners_.has(item.surface);
+    const PlacedCorner at =
+        is_corner ? placed_corner(s, places.frames[s.frame], corners_.place_of(item.surface), at_start, snap_)
+                  : PlacedCorner{s.point, s.arm, s.velocity_at({}), s.travel};
+    store_.position.push_back(vec4(at.point + image_shift(item.image, period_), s.radius));
+    store_.velocity.push_back(vec4(at_middle ? reciprocal(h) * at.travel : at.velocity, body.mass));
     store_.angular_velocity.push_back(vec4(at_middle ? reciprocal(h) * s.turn : s.spin, body.inertia));
-    arm_.push_back(s.arm);
+    arm_.push_back(at.arm);
   }
 }
 
 // Leaves the items at its start.
 void BodyContacts::place_start(const SurfacePlaces& places, Real h) {
-  place(places.placed, h);
+  place(places, Instant::now, h);
   mean_spin_ = store_.angular_velocity;
-  place(places.start, 0);
+  place(places, Instant::start, 0);
   start_position_ = store_.position, start_velocity_ = store_.velocity;
   start_spin_ = store_.angular_velocity;
 }
@@ -244,19 +269,19 @@ void BodyContacts::find_loads(const SurfacePlaces& places, Real h) {
   if (!in_step) h = 0;
   if (in_step) found_ = held_, has_step_ = true;
   const HistoryViews history = in_step ? found_.views() : held_.views().only_read();
-  place(places.placed, h);
+  place(places, Instant::now, h);
   entries_.find_loads(
       places, store_, list_.surfaces,
       {store_.position.data(), store_.velocity.data(), store_.angular_velocity.data(), history, h});
   loads_.resize(static_cast<std::size_t>(store_.owned));
   kernels_->body_loads(views(history), store_.owned, {arm_.data(), h}, loads_.data());
-  for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = items_[i].surface;
+  for (Index i = 0; i < store_.owned; ++i) loads_[i].sums.surface = corners_.surface_of(items_[i].surface);
   if (in_step) found_.accepted();
 }
 
 void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
   place_start(places, h);
-  place(places.placed, 0);
+  place(places, Instant::now, 0);
   steps_.resize(static_cast<std::size_t>(store_.owned));
   with_shapes_.resize(list_.neighbors.size());
   const ShapeContactsTo to{list_.offsets.data(), with_shapes_.data()};
@@ -272,16 +297,15 @@ void BodyContacts::find_steps(const SurfacePlaces& places, Real h) {
     kernels_->body_steps(views({}), store_.owned, start, arm_.data(), steps_.data(), to);
   }
   if (held_.exists()) found_.accepted();
-  for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = items_[i].surface;
+  for (Index i = 0; i < store_.owned; ++i) steps_[i].sums.surface = corners_.surface_of(items_[i].surface);
   find_pairs();
 }
 
 // Two shapes see their contact both; that of the lower number counts. Shapes touch meshes of bodies, too.
 void BodyContacts::find_pairs() {
   pairs_.clear();
-  const auto carrier = [&](Index surface) { return surfaces_.at(surface).carrier; };
   const auto touched = [&](Index item, Vec3 towards) -> TouchedBody {
-    return {carrier(items_[item].surface), arm_[item] + store_.position[item].w * towards};
+    return {carrier_of(items_[item].surface), arm_[item] + store_.position[item].w * towards};
   };
   for (Index i = 0; i < store_.owned; ++i)
     for (Index k = 0; k < steps_[i].partners; ++k) {
@@ -292,7 +316,7 @@ void BodyContacts::find_pairs() {
     }
   entries_.for_each_slope(list_.surfaces, [&](Index item, Index surface, Vec3 place, const auto& slopes) {
     if (surfaces_.is_on_body(surface))
-      pairs_.add(touched(item, -slopes.normal), {carrier(surface), place}, slopes);
+      pairs_.add(touched(item, -slopes.normal), {surfaces_.at(surface).carrier, place}, slopes);
   });
 }
 
@@ -357,7 +381,7 @@ std::vector<ContactLine> BodyContacts::lines(const SurfacePlaces& places) {
                     {store_.row_key.data(), of_surfaces.data(), model_.space.min, period_}, counts);
   // Items are called by their numbers among the placed surfaces.
   const auto id_of_shape = [&](GlobalId item) {
-    return surface_id(surfaces_.number_of(static_cast<Index>(item)));
+    return surface_id(surfaces_.number_of(corners_.surface_of(static_cast<Index>(item))));
   };
   for (ContactLine& line : lines) {
     line.first = id_of_shape(line.first);

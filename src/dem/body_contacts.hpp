@@ -11,6 +11,7 @@
 #include "dem/body_items.hpp"
 #include "dem/body_pairs.hpp"
 #include "dem/contact_kernels.hpp"
+#include "dem/corner_set.hpp"
 #include "dem/cpu_history.hpp"
 #include "dem/cpu_surfaces.hpp"
 #include "dem/neighbor_list.hpp"
@@ -93,19 +94,24 @@ class BodyContacts {
   ShapeContacts contacts(const SurfacePlaces& places);
 
  private:
-  // A shape, or its copy across periodic sides.
+  // A shape, or its copy across periodic sides, or a corner of a mesh.
   struct Item {
-    Index surface;
+    Index surface;  // number of the placed one, or of the corner (CornerSet)
     std::int8_t image;
     auto operator<=>(const Item&) const = default;
   };
   std::vector<std::vector<Item>> find_partners(std::span<const PlacedSurface> placed, Real skin) const;
+  // Spheres, then corners near planes: by number.
+  std::vector<Index> find_shapes(const SurfacePlaces& places, Real skin) const;
+  int carrier_of(Index shape) const { return surfaces_.at(corners_.surface_of(shape)).carrier; }
   void find_surfaces(const SurfacePlaces& places, Real skin, const std::vector<Index>& shapes,
                      SurfaceRows& rows) const;
   void take_contacts(const SurfacePlaces& places);
   void list_items(const std::vector<Index>& shapes, const std::vector<std::vector<Item>>& partners);
-  // h: of the step that ends now, for velocities of its middle; 0: as they are.
-  void place(std::span<const PlacedSurface> placed, Real h);
+  // Where they are now, or at the start of the step. h: of the step that ends now, for velocities of its
+  // middle; 0: as they are.
+  enum class Instant { now, start };
+  void place(const SurfacePlaces& places, Instant when, Real h);
   void place_start(const SurfacePlaces& places, Real h);
   StepStart step_start(Real h) const;
   void find_pairs();
@@ -117,11 +123,12 @@ class BodyContacts {
   const Model& model_;
   const SurfaceSet& surfaces_;
   TouchRule rule_;
-  Vec3 period_;  // of the space [m]
+  CornerSet corners_;
+  Vec3 period_, snap_;  // of the space [m]
   std::unique_ptr<ContactKernels> kernels_;
   std::vector<WallPlane> planes_;
   CpuSurfaces entries_;  // contacts with placed surfaces
-  // The shapes that can touch something, ordered by surface, then copies across periodic sides.
+  // The shapes and corners that can touch something, by number, then copies across periodic sides.
   std::vector<Item> items_;
   ParticleStore store_;
   NeighborList list_;

@@ -68,7 +68,7 @@ struct ShownSurfaceItem {
     Real slip = 0;
     if constexpr (Law::Tangential::acts)
       slip = slip_of(laws.get(in.material[i], surface.material),
-                     PairState{geometry, {}, surface_size(in, in.surface_of(entry), p, in.velocity[i])},
+                     PairState{geometry, {}, surface_size(in, entry, p, in.velocity[i])},
                      in.history.template read_from<Law>(in.history.bodies, in.goes_on_from(surface, entry)));
     shown[entry] = shown_contact<Law>(geometry, load.particle_arm, load.load.force, slip);
   }

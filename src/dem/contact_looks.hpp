@@ -34,8 +34,8 @@ struct AtInstant {
     return {sphere_pair(xyz(p) - xyz(q), p.w + q.w), xyz(u) - xyz(w), {p.w, q.w, u.w, w.w}};
   }
   template <class Rows>
-  SCREE_HD PairState wall(const ContactViews<Rows>&, const Self& self, const WallPlane& plane) const {
-    return {wall_pair(self.p, plane), xyz(self.u), wall_size(self.p.w, self.u.w)};
+  SCREE_HD PairState wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
+    return {wall_pair(self.p, plane), xyz(self.u), wall_size(in, self.i, self.p.w, self.u.w)};
   }
   template <class Pair>
   SCREE_HD static bool closed(const Pair& pair) {
@@ -160,7 +160,7 @@ struct OverStep {
   SCREE_HD ContactPath wall(const ContactViews<Rows>& in, const Self& self, const WallPlane& plane) const {
     const Vec4 u = in.velocity[self.i];
     return path(wall_pair(self.p, plane), xyz(u), wall_pair(self.p0, plane), xyz(start.velocity[self.i]),
-                xyz(self.p) - xyz(self.p0), wall_size(self.p.w, u.w));
+                xyz(self.p) - xyz(self.p0), wall_size(in, self.i, self.p.w, u.w));
   }
   SCREE_HD static bool closed(const ContactPath& path) {
     return path.step.overlap1 > 0 || path.step.overlap0 > 0;

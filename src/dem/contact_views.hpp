@@ -83,14 +83,15 @@ struct ContactViews {
   HistoryViews history{};
   const Vec4* spin = nullptr;  // angular velocity, moment of inertia; null where particles do not rotate
   Real reach = 0;              // Contact::reach [m]
+  // What laws see in place of an item's radius at planes; null: that. Of packed rows alone [m].
+  const Real* law_radius = nullptr;
 };
 
 // The same with other rows.
 template <class Rows, class From>
 SCREE_HD ContactViews<Rows> with_rows(const ContactViews<From>& in, const Rows& rows) {
-  return {in.position,        in.velocity, in.material, rows,
-          in.surface_offsets, in.surfaces, in.numbers,  in.loads,
-          in.steps,           in.history,  in.spin,     in.reach};
+  return {in.position, in.velocity, in.material, rows,    in.surface_offsets, in.surfaces,  in.numbers,
+          in.loads,    in.steps,    in.history,  in.spin, in.reach,           in.law_radius};
 }
 
 SCREE_HD bool touch(Vec4 p, Vec4 q) {
@@ -133,5 +134,11 @@ SCREE_HD ContactGeometry wall_pair(Vec4 p, const WallPlane& wall) {
 }
 
 SCREE_HD PairSize wall_size(Real radius, Real mass) { return {radius, kInfinity, mass, kInfinity}; }
+template <class Rows>
+SCREE_HD PairSize wall_size(const ContactViews<Rows>& in, Index i, Real radius, Real mass) {
+  if constexpr (std::is_same_v<Rows, PackedRows>)
+    if (in.law_radius != nullptr) radius = in.law_radius[i];
+  return wall_size(radius, mass);
+}
 
 }  // namespace scree

@@ -69,7 +69,8 @@ SurfaceViews CpuSurfaces::entry_views(const SurfacePlaces& places, const Particl
           look.spin,
           look.h,
           reach_,
-          masses_.empty() ? nullptr : masses_.data()};
+          masses_.empty() ? nullptr : masses_.data(),
+          law_radii()};
 }
 
 void CpuSurfaces::find_loads(const SurfacePlaces& places, const ParticleStore& store, SurfaceRows& rows,
@@ -189,8 +190,11 @@ void CpuSurfaces::book_rubs(const SurfacePlaces& places, const ParticleStore& st
 ContactViews<PackedRows> CpuSurfaces::views(const ParticleStore& store, const std::vector<Vec4>& position,
                                             const std::vector<Vec4>& velocity, const PackedRows& neighbors,
                                             const SurfaceRows& rows) const {
-  return {position.data(),      velocity.data(), store.material.data(), neighbors,    rows.offsets.data(),
-          rows.surfaces.data(), numbers(),       loads_.data(),         steps_.data()};
+  ContactViews<PackedRows> views{position.data(), velocity.data(),     store.material.data(),
+                                 neighbors,       rows.offsets.data(), rows.surfaces.data(),
+                                 numbers(),       loads_.data(),       steps_.data()};
+  views.law_radius = law_radii();
+  return views;
 }
 
 }  // namespace scree

@@ -1,6 +1,7 @@
 // Contacts with placed surfaces on the host: of the serial backend's particles, and of the shapes of bodies.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "dem/contact_kernels.hpp"
@@ -17,6 +18,8 @@ class CpuSurfaces {
   // reach, masses: SurfaceViews; no masses: null.
   CpuSurfaces(const Model& model, const Subdomain& subdomain, const ContactKernels& kernels, Real reach,
               std::vector<Real> masses = {});
+  // Radii of the items that laws see in place of the items' own; none: their own [m].
+  void set_law_radii(std::vector<Real> radii) { law_radii_ = std::move(radii); }
   SurfaceNumbers numbers() const { return {planes_.data(), static_cast<Index>(planes_.size())}; }
 
   // The surfaces as they are placed, with the particles of the store as `look` has them: for the loads in
@@ -72,6 +75,7 @@ class CpuSurfaces {
                                  const SurfaceRows& rows) const;
 
  private:
+  const Real* law_radii() const { return law_radii_.empty() ? nullptr : law_radii_.data(); }
   SurfaceViews entry_views(const SurfacePlaces& places, const ParticleStore& store, const SurfaceRows& rows,
                            const SurfaceLook& look) const;
   template <class Works>
@@ -83,7 +87,7 @@ class CpuSurfaces {
                        const PlacedSurface* start_placed);
 
   const ContactKernels& kernels_;
-  std::vector<Real> masses_;
+  std::vector<Real> masses_, law_radii_;
   std::vector<WallPlane> planes_;
   Real reach_;  // [m]
   bool sheets_;

@@ -100,9 +100,8 @@ struct SurfaceRubItem {
     RubbingPath out{};
     out.velocity0 = xyz(start.step.velocity[i]) - before.velocity_at(place0);
     out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(place);
-    static_cast<ContactPath&>(out) =
-        OverStep{start.step}.path(end, out.velocity1, begin, out.velocity0, way.travel,
-                                  surface_size(in, in.surface_of(entry), p, in.velocity[i]));
+    static_cast<ContactPath&>(out) = OverStep{start.step}.path(
+        end, out.velocity1, begin, out.velocity0, way.travel, surface_size(in, entry, p, in.velocity[i]));
     if (is_sphere)
       out.motion = sphere_motion(end, way.travel, one, other, h);
     else if (way.now.is_face)

@@ -38,6 +38,8 @@ struct SurfaceViews {
   // Of what carries each placed surface, as damping laws see it; null: nothing that carries one gives way
   // [kg]
   const Real* masses = nullptr;
+  // What laws see in place of a particle's radius; null: that [m].
+  const Real* law_radius = nullptr;
 
   SCREE_HD Vec3 shift_of(Index entry) const { return image_shift(entries.images[entry], box.period); }
   SCREE_HD Index surface_of(Index entry) const { return numbers.placed(entries.surfaces[entry]); }
@@ -78,10 +80,12 @@ SCREE_HD SurfaceTouch surface_touch(const SurfaceViews& in, const PlacedSurface&
   const SurfacePair pair = surface_pair(surface, is_sphere ? in.shift_of(entry) : in.box.beyond(xyz(p)), p);
   return {pair, is_sphere, !is_sphere, pair.geometry.overlap > -reach};
 }
-// Walls, edges and corners have no curvature that Hertz's law knows. p, u: of the particle.
-SCREE_HD PairSize surface_size(const SurfaceViews& in, Index surface, Vec4 p, Vec4 u) {
+// Walls, edges and corners have no curvature that Hertz's law knows. p, u: of the entry's particle.
+SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4 u) {
+  const Index surface = in.surface_of(entry);
   const PlacedSurface& placed = in.placed[surface];
-  return {p.w, placed.kind == SurfaceKind::sphere ? placed.radius : kInfinity, u.w,
+  return {in.law_radius != nullptr ? in.law_radius[in.entries.particles[entry]] : p.w,
+          placed.kind == SurfaceKind::sphere ? placed.radius : kInfinity, u.w,
           in.masses != nullptr ? in.masses[surface] : kInfinity};
 }
 
@@ -104,7 +108,7 @@ struct SurfaceLoadItem {
     out.touches = touch.touches;
     if (!out.touches) return in.template remember_none<Law>(entry);
     const PairState state{touch.pair.geometry, xyz(u) - surface.velocity_at(touch.pair.contact),
-                          surface_size(in, in.surface_of(entry), p, u)};
+                          surface_size(in, entry, p, u)};
     const Law& law = laws.get(in.material[i], surface.material);
     if constexpr (Law::kMoves)
       find_moving(law, state, touch, surface, entry);
@@ -253,7 +257,7 @@ struct SurfaceStepItem {
     const ContactPath over =
         OverStep{start}.path(pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
                              xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.travel,
-                             surface_size(in, in.surface_of(entry), p, u));
+                             surface_size(in, entry, p, u));
     const auto& law = laws.get(in.material[i], surface.material);
     const StepContactOf of{start.resolve_events};
     out.contact = of(law, over);

@@ -10,6 +10,7 @@
 #include "mbs/joints.hpp"
 #include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
+#include "model/mesh_corners.hpp"
 
 namespace scree {
 
@@ -31,7 +32,9 @@ Real characteristic_length(const Model& model) {
   for (const Bushing& element : model.bushings)
     for (int i = 0; i < 2; ++i) add_point(element.body[i], element.point[i]);
   for (const AppliedForce& element : model.applied_forces) add_point(element.body, element.point);
-  return radius > 0 ? radius : reach > 0 ? reach : 1;
+  if (radius > 0 || reach > 0) return radius > 0 ? radius : reach;
+  const Real of_corners = largest_corner_radius(model);
+  return of_corners > 0 ? of_corners : 1;
 }
 
 // A natural spline through points that begin level does not begin at rest.

@@ -83,7 +83,7 @@ class RigidBodySystem final : public MechanicalSystem {
   const BodyLayout& layout() const { return layout_; }
   const std::vector<std::unique_ptr<RigidBodies>>& kinds() const { return kinds_; }
   // Characteristic length L [m]: the largest radius of a body's shape; without shapes the largest distance of
-  // a joint or force element from the centre of its body; without these 1 m.
+  // a joint or force element from the centre of its body; without these that of meshes on planes, or 1 m.
   Real length_scale() const { return length_scale_; }
   const std::vector<ConstraintGroup>& groups() const { return groups_; }
   // Of one row.

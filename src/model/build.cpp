@@ -9,6 +9,7 @@
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
 #include "model/memory.hpp"
+#include "model/mesh_corners.hpp"
 #include "model/plausibility.hpp"
 
 namespace scree {
@@ -69,6 +70,7 @@ Model build_model(const Deck& deck, Log& log, const Share& share, std::vector<Ch
     check_memory(size, bytes_to_build_bodies(size, share.rank()), "building the bodies", share);
     build_bodies(root, model, names);
     check_surface_count(root, model);
+    build_mesh_corners(model);
     build_markers(root, model, names);
     build_joints(root, model, names);
     build_force_elements(root, model, names);

@@ -8,6 +8,7 @@
 
 #include "model/build_parts.hpp"
 #include "model/limits.hpp"
+#include "model/mesh_corners.hpp"
 #include "model/mixing.hpp"
 #include "model/plausibility.hpp"
 #include "model/touching.hpp"
@@ -302,17 +303,21 @@ void build_pair(const DeckTable& deck, const DeckTable& table, Model& model, con
   }
 }
 
-// Every pair that can meet needs a law: what is not given is made, where the deck says how.
+// Every pair that can meet needs a law: what is not given is made, where the deck says how. Meshes on planes
+// may do without.
 void complete_pairs(const DeckTable& deck, Model& model, const ModelNames& names, std::vector<bool>& given) {
   const DeckTable& table = deck.table("contact");
   const std::vector<MaterialUse> uses = material_uses(model);
   const int count = model.contact.materials();
+  const auto is_given = [&](int a, int b) { return given[static_cast<std::size_t>(a * count + b)]; };
+  const bool mixes = table.choice<Mixing>("mixing") != Mixing::none;
   for (int a = 0; a < count; ++a) {
     for (int b = a; b < count; ++b) {
-      if (given[static_cast<std::size_t>(a * count + b)] || !can_meet(model, uses, a, b)) continue;
+      if (is_given(a, b) || !can_meet(model, uses, a, b)) continue;
+      if (!must_have_law(model, uses, a, b) && !(mixes && is_given(a, a) && is_given(b, b))) continue;
       const std::string &name_a = model.contact.material_names[static_cast<std::size_t>(a)],
                         &name_b = model.contact.material_names[static_cast<std::size_t>(b)];
-      if (a == b || table.choice<Mixing>("mixing") == Mixing::none)
+      if (a == b || !mixes)
         table.fail(
             "pairs",
             fmt::format("no pair with materials = [\"{}\", \"{}\"], which can meet; every pair that can "
@@ -366,7 +371,8 @@ void build_contact(const DeckTable& deck, Model& model, const ModelNames& names)
   std::vector<bool> given(slots, false);
   for (const DeckTable& pair : table.tables("pairs")) build_pair(deck, pair, model, names, given);
   complete_pairs(deck, model, names, given);
-  const auto [smallest, largest] = radius_range(model);
+  const auto [of_spheres, largest] = radius_range(model);
+  const Real smallest = of_spheres > 0 ? of_spheres : largest_corner_radius(model);
   // With nothing to search for, any positive length serves.
   const Real standard = smallest > 0 ? 0.2 * smallest : 0.01 * norm(model.space.max - model.space.min);
   contact.skin = table.has("skin") ? table.real("skin") : standard;

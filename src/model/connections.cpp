@@ -351,4 +351,23 @@ std::vector<std::pair<int, int>> connected_bodies(const Model& model) {
   return pairs;
 }
 
+// A torsional spring holds no body where it is.
+std::vector<bool> held_bodies(const Model& model) {
+  std::vector<std::array<int, 2>> links;
+  const auto add = [&](const auto& elements) {
+    for (const auto& element : elements) links.push_back({element.body[0], element.body[1]});
+  };
+  add(model.joints), add(model.spring_dampers), add(model.bushings);
+  std::vector<bool> held(model.bodies.size());
+  const auto is_held = [&](int body) { return body == kGround || held[static_cast<std::size_t>(body)]; };
+  for (bool found = true; found;) {
+    found = false;
+    for (const std::array<int, 2>& link : links) {
+      if (is_held(link[0]) == is_held(link[1])) continue;
+      held[static_cast<std::size_t>(is_held(link[0]) ? link[1] : link[0])] = found = true;
+    }
+  }
+  return held;
+}
+
 }  // namespace scree

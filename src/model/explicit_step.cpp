@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/body_load.hpp"
 #include "model/impact_speed.hpp"
 #include "model/impact_trials.hpp"
 #include "model/limits.hpp"
+#include "model/mesh_corners.hpp"
 
 namespace scree {
 
@@ -29,6 +32,23 @@ void bound(ExplicitStep& step, Real by, const std::string& reason) {
 bool has_neck(const Model& model, const PairLimit& limit) {
   const KelvinVoigt& law = model.contact.law(limit.material[0], limit.material[1]);
   return law.neck && law.attracts();
+}
+
+void bound_by_bodies(const Model& model, ExplicitStep& step) {
+  bound(step, body_step_limit(model).good_step(),
+        fmt::format("{:g} rad of the oscillation of a body on its contacts", kGoodBodyPhase));
+  for (const bool held : {false, true}) {
+    const Real phase = held ? kMostBodyPhase : kGoodBodyPhase,
+               frequency = fastest_on_corners(model, held).frequency;
+    if (frequency > 0)
+      bound(step, phase / frequency,
+            fmt::format("{:g} rad of the oscillation of a body on the corners of its mesh", phase));
+  }
+  if (const std::optional<LoadedStep> loaded = shortest_loaded_step(model))
+    bound(step, loaded->step,
+          fmt::format("{:g} rad of the oscillation of body \"{}\" under {} particles, as many as can touch it",
+                      kGoodLoadedPhase, model.bodies[static_cast<std::size_t>(loaded->body)].name,
+                      loaded->contacts));
 }
 
 void bound_by_pair(const Model& model, const PairLimit& limit, ExplicitStep& step) {
@@ -59,8 +79,7 @@ Real two_digits_below(Real x) {
 ExplicitStep longest_explicit_step(const Model& model) {
   ExplicitStep step;
   const Real substeps = model.integrator.substeps;
-  bound(step, body_step_limit(model).good_step(),
-        fmt::format("{:g} rad of the oscillation of a body on its contacts", kGoodBodyPhase));
+  bound_by_bodies(model, step);
   bound(step, substeps * unnoticed_step(model),
         "half of the smallest radius at the fastest speed that is known beforehand");
   const std::vector<PairLimit> pairs = explicit_pairs(model);

@@ -17,7 +17,8 @@ struct ExplicitStep {
 // - keeps the trial rebounds of all pairs of materials within kGoodRebound (model/impact_trials.hpp),
 // - is at most kStableShare of what is stable in dense contact, with springs and dashpots along the normal,
 //   across it and against rolling, and kNeckShare of a contact that a neck holds,
-// - resolves the bodies on their contacts (BodyStepLimit::good_step),
+// - resolves the bodies on their contacts (BodyStepLimit::good_step, fastest_on_corners), and under as many
+//   particles as can touch them (shortest_loaded_step),
 // - and lets nothing go farther than half of the smallest radius (unnoticed_step);
 // to two digits, rounded down: the deck that names it is the same deck.
 ExplicitStep longest_explicit_step(const Model& model);

@@ -44,14 +44,17 @@ Partners lightest_partners(const Model& model, const PairLimit& limit) {
     return Partner{of.smallest_radius, of.smallest_mass, true, of.smallest_inertia_factor};
   };
   const auto body = [&](int side) {
-    return Partner{use(side).smallest_radius, use(side).smallest_body_mass, false};
+    const Real of_spheres = use(side).smallest_radius;
+    return Partner{of_spheres > 0 ? of_spheres : use(side).smallest_corner_radius,
+                   use(side).smallest_body_mass, false};
   };
   const bool same = limit.material[0] == limit.material[1];
   if (use(0).particles > (same ? 1 : 0) && use(1).particles > 0) return {particle(0), particle(1)};
   for (const int side : {0, 1})
     if (use(side).particles > 0)
       return {particle(side), use(1 - side).shapes > 0 ? body(1 - side) : Partner{}};
-  const int side = use(0).shapes > 0 ? 0 : 1;
+  const bool shapes = use(0).shapes + use(1).shapes > 0;
+  const int side = (shapes ? use(0).shapes : use(0).corners) > 0 ? 0 : 1;
   return {body(side), use(1 - side).shapes > (same ? 1 : 0) ? body(1 - side) : Partner{}};
 }
 

@@ -124,6 +124,8 @@ std::vector<MaterialUse> material_uses(const Model& model) {
       const Real reach = farthest(mesh, shape.offset, model.space.dimension);
       ++use.meshes;
       use.sheets += mesh.surface->sheet;
+      if (mesh.corners != nullptr)
+        ++use.corners, take_smaller(use.smallest_corner_radius, mesh.corners->radius);
       for (Real* mass : {&use.smallest_body_mass, &use.smallest_rubbed_mass})
         take_smaller(*mass, 1 / (1 / body.mass + reach * reach / body.inertia));
     }
@@ -136,6 +138,12 @@ std::vector<MaterialUse> material_uses(const Model& model) {
 }
 
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
+  const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
+  return must_have_law(model, uses, a, b) || (first.walls > 0 && second.corners > 0) ||
+         (second.walls > 0 && first.corners > 0);
+}
+
+bool must_have_law(const Model& model, const std::vector<MaterialUse>& uses, int a, int b) {
   const MaterialUse &first = uses[static_cast<std::size_t>(a)], &second = uses[static_cast<std::size_t>(b)];
   if (first.walls > 0 && second.spheres() > 0) return true;
   if (second.walls > 0 && first.spheres() > 0) return true;
@@ -165,7 +173,11 @@ PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b) {
   const auto lightest = [&](const MaterialUse& use) {
     return std::min(given(use.smallest_particle_mass), given(use.smallest_body_mass));
   };
-  return {given(a.smallest_radius), given(b.smallest_radius), lightest(a), lightest(b)};
+  const bool spheres = a.smallest_radius > 0 || b.smallest_radius > 0;
+  const auto radius = [&](const MaterialUse& use) {
+    return given(spheres ? use.smallest_radius : use.smallest_corner_radius);
+  };
+  return {radius(a), radius(b), lightest(a), lightest(b)};
 }
 
 std::vector<PairLimit> pair_limits(const Model& model) {

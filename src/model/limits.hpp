@@ -18,7 +18,9 @@ struct MaterialUse {
   std::int64_t particles = 0;
   int shapes = 0, meshes = 0, walls = 0;  // meshes: of bodies and walls; walls: planes
   int sheets = 0;                         // of the meshes, those with two sides
+  int corners = 0;                        // of the bodies' meshes, those that have corners for planes
   Real smallest_radius = 0;               // [m]
+  Real smallest_corner_radius = 0;        // effective, HullCorners::radius [m]
   Real smallest_particle_mass = 0;        // [kg]
   Real smallest_inertia_factor = 0;       // of particles, I / (m R^2)
   // [kg] At a shape: 1 / (1/m + arm^2 / inertia), the arm being the offset where the body is pushed at the
@@ -33,11 +35,14 @@ std::vector<MaterialUse> material_uses(const Model& model);
 // Whether something of material a can touch something of material b; shapes of bodies that are all connected
 // with each other cannot.
 bool can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
+// The same but for meshes of bodies on planes, which touch only where the deck has a law for them.
+bool must_have_law(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // Whether bodies can that have something of a and of b.
 bool bodies_can_meet(const Model& model, const std::vector<MaterialUse>& uses, int a, int b);
 // Whether, of these that can meet, spheres meet sheets and nothing else.
 bool meet_on_sheets_alone(const std::vector<MaterialUse>& uses, int a, int b);
-// The smallest and the lightest of each material; infinite where it has walls alone.
+// The smallest and the lightest of each material; infinite where it has walls alone. Where neither has
+// spheres the radius is that of meshes on planes.
 PairSize smallest_partners(const MaterialUse& a, const MaterialUse& b);
 
 struct PairLimit {

@@ -11,6 +11,7 @@
 #include "base/types.hpp"
 #include "base/vec3.hpp"
 #include "deck/choices.hpp"
+#include "mesh/hull_corners.hpp"
 #include "mesh/surface_mesh.hpp"
 #include "model/bodies.hpp"
 #include "model/joint_forces.hpp"
@@ -71,6 +72,8 @@ struct ModelMesh {
   std::string fitting{};   // "segments = 32": what fits the size of the particles; empty: nothing is known
   bool is_fitted = false;  // the deck leaves it out, and the mesh has it
   std::string crossing{};  // where its shells cross each other, for messages; empty: they do not
+  // In the mesh's frame; null: no body has the mesh, or there is no plane.
+  std::shared_ptr<const HullCorners> corners{};
 };
 
 // A pair of materials that the deck does not give, made by contact.mixing.

@@ -10,6 +10,7 @@
 #include "model/connections.hpp"
 #include "model/explicit_step.hpp"
 #include "model/impact_speed.hpp"
+#include "model/mesh_corners.hpp"
 #include "model/point_bins.hpp"
 #include "model/shape_places.hpp"
 #include "model/space_box.hpp"
@@ -190,6 +191,28 @@ void find_mesh_overlaps(const Model& model, const std::vector<StartItem>& items,
   }
 }
 
+// Of the corners of bodies' meshes with planes, over the meshes' effective radii.
+void find_corner_overlaps(const Model& model, WorstOverlap& worst) {
+  const ItemNames names(model);
+  std::int64_t number = names.first_mesh();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (const MeshShape& shape : model.bodies[b].meshes) {
+      const std::int64_t of_mesh = number++;
+      if (!meets_planes(model, shape)) continue;
+      const HullCorners& hull = *model.meshes[static_cast<std::size_t>(shape.mesh)].corners;
+      for (const Vec3 corner : hull.corners) {
+        const Vec3 place =
+            in_periodic_box(model.space, to_global_point(model, static_cast<int>(b), shape.offset + corner));
+        for (std::size_t w = 0; w < model.walls.size(); ++w) {
+          const Wall& wall = model.walls[w];
+          if (wall.mesh >= 0 || !model.contact.law(shape.material, wall.material).acts()) continue;
+          worst.meet(-dot(wall.normal, place - wall.point) / hull.radius, of_mesh,
+                     names.first_wall() + static_cast<std::int64_t>(w));
+        }
+      }
+    }
+}
+
 // n = 1 has an exact limit, other exponents an estimate: an error and a warning.
 void check_explicit_step(const DeckTable& deck, const Model& model, const std::vector<PairLimit>& limits,
                          Log& log) {
@@ -286,6 +309,25 @@ void check_surface_speeds(const Model& model, Real step, Log& log) {
       is_fixed ? "time.step" : "time.max_step", step, speed * step / radius, speed, 0.95 * radius / speed));
 }
 
+// The same of bodies on the corners of their meshes, of which a face has many. A body that a joint holds may
+// never come to a plane: it is warned of, where the step would not do.
+void check_corner_step(const DeckTable& deck, const Model& model, Log& log) {
+  if (model.integrator.particles != ParticleIntegrator::velocity_verlet) return;
+  const Real most = model.rotates() ? kMostBodyPhase : kMostAmongBodies;
+  for (const bool held : {false, true}) {
+    const CornerOscillation on = fastest_on_corners(model, held);
+    const Real phase = on.frequency * model.time.step;
+    const std::string finding = fmt::format(
+        "a body on a plane, with all corners of a face of its mesh, oscillates with {:.4g} rad/s; with "
+        "velocity-verlet particles the bodies' step must be at most {:.3g} s",
+        on.frequency, most / on.frequency);
+    if (phase > most && on.is_exact && !held) deck.table("time").fail("step", finding + left_out_step(model));
+    if (phase > (held ? most : kGoodBodyPhase))
+      log.warning(fmt::format("time.step: {}, and should be at most {:.3g} s{}", finding,
+                              kGoodBodyPhase / on.frequency, left_out_step(model)));
+  }
+}
+
 // A particle that goes farther than its radius in a step may pass through others and through walls. No law
 // of contact says so, and neither does an error estimate: uniform motion is integrated without error.
 void check_speeds(const Model& model, Real step, Log& log) {
@@ -335,6 +377,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   for (StartItem& item : items) item.position = in_periodic_box(model.space, item.position);
   WorstOverlap own;
   find_wall_overlaps(model, items, own);
+  find_corner_overlaps(model, own);
   find_mesh_overlaps(model, items, own);
   const Real reach = 2 * radius_range(model).largest;
   items = share.near_each_other(std::move(items), model.space, reach);
@@ -343,8 +386,11 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
   if (worst.ratio <= kRoundOff) return;
   const DeckTable& contact = deck.table("contact");
   const ItemNames names(model);
-  const std::string finding = fmt::format("{} and {} overlap at t = 0 by {:.6g} of the smaller radius",
-                                          names.name(worst.first), names.name(worst.second), worst.ratio);
+  // Elsewhere the second one is a mesh, if one is.
+  const bool on_corners = worst.first >= names.first_mesh();
+  const std::string finding = fmt::format(
+      "{} and {} overlap at t = 0 by {:.6g} of the {}", names.name(worst.first), names.name(worst.second),
+      worst.ratio, on_corners ? "radius that the mesh counts with on planes" : "smaller radius");
   const Real limit = contact.real("max_start_overlap");
   if (worst.ratio > limit)
     contact.fail("max_start_overlap", fmt::format("{}; allowed: at most {}", finding, limit));
@@ -354,6 +400,7 @@ void check_start_positions(const DeckTable& deck, const Model& model, const Shar
 void check_steps(const DeckTable& deck, const Model& model, Log& log) {
   const std::vector<PairLimit> limits = pair_limits(model);
   check_body_step(deck, model, log);
+  check_corner_step(deck, model, log);
   const bool is_explicit = model.integrator.particles == ParticleIntegrator::velocity_verlet;
   const bool is_fixed = model.time.control == StepControl::fixed;
   const Real step =

@@ -10,6 +10,7 @@
 #include "model/connections.hpp"
 #include "model/joint_coordinates.hpp"
 #include "model/memory.hpp"
+#include "model/mesh_corners.hpp"
 
 namespace scree {
 
@@ -34,6 +35,21 @@ std::string solid_line(const Model& model, const Body& body) {
   }
   return fmt::format("solids         {}: {:.6g} kg, centre of mass {} m, inertia there {}\n", name, body.mass,
                      centre, inertia);
+}
+
+// What the bodies' meshes touch.
+std::string mesh_partners_line(const Model& model) {
+  std::int64_t corners = 0;
+  for (const Body& body : model.bodies)
+    for (const MeshShape& shape : body.meshes)
+      if (meets_planes(model, shape))
+        corners += std::ssize(model.meshes[static_cast<std::size_t>(shape.mesh)].corners->corners);
+  const std::string planes =
+      corners == 0 ? "" : fmt::format(", and planes by {}", counted(corners, "corner", "corners"));
+  return fmt::format(
+      "               their meshes touch particles and the discs and spheres of other bodies{}, not {} and "
+      "not each other\n",
+      planes, corners == 0 ? "walls" : "walls of triangles");
 }
 
 std::string solid_lines(const Model& model) {
@@ -86,10 +102,7 @@ std::string multibody_lines(const Model& model) {
     lines += fmt::format("               {} no shapes{}: {} through walls and touch{} nothing\n",
                          counted(bare, "body has", "bodies have"), model.meshes.empty() ? "" : " or meshes",
                          bare == 1 ? "it passes" : "they pass", bare == 1 ? "es" : "");
-  if (meshes > 0)
-    lines +=
-        "               their meshes touch particles and the discs and spheres of other bodies, not walls "
-        "and not each other\n";
+  if (meshes > 0) lines += mesh_partners_line(model);
   lines += solid_lines(model);
   lines += fmt::format("unknowns       {} coordinates, {} constraints: ", coordinates, constraints);
   // Of rows that may repeat each other the rank counts, which the bodies' solver reports.

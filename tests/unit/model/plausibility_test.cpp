@@ -19,6 +19,15 @@ const std::string kFloor = "space.y_min=wall", kGravity = "gravity=[0, -10]";
 const std::string kMeshOnBody =
     "bodies=[{name=\"b\",kind=\"spatial\",mass=1.0,inertia_tensor=[0.1,0.1,0.1,0,0,0],position=[0,0,0.6],"
     "meshes=[{mesh=\"m\"}]}]";
+const std::string kHinge =
+    "joints=[{name=\"hinge\",type=\"revolute\",bodies=[\"ground\",\"b\"],point=[0,0,0.6],axis=[0,0,1]}]";
+const std::string kPlane = "walls=[{name=\"w\",point=[0,0,-0.4],normal=[0,0,1]}]";
+const std::string kMetalCrate =
+    "bodies=[{name=\"b\",kind=\"spatial\",mass=1.0,inertia_tensor=[0.1,0.1,0.1,0,0,0],position=[0,0,0.6],"
+    "meshes=[{mesh=\"m\",material=\"iron\"}]}]";
+const std::string kFourSides =
+    "space={dimension=3,min=[-1,-1,-1],max=[1,1,1],x_min=\"wall\",x_max=\"wall\",y_min=\"wall\","
+    "y_max=\"wall\",wall_material=\"lead\"}";
 const std::string kSpheres = R"([space]
 dimension = 3
 min = [-1, -1, -1]
@@ -27,6 +36,23 @@ max = [1, 1, 1]
 end = 1.0
 step = 1e-4
 control = "fixed"
+)";
+// A box of iron, and walls that may be of lead.
+const std::string kTwoMetals = R"(
+[[materials]]
+name = "iron"
+[[materials]]
+name = "lead"
+[[contact.pairs]]
+materials = ["iron", "iron"]
+stiffness = 1e5
+[[contact.pairs]]
+materials = ["lead", "lead"]
+stiffness = 1e5
+[[meshes]]
+name = "m"
+kind = "box"
+size = [0.2, 0.2, 0.2]
 )";
 const std::string kSphere =
     "[[particles]]\nname = \"d\"\nkind = \"list\"\npositions = [[0, 0, 0]]\nradius = 0.05\nmass = 1.0\n";
@@ -63,6 +89,7 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
       "[\"grain\", \"grain\"]\nstiffness = 3e3\n[[contact.pairs]]\nmaterials = [\"grain\", "
       "\"ground\"]\nstiffness = 1e6\n" +
       group("d", "min = [-0.9, -0.9]\nmax = [0.9, 0.9]\n") + "material = \"grain\"\n";
+  const std::string two_metals = kSpheres + kTwoMetals;
   const std::vector<Case> cases = {
       {all, {kFloor, kGravity, "time.step=1e-4"}, ""},
       {spheres, {"gravity=[0, 0, -10]"}, ""},
@@ -156,7 +183,22 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
        {"walls.w.surface_velocity=[1, 0, 0]"},
        "wall \"w\": its surface_velocity takes nothing along: no pair in contact.pairs has friction"},
       {sheet, {"particles=[]", kMeshOnBody}, "bodies have meshes, and the deck has nothing that these touch"},
-      {sheet, {kMeshOnBody}, ""},
+      {sheet,
+       {kMeshOnBody},
+       "body \"b\": no joint holds it, and it has meshes and no discs or spheres: meshes do not touch walls "
+       "that are meshes: it passes through \"w\"; shapes"},
+      {sheet, {kMeshOnBody, "bodies.b.shapes=[{ radius = 0.1 }]"}, ""},
+      {sheet, {kMeshOnBody, kHinge}, ""},
+      {sheet,
+       {kMeshOnBody, "bodies.b.count=3", "bodies.b.spacing=[0, 0, 0.1]"},
+       "it passes through \"w\", and so do 2 other bodies"},
+      {sheet, {kMeshOnBody, kPlane}, ""},
+      {sheet, {kMeshOnBody, "walls=[]", "space.z_min=wall"}, ""},
+      {two_metals,
+       {kMetalCrate, kFourSides},
+       "body \"b\": no joint holds it, and contact.pairs has no law for its meshes there: they touch planes "
+       "where there is one: it passes through \"x_min\", \"x_max\", \"y_min\" and 1 more; a pair of the two"},
+      {sheet, {kMeshOnBody, "walls=[]"}, ""},
       {moved,
        {"walls.w.motions.0.displacement.interpolation=natural"},
        "walls.w.motions.0.displacement: between 0.5 s and 1 s the natural spline goes past the values there, "
@@ -180,6 +222,19 @@ TEST_CASE("one warning for each finding, none for what is just below it") {
                           [&](const std::string& text) { return contains(text, one.warning); }) == 1);
     }
   }
+}
+
+TEST_CASE("nothing is said of loose meshes that planes stop, or are told to let through") {
+  const std::string deck = kSpheres + kTwoMetals;
+  const auto warned = [&](const std::string& more, const std::vector<std::string>& overrides) {
+    return std::ranges::any_of(model_warnings(deck + more, overrides),
+                               [](const std::string& text) { return contains(text, "no joint holds it"); });
+  };
+  CHECK(warned("", {kMetalCrate, kFourSides}));
+  for (const std::string stiffness : {"0", "2e5"})
+    CHECK(!warned("[[contact.pairs]]\nmaterials = [\"lead\", \"iron\"]\nstiffness = " + stiffness + "\n",
+                  {kMetalCrate, kFourSides}));
+  CHECK(!warned("", {kMetalCrate, "space.z_min=wall", "space.wall_material=iron"}));
 }
 
 TEST_CASE("numbers that cannot be computed with") {

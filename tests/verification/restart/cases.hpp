@@ -171,6 +171,68 @@ shapes = [{ radius = 0.02, offset = [0.04, -0.02, 0.04] }, { radius = 0.02, offs
           { radius = 0.03, offset = [0.0, 0.03, 0.06] }]
 )";
 
+// Crates that fall on a floor that shakes and on a slope, tumble and slide round the periodic axis, among
+// grains: corners of their meshes come and go.
+inline const std::string kCrates = R"(
+gravity = [1.5, 0.5, -9.8066]
+[output]
+history_interval = 0.01
+[space]
+dimension = 3
+min = [0.17, 0.0, -0.1]
+max = [1.0, 0.6, 0.8]
+x_min = "periodic"
+x_max = "periodic"
+y_max = "wall"
+[time]
+end = 0.3
+step = 2e-4
+control = "fixed"
+[contact]
+skin = 0.01
+[[contact.pairs]]
+stiffness = 2e4
+restitution = 0.4
+friction = 0.4
+tangential_damping_ratio = 0.1
+[[meshes]]
+name = "crate"
+kind = "box"
+size = [0.12, 0.1, 0.08]
+refine = 0.05
+[[walls]]
+name = "floor"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+[[walls.motions]]
+type = "translation"
+direction = [1.0, 0.0, 0.3]
+displacement = { kind = "sine", amplitude = 0.004, frequency = 12.0 }
+[[walls]]
+name = "slope"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 1.0, 1.5]
+[[bodies]]
+name = "crate"
+count = 3
+kind = "spatial"
+position = [0.25, 0.25, 0.1]
+spacing = [0.25, 0.02, 0.005]
+quaternion = [0.98, 0.1, 0.15, 0.08426149773176359]
+velocity = [3.0, -0.2, -1.0]
+body_angular_velocity = [1.0, 5.0, 2.0]
+solids = [{ kind = "mesh", mesh = "crate", density = 600.0 }]
+meshes = [{ mesh = "crate" }]
+[[particles]]
+name = "grains"
+kind = "row"
+count = 8
+origin = [0.2, 0.4, 0.03]
+spacing = [0.1, 0.0, 0.0]
+radius = 0.02
+mass = 0.05
+)";
+
 inline const std::vector<std::vector<std::string>> kWays = {
     {"integrator.particles=hht"},
     {"integrator.particles=hht", "integrator.hht_alpha=-0.1"},
@@ -193,6 +255,7 @@ inline std::vector<RestartCase> restart_cases() {
     for (const std::string policy : {"remove", "drift"})
       cases.push_back({policy + how, model_of(kLeavingDiscs, with({"space.leaving=" + policy})), true});
     cases.push_back({"rubbing shapes" + how, model_of(kRubbingShapes, with({})), false});
+    cases.push_back({"crates" + how, model_of(kCrates, with({})), false});
     // Long runs, and so fast that the list limits adaptive steps.
     if (way == kWays.front() || way == kWays.back()) {
       cases.push_back({"far drifters" + how, model_of(kFarDrifters, with({})), true});

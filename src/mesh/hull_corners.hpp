@@ -1,0 +1,36 @@
+// The corners of a mesh that a plane can touch: those of its convex hull.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "base/vec3.hpp"
+
+namespace scree {
+
+// Strict corners alone: what lies on a face or an edge of the hull is none. A box has eight, however finely
+// its faces are divided.
+struct HullCorners {
+  std::vector<Vec3> corners;        // [m], in an order that depends on the points alone
+  std::vector<Index> first;         // of the faces, into face_corners, and the end
+  std::vector<Index> face_corners;  // face by face those that lie in one plane; in 2D the ends of an edge
+  std::vector<Vec3> normals;        // per face, unit, outwards
+  Vec3 middle;                      // no corner is farther from it than reach [m]
+  Real reach = 0;
+  // Of the sphere whose area is that of the hull; in 2D of the circle that is as long as the hull's outline
+  // [m].
+  Real radius = 0;
+
+  Index faces() const { return static_cast<Index>(normals.size()); }
+  std::span<const Index> of_face(Index face) const {
+    const auto f = static_cast<std::size_t>(face);
+    return {face_corners.data() + first[f], static_cast<std::size_t>(first[f + 1] - first[f])};
+  }
+};
+
+// Of these points, which are not all in one line in space, nor all in one place; planar: as they lie in the
+// plane z = 0, for a space of dimension 2. What is flat to 1e-9 of its extent counts as flat.
+HullCorners hull_corners(const std::vector<Vec3>& points, bool planar);
+
+}  // namespace scree
