@@ -37,7 +37,7 @@ struct RubbingPath : ContactPath {
   Real curvature = 0;         // how far the normal turns by the way of i's centre across it [1/m]
   Vec3 velocity0, velocity1;  // of i relative to j [m/s]
   Vec3 turning;               // R_i times i's turn over the step, and j's likewise; even [m]
-  Vec3 slide;                 // velocity of j's surface where that runs along itself [m/s]
+  Vec3 slide;                 // velocity of j's surface at the end where that runs along itself [m/s]
   Index i, j;                 // items; j: kWall
   std::int64_t slot;          // of the list, or of the surfaces
   Real frozen_limit = -1;
@@ -135,15 +135,13 @@ SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, co
   out.normal = StepContactOf{resolve_events}.of(normal, c);
   out.normal0 = c.normal0, out.leverage0 = c.leverage0, out.leverage = c.motion.leverage;
   out.curvature = c.curvature;
-  const Real start_force =
-      c.step.overlap0 > 0 ? contact_force(normal, c.step.overlap0, c.step.rate0).force : 0;
   RubbingStep step{c.step,
                    c.motion,
                    c.leverage0,
                    {},
                    {},
                    c.size,
-                   start_force,
+                   start_force(normal, c.step),
                    out.normal.end_force,
                    out.normal.step.force,
                    c.frozen_limit};

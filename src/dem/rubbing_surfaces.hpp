@@ -72,6 +72,9 @@ struct SurfaceRubItem {
              path.motion.arm_j * (at_end ? surface : before).spin;
     });
     out.books = rubbing_books(law, path, out.contact, resolve_events);
+    if (out.contact.acts && surface.turns())
+      out.books.integrator += carrier_work(law, path, out.contact, carrier_excess(way, surface, before)) +
+                              slide_work(surface, path, out.contact);
     out.arm = way.now.is_sphere ? surface.arm : surface.arm + way.now.pair.contact;
     out.radius = way.now.is_sphere ? surface.radius : 0;
     out.contact_arm = way.now.is_sphere ? Vec3{} : way.now.pair.contact;
@@ -83,10 +86,25 @@ struct SurfaceRubItem {
  private:
   // What the surface's own motion adds to what friction sees.
   SCREE_HD static void run_along(const SurfaceFrame& frame, RubbingPath& path) {
-    const Vec3 slide = frame.middle_slide();
-    add_slide(path.motion, slide);
-    path.velocity0 -= frame.before * frame.slide, path.velocity1 -= frame.axes * frame.slide;
+    add_slide(path.motion, frame.middle_slide());
+    const Vec3 slide = frame.axes * frame.slide;
+    path.velocity0 -= frame.before * frame.slide, path.velocity1 -= slide;
     path.slide = across(slide, path.normal1);
+  }
+  // CarrierExcess::work() of all forces.
+  SCREE_HD static Real carrier_work(const Law& law, const RubbingPath& path, const RubbingContact& contact,
+                                    const CarrierExcess& excess) {
+    const Real force0 = start_force(law.normal.of_pair(path.size), path.step);
+    return excess.work(force0 * path.normal0 - contact.leverage0 * contact.rub.start,
+                       contact.normal.step.force * path.normal1 - contact.leverage * contact.rub.step);
+  }
+  // Likewise of a surface that runs: at the start with the velocity there.
+  SCREE_HD Real slide_work(const PlacedSurface& surface, const RubbingPath& path,
+                           const RubbingContact& contact) const {
+    if (path.slide == Vec3{}) return 0;
+    const SurfaceFrame& frame = in.frames[surface.frame];
+    const Vec3 slide0 = across(frame.before * frame.slide, path.normal0);
+    return path.step.h / 2 * contact.leverage0 * dot(contact.rub.start, path.slide - slide0);
   }
   SCREE_HD RubbingPath path_of(const SurfacePath& way, const PlacedSurface& surface,
                                const PlacedSurface& before, Index entry, Index i) const {
@@ -104,10 +122,8 @@ struct SurfaceRubItem {
         end, out.velocity1, begin, out.velocity0, way.travel, surface_size(in, entry, p, in.velocity[i]));
     if (is_sphere)
       out.motion = sphere_motion(end, way.travel, one, other, h);
-    else if (way.now.is_face)
-      out.motion = face_motion(end, out.normal0, way.travel, one, other, h);
     else
-      out.motion = edge_motion(end, out.normal0, way.travel, one, other, h);
+      out.motion = motion_over(surface, way.now, out.normal0, way.travel, one, other, h);
     if (!is_sphere && in.frames[surface.frame].runs()) run_along(in.frames[surface.frame], out);
     const Real reach = p.w + arm;
     out.leverage0 = way.now.is_face ? 1 : out.motion.leverage * end.distance / (reach - out.step.overlap0);

@@ -89,6 +89,36 @@ SCREE_HD PairSize surface_size(const SurfaceViews& in, Index entry, Vec4 p, Vec4
           in.masses != nullptr ? in.masses[surface] : kInfinity};
 }
 
+// Where a contact with a plane or a mesh was when the step began, from the surface's point there [m].
+// normal0: its normal then; apart: how far the sphere's centre has come from the surface's point since. Along
+// an edge it is below the centre, at a vertex where it is.
+SCREE_HD Vec3 start_contact(const SurfaceTouch& touch, const SurfaceFrame& frame, Real radius, Vec3 normal0,
+                            Vec3 apart) {
+  const Vec3 place = touch.pair.contact, normal1 = touch.pair.geometry.normal();
+  if (touch.is_face) return place - apart + radius * (normal1 - normal0);
+  const Vec3 centre = place - apart + touch.pair.geometry.distance * normal1;
+  const Vec3 material = frame.before * transposed_times(frame.axes, place);
+  return material + across(centre - material, normal0);
+}
+// Of a velocity in the middle of a step: with the rate along the contact's end that it has along the normal
+// of the middle, where the surface had turned by half.
+SCREE_HD Vec3 along_middle(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 velocity) {
+  const Vec3 normal = touch.pair.geometry.normal();
+  return velocity - Real(0.5) * dot(cross(surface.turn, normal), velocity) * normal;
+}
+// Of a sphere i over a plane or a mesh j in a step; travel: relative to the material of j halfway along the
+// path of the contact [m]. face_motion() takes for slip what is across the normal at the end. Of a face that
+// has turned, what is along the normal of the middle of the step must be along that: else a contact that
+// opens or closes slips.
+SCREE_HD ContactMotion motion_over(const PlacedSurface& surface, const SurfaceTouch& touch, Vec3 normal0,
+                                   Vec3 travel, const TurningPartner& i, const TurningPartner& j, Real h) {
+  const ContactGeometry& geometry = touch.pair.geometry;
+  if (!touch.is_face) return edge_motion(geometry, normal0, travel, i, j, h);
+  const Vec3 normal = geometry.normal();
+  if (surface.turns()) travel += (dot(travel, normal) / 2) * cross(surface.turn, normal);
+  return face_motion(geometry, normal0, travel, i, j, h);
+}
+
 // Contacts at one instant or, of laws that move, over the explicit step that ends there; for the k-th of the
 // entries by_surface.
 template <class Laws>
@@ -189,15 +219,20 @@ struct SurfaceLoadItem {
       return {state, sphere_motion(state.geometry, travel, one, {turning, surface.radius}, in.h)};
     }
     const SurfaceFrame& frame = in.frames[surface.frame];
-    const Vec3 place = touch.pair.contact;
-    if (!at_rest)
-      state.velocity = xyz(in.velocity[i]) - reciprocal(in.h) * (surface.travel + frame.travel_about(place));
     const Vec3 normal0 = surface.kind == SurfaceKind::mesh ? in.touches[entry].normal0
                          : at_rest                         ? surface.normal
                                                            : frame.before * frame.normal;
-    const Vec3 travel = in.h * state.velocity;
-    if (touch.is_face) return {state, face_motion(state.geometry, normal0, travel, one, {turning}, in.h)};
-    return {state, edge_motion(state.geometry, normal0, travel, one, {turning}, in.h)};
+    if (!at_rest) {
+      const Vec3 apart = in.h * xyz(in.velocity[i]) - surface.travel,
+                 from = start_contact(touch, frame, one.arm, normal0, apart);
+      state.velocity = xyz(in.velocity[i]) -
+                       reciprocal(in.h) * (surface.travel + frame.travel_under(touch.pair.contact, from));
+    }
+    const ContactMotion motion =
+        motion_over(surface, touch, normal0, in.h * state.velocity, one, {turning}, in.h);
+    // What a dashpot along the normal sees is how fast the overlap grows.
+    if (!at_rest && surface.turns()) state.velocity = along_middle(surface, touch, state.velocity);
+    return {state, motion};
   }
   // Velocity of a surface that runs along itself, where they touch [m/s].
   SCREE_HD Vec3 slide_at(const SurfaceTouch& touch, const PlacedSurface& surface) const {
@@ -216,12 +251,14 @@ struct SurfaceLoadItem {
 // How a particle lies to a placed surface at both ends of an implicit step.
 struct SurfacePath {
   SurfaceTouch now, start;
-  Vec3 travel;  // of the particle's centre relative to the surface where they touch now [m]
+  // Of the particle's centre relative to the surface's material halfway along the contact's path, and of that
+  // material about the surface's point [m].
+  Vec3 travel, turned;
 };
 
 SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& surface,
                                   const PlacedSurface& before, Index entry, Vec4 p, Vec4 p0) {
-  SurfacePath out{surface_touch(in, surface, entry, p, 0), {}, {}};
+  SurfacePath out{surface_touch(in, surface, entry, p, 0), {}, {}, {}};
   if (surface.kind == SurfaceKind::mesh) {
     out.start = out.now;
     if (!out.now.touches) return out;  // at neither end
@@ -232,10 +269,34 @@ SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& s
     out.start = surface_touch(in, before, entry, p0, 0);
   }
   out.travel = (xyz(p) - xyz(p0)) - (surface.point - before.point);
-  if (!out.now.is_sphere) out.travel -= in.frames[surface.frame].travel_about(out.now.pair.contact);
+  if (out.now.is_sphere) return out;
+  const SurfaceFrame& frame = in.frames[surface.frame];
+  const Vec3 normal0 = out.start.pair.geometry.normal();
+  out.turned =
+      frame.travel_under(out.now.pair.contact, start_contact(out.now, frame, p.w, normal0, out.travel));
+  out.travel -= out.turned;
   return out;
 }
 
+// The energy ledger of a carrier takes the work of a force at `arm` from its centre along the carrier's
+// displacement and turn, d + turn x arm. By how much the travel of a SurfacePath is more than the particle's
+// displacement less that, for the forces at the start and the end of an implicit step [m].
+struct CarrierExcess {
+  Vec3 start, end;
+
+  // What the contact's books must not have of it; forces: on the particle [J].
+  SCREE_HD Real work(Vec3 start_force, Vec3 end_force) const {
+    return Real(0.5) * (dot(start_force, start) + dot(end_force, end));
+  }
+};
+SCREE_HD CarrierExcess carrier_excess(const SurfacePath& path, const PlacedSurface& surface,
+                                      const PlacedSurface& before) {
+  const Vec3 of_material = path.turned + (surface.arm - before.arm);
+  const auto excess = [&](const PlacedSurface& at, const SurfaceTouch& touch) {
+    return cross(surface.turn, at.arm + touch.pair.contact) - of_material;
+  };
+  return {excess(before, path.start), excess(surface, path.now)};
+}
 template <class Laws>
 struct SurfaceStepItem {
   SurfaceViews in;
@@ -262,6 +323,11 @@ struct SurfaceStepItem {
     const StepContactOf of{start.resolve_events};
     out.contact = of(law, over);
     out.books = StepBooksOf{of}(law, over);
+    if (surface.turns()) {
+      const Real force0 = start_force(law.normal.of_pair(over.size), over.step);
+      out.books.integrator += carrier_excess(path, surface, before)
+                                  .work(force0 * over.normal0, out.contact.step.force * over.normal1);
+    }
     out.arm = surface.arm + pair.contact;
     out.contact_arm = pair.contact, out.is_sphere = path.now.is_sphere;
   }

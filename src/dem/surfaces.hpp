@@ -99,19 +99,21 @@ struct PlacedSurface {
   Vec3 point, normal;   // as in Surface, in the global frame
   Vec3 arm;             // of the point, from the body's centre [m]
   Vec3 velocity, spin;  // of the body [m/s], [rad/s]
-  // Since the explicit step began, for laws that move: of the point [m], and of the body about its centre
+  // Since the step began, where something asks for it: of the point [m], and of the body about its centre
   // [rad]. The point's is exact, so that nothing is left over of a surface that comes back.
   Vec3 travel, turn;
   Index frame = 0;  // of a plane or a mesh: its SurfaceFrame
 
   // Of the place on the body at `from_point` from the point.
   SCREE_HD Vec3 velocity_at(Vec3 from_point) const { return velocity + cross(spin, arm + from_point); }
+  // A plane or a mesh that has turned since then.
+  SCREE_HD bool turns() const { return kind != SurfaceKind::sphere && !(turn == Vec3{}); }
 };
 
 // How a placed plane or mesh is turned. Spheres have none.
 struct SurfaceFrame {
   Mat3 axes;    // from the carrier's frame to the global one, now
-  Mat3 before;  // the same where the explicit step began
+  Mat3 before;  // the same where the step began
   Vec3 normal;  // of a plane, in the carrier's frame
   Index mesh;   // index into the meshes
   // Of a mesh: the periods along which it goes on past its ends, as the space does. There it has no images,
@@ -122,9 +124,11 @@ struct SurfaceFrame {
   Vec3 to_middle{};
   Vec3 slide{};  // velocity of a surface that runs along itself, in the carrier's frame [m/s]
 
-  // How far the place at `from_point` from the surface's point has come since, beside that.
-  SCREE_HD Vec3 travel_about(Vec3 from_point) const {
-    const Vec3 local = transposed_times(axes, from_point);
+  // How far the surface's material halfway along the path of a contact has come since, beside its point; the
+  // contact's positions now and where the step began, each from the point then [m]. README.md, "Surfaces that
+  // turn", says why. Exactly zero where nothing turns.
+  SCREE_HD Vec3 travel_under(Vec3 now, Vec3 at_start) const {
+    const Vec3 local = Real(0.5) * (transposed_times(axes, now) + transposed_times(before, at_start));
     return axes * local - before * local;
   }
   SCREE_HD bool runs() const { return !(slide == Vec3{}); }

@@ -74,7 +74,7 @@ struct StepBooksOf {
   template <class Law>
   SCREE_HD ContactBooks operator()(const Law& law, const ContactPath& c) const {
     const auto normal = law.normal.of_pair(c.size);
-    const Real force0 = c.step.overlap0 > 0 ? contact_force(normal, c.step.overlap0, c.step.rate0).force : 0;
+    const Real force0 = start_force(normal, c.step);
     const Real force1 = step.of(normal, c).step.force;
     return contact_books(normal, c.step, Real(0.5) * dot(force0 * c.normal0 + force1 * c.normal1, c.travel));
   }

@@ -20,6 +20,12 @@ struct StepContactForce {
   Real damping;    // dF/d(rate1) [N s/m]
 };
 
+// Of the law where the step begins [N].
+template <class NormalLaw>
+SCREE_HD Real start_force(const NormalLaw& law, const ContactStep& c) {
+  return c.overlap0 > 0 ? contact_force(law, c.overlap0, c.rate0).force : 0;
+}
+
 // What the trapezoidal rule must find at the end of the step, in place of the force there, for the step's
 // impulse and work to be right although the contact opens or closes within the step:
 //   impulse h (F0 + F) / 2 = force summed over the part of the step that is spent in contact.
