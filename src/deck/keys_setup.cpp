@@ -209,7 +209,9 @@ const TableKeys& contact_keys() {
        real("tangential_damping_ratio", "")
            .at_least(0)
            .otherwise("0.0")
-           .about("Of the dashpot beside that spring, over the critical damping of a slip."),
+           .about("Of the dashpot beside that spring, over the critical damping of a slip. It acts while the "
+                  "spring holds, with their sum within the limit of friction, and not while the contact "
+                  "slides."),
        real("rolling_friction", "")
            .at_least(0)
            .left_out("nothing resists rolling")

@@ -134,10 +134,8 @@ void try_implicit(const Model& model, const Law& law, const Setup& setup, StepTr
   const TrialMethod method{hht_coefficients(model.integrator.hht_alpha), model.integrator.resolve_events};
   if constexpr (kFrictionAlone<Law>)
     if (trial.rubs) {
-      // Exact is where finer steps of this kind lead: dashpots of friction go off elsewhere in explicit ones.
-      constexpr Real kFine = 1000;  // of second order
       const auto make = [&](Real gap) { return RubbingTrial<Law>(law, method, impact, gap); };
-      return judge(trial, Trials(impact, setup.touch, make, setup.touch / kFine, make));
+      return judge(trial, Trials(law, impact, setup.touch, make));
     }
   if constexpr (!Law::kNeck) {
     const auto pair = law.normal.of_pair(impact.size);

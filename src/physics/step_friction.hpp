@@ -74,7 +74,9 @@ SCREE_HD Vec3 by_share(const StepSpring& over, Vec3 way) {
 // the end of the step holds twice the mean less what acted at the start, turned with the contact:
 //   step = 2 mean - start.
 // While it sticks that is the spring's force at the end; in a slide nothing swings from step to step, because
-// `start` is the spring's, not `step` of the step before. spring: as remembered, across normal0.
+// `start` is the spring's, not `step` of the step before. Of a dashpot the same part acts over the whole step
+// (dashpot_part()), wherever the step ends, so that derivatives are those of a spring and a constant dashpot.
+// spring: as remembered, across normal0.
 template <class Law>
 SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   StepRub out{};
@@ -82,9 +84,11 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   const Real share = frozen ? 1 : closed_share(c.step);
   const Real mean_force = Real(0.5) * (c.start_force + c.step_force);
   const bool starts = c.step.overlap0 > 0, ends = c.step.overlap1 > 0;
-  if (starts)
-    out.start =
-        acting_at(slider_at(law, c, c.start_force, c.step.overlap0, c.leverage0), spring, c.slip_rate0);
+  SpringSlider first{};
+  if (starts) {
+    first = slider_at(law, c, c.start_force, c.step.overlap0, c.leverage0);
+    out.start = acting_at_end(first, spring, c.slip_rate0);
+  }
   if (!(share > 0)) return out;
   const NormalContact contact = normal_contact(law.normal.of_pair(c.size), c.size, mean_force / share,
                                                c.step.overlap1, c.step.overlap0);
@@ -94,6 +98,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   const Real twice = 2 * slider.limit, end_limit = frozen              ? slider.limit
                                                    : end.limit < twice ? end.limit
                                                                        : twice;
+  if (slider.dashpot > 0 && starts) slider.dashpot *= dashpot_part(first, spring);
   const StepSpring over = step_spring(slider, turned_across(c.motion, spring), share * c.motion.slip,
                                       share * c.motion.h, end_limit);
   out.limit = share * slider.limit;
@@ -107,7 +112,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   out.stored0 = spring_energy(spring, slider.stiffness0);
   const Real left = spring_energy(over.spring, slider.stiffness);
   if (ends)
-    out.spring = over.spring, out.stored1 = left, out.end = acting_at(end, over.spring, c.slip_rate1);
+    out.spring = over.spring, out.stored1 = left, out.end = acting_at_end(end, over.spring, c.slip_rate1);
   else
     out.losses.sliding += left;  // of limits that were frozen
   return out;

@@ -48,15 +48,11 @@ struct TrialResult {
 template <class Make>
 class Trials {
  public:
-  // touch: the time that the contact lasts without damping, about [s].
+  // touch: the time that the contact lasts without damping, about [s]. The exact rebound is that of explicit
+  // steps.
   template <class Law>
   Trials(const Law& law, const TrialImpact& impact, Real touch, const Make& make)
-      : Trials(impact, touch, make, touch / kPerContact,
-               [&](Real gap) { return ExplicitTrial<Law>(law, impact, gap); }) {}
-  // make_exact: of the trials that tell the exact rebound, in steps of `fine` [s].
-  template <class MakeExact>
-  Trials(const TrialImpact& impact, Real touch, const Make& make, Real fine, const MakeExact& make_exact)
-      : make_(make), approach_(impact.approach), touch_(touch), exact_(exact(fine, make_exact)) {}
+      : make_(make), approach_(impact.approach), touch_(touch), exact_(exact(law, impact)) {}
 
   TrialResult with(Real h) const {
     constexpr int kPhases = 16;
@@ -97,11 +93,13 @@ class Trials {
     return static_cast<int>(std::min(kContacts * touch_ / h, kContacts * kPerContact)) + 10;
   }
   // In steps so short that what they err is far below what is asked of them.
-  template <class MakeExact>
-  TrialRebound exact(Real h, const MakeExact& make) const {
+  template <class Law>
+  TrialRebound exact(const Law& law, const TrialImpact& impact) const {
+    const Real h = touch_ / kPerContact;
     TrialRebound out;
     for (const Real phase : {0.25, 0.75}) {
-      const TrialRebound one = rebound_of(make(phase * h), approach_, h, most_steps(h));
+      const TrialRebound one =
+          rebound_of(ExplicitTrial<Law>(law, impact, phase * h), approach_, h, most_steps(h));
       out.restitution += one.restitution / 2, out.across += one.across / 2;
     }
     return out;

@@ -84,6 +84,57 @@ TEST_CASE("the derivatives of the mean force are those of differences") {
   }
 }
 
+TEST_CASE("in an implicit step a dashpot acts beside a spring within its limit, not beside one that slides") {
+  const SpringSlider slider{1, 1, 2, 10};
+  CHECK(dashpot_part(slider, {}) == 1);
+  CHECK(dashpot_part(slider, {0, -9.9, 0}) == 1);
+  CHECK(near(dashpot_part(slider, {0, -9.995, 0}), 0.5, {.absolute = 1e-9}));
+  CHECK(dashpot_part(slider, {10, 0, 0}) == 0);
+  CHECK(dashpot_part(slider, {8, 8, 0}) == 0);
+  CHECK(acting_at_end(slider, {9, 0, 0}, {-1, 0, 0}) == Vec3{7, 0, 0});
+  CHECK(acting_at_end(slider, {9, 0, 0}, {1, 0, 0}) == Vec3{10, 0, 0});
+  CHECK(acting_at_end(slider, {10, 0, 0}, {-1, 0, 0}) == Vec3{10, 0, 0});
+  CHECK(acting_at_end({1, 1, 0, 10}, {10, 0, 0}, {-1, 0, 0}) == Vec3{10, 0, 0});
+}
+
+// A slip that turns back while the limit falls: the spring sticks, slides, lets go, and slides on as the
+// limit reaches it.
+TEST_CASE("implicit steps of a spring, slider and dashpot tend to explicit ones as steps shrink") {
+  const auto way_to = [](Real t) { return 0.12 * std::sin(3.5 * t); };
+  const auto limit_at = [](Real t) { return t < 0.4 ? 0.3 : 0.3 - 2.5 * (t - 0.4); };
+  constexpr Real kStiffness = 5, kDashpot = 0.5;
+  enum class Steps { explicit_, implicit_, dashpot_at_all_times };
+  const auto impulse_to = [&](int steps, Steps kind) {
+    const Real h = Real(0.5) / steps;
+    Vec3 spring;
+    Real impulse = 0;
+    for (int k = 0; k < steps; ++k) {
+      const Real t = k * h, first = limit_at(t), last = limit_at(t + h);
+      const Vec3 way{way_to(t + h) - way_to(t), 0, 0};
+      SpringSlider slider{kStiffness, kStiffness, kDashpot, last};
+      if (kind != Steps::explicit_) {
+        if (kind == Steps::implicit_)
+          slider.dashpot *= dashpot_part({kStiffness, kStiffness, kDashpot, first}, spring);
+        slider.limit = (first + last) / 2;
+        const StepSpring out = step_spring(slider, spring, way, h, last);
+        spring = out.spring, impulse += h * out.mean.x;
+      } else {
+        const SpringStep out = spring_step(slider, spring, way, h);
+        spring = out.spring, impulse += h * out.acting.x;
+      }
+    }
+    return impulse;
+  };
+  const Real exact = impulse_to(400000, Steps::explicit_);
+  const Real coarse = std::abs(impulse_to(50, Steps::implicit_) - exact),
+             fine = std::abs(impulse_to(800, Steps::implicit_) - exact),
+             another = std::abs(impulse_to(800, Steps::dashpot_at_all_times) - exact);
+  CAPTURE(coarse, fine, another, exact);
+  CHECK(coarse < 5e-4 * exact);
+  CHECK(fine < 1e-5 * exact);
+  CHECK(another > 5e-3 * exact);
+}
+
 TEST_CASE("while it sticks steps of half the size halve the error twice") {
   // A way that swings: T = sin(t) from 0 to 2, stiffness 1.
   const auto error = [](int steps) {

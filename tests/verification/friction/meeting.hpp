@@ -29,6 +29,7 @@ struct Meeting {
   std::string sides{};
   Real half = 2;  // of the space [m]
   std::string integrator = "particles = \"velocity-verlet\"\n";
+  std::vector<std::string> settings{};  // as of the command line
 
   std::string vector(Vec3 a) const { return dimension == 3 ? toml(a) : fmt::format("[{}, {}]", a.x, a.y); }
   std::string spin(Vec3 w) const { return dimension == 3 ? toml(w) : fmt::format("[{}]", w.z); }
@@ -47,16 +48,18 @@ struct Meeting {
         name, vector(position), vector(velocity), spin(w), radius, mass);
   }
   Model with_body() const {
-    return model_of(setup() + fmt::format("[[bodies]]\nname = \"partner\"\nposition = {}\nvelocity = {}\n"
-                                          "angular_velocity = {}\nmass = {}\ninertia = {}\n"
-                                          "shapes = [{{ radius = {}, offset = {} }}]\n",
-                                          vector(partner.position), vector(partner.velocity), partner.spin,
-                                          partner.mass, partner.inertia, partner.radius,
-                                          vector(partner.offset)));
+    return model_of(
+        setup() + fmt::format("[[bodies]]\nname = \"partner\"\nposition = {}\nvelocity = {}\n"
+                              "angular_velocity = {}\nmass = {}\ninertia = {}\n"
+                              "shapes = [{{ radius = {}, offset = {} }}]\n",
+                              vector(partner.position), vector(partner.velocity), partner.spin, partner.mass,
+                              partner.inertia, partner.radius, vector(partner.offset)),
+        settings);
   }
   Model with_particle() const {
     return model_of(setup() + particle("partner", partner.position, partner.velocity, {0, 0, partner.spin},
-                                       partner.radius, partner.mass));
+                                       partner.radius, partner.mass),
+                    settings);
   }
 };
 
