@@ -9,6 +9,7 @@
 #include "mesh/mesh_view.hpp"
 #include "mesh/row_kinds.hpp"
 #include "physics/contact_geometry.hpp"
+#include "physics/step_contact.hpp"
 
 namespace scree {
 
@@ -77,10 +78,11 @@ struct MeshTouch {
 };
 
 // The same contact where an implicit step began. One that was open then, or is open at the end, has no
-// overlap there.
+// overlap there, unless it changes over.
 struct MeshTouchBefore {
   ContactGeometry geometry;
   Vec3 contact;
+  Changeover change{};
 };
 
 }  // namespace scree

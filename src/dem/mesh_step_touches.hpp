@@ -43,10 +43,12 @@ struct MeshStepTouchItem {
         put(group.entry + k, mesh, now[k], old.contact[at], {end, start}, old.entry[at]);
         matched[k] = true, old.take_out(at);
       }
+    Overlaps gone{}, come{};  // of the nearest contacts that only one end has
     for (int k = 0; k < count && k < group.entries; ++k) {
       if (matched[k]) continue;
       const MeshContact was = mesh_feature_at(mesh, now[k].feature, start.c, now[k].normal);
       put(group.entry + k, mesh, now[k], was, {end, start}, -1);
+      if (k == 0) come = overlaps_at(group.entry);
       open(before[group.entry + k].geometry);
     }
     Index next = count;
@@ -54,8 +56,11 @@ struct MeshStepTouchItem {
       const MeshContact& was = old.contact[k];
       put(group.entry + next, mesh, mesh_feature_at(mesh, was.feature, end.c, was.normal), was, {end, start},
           old.entry[k]);
+      if (k == 0) gone = overlaps_at(group.entry + next);
       open(touches[group.entry + next].geometry);
     }
+    if (!mesh.sheet && (come.at_end > p.w || gone.at_start > p.w))
+      change_over(group.entry + count, gone, group.entry, come);
     for (; next < group.entries; ++next) touches[group.entry + next].set_none();
     if (is_sheet<kSheets>(mesh))
       for (Index k = 0; k < group.entries; ++k)
@@ -100,6 +105,25 @@ struct MeshStepTouchItem {
                       now.triangle >= 0 ? now.triangle : was.triangle,
                       from};
     before[entry] = {pair0.geometry, pair0.contact};
+  }
+  // Of a contact, as its feature lies to the centre at both ends; zero: there is none.
+  struct Overlaps {
+    Real at_start, at_end;
+  };
+  SCREE_HD Overlaps overlaps_at(Index entry) const {
+    return {before[entry].geometry.overlap, touches[entry].geometry.overlap};
+  }
+  // A centre inside a closed mesh, that is an overlap above the radius, touches the nearest face alone. Where
+  // that becomes another one within the step the contact has neither ended nor begun from touch: it changes
+  // over where both are equally near, on the straight lines between their overlaps.
+  SCREE_HD void change_over(Index ends, const Overlaps& gone, Index begins, const Overlaps& come) const {
+    const Real nearer0 = come.at_start - gone.at_start, nearer1 = gone.at_end - come.at_end;
+    if (!(nearer0 > 0 && nearer1 > 0 && gone.at_start > 0 && come.at_end > 0)) return;
+    const Real share = nearer0 / (nearer0 + nearer1);
+    const Real overlap = gone.at_start + share * (gone.at_end - gone.at_start);
+    touches[ends].geometry.overlap = gone.at_end, before[begins].geometry.overlap = come.at_start;
+    before[ends].change = {Changeover::Kind::ends, overlap, share};
+    before[begins].change = {Changeover::Kind::begins, overlap, 1 - share};
   }
   // Of a contact that is only at the other end of the step.
   SCREE_HD static void open(ContactGeometry& geometry) {

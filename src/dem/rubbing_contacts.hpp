@@ -129,7 +129,7 @@ SCREE_HD RubbingContact rubbing_contact(const Law& law, const RubbingPath& c, co
                                         bool resolve_events, const Turning& turning) {
   RubbingContact out{};
   out.slot = c.slot;
-  out.acts = OverRubbingStep::closed(c), out.lasts = c.step.overlap1 > 0;
+  out.acts = OverRubbingStep::closed(c), out.lasts = c.step.acts_at_end();
   if (!out.acts) return out;
   const auto normal = law.normal.of_pair(c.size);
   out.normal = StepContactOf{resolve_events}.of(normal, c);

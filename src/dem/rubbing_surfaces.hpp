@@ -120,6 +120,7 @@ struct SurfaceRubItem {
     out.velocity1 = xyz(in.velocity[i]) - surface.velocity_at(place);
     static_cast<ContactPath&>(out) = OverStep{start.step}.path(
         end, out.velocity1, begin, out.velocity0, way.travel, surface_size(in, entry, p, in.velocity[i]));
+    out.step.change = way.change;
     if (is_sphere)
       out.motion = sphere_motion(end, way.travel, one, other, h);
     else

@@ -254,6 +254,7 @@ struct SurfacePath {
   // Of the particle's centre relative to the surface's material halfway along the contact's path, and of that
   // material about the surface's point [m].
   Vec3 travel, turned;
+  Changeover change{};
 };
 
 SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& surface,
@@ -263,7 +264,7 @@ SCREE_HD SurfacePath surface_path(const SurfaceViews& in, const PlacedSurface& s
     out.start = out.now;
     if (!out.now.touches) return out;  // at neither end
     const MeshTouchBefore& at = in.before[entry];
-    out.start.pair = {at.geometry, at.contact};
+    out.start.pair = {at.geometry, at.contact}, out.change = at.change;
     out.start.touches = at.geometry.overlap > 0, out.now.touches = out.now.pair.geometry.overlap > 0;
   } else {
     out.start = surface_touch(in, before, entry, p0, 0);
@@ -315,10 +316,11 @@ struct SurfaceStepItem {
     SurfaceStep& out = steps[entry];
     out.touches = path.now.touches || path.start.touches;
     if (!out.touches) return;
-    const ContactPath over =
+    ContactPath over =
         OverStep{start}.path(pair.geometry, xyz(u) - surface.velocity_at(pair.contact), pair0.geometry,
                              xyz(start.velocity[i]) - before.velocity_at(pair0.contact), path.travel,
                              surface_size(in, entry, p, u));
+    over.step.change = path.change;
     const auto& law = laws.get(in.material[i], surface.material);
     const StepContactOf of{start.resolve_events};
     out.contact = of(law, over);

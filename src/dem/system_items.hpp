@@ -61,7 +61,7 @@ struct StepContactOf {
   template <class NormalLaw>
   SCREE_HD StepContact of(const NormalLaw& law, const ContactPath& c) const {
     const ContactForce end =
-        c.step.overlap1 > 0 ? contact_force(law, c.step.overlap1, c.step.rate1) : ContactForce{0, 0, 0, 0};
+        c.step.acts_at_end() ? contact_force(law, c.step.overlap1, c.step.rate1) : ContactForce{0, 0, 0, 0};
     if (!resolve_events) return {{end.force, end.stiffness, end.damping}, end.force, c.normal1};
     return {step_contact_force(law, c.step), end.force, c.normal1};
   }

@@ -28,7 +28,13 @@ SCREE_HD Real damper_work(Real damping, const ContactStep& c) {
 // force is -C d_dot) loses the elastic energy left then.
 template <class NormalLaw>
 SCREE_HD Real straight_dissipation(const NormalLaw& law, const ContactStep& c) {
-  const Real start = c.overlap0 > 0 ? c.overlap0 : 0, end = c.overlap1 > 0 ? c.overlap1 : 0;
+  const bool changes = c.change.kind != Changeover::Kind::none;
+  const Real start = changes          ? c.changing_from()
+                     : c.overlap0 > 0 ? c.overlap0
+                                      : 0,
+             end = changes          ? c.changing_to()
+                   : c.overlap1 > 0 ? c.overlap1
+                                    : 0;
   const auto pull = [&](Real damping) { return damping / c.h * std::abs(c.overlap1 - c.overlap0); };
   if (end >= start) return pull(law.mean_damping(start, end)) * (end - start);
   Real cut = end;  // the overlap from which on the force is cut
@@ -47,17 +53,20 @@ SCREE_HD Real step_dissipation(const NormalLaw& law, const ContactStep& c) {
   const auto holds = [&](Real overlap, Real rate) {  // the contact is closed there and its force not cut
     return overlap > 0 && (law.tension || contact_force(law, overlap, rate).force > 0);
   };
-  if (holds(c.overlap0, c.rate0) && holds(c.overlap1, c.rate1))
+  if (c.change.kind == Changeover::Kind::none && holds(c.overlap0, c.rate0) && holds(c.overlap1, c.rate1))
     return damper_work(law.mean_damping(c.overlap0, c.overlap1), c);
   return straight_dissipation(law, c);
 }
 
+// One that changes over hands its energy there on to the other contact.
 // work: of the contact on its two partners, by the trapezoidal rule [J]. What of it is neither elastic energy
 // nor dissipation the integrator has taken out of the contact.
 template <class NormalLaw>
 SCREE_HD ContactBooks contact_books(const NormalLaw& law, const ContactStep& c, Real work) {
-  const Real before = c.overlap0 > 0 ? law.energy(c.overlap0) : 0;
-  const Real after = c.overlap1 > 0 ? law.energy(c.overlap1) : 0;
+  const bool changes = c.change.kind != Changeover::Kind::none;
+  const Real start = changes ? c.changing_from() : c.overlap0, end = changes ? c.changing_to() : c.overlap1;
+  const Real before = start > 0 ? law.energy(start) : 0;
+  const Real after = end > 0 ? law.energy(end) : 0;
   const Real dissipated = step_dissipation(law, c);
   return {dissipated, (before - after) - work - dissipated};
 }

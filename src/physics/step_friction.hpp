@@ -41,6 +41,7 @@ struct StepRub {
 
 // Share of the step that the two touch, from the straight line between the overlaps.
 SCREE_HD Real closed_share(const ContactStep& c) {
+  if (c.change.kind != Changeover::Kind::none) return c.change.share;
   if (c.overlap1 > 0) return c.overlap0 > 0 ? 1 : c.overlap1 / (c.overlap1 - c.overlap0);
   return c.overlap0 > 0 ? c.overlap0 / (c.overlap0 - c.overlap1) : 0;
 }
@@ -83,7 +84,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   const bool frozen = c.frozen_limit >= 0;
   const Real share = frozen ? 1 : closed_share(c.step);
   const Real mean_force = Real(0.5) * (c.start_force + c.step_force);
-  const bool starts = c.step.overlap0 > 0, ends = c.step.overlap1 > 0;
+  const bool starts = c.step.acts_at_start(), ends = c.step.acts_at_end();
   SpringSlider first{};
   if (starts) {
     first = slider_at(law, c, c.start_force, c.step.overlap0, c.leverage0);
@@ -114,7 +115,7 @@ SCREE_HD StepRub step_rub(const Law& law, const RubbingStep& c, Vec3 spring) {
   if (ends)
     out.spring = over.spring, out.stored1 = left, out.end = acting_at_end(end, over.spring, c.slip_rate1);
   else
-    out.losses.sliding += left;  // of limits that were frozen
+    out.losses.sliding += left;  // of limits that were frozen, and of contacts that change over
   return out;
 }
 

@@ -166,6 +166,34 @@ TEST_CASE("without damping, the step's work is the change of the elastic energy"
   }
 }
 
+// Of a sphere between the faces of a plate the nearer one acts: the contact with one ends at the overlap at
+// which that with the other begins. The last two do not move along their normals while they act.
+TEST_CASE("contacts that change over do the work of their elastic energies, and what they damp is booked") {
+  struct Change {
+    Real gone0, gone1, come0, come1;  // overlaps
+  };
+  for (const StepLaw& law : kLaws)
+    for (const Change& c : {Change{0.9, 1.2, 1.15, 0.95}, Change{1, 1.01, 1.5, 0.2}, Change{0.9, 0.9, 1, 0.6},
+                            Change{0.8, 1.4, 1, 1}}) {
+      CAPTURE(law.name, c.gone0, c.come1);
+      const Real nearer0 = c.come0 - c.gone0, nearer1 = c.gone1 - c.come1,
+                 share = nearer0 / (nearer0 + nearer1);
+      const Real overlap = kReach * (c.gone0 + share * (c.gone1 - c.gone0));
+      ContactStep gone = step_between(kReach * c.gone0, kReach * c.gone1, 0.1),
+                  come = step_between(kReach * c.come0, kReach * c.come1, -0.1);
+      gone.change = {Changeover::Kind::ends, overlap, share};
+      come.change = {Changeover::Kind::begins, overlap, 1 - share};
+      CHECK((gone.acts_at_start() && !gone.acts_at_end() && !come.acts_at_start() && come.acts_at_end()));
+      const Real work =
+          (law.start(gone) + law.over_step(law.law, gone).force) / 2 * (gone.overlap1 - gone.overlap0) +
+          law.over_step(law.law, come).force / 2 * (come.overlap1 - come.overlap0);
+      const Real change = law.stored(come.overlap1) - law.stored(gone.overlap0);
+      const Real scale = law.stored(kReach);
+      if (law.law.normal_damping == 0) CHECK(near(work, change, {.absolute = 1e-8 * scale}));
+      if (law.law.normal_damping > 0) CHECK(work >= change - 1e-8 * scale);
+    }
+}
+
 TEST_CASE("derivatives of the step's force are not negative and exact") {
   for (const StepLaw& law : kLaws) {
     const auto check = [&](const ContactStep& c) {
