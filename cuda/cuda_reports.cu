@@ -4,6 +4,7 @@
 #include <cub/device/device_scan.cuh>
 
 #include "cuda_reports.cuh"
+#include "dem/inside_energies.hpp"
 
 namespace scree {
 namespace {
@@ -54,6 +55,7 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   const LedgerItem item{views_of(items_.now), elastic_.data(),           pairs_.data(),
                         items_.model.gravity, items_.subdomain.period(), verlet_step};
   items_.queue_sums(item, &Results::ledger);
+  items_.queue_sums(InsideItem{item.in, item.gravity, item.period, verlet_step}, &Results::inside);
   if (now.rotates) items_.queue_sums(RotationItem{views_of(now), springs_.data()}, &Results::rotation);
   if (items_.model.attracts()) items_.queue_sums(CohesionItem{cohesion_.data()}, &Results::cohesion);
   Index* drifting = results.at(&Results::index);
@@ -62,12 +64,19 @@ ParticleLedger CudaReports::ledger(Real verlet_step) {
   results.copy(&Results::index);
   const std::array<Real, kLedgerTerms> sums = results.totals(results.fetch(&Results::ledger));
   ParticleLedger out = make_particle_ledger(sums.data(), bodies_.side());
+  out.inside = make_inside_energies(results.totals(results.fetch(&Results::inside)).data(), bodies_.side());
   if (now.rotates)
     out.rotation =
         make_rotation_energies(results.totals(results.fetch(&Results::rotation)).data(), bodies_.side());
   if (items_.model.attracts()) out.cohesion = results.totals(results.fetch(&Results::cohesion))[0];
   out.drifting = items_.ranks.sum(std::int64_t{results.host().index});
   return out;
+}
+
+Real CudaReports::inside_kinetic() {
+  DeviceResults& results = items_.results;
+  items_.queue_sums(InsideKineticItem{views_of(items_.now)}, &Results::inside_kinetic);
+  return results.totals(results.fetch(&Results::inside_kinetic))[0];
 }
 
 void CudaReports::start_output() {

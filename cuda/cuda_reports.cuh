@@ -15,6 +15,7 @@ class CudaReports : public Reports {
   CudaReports(CudaItems& items, CudaBodies& bodies);
 
   ParticleLedger ledger(Real verlet_step) override;
+  Real inside_kinetic() override;
   void start_output() override;
   ParticleOutput output() override;
   ShapePack pack_shapes() override;

@@ -32,6 +32,8 @@ struct Results {
   ExactSums<kWallTerms> wall;
   ExactSums<kRotationTerms> rotation;
   ExactSums<1> cohesion;
+  ExactSums<kInsideTerms> inside;
+  ExactSums<1> inside_kinetic;
 };
 
 class DeviceResults {

@@ -68,10 +68,22 @@ def duration(seconds: float) -> str:
     return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60} min"
 
 
+def start_row(start: dict[str, Any]) -> str:
+    """What one start of the run did, in a line."""
+    ranks = f"{start['ranks']} {'rank' if start['ranks'] == 1 else 'ranks'}"
+    return f"t = {float(start['from']):.6g} to {float(start['to']):.6g} s, {start['steps']:,} steps in " \
+           f"{duration(float(start['loop_seconds']))}; {ranks}, {escaped(start['backend'])}, " \
+           f"{escaped(start['host'])}, {escaped(start['started'])}"
+
+
 def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
+    """Steps and seconds are of all starts of the run."""
     run, build, cost, counts = record["run"], record["build"], record["cost"], record["counts"]
-    steps, particles, loop = counts["steps"], counts["particles"], float(cost["loop_seconds"])
-    pace = f", {steps * particles / loop:.3g} particle-steps per second" if loop > 0 and particles and steps else ""
+    total, starts = record["total"], record["starts"]
+    steps, particles, loop = counts["steps"], counts["particles"], float(total["loop_seconds"])
+    taken = total["steps"] * counts["substeps"] * particles
+    pace = f", {taken / loop:.3g} particle-steps per second" if loop > 0 and taken else ""
+    several = f" in {len(starts)} starts" if len(starts) > 1 else ""
     rejected = counts["rejected_error"] + counts["rejected_newton"]
     memory, on_gpus = f"{cost['peak_memory_kib'] / 1024:,.0f} MiB", cost.get("device_memory_kib", 0) / 1024
     if on_gpus:
@@ -80,7 +92,7 @@ def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
         ("simulated", f"{record['measures']['simulated_time']:.6g} s in {steps:,} steps, {rejected:,} more rejected"),
         ("model", f"{counted(particles, 'particle', 'particles')}, {counted(counts['bodies'], 'body', 'bodies')}, "
                   f"{counted(counts['left'], 'particle has', 'particles have')} left"),
-        ("took", f"{duration(cost['wall_seconds'])} on the wall{pace}; {memory}"),
+        ("took", f"{duration(float(total['wall_seconds']))} on the wall{several}{pace}; {memory}"),
         ("on", f"{run['ranks']} {'rank' if run['ranks'] == 1 else 'ranks'}, {escaped(run['backend'])}, "
                f"{escaped(record['host']['name'])} ({escaped(record['host']['processor'])})"),
         ("program", f"Scree {escaped(build['version'])}, commit {escaped(build['commit'])}"),
@@ -90,6 +102,8 @@ def facts(record: dict[str, Any]) -> list[tuple[str, str]]:
     ]
     if run["restarted_from"]:
         rows.append(("went on from", escaped(run["restarted_from"])))
+    if len(starts) > 1:
+        rows += [(f"start {number}", start_row(start)) for number, start in enumerate(starts, 1)]
     rows += [("with changes", escaped(change)) for change in run["changes"]]
     return rows
 
@@ -106,7 +120,8 @@ def stages(record: dict[str, Any]) -> str:
             name, seconds = escaped(stage["stage"].replace("_", " ")), duration(float(stage["seconds"]))
             rows += f"<tr><th>{name}</th><td>{seconds}</td><td>{100 * share:.1f} %</td><td style=\"width: 20rem\">" \
                     f'<div class="bar" style="width: {100 * share:.1f}%"></div></td></tr>'
-    return f"{heading('Where the time went')}<table>{rows}</table>"
+    last = "<p>Of the last start.</p>" if len(record["starts"]) > 1 else ""
+    return f"{heading('Where the time went')}{last}<table>{rows}</table>"
 
 
 def pictures(run: Run, look: Look) -> str:

@@ -1,13 +1,17 @@
 #include "coupling/ledger.hpp"
 
-#include <cmath>
-
 namespace scree {
 
 void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out) {
   carried_out.left += static_cast<std::int64_t>(leavers.size());
   for (const Leaver& leaver : leavers) carried_out.energy += leaver.elastic;
-  if (policy != Leaving::remove) return;
+  if (policy != Leaving::remove) {
+    for (const Leaver& leaver : leavers) {
+      carried_out.drifting_energy += leaver.energy;
+      carried_out.drifting_integrator_loss += leaver.integrator_loss;
+    }
+    return;
+  }
   carried_out.removed += static_cast<std::int64_t>(leavers.size());
   for (const Leaver& leaver : leavers) {
     carried_out.energy += leaver.energy;
@@ -37,11 +41,14 @@ Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_ou
   return out;
 }
 
-Real energy_exchanged(const Ledger& before, const Ledger& after) {
-  const auto a = before.entries(), b = after.entries();
-  Real sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += std::abs(b[k] - a[k]);
-  return sum / 2;
+Ledger inside_ledger(const Ledger& all, const ParticleLedger& particles, const CarriedOut& carried_out) {
+  Ledger inside = all;
+  inside.kinetic += particles.inside.kinetic - particles.kinetic;
+  inside.gravitational += particles.inside.gravitational - particles.gravitational;
+  inside.dissipated_integrator +=
+      particles.inside.integrator_loss - particles.integrator_loss + carried_out.drifting_integrator_loss;
+  inside.carried_out += carried_out.drifting_energy;
+  return inside;
 }
 
 }  // namespace scree

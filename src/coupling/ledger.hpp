@@ -44,6 +44,9 @@ struct CarriedOut {
   Real energy = 0;                             // see Ledger::carried_out [J]
   Real contact_loss = 0, integrator_loss = 0;  // of the removed ones [J]
   RubbingLosses losses{};                      // of contact_loss
+  // Of those that drift, when they left: kinetic and gravitational energy, and what the integrator had taken
+  // [J].
+  Real drifting_energy = 0, drifting_integrator_loss = 0;
 };
 
 void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut& carried_out);
@@ -52,7 +55,8 @@ void book_leavers(const std::vector<Leaver>& leavers, Leaving policy, CarriedOut
 Ledger make_ledger(const ParticleLedger& particles, const CarriedOut& carried_out, const Multibody* bodies,
                    const MultibodyState& state, Real t);
 
-// Energy that changed its place between two samples: half the sum of all entries' changes [J].
-Real energy_exchanged(const Ledger& before, const Ledger& after);
+// The same ledger as if particles that drift had been removed when they left: what they do outside is in no
+// entry. Of the same instant; the same bits where none drifts.
+Ledger inside_ledger(const Ledger& all, const ParticleLedger& particles, const CarriedOut& carried_out);
 
 }  // namespace scree

@@ -4,6 +4,7 @@
 
 #include "base/for_each.hpp"
 #include "base/reproducible_sum.hpp"
+#include "dem/inside_energies.hpp"
 #include "dem/ledger_items.hpp"
 
 namespace scree {
@@ -26,6 +27,9 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   Real sums[kLedgerTerms];
   reproducible_sums(n, item, sums, items_.ranks);
   ParticleLedger out = make_particle_ledger(sums, items_.side);
+  Real inside[kInsideTerms];
+  reproducible_sums(n, InsideItem{item.in, item.gravity, item.period, verlet_step}, inside, items_.ranks);
+  out.inside = make_inside_energies(inside, items_.side);
   if (store.rotates) {
     Real of_rotation[kRotationTerms];
     reproducible_sums(n, RotationItem{views_of(store), springs.data()}, of_rotation, items_.ranks);
@@ -39,6 +43,12 @@ ParticleLedger CpuReports::ledger(Real verlet_step) {
   for (Index i = 0; i < n; ++i) out.drifting += store.drifting[i];
   out.drifting = items_.ranks.sum(out.drifting);
   return out;
+}
+
+Real CpuReports::inside_kinetic() {
+  Real sum[1];
+  reproducible_sums(items_.store.owned, InsideKineticItem{views_of(items_.store)}, sum, items_.ranks);
+  return sum[0];
 }
 
 void CpuReports::start_output() {

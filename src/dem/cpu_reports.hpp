@@ -14,6 +14,7 @@ class CpuReports : public Reports {
   explicit CpuReports(CpuItems& items) : items_(items), fields_(computed_fields(items.model.output)) {}
 
   ParticleLedger ledger(Real verlet_step) override;
+  Real inside_kinetic() override;
   void start_output() override;
   ParticleOutput output() override { return std::move(output_); }
   ShapePack pack_shapes() override;

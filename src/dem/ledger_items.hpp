@@ -73,6 +73,42 @@ struct LedgerItem {
   }
 };
 
+// Of the particles that have not left the space, sums of their own: InsideEnergies.
+enum InsideTerm {
+  kInsideKinetic,         // [J]
+  kInsideGravitational,   // [J]
+  kInsideIntegratorLoss,  // [J]
+  kInsideTerms
+};
+
+struct InsideTerms {
+  Real value[kInsideTerms];
+};
+
+// Where none has left, each is the sum of LedgerItem, bit for bit. gravity, period, verlet_step: as there.
+struct InsideItem {
+  ParticleViews in;
+  Vec3 gravity, period;
+  Real verlet_step;  // [s]
+
+  SCREE_HD InsideTerms operator()(Index i) const {
+    if (in.drifting[i] != 0) return {};
+    const Vec3 x = unwrapped(in.position[i], in.image[i], period);
+    return {{kinetic_energy(in, i), gravitational_energy(in.velocity[i].w, gravity, x),
+             in.integrator_loss[i] - verlet_energy_shift(verlet_step, in, i)}};
+  }
+};
+
+// The first of these alone.
+struct InsideKineticItem {
+  ParticleViews in;
+  struct Term {
+    Real value[1];
+  };
+
+  SCREE_HD Term operator()(Index i) const { return {{in.drifting[i] == 0 ? kinetic_energy(in, i) : 0}}; }
+};
+
 // Where contacts attract, a sum of its own, too.
 struct CohesionItem {
   const Real* cohesion;  // of ContactEnergyItem [J]

@@ -1,5 +1,7 @@
 #include "mbs/energy_ledger.hpp"
 
+#include <algorithm>
+
 namespace scree {
 
 void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Real h, MultibodyState& end) {
@@ -12,6 +14,10 @@ void book_step(RigidBodySystem& system, const MultibodyState& start, Real t, Rea
   end.dissipated = start.dissipated + h / 2 * (p0.dissipated + p1.dissipated) + joints.dissipated;
   end.driver_work = start.driver_work + driver_work + h / 2 * (p0.applied + p1.applied) + joints.applied;
   end.integrator_loss = start.integrator_loss + loss;
+  MultibodyEnergies energies;
+  for (const auto& kind : system.kinds()) kind->add_energies(end, energies);
+  end.least_kinetic = std::min(start.least_kinetic, energies.kinetic);
+  end.most_kinetic = std::max(start.most_kinetic, energies.kinetic);
 }
 
 MultibodyEnergies stored_energies(const RigidBodySystem& system, const MultibodyState& state, Real t) {

@@ -6,8 +6,9 @@
 
 namespace scree {
 
-// Adds to the end state's dissipated, driver_work and integrator_loss what the step from (start, t) to (end,
-// t + h) adds to the start's. With P the power at either end [W]:
+// Brings the end state's least_kinetic and most_kinetic up to date, and adds to its dissipated, driver_work
+// and integrator_loss what the step from (start, t) to (end, t + h) adds to the start's. With P the power at
+// either end [W]:
 //   dissipated  += h/2 (P_0 + P_1) of the dampers
 //   driver_work += h/2 (P_0 + P_1) of prescribed motions, actuators and applied forces
 // and of efforts on joints (T_0 + T_1)/2 (c_1 - c_0), of motors to driver_work, of the others to `dissipated`

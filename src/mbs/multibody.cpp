@@ -181,6 +181,7 @@ MultibodyState Multibody::initial_state(const std::vector<BodyWrench>& wrench) {
   impl_->system.set_contacts({wrench, {}});
   impl_->solve_acceleration(state, 0);
   state.wrench = wrench;
+  state.least_kinetic = state.most_kinetic = energies(state, 0).kinetic;
   if (impl_->method.shares())
     check_start_accelerations(impl_->system, impl_->newton.misfit(), state.acceleration);
   return state;
@@ -328,6 +329,14 @@ void Multibody::motion(const MultibodyState& state, Real tau, std::vector<BodyMo
 
 MultibodyEnergies Multibody::energies(const MultibodyState& state, Real t) const {
   return stored_energies(impl_->system, state, t);
+}
+
+Real Multibody::energy_of_forces(const MultibodyState& state) const {
+  const std::vector<Real>& scale = impl_->system.coordinate_scale();
+  Real sum = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    sum += scale[i] * (std::abs(state.applied[i]) + std::abs(state.applied[i] - state.force[i]));
+  return sum;
 }
 
 MultibodyState Multibody::at_instant(const MultibodyState& state, Real t) const {

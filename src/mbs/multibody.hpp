@@ -29,6 +29,8 @@ struct MultibodyState {
   Real dissipated = 0;            // in force elements since t = 0 [J]
   Real integrator_loss = 0;       // taken out by HHT since t = 0 [J]
   Real driver_work = 0;           // done by drivers, actuators, applied forces and walls since t = 0 [J]
+  // Kinetic energy of all bodies, at the ends of steps where it was least and most since t = 0 [J].
+  Real least_kinetic = 0, most_kinetic = 0;
 };
 
 // Size of one Newton iteration, scaled and dimensionless.
@@ -127,6 +129,9 @@ class Multibody {
   void motion(const MultibodyState& state, Real tau, std::vector<BodyMotion>& out) const;
 
   MultibodyEnergies energies(const MultibodyState& state, Real t) const;
+  // What forces and reactions of the state could do: the sum of their magnitudes, each times the scale of its
+  // coordinate [J]. They may cancel, their round-off does not.
+  Real energy_of_forces(const MultibodyState& state) const;
   // An accepted state, while no step is open, with the accelerations and multipliers of its instant t: those
   // of the acceleration-level system with its positions, velocities and forces; and with what friction under
   // the new reactions remembers. A step's own stand for no instant, and alternate for tens of steps where its

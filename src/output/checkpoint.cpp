@@ -20,7 +20,7 @@ namespace {
 
 // The file's first word to a reader; a new layout gets a new number.
 const std::string kFormatName = "scree checkpoint ";
-constexpr int kFormatNumber = 4;
+constexpr int kFormatNumber = 5;
 
 // In the file, each kind of value has a group of its own.
 const std::string kReals = "/reals/", kIntegers = "/integers/", kTexts = "/texts/";

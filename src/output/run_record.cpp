@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <type_traits>
 
 #include "base/version.hpp"
 #include "output/durable_file.hpp"
@@ -75,15 +76,44 @@ toml::table build_table() {
                      {"libraries", libraries}};
 }
 
+// Of this start.
 toml::table cost_table(const RunRecord& record) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   toml::table table;
-  insert_number(table, "wall_seconds", record.wall_seconds);
-  insert_number(table, "loop_seconds", record.loop_seconds);
-  insert_number(table, "cpu_seconds", record.cpu_seconds);
+  const RunStart own = record.starts.empty() ? RunStart{} : record.starts.back();
+  insert_number(table, "wall_seconds", own.wall_seconds);
+  insert_number(table, "loop_seconds", own.loop_seconds);
+  insert_number(table, "cpu_seconds", own.cpu_seconds);
   table.insert_or_assign("peak_memory_kib", static_cast<std::int64_t>(usage.ru_maxrss));
   table.insert_or_assign("device_memory_kib", record.device_bytes / 1024);
+  return table;
+}
+
+toml::table start_table(const RunStart& start) {
+  toml::table table;
+  for_each_entry(start, [&]<class Value>(const char* name, const Value& value) {
+    if constexpr (std::is_same_v<Value, Real>)
+      insert_number(table, name, value);
+    else
+      table.insert_or_assign(name, value);
+  });
+  return table;
+}
+
+toml::array start_array(const std::vector<RunStart>& starts) {
+  toml::array array;
+  for (const RunStart& start : starts) array.push_back(start_table(start));
+  return array;
+}
+
+// Of all starts.
+toml::table total_table(const std::vector<RunStart>& starts) {
+  const RunStart sum = sum_of(starts);
+  toml::table table{{"starts", static_cast<std::int64_t>(starts.size())}, {"steps", sum.steps}};
+  insert_number(table, "wall_seconds", sum.wall_seconds);
+  insert_number(table, "loop_seconds", sum.loop_seconds);
+  insert_number(table, "cpu_seconds", sum.cpu_seconds);
   return table;
 }
 
@@ -111,6 +141,8 @@ void write_run_record(const std::string& directory, const RunRecord& record) {
                              {"build", build_table()},
                              {"host", toml::table{{"name", host_name()}, {"processor", processor()}}},
                              {"cost", cost_table(record)},
+                             {"starts", start_array(record.starts)},
+                             {"total", total_table(record.starts)},
                              {"stages", stage_array(record.timers)},
                              {"counts", counts},
                              {"measures", measures},

@@ -8,6 +8,7 @@
 
 #include "base/timer.hpp"
 #include "base/types.hpp"
+#include "output/run_starts.hpp"
 
 namespace scree {
 
@@ -16,7 +17,8 @@ struct RunRecord {
   std::string command_line;
   std::string status;  // "running", "done", "failed: ...", "stopped by signal ..."
   int exit_code = 0;
-  std::string started, ended;  // ISO 8601, UTC
+  std::string started, ended;    // ISO 8601, UTC
+  std::vector<RunStart> starts;  // this one last
   std::string backend, solver;
   std::string start_change;  // velocities = "consistent": the largest change at t = 0
   std::string redundancy;    // of constraints that share the load: rows, rank, names
@@ -25,8 +27,6 @@ struct RunRecord {
   std::string state_hash;  // of the state in the last checkpoint; empty before the first
   int ranks = 1;
   std::int64_t device_bytes = 0;  // of GPU memory at the end, all ranks together; 0 on the CPU
-  double wall_seconds = 0, cpu_seconds = 0;
-  double loop_seconds = 0;  // wall time of the steps, output between them included
   StageTimers timers;
   std::vector<std::pair<std::string, std::int64_t>>
       counts;                                            // steps, iterations, rejections, list builds, ...

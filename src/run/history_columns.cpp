@@ -82,10 +82,12 @@ void energy_columns(Group energy) {
              [](const Sample& s) { return s.ledger.mechanical(); });
   energy.add(
       "balance_error", "J",
-      "total + dissipated + carried out - driver work, less its value at t = 0; with velocity-Verlet what "
-      "its steps did to contacts",
+      "total + dissipated + carried out - driver work, less its value at t = 0, without what drifts outside; "
+      "with velocity-Verlet what its steps did to contacts",
       [](const Sample& s) { return s.balance_error; });
-  energy.add("exchanged", "J", "energy that changed its place since t = 0, from row to row",
+  energy.add("exchanged", "J",
+             "the most kinetic energy of particles at a time, the ranges of that of bodies, of the elastic "
+             "energy of force elements and of the driver work, and what was dissipated, since t = 0",
              [](const Sample& s) { return s.exchanged; });
 }
 

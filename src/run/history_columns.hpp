@@ -20,7 +20,7 @@ struct HistorySample {
   Real time = 0, step = 0;  // step: length of the one just taken [s]
   StepCounts counts;
   ParticleLedger particles;
-  Ledger ledger;
+  Ledger ledger, inside;                      // the latter without what drifts outside the space
   Real balance_error = 0, exchanged = 0;      // [J]
   RubbingLosses losses{};                     // parts of ledger.dissipated_contacts [J]
   std::int64_t left = 0, bodies_outside = 0;  // particles, bodies

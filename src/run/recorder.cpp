@@ -98,6 +98,10 @@ std::vector<SeriesNames> names_of(const Model& model) {
   return {bodies, {kMaterialNames, model.contact.material_names}, groups};
 }
 
+EnergyExtremes extremes_of(const HistorySample& now, const State& state) {
+  return extremes_at(now.particles.inside.kinetic, now.ledger.elastic_force_elements, state.bodies);
+}
+
 }  // namespace
 
 Recorder::Recorder(const Model& model, Backend& backend, const BodyLink& link, const std::string& directory,
@@ -167,28 +171,36 @@ HistorySample Recorder::take_sample(State& state, Real h) const {
   return sample;
 }
 
+void Recorder::sample_energies(State& state) {
+  const Real kinetic = backend_.reports().inside_kinetic();
+  const Multibody* const bodies = link_.multibody();
+  const Real elastic = bodies == nullptr ? 0 : bodies->energies(state.bodies, state.clock.time).elastic;
+  add_sample(state.balance, extremes_at(kinetic, elastic, state.bodies));
+}
+
 void Recorder::rebase_balance(State& state) {
-  BalanceState& balance = state.balance;
-  if (!balance.open) return;
-  const Ledger now = make_ledger(backend_.reports().ledger(verlet_step(model_)), state.carried_out,
-                                 link_.multibody(), state.bodies, state.clock.time);
-  balance.start += now.accounted() - balance.last.accounted();
-  balance.last = now;
+  HistorySample now;
+  take_energies(state, now);
+  rebase(state.balance, now.inside, extremes_of(now, state));
+}
+
+void Recorder::take_energies(const State& state, HistorySample& sample) const {
+  sample.particles = backend_.reports().ledger(verlet_step(model_));
+  sample.ledger =
+      make_ledger(sample.particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
+  sample.inside = inside_ledger(sample.ledger, sample.particles, state.carried_out);
+  // Not yet at the start: the first step can tell more.
+  if (state.balance.open && link_.ranks().any(!std::isfinite(sample.ledger.mechanical())))
+    throw SimulationError("stage output: the energy of particles and bodies is not finite");
 }
 
 // Fills the energies, and brings the balance up to date.
 void Recorder::balance(State& state, HistorySample& sample) const {
-  sample.particles = backend_.reports().ledger(verlet_step(model_));
-  const Ledger& ledger = sample.ledger =
-      make_ledger(sample.particles, state.carried_out, link_.multibody(), state.bodies, state.clock.time);
+  take_energies(state, sample);
   sample.losses = sample.particles.rotation.losses;
   sample.losses.add(state.carried_out.losses);
-  BalanceState& balance = state.balance;
-  // Not yet at the start: the first step can tell more.
-  if (balance.open && link_.ranks().any(!std::isfinite(ledger.mechanical())))
-    throw SimulationError("stage output: the energy of particles and bodies is not finite");
-  add_sample(balance, ledger);
-  sample.balance_error = ledger.accounted() - balance.start, sample.exchanged = balance.exchanged;
+  add_row(state.balance, sample.inside, extremes_of(sample, state), state.bodies);
+  sample.balance_error = balance_error(state.balance), sample.exchanged = state.balance.exchanged;
 }
 
 void Recorder::snapshot(State& state) {

@@ -29,6 +29,7 @@ class Recorder : public Records {
   Recorder& operator=(const Recorder&) = delete;
 
   void history(State& state, Real h) override;
+  void sample_energies(State& state) override;
   // After a restart with another deck: what that adds to the energies or takes from them, at this instant, is
   // neither a balance error nor exchanged. The balance goes on from its last sample.
   void rebase_balance(State& state);
@@ -58,6 +59,7 @@ class Recorder : public Records {
   WantedLines wanted_lines() const;
   bool writes_late() const;
   HistorySample take_sample(State& state, Real h) const;  // collective; updates the balance in the state
+  void take_energies(const State& state, HistorySample& sample) const;
   void balance(State& state, HistorySample& sample) const;
 
   const Model& model_;

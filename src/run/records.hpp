@@ -13,6 +13,8 @@ class Records {
 
   // h: length of the step just taken [s]. Books the energy balance in the state and counts the row there.
   virtual void history(State& state, Real h) = 0;
+  // Takes the extremes of the energies at this instant into the state's balance: see next_energy_sample().
+  virtual void sample_energies(State& state) = 0;
   // Counts it in the state; may write it later.
   virtual void snapshot(State& state) = 0;
   // Writes what was taken and not yet written.

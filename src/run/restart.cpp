@@ -221,11 +221,12 @@ std::string hash_of_all(const State& state, const Ranks& ranks) {
 }
 
 void add_restart_texts(Checkpoint& checkpoint, const RunOptions& options, const std::string& state_hash,
-                       const std::string& changes) {
+                       const std::string& changes, const std::vector<RunStart>& starts) {
   checkpoint.texts["fingerprint"] = options.fingerprint;
   checkpoint.texts["deck"] = options.resolved_deck;
   checkpoint.texts[kHash] = state_hash;
   checkpoint.texts["changes"] = changes;
+  checkpoint.texts["starts"] = to_text(starts);
 }
 
 Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
@@ -237,7 +238,8 @@ Restart read_restart(const Model& model, const RunOptions& options, Log& log) {
     differences = differences_until(checkpoint, options);
     check_allowed(differences, model, options);
     check_works(checkpoint, differences, model, options);
-    check_datasets(checkpoint, model, {"changes", "deck", "fingerprint", kHash});
+    check_datasets(checkpoint, model, kRestartTexts);
+    restart.starts = starts_in(checkpoint.text("starts"), options.restart);
   });
   restart.state = unpack(checkpoint, ranks);
   check_state(restart.state, options.restart, model.particles.totals.count, ranks);

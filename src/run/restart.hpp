@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/log.hpp"
+#include "output/run_starts.hpp"
 #include "run/simulation.hpp"
 #include "run/state.hpp"
 
@@ -14,12 +16,16 @@ struct Restart {
   // Whether the deck is another one than the checkpoint's, and whether its forces may be: those of the state
   // are then to be computed anew.
   bool changed = false, forces_changed = false;
-  std::string changes;  // since t = 0, this and earlier ones: a line for each key
+  std::string changes;           // since t = 0, this and earlier ones: a line for each key
+  std::vector<RunStart> starts;  // up to the checkpoint
 };
 
-// Adds to a packed state what a restart wants to know. changes: as in Restart.
+// Adds to a packed state what a restart wants to know. changes: as in Restart; starts: with this one.
 void add_restart_texts(Checkpoint& checkpoint, const RunOptions& options, const std::string& state_hash,
-                       const std::string& changes);
+                       const std::string& changes, const std::vector<RunStart>& starts);
+// The names of these texts.
+inline const std::vector<std::string> kRestartTexts = {"changes", "deck", "fingerprint", "starts",
+                                                       "state_hash"};
 // As text: of all ranks' particles and the rest. Collective.
 std::string hash_of_all(const State& state, const Ranks& ranks);
 // Throws IoError where the file is damaged or no checkpoint, InputError where it belongs to another deck: its

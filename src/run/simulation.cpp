@@ -1,10 +1,8 @@
 #include "run/simulation.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 
 #include "base/utc.hpp"
@@ -21,22 +19,12 @@
 #include "run/live_view.hpp"
 #include "run/recorder.hpp"
 #include "run/restart.hpp"
+#include "run/start_book.hpp"
 #include "run/step_loop.hpp"
 #include "run/surfaces_outside.hpp"
 
 namespace scree {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 class Simulation {
  public:
@@ -52,6 +40,7 @@ class Simulation {
         link_(model, ranks_),
         step_(model, *backend_, link_, timers_),
         live_(model, options, backend_->description(), log),
+        book_(restart_.starts, state_, live_.started(), backend_->description(), ranks_.size()),
         surfaces_outside_(model) {
     ranks_.on_root([&] { folder_.claim(); });
     start_or_resume();
@@ -104,8 +93,7 @@ class Simulation {
   CoupledStep step_;
   std::unique_ptr<Recorder> recorder_;
   LiveView live_;
-  double start_cpu_ = cpu_seconds();
-  double loop_seconds_ = 0;
+  StartBook book_;
   bool body_left_ = false, load_lost_ = false, overloaded_ = false;
   const SurfacesOutside surfaces_outside_;
   std::string state_hash_;
@@ -185,7 +173,7 @@ void Simulation::checkpoint(State& state, const std::string& name) {
   state_hash_ = hash_of_all(state, ranks_);
   bring_into_id_order(state);
   Checkpoint out = pack(state);
-  add_restart_texts(out, options_, state_hash_, restart_.changes);
+  add_restart_texts(out, options_, state_hash_, restart_.changes, book_.starts(state));
   write_checkpoint(options_.output_directory + "/" + name, out, ranks_, model_.output.compression);
   state.particles = {}, state.contacts = {}, state.works = {};
   live_.checkpoint_written(name, state.clock.time);
@@ -251,9 +239,9 @@ ExitCode Simulation::run_to_the_end() {
         progress(s, h);
       });
   try {
-    const Clock::time_point start = Clock::now();
+    book_.begin_loop();
     const LoopEnd end = loop.run();
-    loop_seconds_ = std::chrono::duration<double>(Clock::now() - start).count();
+    book_.end_loop();
     if (end == LoopEnd::done) {
       checkpoint(loop.complete_state(), "checkpoint_end.h5");
       return finish("done", ExitCode::done);
@@ -282,6 +270,7 @@ void Simulation::record_failure(const std::string& why, ExitCode code) {
 }
 
 ExitCode Simulation::fail(StepLoop& loop, const SimulationError& error) {
+  book_.end_loop();
   ranks_.meet(error.what(), static_cast<int>(ExitCode::simulation_failed));
   log_.error(fmt::format("the simulation failed at t = {:.9g} s: {}", state_.clock.time, error.what()));
   keep_last_good_state(loop);
@@ -333,11 +322,11 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   record.restarted_from = options_.restart, record.changes = restart_.changes;
   record.state_hash = state_hash_, record.ranks = ranks_.size(), record.device_bytes = device_bytes_;
   const LoadBalance balance = backend_->list().balance();
-  record.wall_seconds = live_.wall_seconds(), record.loop_seconds = loop_seconds_;
-  record.cpu_seconds = cpu_seconds() - start_cpu_;
+  record.starts = book_.starts(state_);
   record.timers = timers_;
   const StepCounts& n = step_.counts();
   record.counts = {{"steps", n.steps},
+                   {"substeps", model_.integrator.substeps},
                    {"newton_iterations", n.newton_iterations},
                    {"linear_iterations", n.linear_iterations},
                    {"rejected_error", n.rejected_error},
@@ -356,7 +345,7 @@ void Simulation::write_record(const std::string& status, ExitCode code) {
   const BalanceState& b = state_.balance;
   record.measures = {
       {"simulated_time", state_.clock.time}, {"balance_error", balance_error(b)},
-      {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", b.last.dissipated_integrator},
+      {"energy_exchanged", b.exchanged},     {"energy_taken_by_integrator", taken_by_integrator(b)},
       {"imbalance", balance.imbalance},      {"largest_imbalance", balance.largest}};
   record.warnings = log_.warnings();
   write_run_record(options_.output_directory, record);
@@ -377,14 +366,12 @@ void Simulation::summarize() const {
   log_.info(
       fmt::format("energy balance error {:.2e} J of {:.4g} J exchanged, {:.2e} J taken out by the time "
                   "integration; {} left the space{}",
-                  balance_error(b), b.exchanged, b.last.dissipated_integrator,
+                  balance_error(b), b.exchanged, taken_by_integrator(b),
                   counted(state_.carried_out.left, "particle", "particles"),
                   outside == 0 ? "" : ", " + counted(outside, "body is outside", "bodies are outside")));
-  log_.info(fmt::format("{:.2f} s wall, {:.2f} s CPU; results in {}", live_.wall_seconds(),
-                        cpu_seconds() - start_cpu_, options_.output_directory));
+  log_.info(took_text(book_.starts(state_)) + "; results in " + options_.output_directory);
   const Multibody* const bodies = link_.multibody();
-  const BodiesBook book =
-      bodies == nullptr ? BodiesBook{} : bodies_book(*bodies, state_.bodies, state_.clock.time);
+  const BodiesBook book = bodies == nullptr ? BodiesBook{} : bodies_book(model_, *bodies, state_);
   if (const std::string warning = balance_warning(b, book, model_); !warning.empty()) log_.warning(warning);
 }
 

@@ -86,9 +86,20 @@ void visit_state(Visitor& visit, StateType& state) {
   if (state.there.rotates)
     for (int kind = 0; kind < kLossKinds; ++kind)
       visit(kCarriedLosses[kind], state.carried_out.losses.of[kind]);
+  visit("carried_out/drifting_energy", state.carried_out.drifting_energy);
+  visit("carried_out/drifting_integrator_loss", state.carried_out.drifting_integrator_loss);
+  visit("bodies/least_kinetic", state.bodies.least_kinetic);
+  visit("bodies/most_kinetic", state.bodies.most_kinetic);
   visit("balance/open", state.balance.open);
   visit("balance/start", state.balance.start);
+  visit("balance/start_integrator", state.balance.start_integrator);
   visit("balance/exchanged", state.balance.exchanged);
+  visit("balance/exchanged_before", state.balance.exchanged_before);
+  visit("balance/most_kinetic", state.balance.extremes.most_kinetic);
+  visit("balance/least_elastic", state.balance.extremes.least_elastic);
+  visit("balance/most_elastic", state.balance.extremes.most_elastic);
+  visit("balance/least_work", state.balance.extremes.least_work);
+  visit("balance/most_work", state.balance.extremes.most_work);
   visit_ledger(visit, state.balance.last);
 }
 

@@ -13,12 +13,22 @@
 
 namespace scree {
 
-// Energy balance since t = 0.
+// Extremes of energies at instants that follow from the number of steps alone (next_energy_sample) [J].
+struct EnergyExtremes {
+  Real most_kinetic = 0;                     // of particles that have not left
+  Real least_elastic = 0, most_elastic = 0;  // of force elements
+  Real least_work = 0, most_work = 0;        // Ledger::driver_work
+};
+
+// Energy balance since t = 0. Its ledgers are those of inside_ledger().
 struct BalanceState {
-  bool open = false;   // whether the first sample was taken
-  Real start = 0;      // Ledger::accounted() at t = 0 [J]
-  Real exchanged = 0;  // energy that changed its place so far, from sample to sample of the history [J]
-  Ledger last;         // at the last sample
+  bool open = false;          // whether the first row of the history was taken
+  Real start = 0;             // Ledger::accounted() at t = 0 [J]
+  Real start_integrator = 0;  // Ledger::dissipated_integrator at t = 0 [J]
+  Real exchanged = 0;         // energy_exchanged() at the last row [J]
+  Real exchanged_before = 0;  // the same with the decks before --allow-changes changed them [J]
+  EnergyExtremes extremes;
+  Ledger last;  // at the last row
 };
 
 struct State {

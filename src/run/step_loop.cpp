@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "dem/particle_store.hpp"
+#include "run/balance.hpp"
 #include "run/signals.hpp"
 
 namespace scree {
@@ -82,6 +83,7 @@ void StepLoop::write_checkpoint() {
 
 void StepLoop::take_step(Real until) {
   const Real h = clock_.begin_step();
+  next_sample_ = next_energy_sample(parts_.step.counts().steps, implicit_);
   if (!implicit_) return take_explicit_steps(h, until);
   const StepOutcome outcome = parts_.step.implicit_step(state_.bodies, clock_.time(), h);
   if (outcome.verdict != Verdict::accepted) return reject(outcome);
@@ -102,10 +104,13 @@ void StepLoop::reject(const StepOutcome& outcome) {
 }
 
 // Equal steps up to the next output, but no longer than until the next look at signals and progress, and none
-// that begins at `until` or later.
+// that begins at `until` or later. A batch ends where the energies are sampled, but in mixed precision, where
+// ends of batches choose the bits: there the sample is taken at the end of the batch.
 void StepLoop::take_explicit_steps(Real h, Real until) {
-  std::vector<Real> times =
-      clock_.equal_steps(batch_length(parts_.model, parts_.backend.is_mixed(), step_seconds_));
+  const bool mixed = parts_.backend.is_mixed();
+  std::size_t most = batch_length(parts_.model, mixed, step_seconds_);
+  if (!mixed) most = std::min(most, static_cast<std::size_t>(next_sample_ - parts_.step.counts().steps));
+  std::vector<Real> times = clock_.equal_steps(most);
   times.erase(std::lower_bound(times.begin() + 1, times.end(), until), times.end());
   const double start = parts_.seconds();
   const std::size_t taken = parts_.step.explicit_steps(state_.bodies, times, h, clock_.end_of(times.size()));
@@ -142,6 +147,7 @@ void StepLoop::output(Real h) {
   state_.clock = clock_.state();
   {
     const Reports::Instant now(parts_.backend.reports());
+    if (state_.counts.steps >= next_sample_) parts_.records.sample_energies(state_);
     if (history) parts_.records.history(state_, h);
     if (snapshot) parts_.records.snapshot(state_);
   }

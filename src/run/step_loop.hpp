@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -72,6 +73,7 @@ class StepLoop {
   std::function<void(const State&, Real)> progress_;
   bool implicit_;
   double step_seconds_ = std::numeric_limits<double>::infinity();  // of the last explicit steps
+  std::int64_t next_sample_ = 0;                                   // of the energies: a number of steps
   int signal_ = 0;
   double checkpoint_age_ = 0;  // steady clock when the last one was written, or the loop began [s]
   std::optional<State> good_;  // explicit: the copy

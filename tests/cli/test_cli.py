@@ -142,7 +142,8 @@ class CommandLineTest(unittest.TestCase):
         if shutil.which("h5diff"):
             for name in ("history.h5", "checkpoint.h5"):
                 files = [str(self.folder / folder / name) for folder in (output, reference)]
-                compared = subprocess.run(["h5diff", *files], capture_output=True, text=True)
+                differing = "--exclude-path=/texts/starts"  # by what the runs took
+                compared = subprocess.run(["h5diff", differing, *files], capture_output=True, text=True)
                 self.assertEqual(compared.returncode, 0, compared.stdout)
 
     def start(self, output, *words, launcher=()):
@@ -266,7 +267,7 @@ class RunTest(CommandLineTest):
         explicit = ["time.step=5e-4", "contact.pairs.0.damping=100.0", "integrator.particles=velocity-verlet"]
         for name, settings, advice in (("fine", [], None),
                                        ("coarse", ["time.step=4e-3"], "time.control = \"adaptive\""),
-                                       ("explicit", explicit, "integrator.substeps")):
+                                       ("explicit", explicit, ": shorten time.step, in which impacts are off by")):
             with self.subTest(name):
                 words = [word for setting in settings for word in ("--set", setting)]
                 result = self.expect(DONE, "run", deck, "--output", self.folder / name, *words)

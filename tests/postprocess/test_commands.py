@@ -9,6 +9,7 @@ import ast
 import contextlib
 import html.parser
 import io
+import json
 import pathlib
 import re
 import shutil
@@ -363,6 +364,17 @@ class ReportTest(CommandTest):
         page = (other / "report.html").read_text()
         self.assertIn('<p class="warning">too &lt;b&gt;fast&lt;/b&gt;</p>', page)
         self.assertNotIn("No warnings", page)
+
+    def test_a_restarted_run_is_as_fast_as_its_starts_were(self):
+        record, other = scree.open(NET).record, self.copy_of_the_net()
+        steps, own = record["counts"]["steps"], record["starts"][0]
+        record["starts"] = [own | {"steps": steps - 10, "loop_seconds": 99.0, "backend": "<old>"}, own | {"steps": 10}]
+        record["total"] |= {"starts": 2, "wall_seconds": 110.0, "loop_seconds": 100.0}
+        (other / "run_record.json").write_text(json.dumps(record))
+        self.command(DONE, "report", other)
+        for part in (f"110 s on the wall in 2 starts, {4 * steps:.3g} particle-steps per second", "Of the last start.",
+                     f"{steps - 10:,} steps in 99 s; 1 rank, &lt;old&gt;, "):
+            self.assertIn(part, (other / "report.html").read_text())
 
     def test_of_nothing(self):
         (self.folder / "run_record.json").write_text((NET / "run_record.json").read_text())

@@ -57,7 +57,7 @@ class FailureTest(RanksTest):
         def ids(*both):  # the whole chunk of that dataset
             return struct.pack("<2q", *both) + bytes(8 * (CHUNK_ROWS - 2))
         speed = struct.pack("<d", VELOCITY)
-        format_name = b"scree checkpoint 4"
+        format_name = b"scree checkpoint 5"
         damages = {
             "ids must increase": (ids(0, 1), ids(0, 0)), "comes after particle 1": (ids(0, 1), ids(1, 0)),
             "particle id -1": (ids(0, 1), ids(-1, 1)), "particle id 2": (ids(0, 1), ids(0, 2)),

@@ -25,6 +25,8 @@ TEST_CASE("removed particles take their energies along, drifting ones that of th
   CHECK(removed.losses == RubbingLosses{{0.75, 0.25, 0.125}});
   CHECK((drifting.left == 4 && drifting.removed == 0));
   CHECK((drifting.energy == 4 && drifting.contact_loss == 0 && drifting.integrator_loss == 0));
+  CHECK((drifting.drifting_energy == 12 && drifting.drifting_integrator_loss == 0.25));
+  CHECK((removed.drifting_energy == 0 && removed.drifting_integrator_loss == 0));
 }
 
 TEST_CASE("removing a particle leaves the balance as it was") {
@@ -53,13 +55,28 @@ TEST_CASE("every entry is accounted for once; the drivers' work counts against t
     CHECK(std::count(entries.begin(), entries.end(), entry) == 1);
 }
 
-TEST_CASE("energy exchanged is what has left one entry for another") {
-  Ledger before, after;
-  before.kinetic = 10, after.kinetic = 4;
-  after.elastic_contacts = 5, after.dissipated_contacts = 1;
-  CHECK(energy_exchanged(before, after) == 6);
-  CHECK(energy_exchanged(after, before) == 6);
-  CHECK(energy_exchanged(after, after) == 0);
+TEST_CASE("inside the space the ledger is that of a run which removes what drifts in this one") {
+  ParticleLedger before;
+  before.kinetic = 30, before.gravitational = -7, before.contact_elastic = 2, before.contact_loss = 4;
+  before.integrator_loss = 1, before.inside = {30, -7, 1};
+  CHECK(inside_ledger(make_ledger(before, {}, nullptr, {}, 0), before, {}).entries() ==
+        make_ledger(before, {}, nullptr, {}, 0).entries());
+
+  // The leavers have 10 J and -4 J, and fall on.
+  ParticleLedger removed = before, drifting = before;
+  removed.kinetic = 20, removed.gravitational = -3, removed.contact_elastic = 0;
+  removed.contact_loss = 4 - 0.75, removed.integrator_loss = 1 - 0.125;
+  removed.inside = {20, -3, 1 - 0.125};
+  drifting.kinetic = 20 + 1000, drifting.gravitational = -3 - 994, drifting.contact_elastic = 0;
+  drifting.integrator_loss = 1 + 0.5, drifting.inside = removed.inside;
+  const auto ledger = [](const ParticleLedger& particles, Leaving policy) {
+    CarriedOut carried_out;
+    book_leavers(kLeavers, policy, carried_out);
+    return inside_ledger(make_ledger(particles, carried_out, nullptr, {}, 0), particles, carried_out);
+  };
+  const Ledger one = ledger(removed, Leaving::remove), other = ledger(drifting, Leaving::drift);
+  CHECK(one.entries() == other.entries());
+  CHECK(one.accounted() == make_ledger(before, {}, nullptr, {}, 0).accounted());
 }
 
 }  // namespace scree

@@ -32,7 +32,9 @@ TEST_CASE("the run record holds what was run and with what") {
   record.resolved_deck = "title = \"x\"\n";
   record.status = "failed: \"quoted\" \\ text";
   record.exit_code = 3;
-  record.loop_seconds = 2.5, record.device_bytes = 4096;
+  record.starts.resize(2), record.device_bytes = 4096;
+  record.starts[0].steps = 7, record.starts[0].loop_seconds = 1.25;
+  record.starts[1].steps = 8, record.starts[1].loop_seconds = 2.5;
   record.counts = {{"steps", 1234567890123}};
   record.measures = {{"simulated_time", 0.1}, {"balance_error", NAN}};
   record.warnings = {"first", "second"};
@@ -42,7 +44,9 @@ TEST_CASE("the run record holds what was run and with what") {
   CHECK(holds(text, R"("resolved_deck" : "title = \"x\"\n")"));
   CHECK(holds(text, R"("status" : "failed: \"quoted\" \\ text")"));
   CHECK(holds(text, R"("exit_code" : 3)"));
-  CHECK(holds(text, R"("loop_seconds" : 2.5)"));
+  CHECK(holds(text, R"("loop_seconds" : 2.5)"));   // this start
+  CHECK(holds(text, R"("loop_seconds" : 3.75)"));  // all of them
+  CHECK((holds(text, R"("steps" : 7)") && holds(text, R"("steps" : 15)")));
   CHECK(holds(text, R"("device_memory_kib" : 4)"));
   CHECK(holds(text, R"("steps" : 1234567890123)"));
   CHECK(holds(text, R"("balance_error" : "nan")"));  // JSON has no NaN

@@ -1,17 +1,22 @@
-// When a run warns of what the time integration did to the energy, and of what.
+// What energies are measured by, and when a run warns of what the time integration did to them.
 #include "run/balance.hpp"
 
+#include <algorithm>
+#include <set>
+#include <vector>
+
 #include "support/catch.hpp"
+#include "support/models.hpp"
 
 namespace scree {
 
 namespace {
 
-// 1 kJ moves about, of which the integrator takes `taken` and the ledger misses `missed` [J].
+// 1 kJ was exchanged, of which the integrator takes `taken` and the ledger misses `missed` [J].
 BalanceState balance_of(Real taken, Real missed) {
   BalanceState balance;
-  balance.open = true, balance.start = 5000, balance.exchanged = 1000;
-  balance.last.kinetic = 5000 - taken + missed, balance.last.dissipated_integrator = taken;
+  balance.open = true, balance.start = 5003, balance.start_integrator = 3, balance.exchanged = 1000;
+  balance.last.kinetic = 5000 - taken + missed, balance.last.dissipated_integrator = taken + 3;
   return balance;
 }
 
@@ -19,6 +24,13 @@ Model model_with(ParticleIntegrator particles, StepControl control) {
   Model model;
   model.integrator.particles = particles, model.time.control = control;
   return model;
+}
+
+// Energy goes to and fro between the entries of these ledgers.
+Ledger moving(Real kinetic) {
+  Ledger ledger;
+  ledger.kinetic = kinetic;
+  return ledger;
 }
 
 }  // namespace
@@ -36,35 +48,157 @@ TEST_CASE("a run warns of more than 1 % of the energy exchanged, taken or given,
 TEST_CASE("what was taken out of bodies that exchange little counts from 1 % of what they hold on") {
   const Model hht = model_with(ParticleIntegrator::hht, StepControl::fixed);
   for (const Real sign : {1, -1}) {
-    CHECK(balance_warning(balance_of(sign * 49, 0), {5000, sign * 49}, hht).empty());
-    CHECK_FALSE(balance_warning(balance_of(sign * 51, 0), {5000, sign * 51}, hht).empty());
+    CHECK(balance_warning(balance_of(sign * 49, 0), {5000, sign * 49, 0}, hht).empty());
+    CHECK_FALSE(balance_warning(balance_of(sign * 51, 0), {5000, sign * 51, 0}, hht).empty());
     // What particles lost is not the bodies', whatever these hold; nor is what nobody booked.
-    CHECK_FALSE(balance_warning(balance_of(sign * 49, 0), {5000, sign * 38}, hht).empty());
-    CHECK_FALSE(balance_warning(balance_of(0, sign * 11), {5000, 0}, hht).empty());
+    CHECK_FALSE(balance_warning(balance_of(sign * 49, 0), {5000, sign * 38, 0}, hht).empty());
+    CHECK_FALSE(balance_warning(balance_of(0, sign * 11), {5000, 0, 0}, hht).empty());
     // Together they change little, one by one more.
-    CHECK(balance_warning(balance_of(0, 0), {5000, sign * 49}, hht).empty());
+    CHECK(balance_warning(balance_of(0, 0), {5000, sign * 49, 0}, hht).empty());
   }
 }
 
-TEST_CASE("the warning says how much, of how much, and what to do") {
+TEST_CASE("in explicit steps the particles' entry of the integrator is a function of state, and no loss") {
+  const Model verlet = model_with(ParticleIntegrator::velocity_verlet, StepControl::fixed);
+  CHECK(balance_warning(balance_of(400, 0), {}, verlet).empty());
+  CHECK_FALSE(balance_warning(balance_of(0, 11), {}, verlet).empty());
+  CHECK_FALSE(balance_warning(balance_of(51, 0), {5000, 51, 0}, verlet).empty());  // bodies' steps are HHT's
+}
+
+TEST_CASE("the warning says how much, of how much, and what fits the run") {
   const auto text = [](ParticleIntegrator particles, StepControl control, Real taken, Real missed) {
     return balance_warning(balance_of(taken, missed), {}, model_with(particles, control));
   };
   const std::string hht = text(ParticleIntegrator::hht, StepControl::fixed, -480, 0.5);
   CAPTURE(hht);
-  CHECK(hht.find("by 480 J, 48 % of the 1000 J exchanged") != std::string::npos);
-  CHECK(hht.find("took out -480 J, and 0.5 J are not accounted for") != std::string::npos);
-  CHECK(hht.find("set time.control = \"adaptive\"") != std::string::npos);
-  CHECK(text(ParticleIntegrator::hht, StepControl::adaptive, 20, 0).find("time.tolerance") !=
-        std::string::npos);
-  CHECK(text(ParticleIntegrator::velocity_verlet, StepControl::fixed, 0, 20).find("integrator.substeps") !=
-        std::string::npos);
+  CHECK(contains(hht, "by 480 J, 48 % of the 1000 J exchanged"));
+  CHECK(contains(hht, "took out -480 J, and 0.5 J are not accounted for"));
+  CHECK(contains(hht, "shorten time.step, or set time.control = \"adaptive\""));
+  const std::string adaptive = text(ParticleIntegrator::hht, StepControl::adaptive, 20, 0);
+  CHECK((contains(adaptive, "time.tolerance") && !contains(adaptive, "time.step")));
+  const std::string verlet = text(ParticleIntegrator::velocity_verlet, StepControl::fixed, 0, 20);
+  CHECK((contains(verlet, ": shorten time.step") && !contains(verlet, "substeps")));
+  CHECK(!contains(verlet, "adaptive"));
+}
+
+TEST_CASE("explicit steps whose impacts are right are told from steps that are too long") {
+  const std::string deck = kSmallDeck + R"(
+[integrator]
+particles = "velocity-verlet"
+[[contact.pairs]]
+stiffness = 1e4
+damping = 5.0
+[[particles]]
+kind = "list"
+positions = [[-0.3, 0.0], [0.3, 0.0]]
+radius = 0.1
+mass = 1.0
+)";
+  BalanceState balance = balance_of(0, 20);
+  const auto text = [&](const std::string& step) {
+    return balance_warning(balance, {}, model_of(deck, {"time.step=" + step}));
+  };
+  balance.last.kinetic -= 300, balance.last.dissipated_contacts = 300;
+  const std::string fine = text("1e-4"), coarse = text("4e-3");
+  CAPTURE(fine, coarse);
+  CHECK(contains(fine, "20 J, 2 % of the 1000 J exchanged, are not accounted for: explicit steps account"));
+  CHECK(contains(fine, "what contacts dissipate, 300 J here, to first order"));
+  CHECK(!contains(fine, "has changed the energy"));
+  CHECK(contains(coarse, "has changed the energy by 20 J, 2 % of the 1000 J exchanged"));
+  CHECK(contains(coarse, "shorten time.step, in which impacts are off by up to "));
+  balance.last.kinetic += 300, balance.last.dissipated_contacts = 0;  // nothing to account for
+  CHECK(contains(text("1e-4"), "has changed the energy"));
 }
 
 TEST_CASE("where next to nothing was exchanged the last bits of the energies are no reason to warn") {
+  const Model hht = model_with(ParticleIntegrator::hht, StepControl::fixed);
   BalanceState balance = balance_of(0, 0);
   balance.exchanged = 1e-9, balance.last.kinetic += 1e-9;
-  CHECK(balance_warning(balance, {}, model_with(ParticleIntegrator::hht, StepControl::fixed)).empty());
+  CHECK(balance_warning(balance, {}, hht).empty());
+  // Energies of 1e-20 J, of bodies whose forces could do 1 J.
+  balance = BalanceState{true, 0, 0, 1e-20, 0, {}, moving(4e-21)};
+  CHECK(balance_warning(balance, {0, 0, 1e-9}, hht).empty());
+  CHECK_FALSE(balance_warning(balance, {0, 0, 1e-21}, hht).empty());
+}
+
+TEST_CASE("particles of some weight far from the origin have coarse energies") {
+  Model model = model_with(ParticleIntegrator::hht, StepControl::fixed);
+  model.particles.totals.count = 100, model.particles.totals.largest_mass = 1, model.gravity = {0, 0, -10};
+  const BalanceState balance{true, 0, 0, 1e-8, 0, {}, moving(2e-9)};
+  model.space.min = {0, 0, 0}, model.space.max = {1, 1, 1};
+  CHECK_FALSE(balance_warning(balance, {}, model).empty());
+  model.space.max = {1, 1, 1e6};
+  CHECK(balance_warning(balance, {}, model).empty());
+}
+
+TEST_CASE("before the first step nothing was exchanged, and there is no warning") {
+  Ledger start;
+  start.dissipated_integrator = -0.25;  // of velocity-Verlet: a function of state
+  for (const ParticleIntegrator particles : {ParticleIntegrator::hht, ParticleIntegrator::velocity_verlet}) {
+    BalanceState balance;
+    add_row(balance, start, {}, {});
+    CHECK((balance.exchanged == 0 && balance_error(balance) == 0 && taken_by_integrator(balance) == 0));
+    CHECK(balance_warning(balance, {}, model_with(particles, StepControl::fixed)).empty());
+  }
+}
+
+TEST_CASE(
+    "the energy exchanged is that of particles, ranges of bodies, springs and work, and what was lost") {
+  BalanceState balance;
+  MultibodyState bodies;
+  bodies.least_kinetic = 5000, bodies.most_kinetic = 5000.5;  // of a flywheel
+  Ledger ledger;
+  ledger.gravitational = -1e9;
+  add_row(balance, ledger, extremes_at(2, 100, bodies), bodies);
+  CHECK(balance.exchanged == 2.5);
+  bodies.driver_work = -6;
+  add_sample(balance, extremes_at(9, 98, bodies));
+  bodies.driver_work = 1;
+  ledger.gravitational = 1e9, ledger.carried_out = 1e9;
+  ledger.dissipated_force_elements = 0.25, ledger.dissipated_contacts = 0.125;
+  for (const Real kinetic : {16, 3}) {  // rows leave nothing behind
+    add_row(balance, ledger, extremes_at(kinetic, 104, bodies), bodies);
+    CHECK(balance.exchanged == std::max(kinetic, Real(9)) + 0.5 + 6 + 7 + 0.375);
+  }
+}
+
+TEST_CASE("rows of the history do not change what was exchanged") {
+  const std::vector<Real> kinetic = {1, 4, 9, 2, 8, 3, 5};
+  std::set<Real> exchanged;
+  for (const std::size_t every : {1, 2, 3, 6}) {
+    BalanceState balance;
+    for (std::size_t k = 0; k < kinetic.size(); ++k) {
+      if (k > 0 && k % 2 == 0) add_sample(balance, extremes_at(kinetic[k], 0, {}));
+      if (k % every == 0) add_row(balance, {}, extremes_at(kinetic[k], 0, {}), {});
+    }
+    exchanged.insert(balance.exchanged);
+  }
+  CHECK(exchanged == std::set<Real>{9});
+}
+
+TEST_CASE("with another deck the balance goes on from its last row, and what was exchanged stays") {
+  BalanceState balance;
+  const auto row = [&](Real kinetic) { add_row(balance, moving(kinetic), extremes_at(kinetic, 0, {}), {}); };
+  row(40), row(39);
+  rebase(balance, moving(78), extremes_at(78, 0, {}));  // twice the masses
+  CHECK((balance_error(balance) == -1 && balance.exchanged == 40));
+  row(30);
+  CHECK((balance_error(balance) == -49 && balance.exchanged == 78));
+}
+
+TEST_CASE("the energies are sampled after numbers of steps that follow from the steps before alone") {
+  for (const bool implicit : {true, false}) {
+    std::vector<std::int64_t> samples;
+    for (std::int64_t steps = 0; steps < 100000; steps = samples.back())
+      samples.push_back(next_energy_sample(steps, implicit));
+    CHECK(samples.front() == (implicit ? 4 : 128));
+    CHECK(samples.back() - samples[samples.size() - 2] == (implicit ? 8 : 1024));
+    for (std::size_t k = 1, wrong = 0; k < samples.size(); ++k) {  // from wherever one goes on
+      for (const std::int64_t from : {samples[k - 1], (samples[k - 1] + samples[k]) / 2, samples[k] - 1})
+        wrong += next_energy_sample(from, implicit) != samples[k];
+      if (k + 1 == samples.size()) CHECK(wrong == 0);
+    }
+  }
 }
 
 }  // namespace scree

@@ -132,7 +132,7 @@ TEST_CASE("a checkpoint with any dataset too short, too long, missing or unknown
     Checkpoint checkpoint = whole;
     change(checkpoint);
     try {
-      check_datasets(checkpoint, model, {"changes", "deck", "fingerprint", "state_hash"});
+      check_datasets(checkpoint, model, kRestartTexts);
     } catch (const IoError& error) {
       CHECK(contains(error.what(), written().path + ": not a valid checkpoint: "));
       return error.what();

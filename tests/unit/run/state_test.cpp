@@ -54,8 +54,11 @@ State awkward_state() {
   s.shape_contacts = {3, {0, 2, 2}, {n.integer(), n.integer(), n.integer() + 1}, {}};
   for (int k = 0; k < 9; ++k) s.shape_contacts.values.push_back(n.real());
   for (int k = 0; k < 30; ++k) s.works.push_back(k % 2 == 0 ? n.integer() : -n.integer());
-  s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(), {{n.real(), n.real(), n.real()}}};
-  s.balance.open = true, s.balance.start = n.real(), s.balance.exchanged = n.real();
+  s.carried_out = {n.integer(), n.integer(), n.real(), n.real(), n.real(), {{n.real(), n.real(), n.real()}},
+                   n.real(),    n.real()};
+  s.bodies.least_kinetic = n.real(), s.bodies.most_kinetic = n.real();
+  s.balance = {true, n.real(), n.real(), n.real(), n.real(), {}, {}};
+  s.balance.extremes = {n.real(), n.real(), n.real(), n.real(), n.real()};
   s.balance.last = {n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real(), n.real()};
   s.history_rows = n.integer(), s.snapshots = n.integer();
   return s;
@@ -96,6 +99,7 @@ TEST_CASE("what a checkpoint holds is the state") {
   CHECK(after.carried_out.removed == before.carried_out.removed);
   CHECK(after.balance.open);
   CHECK(same_bits(after.balance.last.entries(), before.balance.last.entries()));
+  CHECK(same_bits(after.balance.extremes.least_work, before.balance.extremes.least_work));
   CHECK(after.snapshots == before.snapshots);
 }
 

@@ -26,7 +26,7 @@ struct Result {
 // One history sample: time, counts, ledger, momentum.
 std::vector<Real> history_row(SimulationRun& run) {
   const StepCounts& n = run.counts();
-  std::vector<Real> row{run.time(), run.balance_error(), run.exchanged()};
+  std::vector<Real> row{run.time(), run.balance_error(), run.balance().exchanged};
   for (const std::int64_t count :
        {n.steps, n.newton_iterations, n.linear_iterations, n.rejected_error, n.rejected_newton})
     row.push_back(static_cast<Real>(count));
